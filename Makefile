@@ -1,0 +1,39 @@
+# make demo: install and run the main job; make test: the tests; make check: what CI checks besides.
+PYTHON ?= python3
+BIN := .venv/bin
+EXAMPLE := examples/f16_8g_turn.toml
+
+.PHONY: demo test check lock clean
+
+demo: .venv/installed
+	$(BIN)/gbeam run $(EXAMPLE) --out out/f16_8g_turn
+
+test: .venv/dev-installed
+	$(BIN)/pytest -n 2 --dist worksteal
+
+check: .venv/dev-installed
+	$(BIN)/ruff check src tests
+	$(BIN)/ruff format --check src tests
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+.venv/installed: pyproject.toml requirements.lock
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps -e .
+	@touch $@
+
+.venv/dev-installed: .venv/installed requirements-dev.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements-dev.lock
+	@touch $@
+
+# After a change of the dependencies: one lock for every supported Python and platform.
+lock: .venv/installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check uv
+	$(BIN)/uv pip compile --quiet --universal --no-header --no-emit-index-url --no-annotate \
+		pyproject.toml -o requirements.lock
+	$(BIN)/uv pip compile --quiet --universal --no-header --no-emit-index-url --no-annotate \
+		pyproject.toml --group dev -o requirements-dev.lock
+
+clean:
+	rm -rf .venv out

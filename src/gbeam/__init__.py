@@ -1,0 +1,108 @@
+"""gbeam: how a flexible beam responds while its base moves a lot.
+
+A model is a displacement field with a truncation of one kinetic energy; its equations come by differentiation.
+The numerical names load JAX when they are first used, so that importing gbeam is light.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from gbeam.beam import Beam, Material, PointMass, Section
+from gbeam.errors import ComputationError, GbeamError, InputError
+
+if TYPE_CHECKING:
+    from gbeam.analysis import compare, equilibrium, respond, study
+    from gbeam.case import Case, ResponseSettings
+    from gbeam.model import Model, Structure, assemble
+    from gbeam.motion import (
+        Centrifuge,
+        Flight,
+        HubRate,
+        HubTorque,
+        Sine,
+        SmoothStep,
+        build_target,
+        constant,
+        read_record,
+        smoothed,
+        stack,
+        table,
+        trapezoid,
+    )
+    from gbeam.results import Comparison, Response, Study
+    from gbeam.scenario import build, load  # type: ignore[no-redef]  # modules there have the same names
+
+__version__ = "0.1.0"
+
+_HOMES = {
+    "gbeam.analysis": ("compare", "equilibrium", "respond", "study"),
+    "gbeam.case": ("Case", "ResponseSettings"),
+    "gbeam.model": ("Model", "Structure", "assemble"),
+    "gbeam.motion": (
+        "Centrifuge",
+        "Flight",
+        "HubRate",
+        "HubTorque",
+        "Sine",
+        "SmoothStep",
+        "build_target",
+        "constant",
+        "read_record",
+        "smoothed",
+        "stack",
+        "table",
+        "trapezoid",
+    ),
+    "gbeam.results": ("Comparison", "Response", "Study"),
+    "gbeam.scenario": ("build", "load"),
+}
+_HOME = {name: module for module, names in _HOMES.items() for name in names}
+
+__all__ = [
+    "Beam",
+    "Case",
+    "Centrifuge",
+    "Comparison",
+    "ComputationError",
+    "Flight",
+    "GbeamError",
+    "HubRate",
+    "HubTorque",
+    "InputError",
+    "Material",
+    "Model",
+    "PointMass",
+    "Response",
+    "ResponseSettings",
+    "Section",
+    "Sine",
+    "SmoothStep",
+    "Structure",
+    "Study",
+    "assemble",
+    "build",
+    "build_target",
+    "compare",
+    "constant",
+    "equilibrium",
+    "load",
+    "read_record",
+    "respond",
+    "smoothed",
+    "stack",
+    "study",
+    "table",
+    "trapezoid",
+]
+
+
+def __getattr__(name: str) -> object:
+    if name in _HOME:
+        return getattr(import_module(_HOME[name]), name)
+    raise AttributeError(f"module 'gbeam' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

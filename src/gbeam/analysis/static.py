@@ -1,0 +1,76 @@
+"""Relative equilibrium of the beam at a frozen base motion."""
+
+from __future__ import annotations
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array
+
+import gbeam._jax  # noqa: F401
+from gbeam.equations import Damped, on_prescribed_base
+from gbeam.errors import ComputationError
+from gbeam.field import Coordinates
+from gbeam.model import Structure
+from gbeam.motion import Base
+
+
+@eqx.filter_jit
+def _newton(system: Damped, base: Base, share: Array, q: Array) -> tuple[Array, Array]:
+    """Solve at a share of the base motion's loads: accelerations by the share, rates by its root."""
+
+    def residual(q: Array) -> Array:
+        o = jnp.zeros_like(q)
+        return on_prescribed_base(
+            system, q, o, o, share * base.a_WO_B, jnp.sqrt(share) * base.w_WB_B, share * base.al_WB_B
+        )
+
+    def iterate(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
+        q, _, count = carry
+        correction = jnp.linalg.solve(jax.jacfwd(residual)(q), residual(q))
+        return q - correction, jnp.max(jnp.abs(correction)), count + 1
+
+    def go_on(carry: tuple[Array, Array, Array]) -> Array:
+        q, size, count = carry
+        return (size > 1e-13 + 1e-12 * jnp.max(jnp.abs(q))) & (count < 30)
+
+    q, _, count = jax.lax.while_loop(go_on, iterate, (q, jnp.array(jnp.inf), jnp.array(0)))
+    return q, (count < 30) & jnp.all(jnp.isfinite(q))
+
+
+def equilibrium(structure: Structure, base: Base) -> Coordinates:
+    """Coordinates at which the beam rests relative to a base whose motion is frozen.
+
+    Newton's method, along a path of growing load where one stride fails.
+
+    Parameters
+    ----------
+    structure : Structure
+    base : Base
+        Of one time: arrays (3,).
+
+    Returns
+    -------
+    q : (n,)
+
+    Raises
+    ------
+    ComputationError
+        ``not converged``, with the share of the load that was reached.
+    """
+    q, reached, stride = jnp.zeros(structure.size), 0.0, 1.0
+    while reached < 1.0:
+        attempt = min(reached + stride, 1.0)
+        found, ok = _newton(structure.system, base, jnp.asarray(attempt), q)
+        if bool(ok):
+            q, reached = found, attempt
+        else:
+            stride /= 4
+            if stride < 1e-4:
+                raise ComputationError(
+                    "not converged",
+                    f"no relative equilibrium beyond {reached:.4g} of the load: the beam buckles or diverges there; "
+                    f"the rate is {float(np.linalg.norm(base.w_WB_B)):.4g} rad/s",
+                )
+    return q

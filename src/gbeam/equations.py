@@ -1,0 +1,173 @@
+"""Lagrange's equations of an energy, by automatic differentiation; the constant coefficients of a linear model.
+
+A residual is zero where the equations hold. Nothing here knows which model it differentiates.
+"""
+
+from __future__ import annotations
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+import gbeam._jax  # noqa: F401
+from gbeam.energy import Energy
+from gbeam.field import Coordinates
+
+Vector = Float[Array, "3"]
+Matrix = Float[Array, "n n"]
+
+
+class Damped(eqx.Module):
+    """An energy with its linear damping matrix, N s per unit of the coordinates."""
+
+    energy: Energy
+    damping: Matrix
+
+
+def on_prescribed_base(
+    system: Damped,
+    q: Coordinates,
+    qd: Coordinates,
+    qdd: Coordinates,
+    a_WO_B: Vector,
+    w_WB_B: Vector,
+    al_WB_B: Vector,
+) -> Coordinates:
+    """Residual d/dt ∂T/∂q̇ − ∂T/∂q + Cq̇ + ∂U/∂q on a base whose motion is given, (n,).
+
+    Only the root's acceleration matters, so v_O = 0 with rate a_O. A specific force a − g in its place puts gravity on.
+
+    Parameters
+    ----------
+    q, qd, qdd : (n,) coordinates and their rates
+    a_WO_B : (3,) acceleration of the root, base axes, m/s²
+    w_WB_B, al_WB_B : (3,) angular velocity and acceleration of the base, base axes, rad/s, rad/s²
+    """
+    kinetic = system.energy.kinetic
+    u = jnp.concatenate([jnp.zeros(3), w_WB_B])
+    ud = jnp.concatenate([a_WO_B, al_WB_B])
+    _, momentum_rate = jax.jvp(jax.grad(kinetic, 2), (u, q, qd), (ud, qd, qdd))
+    return momentum_rate - jax.grad(kinetic, 1)(u, q, qd) + system.damping @ qd + jax.grad(system.energy.potential)(q)
+
+
+class Hub(eqx.Module):
+    """A rigid hub turning about z: radius m (to the beam's root), inertia kg m² about its axis."""
+
+    radius: Float[Array, ""]
+    inertia: Float[Array, ""]
+
+    def twist(self, rate: Float[Array, ""]) -> Float[Array, 6]:
+        """Twist (v_O, ω) of the root at a hub rate, base axes."""
+        o = jnp.zeros(())
+        return jnp.stack([o, self.radius * rate, o, o, o, rate])
+
+
+def hub_kinetic(energy: Energy, hub: Hub, y: Array, yd: Array) -> Float[Array, ""]:
+    """Kinetic energy of hub and beam, y = (θ, q), J (2009 (9))."""
+    return 0.5 * hub.inertia * yd[0] ** 2 + energy.kinetic(hub.twist(yd[0]), y[1:], yd[1:])
+
+
+def on_free_hub(
+    system: Damped,
+    hub: Hub,
+    y: Float[Array, " n_1"],
+    yd: Float[Array, " n_1"],
+    ydd: Float[Array, " n_1"],
+    torque: Float[Array, ""],
+    *,
+    hub_force: bool = True,
+) -> Float[Array, " n_1"]:
+    """Residual of hub and beam, y = (θ, q), under a torque on the hub, (n + 1,).
+
+    Parameters
+    ----------
+    y, yd, ydd : (n + 1,) hub angle rad and beam coordinates, with their rates
+    torque : N m
+    hub_force : whether the hub feels Q_θ, the terms of its row that are quadratic in the rates (2009 (32)); the
+        printed SFOAM drops them and then conserves nothing
+    """
+
+    def inertial(yd: Array) -> Array:
+        def kinetic(y: Array, yd: Array) -> Array:
+            return hub_kinetic(system.energy, hub, y, yd)
+
+        _, momentum_rate = jax.jvp(jax.grad(kinetic, 1), (y, yd), (yd, ydd))
+        return momentum_rate - jax.grad(kinetic)(y, yd)
+
+    residual = inertial(yd)
+    if not hub_force:
+        residual = residual.at[0].set(inertial(jnp.zeros_like(yd))[0])
+    elastic = system.damping @ yd[1:] + jax.grad(system.energy.potential)(y[1:])
+    return residual + jnp.concatenate([-torque[None], elastic])
+
+
+class Coefficients(eqx.Module):
+    """Constant coefficients of a linear model on a prescribed base.
+
+    M q̈ + (C + ω·G) q̇ + (K + ωω:K_ww + α·K_al + a·K_a) q = ωω:F_ww + α·F_al + a·F_a.
+    K_ww and F_ww are symmetric in their first two axes. 2020 (16), (20)–(22); 2009 (24)–(34).
+    """
+
+    mass: Matrix
+    damping: Matrix
+    gyroscopic: Float[Array, "3 n n"]
+    stiffness: Matrix
+    k_ww: Float[Array, "3 3 n n"]
+    k_al: Float[Array, "3 n n"]
+    k_a: Float[Array, "3 n n"]
+    f_ww: Float[Array, "3 3 n"]
+    f_al: Float[Array, "3 n"]
+    f_a: Float[Array, "3 n"]
+
+    def at(self, a_WO_B: Vector, w_WB_B: Vector, al_WB_B: Vector) -> tuple[Matrix, Matrix, Coordinates]:
+        """C + G, K and F at a base motion."""
+        w2 = w_WB_B[:, None] * w_WB_B[None, :]
+        velocity = self.damping + jnp.einsum("i,inm->nm", w_WB_B, self.gyroscopic)
+        stiffness = (
+            self.stiffness
+            + jnp.einsum("ij,ijnm->nm", w2, self.k_ww)
+            + jnp.einsum("i,inm->nm", al_WB_B, self.k_al)
+            + jnp.einsum("i,inm->nm", a_WO_B, self.k_a)
+        )
+        load = jnp.einsum("ij,ijn->n", w2, self.f_ww) + al_WB_B @ self.f_al + a_WO_B @ self.f_a
+        return velocity, stiffness, load
+
+
+@eqx.filter_jit
+def coefficients(system: Damped) -> Coefficients:
+    """Find the constant coefficients of a linear model by differentiating its residual at rest.
+
+    The result is the whole truth for an energy truncated to second order; for a complete one it is the linearisation
+    about the straight beam.
+    """
+    n = system.damping.shape[0]
+    q0, o = jnp.zeros(n), jnp.zeros(3)
+
+    def residual(q: Array, qd: Array, qdd: Array, a: Array, w: Array, al: Array) -> Array:
+        return on_prescribed_base(system, q, qd, qdd, a, w, al)
+
+    at_rest = (q0, q0, q0, o, o, o)
+
+    def last_first(a: Array, base_axes: int) -> Array:
+        """Move the base's axes, which differentiation puts last, to the front."""
+        return jnp.moveaxis(a, tuple(range(-base_axes, 0)), tuple(range(base_axes)))
+
+    def d(*order: int) -> Array:
+        f = residual
+        for wrt in order:
+            f = jax.jacfwd(f, wrt)
+        return f(*at_rest)
+
+    return Coefficients(
+        mass=d(2),
+        damping=system.damping,
+        gyroscopic=last_first(d(1, 4), 1),
+        stiffness=d(0),
+        k_ww=last_first(d(0, 4, 4), 2) / 2,
+        k_al=last_first(d(0, 5), 1),
+        k_a=last_first(d(0, 3), 1),
+        f_ww=-last_first(d(4, 4), 2) / 2,
+        f_al=-last_first(d(5), 1),
+        f_a=-last_first(d(3), 1),
+    )

@@ -1,0 +1,47 @@
+"""What gbeam raises: an input that is wrong, or a computation that failed. Each says where, what, and the fix."""
+
+from __future__ import annotations
+
+
+class GbeamError(Exception):
+    """Base of everything that gbeam raises on purpose."""
+
+
+class InputError(GbeamError, ValueError):
+    """The input is wrong (exit status 2).
+
+    Parameters
+    ----------
+    where : str
+        Path of the quantity in the scenario's words, e.g. ``beam.masses[0].at``; relative to the object that
+        raises it (``masses[0].at``) until a caller that knows more adds a prefix with :meth:`within`.
+    problem : str
+        What is wrong, with the value: ``is 0.4 m, beyond the beam's tip``.
+    fix : str
+        What would be right: ``give a position between 0 and 0.3 m``.
+    """
+
+    def __init__(self, where: str, problem: str, fix: str) -> None:
+        self.where, self.problem, self.fix = where, problem, fix
+        super().__init__(f"{where} {problem}; {fix}" if where else f"{problem}; {fix}")
+
+    def within(self, prefix: str) -> InputError:
+        """Return the same error seen from one level further out."""
+        joint = "" if not self.where or self.where.startswith("[") else "."
+        return InputError(f"{prefix}{joint}{self.where}", self.problem, self.fix)
+
+
+class ComputationError(GbeamError, RuntimeError):
+    """A computation failed (exit status 1).
+
+    Parameters
+    ----------
+    outcome : str
+        The named outcome: ``"diverged"`` or ``"not converged"``.
+    message : str
+        What happened, where, and what to try next.
+    """
+
+    def __init__(self, outcome: str, message: str) -> None:
+        self.outcome = outcome
+        super().__init__(message)

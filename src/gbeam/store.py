@@ -1,0 +1,250 @@
+"""A study in one netCDF file, which xarray, MATLAB and h5py open.
+
+The root says what was computed and from what; ``motions/NAME`` holds the response in one environment and
+``comparisons/NAME`` what a centrifuge's response is compared with. Variables are SI and carry ``units``,
+``long_name`` and, for vectors, the ``frame`` of their components.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gbeam.errors import InputError
+from gbeam.results import Comparison, Response, Study
+
+BASE_AXES = "B: base axes at the root, x along the beam, y along its width, z through its thickness"
+_AXIS = ("axis", ["x", "y", "z"])
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where a result came from.
+
+    Parameters
+    ----------
+    scenario : str
+        Text of the scenario file.
+    overrides : sequence of str
+        The ``key=value`` changes made to it, in order.
+    command : str
+        The command line.
+    """
+
+    scenario: str = ""
+    overrides: Sequence[str] = ()
+    command: str = ""
+
+
+def write(study: Study, path: str | os.PathLike[str], provenance: Provenance = Provenance()) -> None:  # noqa: B008
+    """Write a study to a netCDF file, whole or not at all.
+
+    Parameters
+    ----------
+    study : Study
+    path : path
+        Replaced if it exists.
+    provenance : Provenance
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    final = Path(path)
+    # Beside the file, so that the renaming is one step on the same disk.
+    handle, name = tempfile.mkstemp(prefix=f".{final.name}-", suffix=".nc", dir=final.parent)
+    os.close(handle)
+    try:
+        as_tree(study, provenance).to_netcdf(name, engine="h5netcdf")
+        # mkstemp's files are for their owner only; a result is as readable as any other new file.
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(name, 0o666 & ~mask)
+        os.replace(name, final)
+    except BaseException:
+        os.unlink(name)
+        raise
+
+
+def read(path: str | os.PathLike[str]) -> xr.DataTree:
+    """Read a file that :func:`write` wrote, into memory.
+
+    Parameters
+    ----------
+    path : path
+
+    Returns
+    -------
+    xarray.DataTree
+        For example ``tree["motions/flight"]["displacement"].sel(axis="z")``.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or it is not netCDF.
+    """
+    try:
+        with xr.open_datatree(path, engine="h5netcdf") as tree:
+            return tree.load()
+    except OSError as error:
+        reason = error.strerror or "not a netCDF-4 file"
+        raise InputError(
+            str(path), f"cannot be read ({reason})", "give a result.nc written by gbeam run"
+        ) from None
+
+
+def as_tree(study: Study, provenance: Provenance = Provenance()) -> xr.DataTree:  # noqa: B008
+    """Return a study in its xarray form; `write` stores this.
+
+    Parameters
+    ----------
+    study : Study
+    provenance : Provenance
+
+    Returns
+    -------
+    xarray.DataTree
+    """
+    # The text is a variable: an HDF5 attribute ends at 64 KiB, and a scenario may hold long tables.
+    root = xr.Dataset({"scenario": ((), provenance.scenario, {"long_name": "text of the scenario file"})})
+    root.attrs = {
+        "title": study.title,
+        "outcome": study.outcome,
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
+        "gbeam_version": version("gbeam"),
+        "jax_version": version("jax"),
+        "command": provenance.command,
+        "overrides": "\n".join(provenance.overrides),
+    }
+    groups = {"/": root}
+    groups |= {f"/motions/{name}": _response(it) for name, it in study.responses.items()}
+    groups |= {f"/comparisons/{it.centrifuge}": _comparison(it) for it in study.comparisons}
+    return xr.DataTree.from_dict(groups)
+
+
+def _variable(
+    dims: tuple[str, ...], values: Any, units: str, long_name: str, **more: Any
+) -> tuple[tuple[str, ...], Any, dict[str, Any]]:
+    # Numbers of vectors mean nothing without their axes: whatever has an axis has a frame.
+    frame = {"frame": BASE_AXES} if "axis" in dims else {}
+    return dims, values, {"units": units, "long_name": long_name} | frame | more
+
+
+def _response(it: Response) -> xr.Dataset:
+    t, ta = ("time",), ("time", "axis")
+    v = _variable
+    # A rotation shape's coordinate is an angle and a strain shape's a strain: only projected fields' are lengths.
+    length = "1" if it.model == "exact" else "m"
+    rate = f"{length} s-1".removeprefix("1 ")
+    data = {
+        "displacement": v(
+            ("time", "station", "axis"), it.displacement, "m", "displacement relative to the base axes"
+        ),
+        "coordinates": v(("time", "coordinate"), it.q, length, "generalised coordinates of the beam"),
+        "coordinate_rates": v(
+            ("time", "coordinate"), it.qd, rate, "rates of the generalised coordinates"
+        ),
+        "root_acceleration": v(
+            ta, it.base.a_WO_B, "m s-2", "acceleration of the root; specific force where gravity acts"
+        ),
+        "angular_velocity": v(ta, it.base.w_WB_B, "rad s-1", "angular velocity of the base"),
+        "angular_acceleration": v(ta, it.base.al_WB_B, "rad s-2", "angular acceleration of the base"),
+        "tip_max_abs": v(
+            ("axis",), it.peaks.max_abs, "m", "largest displacement of the tip at any step computed"
+        ),
+        "tip_time_of_max": v(("axis",), it.peaks.time_of_max, "s", "time of that displacement"),
+        "tip_residual_amplitude": v(
+            ("axis",), it.peaks.residual_amplitude, "m", "half peak-to-peak of the tip from residual_from on"
+        ),
+    }
+    coords = {
+        "time": v(t, it.time, "s", "time"),
+        "station": v(("station",), it.stations, "m", "position along the beam from the root"),
+        "coordinate": v(("coordinate",), np.arange(it.q.shape[1]), "1", "axial, along y, along z"),
+        "axis": _AXIS,
+    }
+    if it.hub is not None:
+        turn = {
+            "hub_angle": ("rad", it.hub.angle),
+            "hub_rate": ("rad s-1", it.hub.rate),
+            "hub_acceleration": ("rad s-2", it.hub.acceleration),
+            "hub_torque": ("N m", it.hub.torque),
+        }
+        data |= {name: v(t, x, unit, f"{name.replace('_', ' ')} about z") for name, (unit, x) in turn.items()}
+    if it.axes is not None:
+        tm = ("time", "machine_axis")
+        coords["machine_axis"] = v(("machine_axis",), [1, 2, 3], "1", "axis of the centrifuge")
+        data |= {
+            "axis_angle": v(tm, it.axes.angle, "rad", "angle of the centrifuge's axes"),
+            "axis_rate": v(tm, it.axes.rate, "rad s-1", "rate of the centrifuge's axes"),
+            "axis_acceleration": v(tm, it.axes.acceleration, "rad s-2", "acceleration of the centrifuge's axes"),
+            "load_wanted": v(ta, it.axes.wanted, "m s-2", "load wanted at the control point"),
+            "load_achieved": v(ta, it.axes.achieved, "m s-2", "load that the axes make at the control point"),
+            "held": v(
+                t,
+                it.axes.held.astype(np.int8),
+                "1",
+                "whether the target is held instead of the flight's load",
+                flag_values=np.array([0, 1], dtype=np.int8),
+                flag_meanings="follows_flight held",
+            ),
+        }
+        if it.axes.episodes:  # netCDF takes a dimension of length zero for an unlimited one
+            first, last, reason = zip(*it.axes.episodes, strict=True)
+            e = ("episode",)
+            data |= {
+                "held_from": v(e, np.array(first), "s", "start of a stretch in which the target is held"),
+                "held_to": v(e, np.array(last), "s", "its end"),
+                "held_reason": (e, np.array(reason, dtype=object), {"long_name": "why it is held"}),
+            }
+    described = xr.Dataset(data, coords)
+    described.attrs = {
+        "environment": it.environment,
+        "model": it.model,
+        "outcome": it.outcome,
+        "message": it.message,
+        "warnings": "\n".join(it.warnings),
+        "integrator": it.integrator,
+        "step": it.step,
+        "steps": it.steps,
+        "error_estimate": it.error_estimate,
+        "residual_from": it.residual_from,
+    }
+    return described
+
+
+def _comparison(it: Comparison) -> xr.Dataset:
+    v = _variable
+    across = "over the times at which the target was not held"
+    data = {
+        "difference": v(
+            ("time", "axis"), it.difference, "m", f"tip displacement, {it.centrifuge} less {it.flight}"
+        ),
+        "covered": v(
+            ("time",),
+            it.covered.astype(np.int8),
+            "1",
+            "whether the time is compared",
+            flag_values=np.array([0, 1], dtype=np.int8),
+            flag_meanings="held compared",
+        ),
+        "max_difference": v(("axis",), it.max_difference, "m", f"largest difference {across}"),
+        "rms_difference": v(("axis",), it.rms_difference, "m", f"root mean square difference {across}"),
+        "peak_flight": v(("axis",), it.peak_flight, "m", f"largest displacement in {it.flight} {across}"),
+        "peak_centrifuge": v(
+            ("axis",), it.peak_centrifuge, "m", f"largest displacement on {it.centrifuge} {across}"
+        ),
+    }
+    described = xr.Dataset(data, {"time": v(("time",), it.time, "s", "time"), "axis": _AXIS})
+    described.attrs = {"flight": it.flight, "centrifuge": it.centrifuge, "verdict": it.verdict}
+    return described
