@@ -9,22 +9,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gbeam.checks import positive
 from gbeam.errors import InputError
 
 Array = NDArray[np.float64]
-
-
-def positive(where: str, value: float, unit: str, *, zero: bool = False) -> float:
-    """Return `value` as a float if it is finite and positive (or zero, where `zero` allows it)."""
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise InputError(where, f"is {value!r}", f"give a number in {unit}") from None
-    if not math.isfinite(number) or number < 0 or (number == 0 and not zero):
-        raise InputError(
-            where, f"is {number:g} {unit}", f"give a {'non-negative' if zero else 'positive'}, finite value"
-        )
-    return number
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,24 @@
+"""What a motion hands to the beam: the acceleration and rotation of the base axes."""
+
+from __future__ import annotations
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+
+class Base(eqx.Module):
+    """Motion of the base at one time or many, in base axes B: x along the beam, z through its thickness.
+
+    Parameters
+    ----------
+    a_WO_B : array, shape (..., 3)
+        Acceleration of the root O in the world W, m/s²; where gravity acts, the specific force a − g.
+    w_WB_B : array, shape (..., 3)
+        Angular velocity of B in W, rad/s.
+    al_WB_B : array, shape (..., 3)
+        Angular acceleration of B in W, rad/s².
+    """
+
+    a_WO_B: Float[Array, "... 3"]
+    w_WB_B: Float[Array, "... 3"]
+    al_WB_B: Float[Array, "... 3"]

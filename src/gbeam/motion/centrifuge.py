@@ -1,0 +1,159 @@
+"""A three-axis centrifuge that makes a flight's load at one point of the specimen (Zhang 2020, corrected)."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass, replace
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, ArrayLike, Bool, Float
+from numpy.typing import NDArray
+
+from gbeam.checks import positive
+from gbeam.errors import InputError
+from gbeam.motion.base import Base
+from gbeam.motion.derivative import with_rate
+from gbeam.motion.inverse import INVERSES, Geometry, Inverse
+from gbeam.motion.kinematics import Axes, forward, moved
+from gbeam.motion.target import Episode, Target
+
+
+class Centrifuge(eqx.Module):
+    """A beam on a three-axis centrifuge whose axes reproduce a target at the control point.
+
+    Parameters
+    ----------
+    target : Target
+        From :func:`gbeam.motion.build_target`.
+    arm : float
+        R, from axis 1 to the control point, m.
+    control_point : float
+        x_c, from the root along the beam to the point where axes 2 and 3 meet, m.
+    inverse : str
+        A key of :data:`gbeam.motion.INVERSES`: ``quasi-static`` or ``flat``.
+    gravity : bool
+        As the target was built.
+    sign : int
+        +1 or −1: which of the two mountings of the specimen in the gimbals.
+
+    Raises
+    ------
+    InputError
+        If a number is impossible, the inverse unknown, or it cannot follow the target's corners.
+    """
+
+    target: Target
+    geometry: Geometry
+    inverse: Inverse
+    control_point: Float[Array, ""]
+
+    def __init__(
+        self, target: Target, arm: float, control_point: float, inverse: str, gravity: bool, sign: int = 1
+    ) -> None:
+        if inverse not in INVERSES:
+            close = difflib.get_close_matches(str(inverse), INVERSES, n=1)
+            guess = f"did you mean {close[0]!r}? " if close else ""
+            raise InputError("inverse", f"is {inverse!r}", f"{guess}choose one of {', '.join(INVERSES)}")
+        if sign not in (1, -1):
+            raise InputError("sign", f"is {sign!r}", "give 1 or -1")
+        if gravity != bool(target.gravity > 0):
+            raise InputError("gravity", f"is {gravity}, unlike the target's", "build both with the same")
+        method = INVERSES[inverse]
+        if not target.rounded and (target.turns or not method.follows_corners):
+            raise InputError(
+                "smoothing", f"is missing: {inverse} cannot follow this load's corners", 'give "60 ms" or so'
+            )
+        self.target = target
+        self.geometry = Geometry(
+            jnp.asarray(positive("arm", arm, "m"), dtype=float),
+            target.gravity,
+            jnp.asarray(sign, dtype=float),
+        )
+        self.inverse = method.build(target.load, self.geometry)
+        self.control_point = jnp.asarray(positive("control_point", control_point, "m", zero=True), dtype=float)
+
+    def axes(self, t: ArrayLike) -> Axes:
+        """States of the three axes at times `t` (s); :func:`axis_history` unwraps the angles."""
+
+        def pose(when: Array) -> tuple[Array, Array, Array]:
+            return self.inverse(self.target.load, when)
+
+        now = jnp.asarray(t, dtype=float)
+        (at, rate), (_, acceleration) = with_rate(lambda when: with_rate(pose, when), now)
+        return Axes(
+            rate1=at[0], acceleration1=rate[0],
+            angle2=at[1], rate2=rate[1], acceleration2=acceleration[1],
+            angle3=at[2], rate3=rate[2], acceleration3=acceleration[2],
+        )  # fmt: skip
+
+    def base(self, t: ArrayLike) -> Base:
+        """Motion of the root at times `t` (s, any shape)."""
+        here = forward(self.axes(t), self.geometry.arm, self.geometry.gravity)
+        return moved(here, self.control_point * jnp.array([-1.0, 0.0, 0.0]))
+
+    def wanted(self, t: ArrayLike) -> Float[Array, "... 3"]:
+        """Load wanted at the control point at times `t` (s), base axes, m/s²."""
+        return self.target.load(jnp.asarray(t, dtype=float))
+
+    def achieved(self, t: ArrayLike) -> Float[Array, "... 3"]:
+        """Load that the axes make at the control point at times `t` (s), base axes, m/s²."""
+        return forward(self.axes(t), self.geometry.arm, self.geometry.gravity).a_WO_B
+
+    def tracking_error(self, t: ArrayLike) -> Float[Array, "... 3"]:
+        """Achieved less wanted at times `t` (s), base axes, m/s²."""
+        return self.achieved(t) - self.wanted(t)
+
+    def held(self, t: ArrayLike) -> Bool[Array, "*t"]:
+        """Tell at which times `t` (s) what is wanted is not the flight's load."""
+        return self.target.held(t)
+
+    def episodes(self) -> list[Episode]:
+        """Stretches of time in which it is not, with the reason."""
+        return self.target.episodes()
+
+    @property
+    def breaks(self) -> Float[Array, " b"]:
+        """Times at which an integrator should stop and start afresh, s."""
+        return self.target.load.breaks
+
+
+@dataclass(frozen=True)
+class AxisHistory:
+    """Axis motions over a time grid.
+
+    Parameters
+    ----------
+    time : array, shape (n,)
+        s.
+    angle1 : array, shape (n,)
+        Angle of axis 1, rad, from zero at the first time.
+    axes : Axes
+        The other states, arrays of shape (n,), angles without jumps.
+    """
+
+    time: NDArray[np.float64]
+    angle1: NDArray[np.float64]
+    axes: Axes
+
+
+def axis_history(axes: Axes, times: ArrayLike) -> AxisHistory:
+    """Unwrap the angles of axes 2 and 3 and integrate that of axis 1.
+
+    Parameters
+    ----------
+    axes : Axes
+        At `times`.
+    times : array_like, shape (n,)
+        s, ascending, fine enough that no axis turns by half a revolution between two.
+    """
+    time = np.asarray(times, dtype=float)
+    step, rate, acceleration = np.diff(time), np.asarray(axes.rate1), np.asarray(axes.acceleration1)
+    # The trapezium rule with its end correction: of fourth order, since the slopes are known.
+    turned = step * (rate[1:] + rate[:-1]) / 2 - step**2 * np.diff(acceleration) / 12
+    return AxisHistory(
+        time=time,
+        angle1=np.append(0.0, np.cumsum(turned)),
+        axes=replace(axes, angle2=jnp.unwrap(axes.angle2), angle3=jnp.unwrap(axes.angle3)),
+    )

@@ -1,0 +1,29 @@
+"""Scenario files: text -> validated scenario -> the objects of the core.
+
+units read "300 mm"; schema says what may be written; locate, explain and diagnostics say what is wrong
+and where; load puts them together; build makes the objects; template is for those
+who write scenarios.
+"""
+
+from gbeam.scenario.build import build
+from gbeam.scenario.diagnostics import Diagnostic, ScenarioError
+from gbeam.scenario.explain import placed
+from gbeam.scenario.load import load, loads
+from gbeam.scenario.schema import Scenario
+from gbeam.scenario.template import json_schema, template
+from gbeam.scenario.units import UnitError, argument, quantity
+
+__all__ = [
+    "Diagnostic",
+    "Scenario",
+    "ScenarioError",
+    "UnitError",
+    "argument",
+    "build",
+    "json_schema",
+    "load",
+    "loads",
+    "placed",
+    "quantity",
+    "template",
+]

@@ -1,0 +1,209 @@
+"""pydantic's errors in a reader's words, with the place and the advice."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
+
+from gbeam.errors import InputError
+from gbeam.scenario.diagnostics import Diagnostic, ScenarioError
+from gbeam.scenario.fields import Quantity, Table
+from gbeam.scenario.paths import parse_path
+from gbeam.scenario.place import Path
+from gbeam.scenario.schema import Scenario
+from gbeam.scenario.source import Mark, Source
+from gbeam.scenario.suggest import advise
+from gbeam.scenario.units import KINDS, spoken
+
+if TYPE_CHECKING:
+    from pydantic.fields import FieldInfo
+    from pydantic_core import ErrorDetails
+
+_TAGS = ("kind", "profile", "shape")
+# A list, not a pattern: the message may quote what a user wrote, braces and all.
+_PLACEHOLDER = re.compile(r"\{(value|beam\.length|response\.duration)\}")
+_NOT_A = {
+    "int_type": ("a whole number", "write it such as 3"),
+    "bool_type": ("true or false", "write true or false, without quotes"),
+    "string_type": ("text", "write it in quotes"),
+    "tuple_type": ("a list", "write it such as [ ..., ... ]"),
+}
+
+
+def explain(source: Source, error: ErrorDetails) -> Diagnostic:
+    """Translate one error of pydantic.
+
+    Parameters
+    ----------
+    source : Source
+        What was validated.
+    error : ErrorDetails
+        From ``ValidationError.errors()``.
+    """
+    path = _path(error["loc"], source)
+    message, hint, mark, path = _words(source, error, path)
+    return source.diagnostic(path, _filled(source, path, message), _filled(source, path, hint), mark)
+
+
+def _words(source: Source, error: ErrorDetails, path: Path) -> tuple[str, str, Mark, Path]:
+    """Message, hint, what the caret marks, and the path that it is about."""
+    what, context = error["type"], error.get("ctx", {})
+    field = _field(source, path)
+    value = source.raw(path)
+    if what == "scenario":
+        return context["message"], context["hint"], context["mark"], path
+    if what == "missing" and isinstance(path[-1], int):  # a tuple of fixed length
+        return f"has {path[-1]} entries", "give three: x, y and z", "value", path[:-1]
+    if what == "missing":
+        return f"{path[-1]} is missing", _add(str(path[-1]), field), "key", path[:-1]
+    if what == "extra_forbidden":
+        table = _table(source, path[:-1])
+        names = table.model_fields if table else {}
+        return "unknown key", advise(str(path[-1]), names, listed="the keys here are"), "key", path
+    if what in ("union_tag_invalid", "union_tag_not_found") and isinstance(value, dict):
+        tag, choices = _choices(field)
+        if what == "union_tag_not_found":
+            return f"{tag} is missing", f"choose one of {', '.join(choices)}", "key", path
+        return "unknown choice {value}", advise(context["tag"], choices), "value", (*path, tag)
+    if what == "literal_error":
+        choices = [str(choice) for choice in _literals(field.annotation if field else None)]
+        return "unknown choice {value}", advise(str(value), choices), "value", path
+    if what in ("too_short", "too_long"):
+        limit = context.get("min_length", context.get("max_length"))
+        count = context["actual_length"]
+        few = "at least" if what == "too_short" else "at most"
+        return f"has {count} {'entry' if count == 1 else 'entries'}", f"give {few} {limit}", "value", path
+    if what == "greater_than_equal":
+        return "{value} is negative", f"give {context['ge']} or more", "value", path
+    if what in _NOT_A:
+        return f"{spoken(value)} is not {_NOT_A[what][0]}", _NOT_A[what][1], "value", path
+    # What is left: something else where a table belongs.
+    about = field.description if field else ""
+    return f"{spoken(value)} is not a table", f"give a table: {about}", "value", path
+
+
+def _path(loc: tuple[int | str, ...], source: Source) -> Path:
+    """Drop from pydantic's place what is not in the file: the tags of the unions it went through."""
+    path: Path = ()
+    here: Any = source.data
+    untagged = True
+    for step in loc:
+        if step == "[key]":
+            continue
+        if isinstance(here, dict):
+            if untagged and step == _tag(path, here):
+                untagged = False
+                continue
+        elif step in ("one", "list"):
+            continue
+        path += (step,)
+        here = source.raw(path)
+        untagged = True
+    return path
+
+
+def _tag(path: Path, here: dict[str, Any]) -> object:
+    """Return the tag that pydantic puts into its places below the table `here`, if it is one of a union."""
+    if path[:1] == ("motion",) and len(path) == 2:
+        return here.get("kind")
+    if path == ("beam", "section"):
+        return here.get("shape", "general")
+    return here.get("profile")
+
+
+def _field(source: Source, path: Path) -> FieldInfo | None:
+    """Return the declaration of the field that holds `path`; that of the list for an entry of a list."""
+    while path and isinstance(path[-1], int):
+        path = path[:-1]
+    if len(path) == 2 and path[0] == "motion":
+        path = path[:1]
+    table = _table(source, path[:-1])
+    return table.model_fields.get(str(path[-1])) if table and path else None
+
+
+def _table(source: Source, path: Path) -> type[Table] | None:
+    """Return the class of the table at `path`, as chosen by the kind, profile or shape written there."""
+    if not path:
+        return Scenario
+    field = _field(source, path)
+    raw = source.raw(path)
+    written = raw if isinstance(raw, dict) else {}
+    tables = list(_tables(field.annotation if field else None))
+    for table in tables:
+        for tag in _TAGS:
+            if tag in table.model_fields:
+                names = list(_literals(table.model_fields[tag].annotation))
+                if written.get(tag, table.model_fields[tag].default) in names:
+                    return table
+    return tables[0] if len(tables) == 1 else None
+
+
+def _inside(annotation: Any) -> Iterator[Any]:
+    yield annotation
+    for part in get_args(annotation):
+        yield from _inside(part)
+
+
+def _tables(annotation: Any) -> Iterator[type[Table]]:
+    for part in _inside(annotation):
+        if isinstance(part, type) and issubclass(part, Table):
+            yield part
+
+
+def _literals(annotation: Any) -> Iterator[Any]:
+    for part in _inside(annotation):
+        if get_origin(part) is Literal:
+            yield from get_args(part)
+
+
+def _choices(field: FieldInfo | None) -> tuple[str, list[str]]:
+    """Name of the key that picks among the tables of a union, and what it may be."""
+    tables = list(_tables(field.annotation if field else None))
+    tag = next(tag for tag in _TAGS if tag in tables[0].model_fields)
+    return tag, [name for table in tables for name in _literals(table.model_fields[tag].annotation)]
+
+
+def _quantity(field: FieldInfo | None) -> Quantity | None:
+    parts = [] if field is None else [*field.metadata, *_inside(field.annotation)]
+    return next((part for part in parts if isinstance(part, Quantity)), None)
+
+
+def _add(key: str, field: FieldInfo | None) -> str:
+    about = field.description if field else ""
+    quantity = _quantity(field)
+    return f'add {key} = "{KINDS[quantity.kind].example}": {about}' if quantity else f"add {key}: {about}"
+
+
+def _filled(source: Source, path: Path, text: str) -> str:
+    """Put what is written in the file in the place of ``{value}`` and of ``{beam.length}``."""
+
+    def shown(match: re.Match[str]) -> str:
+        place = path if match[1] == "value" else tuple(match[1].split("."))
+        raw = source.raw(place)
+        quantity = _quantity(_field(source, place))
+        if quantity is None or raw is None:
+            return spoken(raw)
+        return raw if isinstance(raw, str) else f"{raw:g} {KINDS[quantity.kind].unit}".rstrip()
+
+    return _PLACEHOLDER.sub(shown, text)
+
+
+def placed(scenario: Scenario, errors: Iterable[InputError]) -> ScenarioError:
+    """Return the ScenarioError of what the objects of the core refused.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What they were built from.
+    errors : iterable of InputError
+        Whose ``where`` are paths from the top of the scenario, such as ``beam.masses[0].at``.
+    """
+    return ScenarioError(_placed(scenario.source, error) for error in errors)
+
+
+def _placed(source: Source | None, error: InputError) -> Diagnostic:
+    path = parse_path(error.where) or ()
+    if source is None:  # a scenario made without a text
+        return Diagnostic("scenario", error.where, error.problem, error.fix)
+    return source.diagnostic(path, error.problem, error.fix)

@@ -1,0 +1,146 @@
+"""What the schema's tables are made of: a strict table, quantities with a dimension, errors with advice."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    Tag,
+)
+from pydantic import ValidationError as PydanticError
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
+
+from gbeam.scenario.units import KINDS, UnitError, quantity
+
+Sign = Literal["any", "positive", "zero or more"]
+Loc = tuple[int | str, ...]
+
+
+class Table(BaseModel):
+    """A table of the scenario: frozen, and no key beside the declared ones."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+def wrong(message: str, hint: str = "", *, mark: Literal["value", "key"] = "value") -> PydanticCustomError:
+    """Make the error of one value.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong. ``{value}`` stands for the value as written, ``{beam.length}`` and
+        ``{response.duration}`` for those.
+    hint : str
+        What would be right; may hold the same placeholders.
+    mark : str
+        Whether the caret goes under the value or under its key.
+    """
+    return PydanticCustomError("scenario", "{message}", {"message": message, "hint": hint, "mark": mark})
+
+
+def refuse(problems: Iterable[tuple[Loc, PydanticCustomError]]) -> None:
+    """Raise all `problems` at once, each at its place within the table; do nothing if there are none."""
+    found = [InitErrorDetails(type=error, loc=loc, input=None) for loc, error in problems]
+    if found:
+        # A validator may raise ValidationError: pydantic keeps each of its errors and prefixes their places.
+        raise PydanticError.from_exception_data("scenario", found)
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Annotation of a float that is read from a number in SI or from text with a unit.
+
+    Parameters
+    ----------
+    kind : str
+        A key of ``gbeam.scenario.units.KINDS``.
+    sign : str
+        ``any``, ``positive`` or ``zero or more``.
+    words : tuple of str
+        Words accepted instead of a quantity, kept as they are.
+    """
+
+    kind: str
+    sign: Sign = "any"
+    words: tuple[str, ...] = ()
+
+    def read(self, value: object) -> float | str:
+        """Return the value in SI, or raise pydantic's error with the advice in it."""
+        if isinstance(value, str) and value in self.words:
+            return value
+        otherwise = "".join(f', or "{word}"' for word in self.words)
+        try:
+            number = quantity(value, self.kind)
+        except UnitError as error:
+            raise wrong(error.problem, error.hint + otherwise) from None
+        if number < 0 and self.sign != "any":
+            raise wrong("{value} is negative", f"give {self._signed}{otherwise}")
+        if number == 0 and self.sign == "positive":
+            raise wrong("{value} is zero", f"give {self._signed}{otherwise}")
+        return number
+
+    @property
+    def _signed(self) -> str:
+        noun = KINDS[self.kind].phrase.split(" ", 1)[1]
+        return f"a positive {noun}" if self.sign == "positive" else f"zero or a positive {noun}"
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """Validate with :meth:`read` alone: pydantic's own floats would take "10" and true."""
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        """Describe it as a number in SI or as text with a unit."""
+        kind = KINDS[self.kind]
+        limit = {"positive": {"exclusiveMinimum": 0}, "zero or more": {"minimum": 0}}.get(self.sign, {})
+        number = {"type": "number", "description": f"{kind.phrase} in {kind.unit or 'plain numbers'}"} | limit
+        text = {"type": "string", "description": f"{kind.phrase} with its unit", "examples": [kind.example]}
+        words: list[JsonSchemaValue] = [{"const": word} for word in self.words]
+        return {"anyOf": [number, text, *words], "x-quantity": self.kind, "x-unit": kind.unit}
+
+
+Length = Annotated[float, Quantity("length", "positive")]
+Position = Annotated[float, Quantity("length", "zero or more")]
+Offset = Annotated[float, Quantity("length")]
+Area = Annotated[float, Quantity("area", "positive")]
+SecondMoment = Annotated[float, Quantity("second moment of area", "positive")]
+Mass = Annotated[float, Quantity("mass", "zero or more")]
+MomentOfInertia = Annotated[float, Quantity("moment of inertia", "zero or more")]
+Density = Annotated[float, Quantity("density", "positive")]
+Pressure = Annotated[float, Quantity("pressure", "positive")]
+Ratio = Annotated[float, Quantity("ratio")]
+Duration = Annotated[float, Quantity("time", "positive")]
+Time = Annotated[float, Quantity("time", "zero or more")]
+Step = Annotated[float | Literal["auto"], Quantity("time", "positive", ("auto",))]
+Acceleration = Annotated[float, Quantity("acceleration")]
+Jerk = Annotated[float, Quantity("jerk", "positive")]
+AngularRate = Annotated[float, Quantity("angular rate")]
+AngularAcceleration = Annotated[float, Quantity("angular acceleration", "positive")]
+Torque = Annotated[float, Quantity("torque")]
+TorqueRate = Annotated[float, Quantity("torque rate", "positive")]
+
+# A union would report the errors of both branches; the tags pick one, and explain drops them from the place.
+_ONE_OR_LIST = Discriminator(lambda value: "list" if isinstance(value, (list, tuple)) else "one")
+Lengths = Annotated[
+    Annotated[Length, Tag("one")] | Annotated[tuple[Length, ...], Field(min_length=1), Tag("list")],
+    _ONE_OR_LIST,
+]
+Areas = Annotated[
+    Annotated[Area, Tag("one")] | Annotated[tuple[Area, ...], Field(min_length=1), Tag("list")], _ONE_OR_LIST
+]
+SecondMoments = Annotated[
+    Annotated[SecondMoment, Tag("one")] | Annotated[tuple[SecondMoment, ...], Field(min_length=1), Tag("list")],
+    _ONE_OR_LIST,
+]
+Ratios = Annotated[
+    Annotated[Ratio, Tag("one")] | Annotated[tuple[Ratio, ...], Field(min_length=1), Tag("list")],
+    _ONE_OR_LIST,
+]

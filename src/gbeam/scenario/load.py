@@ -1,0 +1,73 @@
+"""From a file, or text, to a validated scenario."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from gbeam.scenario.diagnostics import ScenarioError
+from gbeam.scenario.explain import explain
+from gbeam.scenario.overrides import override
+from gbeam.scenario.schema import Scenario
+from gbeam.scenario.source import Source, parse, read_text
+
+
+def load(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Scenario:
+    """Read and validate a scenario file.
+
+    Parameters
+    ----------
+    path : path
+        TOML, or JSON if its text begins with a brace. File names in it are relative to its folder.
+    overrides : iterable of str
+        Changes such as ``beam.length=250 mm`` or ``beam.masses[0].mass=0.2 kg``, made before validation.
+
+    Returns
+    -------
+    Scenario
+        Frozen, SI floats.
+
+    Raises
+    ------
+    ScenarioError
+        With everything that is wrong, each with its place.
+    """
+    file = Path(path)
+    return loads(read_text(file), os.fspath(path), overrides, folder=file.parent)
+
+
+def loads(
+    text: str, name: str = "scenario", overrides: Iterable[str] = (), *, folder: str | os.PathLike[str] = "."
+) -> Scenario:
+    """Validate the text of a scenario.
+
+    Parameters
+    ----------
+    text : str
+        TOML, or JSON if it begins with a brace.
+    name : str
+        What messages call it.
+    overrides : iterable of str
+        As for :func:`load`.
+    folder : path
+        That relative file names in the scenario start from.
+
+    Returns
+    -------
+    Scenario
+
+    Raises
+    ------
+    ScenarioError
+        With everything that is wrong, each with its place.
+    """
+    data, done = override(parse(name, text), name, overrides)
+    source = Source(name, text, Path(folder), data, done)
+    try:
+        return Scenario.model_validate(data, context={"folder": source.folder, "source": source})
+    except ValidationError as error:
+        found = [explain(source, each) for each in error.errors(include_url=False, include_input=False)]
+        raise ScenarioError(found) from None

@@ -1,0 +1,140 @@
+"""[beam]: geometry, material, damping, point masses."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic_core import PydanticCustomError
+
+from gbeam.scenario.fields import (
+    Areas,
+    Density,
+    Length,
+    Lengths,
+    Loc,
+    Mass,
+    MomentOfInertia,
+    Offset,
+    Position,
+    Pressure,
+    Ratios,
+    SecondMoments,
+    Table,
+    refuse,
+    wrong,
+)
+
+
+class Stations(Table):
+    """What every section has: the positions at which its dimensions are listed."""
+
+    stations: tuple[Position, ...] = Field(
+        default=(),
+        description="positions from root to tip at which the dimensions are listed, linear in between",
+    )
+
+
+class Rectangle(Stations):
+    """A rectangle."""
+
+    shape: Literal["rectangle"] = Field(description="name of the shape")
+    width: Lengths = Field(description="width, along y")
+    thickness: Lengths = Field(description="thickness, along z, the soft direction")
+
+
+class Circle(Stations):
+    """A solid circle."""
+
+    shape: Literal["circle"] = Field(description="name of the shape")
+    diameter: Lengths = Field(description="diameter")
+
+
+class Tube(Stations):
+    """A round tube."""
+
+    shape: Literal["tube"] = Field(description="name of the shape")
+    diameter: Lengths = Field(description="outer diameter")
+    wall: Lengths = Field(description="wall thickness")
+
+
+class General(Stations):
+    """Any section, by its properties."""
+
+    shape: Literal["general"] = Field(default="general", description="name of the shape; may be left out")
+    area: Areas = Field(description="area")
+    inertia_y: SecondMoments = Field(description="∫z² dA, which bends the beam along z")
+    inertia_z: SecondMoments = Field(description="∫y² dA, which bends the beam along y")
+    fibre_y: Lengths | None = Field(default=None, description="outer fibre along y, for stress")
+    fibre_z: Lengths | None = Field(default=None, description="outer fibre along z, for stress")
+
+
+def _shape(section: Any) -> str | None:
+    if not isinstance(section, dict):
+        return getattr(section, "shape", None)
+    by_properties = any(key in section for key in ("area", "inertia_y", "inertia_z"))
+    shape = section.get("shape", "general" if by_properties else None)
+    return shape if shape is None or isinstance(shape, str) else str(shape)
+
+
+Section = Annotated[
+    Annotated[Rectangle, Tag("rectangle")]
+    | Annotated[Circle, Tag("circle")]
+    | Annotated[Tube, Tag("tube")]
+    | Annotated[General, Tag("general")],
+    Discriminator(_shape),
+]
+
+
+class Material(Table):
+    """Linear elastic material."""
+
+    density: Density = Field(description="mass per volume")
+    youngs_modulus: Pressure = Field(description="Young's modulus")
+
+
+class Moments(Table):
+    """Principal moments of inertia, in axes of the section."""
+
+    x: MomentOfInertia = Field(description="moment about x, along the beam")
+    y: MomentOfInertia = Field(description="moment about y, along the width")
+    z: MomentOfInertia = Field(description="moment about z, through the thickness")
+
+
+class PointMass(Table):
+    """A mass, or a small rigid body, fixed to the beam."""
+
+    at: Position = Field(description="position from the root, along the beam")
+    mass: Mass = Field(description="mass")
+    inertia: Moments | None = Field(
+        default=None, description="moments of inertia about its centre, for a body that is not a point"
+    )
+    offset: tuple[Offset, Offset, Offset] | None = Field(
+        default=None, description="centre of mass from the beam's axis: [x, y, z] in axes of the section"
+    )
+
+
+class Beam(Table):
+    """The beam: clamped at its root to the moving base, straight along x."""
+
+    length: Length = Field(description="length from root to tip")
+    section: Section = Field(description="cross-section, by shape or by properties: { area, inertia_y, inertia_z }")
+    material: Material = Field(description="linear elastic material: { density, youngs_modulus }")
+    damping_ratio: Ratios = Field(description="modal damping ratio: one for all modes, or a list with one per mode")
+    masses: tuple[PointMass, ...] = Field(default=(), description="masses fixed to the beam: [ { at, mass } ]")
+
+    @model_validator(mode="after")
+    def _on_the_beam(self) -> Beam:
+        def problems() -> Iterator[tuple[Loc, PydanticCustomError]]:
+            for i, mass in enumerate(self.masses):
+                if mass.at > self.length * (1 + 1e-12):
+                    yield ("masses", i, "at"), beyond_the_tip()
+
+        refuse(problems())
+        return self
+
+
+def beyond_the_tip() -> PydanticCustomError:
+    """Make the error of a position that is not on the beam."""
+    return wrong("{value} is beyond the tip", "give 0 to {beam.length} from the root")

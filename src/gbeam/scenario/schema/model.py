@@ -1,0 +1,44 @@
+"""[model]: which displacement field, with how many shapes."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, StrictInt, model_validator
+
+from gbeam.scenario.fields import Table, refuse, wrong
+
+Count = Annotated[StrictInt, Field(ge=0)]
+
+
+class Modes(Table):
+    """Numbers of shape functions."""
+
+    axial: Count = Field(description="axial shapes; for `exact` strain shapes")
+    y: Count = Field(description="bending shapes along y; for `exact` rotation shapes for bending along y")
+    z: Count = Field(description="bending shapes along z; for `exact` rotation shapes for bending along z")
+
+    @model_validator(mode="after")
+    def _any(self) -> Modes:
+        if not (self.axial or self.y or self.z):
+            refuse([((), wrong("every number of shapes is zero", "give at least one shape, such as z = 3"))])
+        return self
+
+
+class Model(Table):
+    """The model of the beam's deformation."""
+
+    kind: Literal["TLAM", "FOAM", "SFOAM", "CFOAM", "exact"] = Field(
+        description="TLAM: linear, no foreshortening. FOAM: first order with foreshortening. SFOAM: FOAM "
+        "without axial coordinates. CFOAM: FOAM's field, complete energy. exact: any rotation"
+    )
+    modes: Modes = Field(description="numbers of shapes: { axial, y, z }")
+
+    @model_validator(mode="after")
+    def _coordinates(self) -> Model:
+        if self.kind == "SFOAM" and self.modes.axial:
+            error = wrong(
+                "SFOAM has no axial coordinates, and {value} are asked for", "use axial = 0, or the kind FOAM"
+            )
+            refuse([(("modes", "axial"), error)])
+        return self

@@ -1,0 +1,147 @@
+"""Profiles: a quantity in time. What it is a quantity of, and so its units, depends on where it stands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Any, Generic, Literal, TypeVar, get_args
+
+from pydantic import Discriminator, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from gbeam.scenario.fields import (
+    Acceleration,
+    AngularAcceleration,
+    AngularRate,
+    Duration,
+    Jerk,
+    Loc,
+    Table,
+    Time,
+    Torque,
+    TorqueRate,
+    refuse,
+    wrong,
+)
+
+L = TypeVar("L")  # the quantity itself
+S = TypeVar("S")  # its rate of change
+
+
+class Smoothed(Table, Generic[L, S]):
+    """What every profile has."""
+
+    smoothing: Time = Field(
+        default=0.0, description="width of the kernel that rounds the profile's corners; 0 leaves them sharp"
+    )
+
+    @classmethod
+    def model_parametrized_name(cls, params: tuple[Any, ...]) -> str:
+        """Name the class in the JSON schema: ``Trapezoid of acceleration``."""
+        quantity = get_args(params[0])
+        return f"{cls.__name__} of {quantity[1].kind}" if len(quantity) > 1 else cls.__name__
+
+
+class Constant(Smoothed[L, S], Generic[L, S]):
+    """The same value always."""
+
+    profile: Literal["constant"] = Field(description="name of the profile")
+    level: L = Field(description="value")
+
+
+class Trapezoid(Smoothed[L, S], Generic[L, S]):
+    """Up at a constant rate, a plateau, down at the same rate."""
+
+    profile: Literal["trapezoid"] = Field(description="name of the profile")
+    level: L = Field(description="value of the plateau")
+    jerk: S = Field(description="rate of change on the flanks, as a magnitude")
+    start: Time = Field(description="time at which the rise begins")
+    hold: Time = Field(description="duration of the plateau")
+
+
+class SmoothStep(Smoothed[L, S], Generic[L, S]):
+    """From zero to a level without a kink, 2009 (43)."""
+
+    profile: Literal["smooth-step"] = Field(description="name of the profile")
+    level: L = Field(description="value at the end")
+    duration: Duration = Field(description="duration of the rise")
+    start: Time = Field(default=0.0, description="time at which the rise begins")
+
+
+class Sine(Smoothed[L, S], Generic[L, S]):
+    """One period of a sine, then zero, 2009 (44)."""
+
+    profile: Literal["sine"] = Field(description="name of the profile")
+    amplitude: L = Field(description="amplitude")
+    duration: Duration = Field(description="duration of the one period")
+
+
+class Listed(Smoothed[L, S], Generic[L, S]):
+    """Values at times, linear in between."""
+
+    profile: Literal["table"] = Field(description="name of the profile")
+    times: tuple[Time, ...] = Field(min_length=2, description="times, increasing")
+    values: tuple[L, ...] = Field(min_length=2, description="one value per time")
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Listed[L, S]:
+        def problems() -> Iterator[tuple[Loc, PydanticCustomError]]:
+            if len(self.values) != len(self.times):
+                yield (
+                    ("values",),
+                    wrong(
+                        f"has {len(self.values)} values for {len(self.times)} times",
+                        "give one value per time",
+                    ),
+                )
+            for i, (before, after) in enumerate(zip(self.times, self.times[1:], strict=False)):
+                if after <= before:
+                    yield (
+                        ("times", i + 1),
+                        wrong("{value} does not come after the time before it", "list times in order"),
+                    )
+
+        refuse(problems())
+        return self
+
+
+class Sum(Smoothed[L, S], Generic[L, S]):
+    """The sum of other profiles."""
+
+    profile: Literal["sum"] = Field(description="name of the profile")
+    terms: tuple[
+        Annotated[
+            Constant[L, S] | Trapezoid[L, S] | SmoothStep[L, S] | Sine[L, S] | Listed[L, S],
+            Discriminator("profile"),
+        ],
+        ...,
+    ] = Field(min_length=1, description="the profiles that are added")
+
+
+# Written out three times: a generic alias of a union of pydantic models loses its parameters.
+AccelerationProfile = Annotated[
+    Constant[Acceleration, Jerk]
+    | Trapezoid[Acceleration, Jerk]
+    | SmoothStep[Acceleration, Jerk]
+    | Sine[Acceleration, Jerk]
+    | Listed[Acceleration, Jerk]
+    | Sum[Acceleration, Jerk],
+    Discriminator("profile"),
+]
+RateProfile = Annotated[
+    Constant[AngularRate, AngularAcceleration]
+    | Trapezoid[AngularRate, AngularAcceleration]
+    | SmoothStep[AngularRate, AngularAcceleration]
+    | Sine[AngularRate, AngularAcceleration]
+    | Listed[AngularRate, AngularAcceleration]
+    | Sum[AngularRate, AngularAcceleration],
+    Discriminator("profile"),
+]
+TorqueProfile = Annotated[
+    Constant[Torque, TorqueRate]
+    | Trapezoid[Torque, TorqueRate]
+    | SmoothStep[Torque, TorqueRate]
+    | Sine[Torque, TorqueRate]
+    | Listed[Torque, TorqueRate]
+    | Sum[Torque, TorqueRate],
+    Discriminator("profile"),
+]

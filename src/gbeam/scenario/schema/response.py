@@ -1,0 +1,71 @@
+"""[response]: how long, by which integrator, which output."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from gbeam.scenario.fields import Duration, Loc, Position, Quantity, Ratio, Step, Table, Time, refuse, wrong
+
+# Which parameters each integrator takes.
+PARAMETERS: dict[str, tuple[str, ...]] = {
+    "newmark": ("beta", "gamma"),
+    "hht": ("alpha",),
+    "generalized-alpha": ("rho_inf",),
+    "gauss": (),
+    "adaptive": (),
+}
+
+
+class Response(Table):
+    """Response over time."""
+
+    duration: Duration | None = Field(
+        default=None, description="length of the computation; may be left out beside a record"
+    )
+    step: Step = Field(default="auto", description="time step, or auto")
+    integrator: Literal["newmark", "hht", "generalized-alpha", "gauss", "adaptive"] = Field(
+        default="newmark", description="time integrator"
+    )
+    beta: Ratio | None = Field(default=None, description="parameter of newmark")
+    gamma: Ratio | None = Field(default=None, description="parameter of newmark")
+    alpha: Ratio | None = Field(default=None, description="parameter of hht")
+    rho_inf: Ratio | None = Field(
+        default=None, description="parameter of generalized-alpha: spectral radius at infinite frequency"
+    )
+    tolerance: Annotated[float, Quantity("ratio", "positive")] = Field(
+        default=1e-4, description="relative error that an automatic step and the adaptive integrator aim at"
+    )
+    residual_from: Time | None = Field(default=None, description="time from which the residual vibration is measured")
+    stations: tuple[Position, ...] | None = Field(
+        default=None,
+        min_length=1,
+        description="positions from the root at which output is wanted; the tip if left out",
+    )
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The integrator's parameters that are given."""
+        named = {name: getattr(self, name) for name in PARAMETERS[self.integrator]}
+        return {name: value for name, value in named.items() if value is not None}
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Response:
+        def problems() -> Iterator[tuple[Loc, PydanticCustomError]]:
+            takes = PARAMETERS[self.integrator]
+            for name in ("beta", "gamma", "alpha", "rho_inf"):
+                if name not in takes and getattr(self, name) is not None:
+                    hint = f"it takes {' and '.join(takes)}" if takes else "it has no parameters"
+                    yield (name,), wrong(f"does not belong to {self.integrator}", hint, mark="key")
+            if self.duration is not None:
+                before_the_end = "give a time before the end, {response.duration}"
+                if self.residual_from is not None and self.residual_from >= self.duration:
+                    yield ("residual_from",), wrong("{value} is not within the computation", before_the_end)
+                if self.step != "auto" and self.step > self.duration:
+                    yield ("step",), wrong("{value} is longer than the computation", before_the_end)
+
+        refuse(problems())
+        return self

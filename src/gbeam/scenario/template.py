@@ -1,0 +1,119 @@
+"""For those who write scenarios: a commented one to start from, and the JSON schema for editors."""
+
+from __future__ import annotations
+
+import json
+
+from gbeam.errors import InputError
+from gbeam.scenario.schema import Scenario
+from gbeam.scenario.suggest import advise
+
+_HEAD = """\
+# A scenario for gbeam. Quantities are text with a unit ("300 mm", "6 g", "60 rpm"); bare numbers are SI.
+# Axes: x along the beam, y along its width, z through its thickness. `gbeam schema` lists every key.
+"""
+
+_FLIGHT = """\
+title = "A beam in flight and on a centrifuge"
+
+[beam]
+length = "300 mm"
+# or: { shape = "circle", diameter = "10 mm" }, { shape = "tube", diameter = "10 mm", wall = "1 mm" },
+# { area = "80 mm^2", inertia_y = "107 mm^4", inertia_z = "2667 mm^4" }. A taper lists dimensions at
+# stations = ["0 mm", "300 mm"].
+section = { shape = "rectangle", width = "20 mm", thickness = "4 mm" }
+material = { density = "2700 kg/m^3", youngs_modulus = "70 GPa" }
+damping_ratio = 0.01  # of critical; a list gives one per mode
+# masses = [ { at = "300 mm", mass = "0.1 kg" } ]
+
+[model]
+kind = "FOAM"  # TLAM | FOAM | SFOAM | CFOAM | exact
+modes = { axial = 1, y = 3, z = 3 }
+
+# What the base does: as many [motion.NAME] as you like, each an environment for the same beam.
+[motion.flight]
+kind = "flight"
+# Up at the jerk to the level, hold, down again; on top of a constant load that the machine can hold.
+[motion.flight.acceleration.z]
+profile = "sum"
+terms = [
+  { profile = "constant", level = "1.5 g" },
+  { profile = "trapezoid", level = "4.5 g", jerk = "4 g/s", start = "1 s", hold = "2 s" },
+]
+# or, instead of the acceleration, a measured record: a CSV file beside this one, "-" in front changes a sign
+# record = { file = "flight.csv", time = "time_s", x = "n_x_g", y = "-n_y_g", z = "-n_z_g", unit = "g" }
+
+[motion.centrifuge]
+kind = "centrifuge"
+tracks = "flight"  # the motion it imitates
+arm = "3.3 m"
+control_point = "150 mm"  # point of the beam that feels the flight's load, from the root
+inverse = "flat"  # quasi-static | flat
+gravity = true  # the target is specific force (what accelerometers measure); gravity is there on the machine
+idle = "1.4 g"  # the target is held up to this
+smoothing = "60 ms"  # width of the kernel that rounds the target's corners
+
+[response]
+duration = "6 s"  # may be left out beside a record
+step = "auto"
+integrator = "newmark"  # newmark | hht | generalized-alpha | gauss | adaptive
+"""
+
+_HUB = """\
+title = "A flexible appendage on a hub that slews"
+
+[beam]
+length = "8 m"
+section = { area = "72.968 mm^2", inertia_y = "8218.9 mm^4", inertia_z = "8218.9 mm^4" }
+# or by shape: { shape = "rectangle", width = "20 mm", thickness = "4 mm" }, circle, tube
+material = { density = "2766.7 kg/m^3", youngs_modulus = "68.952 GPa" }
+damping_ratio = 0  # of critical; a list gives one per mode
+masses = [ { at = "8 m", mass = "0.1 kg" } ]
+
+[model]
+kind = "FOAM"  # TLAM | FOAM | SFOAM | CFOAM | exact
+modes = { axial = 2, y = 3, z = 0 }  # the hub turns about z: the beam bends along y
+
+[motion.slew]
+kind = "hub"
+radius = "0.5 m"
+rate = { profile = "smooth-step", level = "2 rad/s", duration = "30 s" }
+# or a free hub under a torque, instead of the rate:
+# inertia = "200 kg m^2"
+# torque = { profile = "sine", amplitude = "50 N m", duration = "10 s" }
+
+[response]
+duration = "50 s"
+residual_from = "30 s"  # the vibration left after the manoeuvre is measured from here to the end
+step = "auto"
+integrator = "newmark"  # newmark | hht | generalized-alpha | gauss | adaptive
+"""
+
+_TEMPLATES = {"flight": _FLIGHT, "hub": _HUB}
+
+
+def template(kind: str) -> str:
+    """Return the text of a commented scenario that runs as it is.
+
+    Parameters
+    ----------
+    kind : str
+        ``flight`` (a flight and the centrifuge that imitates it) or ``hub``.
+
+    Raises
+    ------
+    InputError
+        If there is no such template.
+    """
+    if kind not in _TEMPLATES:
+        raise InputError("kind", f"is {kind!r}, of which there is no template", advise(kind, _TEMPLATES))
+    return _HEAD + _TEMPLATES[kind]
+
+
+def json_schema() -> str:
+    """Return the JSON schema of a scenario: every field with description, quantity and SI unit."""
+    schema = Scenario.model_json_schema()
+    text = json.dumps(schema, indent=2, ensure_ascii=False)
+    for name, table in schema["$defs"].items():  # pydantic numbers the profiles: name them by their quantity
+        text = text.replace(name, table["title"].replace(" ", "-")) if "__" in name else text
+    return text

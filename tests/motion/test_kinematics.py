@@ -1,0 +1,57 @@
+"""Centrifuge kinematics against positions and attitudes differentiated twice in the inertial frame.
+
+The source's errata: the paper puts the control point at the intersection of axes 1 and 2, which are parallel;
+axes 2 and 3 are meant.
+"""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from gbeam.motion import STANDARD_GRAVITY, Axes, forward, moved
+
+
+def turn(angle: jax.Array, axis: int) -> jax.Array:
+    """Matrix whose columns are the axes turned by `angle` about one of them."""
+    c, s = jnp.cos(angle), jnp.sin(angle)
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    return jnp.eye(3).at[i, i].set(c).at[i, j].set(-s).at[j, i].set(s).at[j, j].set(c)
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("gravity", [0.0, STANDARD_GRAVITY])
+def test_forward_and_shift_against_double_differentiation(seed: int, gravity: float) -> None:
+    rng = np.random.default_rng(seed)
+    angle, rate, acceleration = rng.normal(size=(3, 3))
+    arm, offset = 3.3, rng.normal(size=3)
+
+    def angles(t: jax.Array) -> jax.Array:
+        return angle + rate * t + acceleration * t**2 / 2
+
+    def attitude(t: jax.Array) -> jax.Array:  # R_WB; a1, a2, Z are the columns of the first factor
+        q = angles(t)
+        return turn(q[0], 2) @ turn(q[1], 2) @ turn(q[2], 0)
+
+    def position(t: jax.Array) -> jax.Array:
+        return turn(angles(t)[0], 2) @ jnp.array([arm, 0.0, 0.0]) + attitude(t) @ offset
+
+    R_WB, dR = attitude(0.0), jax.jacfwd(attitude)(0.0)
+    skew = jax.jacfwd(lambda t: attitude(t).T @ jax.jacfwd(attitude)(t))(0.0)  # its derivative is that of ω in B
+    w = np.asarray(R_WB.T @ dR)
+    a_W = jax.jacfwd(jax.jacfwd(position))(0.0) + np.array([0, 0, gravity])  # a − g, g down
+
+    a, r, dd = (jnp.asarray(x) for x in (angle, rate, acceleration))
+    axes = Axes(r[0], dd[0], a[1], r[1], dd[1], a[2], r[2], dd[2])
+    base = moved(forward(axes, arm, gravity), offset)
+    np.testing.assert_allclose(base.w_WB_B, [w[2, 1], w[0, 2], w[1, 0]], atol=1e-12)
+    np.testing.assert_allclose(base.al_WB_B, [skew[2, 1], skew[0, 2], skew[1, 0]], atol=1e-12)
+    np.testing.assert_allclose(base.a_WO_B, R_WB.T @ a_W, atol=1e-12)
+
+
+def test_many_times_at_once() -> None:
+    states = jnp.asarray(np.random.default_rng(1).normal(size=(8, 4, 5)))
+    whole, one = forward(Axes(*states), 3.3, 9.8), forward(Axes(*states[:, 2, 3]), 3.3, 9.8)
+    assert whole.a_WO_B.shape == (4, 5, 3)
+    np.testing.assert_allclose(whole.al_WB_B[2, 3], one.al_WB_B, atol=1e-14)
+    np.testing.assert_allclose(moved(whole, np.zeros(3)).a_WO_B, whole.a_WO_B)

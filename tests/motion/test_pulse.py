@@ -1,0 +1,61 @@
+"""The smooth-step slew, 2009 (43), and the sine pulse, 2009 (44), sharp and smoothed."""
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from gbeam.errors import InputError
+from gbeam.motion import Profile, Sine, SmoothStep, smoothed
+from gbeam.motion.derivative import with_rate
+
+WIDTH = 0.3
+STEP, SINE = SmoothStep(level=3.0, duration=2.0, start=0.5), Sine(amplitude=5.0, duration=1.5)
+T = np.linspace(-0.5, 3.0, 15)
+
+
+def test_smooth_step_is_equation_43() -> None:
+    t = np.linspace(0, 40, 81)
+    early = 3 / 30 * (t - 30 / (2 * np.pi) * np.sin(2 * np.pi * t / 30))
+    np.testing.assert_allclose(SmoothStep(3.0, 30.0)(t), np.where(t < 30, early, 3.0), atol=1e-14)
+    _, slope = with_rate(SmoothStep(3.0, 30.0), jnp.asarray(t))
+    np.testing.assert_allclose(slope, np.where(t < 30, 0.1 * (1 - np.cos(2 * np.pi * t / 30)), 0.0), atol=1e-14)
+
+
+def test_sine_is_equation_44() -> None:
+    t = np.linspace(-2, 12, 57)
+    inside = (t >= 0) & (t <= 10)
+    np.testing.assert_allclose(Sine(200.0, 10.0)(t), np.where(inside, 200 * np.sin(np.pi * t / 5), 0), atol=1e-12)
+
+
+@pytest.mark.parametrize("profile", [STEP, SINE], ids=["smooth-step", "sine"])
+def test_smoothing_equals_the_convolution(profile: Profile) -> None:
+    rounded = smoothed(profile, WIDTH)
+    for t in T:
+        corners = [float(b) for b in profile.breaks if abs(float(b) - t) < WIDTH / 2]
+        expected = quad(
+            lambda s, t=t: float(profile(s)) * (1 + np.cos(2 * np.pi * (t - s) / WIDTH)) / WIDTH,
+            t - WIDTH / 2, t + WIDTH / 2, points=corners or None, epsabs=1e-12,
+        )[0]  # fmt: skip
+        assert float(rounded(t)) == pytest.approx(expected, abs=1e-10)
+
+
+@pytest.mark.parametrize("profile", [STEP, SINE], ids=["smooth-step", "sine"])
+def test_derivatives_of_the_smoothed_are_exact_to_the_third(profile: Profile) -> None:
+    function = smoothed(profile, WIDTH)
+    for _ in range(3):
+        derivative = lambda s, f=function: with_rate(f, s)[1]  # noqa: E731
+        values = eqx.filter_jit(function)
+        finite = (values(T + 1e-5) - values(T - 1e-5)) / 2e-5
+        exact = np.asarray(eqx.filter_jit(derivative)(T))
+        np.testing.assert_allclose(exact, finite, atol=2e-6 * (1 + np.abs(exact).max()))
+        function = derivative
+
+
+@pytest.mark.parametrize("kind", [SmoothStep, Sine])
+def test_refusals(kind: type) -> None:
+    for arguments, where in (((1.0, 0.0), "duration"), ((1.0, 1.0, np.nan), "start")):
+        with pytest.raises(InputError) as caught:
+            kind(*arguments)
+        assert caught.value.where == where
