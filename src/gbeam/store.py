@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -45,7 +45,7 @@ class Provenance:
     command: str = ""
 
 
-def write(study: Study, path: str | os.PathLike[str], provenance: Provenance = Provenance()) -> None:  # noqa: B008
+def write(study: Study, path: str | os.PathLike[str], provenance: Provenance = Provenance()) -> None:
     """Write a study to a netCDF file, whole or not at all.
 
     Parameters
@@ -98,12 +98,10 @@ def read(path: str | os.PathLike[str]) -> xr.DataTree:
             return tree.load()
     except OSError as error:
         reason = error.strerror or "not a netCDF-4 file"
-        raise InputError(
-            str(path), f"cannot be read ({reason})", "give a result.nc written by gbeam run"
-        ) from None
+        raise InputError(str(path), f"cannot be read ({reason})", "give a result.nc written by gbeam run") from None
 
 
-def as_tree(study: Study, provenance: Provenance = Provenance()) -> xr.DataTree:  # noqa: B008
+def as_tree(study: Study, provenance: Provenance = Provenance()) -> xr.DataTree:
     """Return a study in its xarray form; `write` stores this.
 
     Parameters
@@ -147,21 +145,15 @@ def _response(it: Response) -> xr.Dataset:
     length = "1" if it.model == "exact" else "m"
     rate = f"{length} s-1".removeprefix("1 ")
     data = {
-        "displacement": v(
-            ("time", "station", "axis"), it.displacement, "m", "displacement relative to the base axes"
-        ),
+        "displacement": v(("time", "station", "axis"), it.displacement, "m", "displacement relative to the base axes"),
         "coordinates": v(("time", "coordinate"), it.q, length, "generalised coordinates of the beam"),
-        "coordinate_rates": v(
-            ("time", "coordinate"), it.qd, rate, "rates of the generalised coordinates"
-        ),
+        "coordinate_rates": v(("time", "coordinate"), it.qd, rate, "rates of the generalised coordinates"),
         "root_acceleration": v(
             ta, it.base.a_WO_B, "m s-2", "acceleration of the root; specific force where gravity acts"
         ),
         "angular_velocity": v(ta, it.base.w_WB_B, "rad s-1", "angular velocity of the base"),
         "angular_acceleration": v(ta, it.base.al_WB_B, "rad s-2", "angular acceleration of the base"),
-        "tip_max_abs": v(
-            ("axis",), it.peaks.max_abs, "m", "largest displacement of the tip at any step computed"
-        ),
+        "tip_max_abs": v(("axis",), it.peaks.max_abs, "m", "largest displacement of the tip at any step computed"),
         "tip_time_of_max": v(("axis",), it.peaks.time_of_max, "s", "time of that displacement"),
         "tip_residual_amplitude": v(
             ("axis",), it.peaks.residual_amplitude, "m", "half peak-to-peak of the tip from residual_from on"
@@ -227,9 +219,7 @@ def _comparison(it: Comparison) -> xr.Dataset:
     v = _variable
     across = "over the times at which the target was not held"
     data = {
-        "difference": v(
-            ("time", "axis"), it.difference, "m", f"tip displacement, {it.centrifuge} less {it.flight}"
-        ),
+        "difference": v(("time", "axis"), it.difference, "m", f"tip displacement, {it.centrifuge} less {it.flight}"),
         "covered": v(
             ("time",),
             it.covered.astype(np.int8),
@@ -241,9 +231,7 @@ def _comparison(it: Comparison) -> xr.Dataset:
         "max_difference": v(("axis",), it.max_difference, "m", f"largest difference {across}"),
         "rms_difference": v(("axis",), it.rms_difference, "m", f"root mean square difference {across}"),
         "peak_flight": v(("axis",), it.peak_flight, "m", f"largest displacement in {it.flight} {across}"),
-        "peak_centrifuge": v(
-            ("axis",), it.peak_centrifuge, "m", f"largest displacement on {it.centrifuge} {across}"
-        ),
+        "peak_centrifuge": v(("axis",), it.peak_centrifuge, "m", f"largest displacement on {it.centrifuge} {across}"),
     }
     described = xr.Dataset(data, {"time": v(("time",), it.time, "s", "time"), "axis": _AXIS})
     described.attrs = {"flight": it.flight, "centrifuge": it.centrifuge, "verdict": it.verdict}

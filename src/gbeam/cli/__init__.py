@@ -1,0 +1,90 @@
+"""The command line: one file per verb, imported when it is called.
+
+A verb is a function with annotated parameters that returns its exit status. To add one, write its file and name it
+in VERBS; what is wrong is raised, and answered for in `failures`.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+from collections.abc import Sequence
+
+from cyclopts import App, CycloptsError
+
+import gbeam
+from gbeam.cli.failures import FAILED, answer, answer_syntax, complain
+from gbeam.errors import GbeamError
+
+# The help is here and not only with the verb, so that `gbeam --help` imports none of them.
+VERBS = {
+    "run": "Compute the response in every environment of a scenario, and compare them.",
+    "static": "Where the beam rests relative to its base at one time of the motions.",
+    "modes": "Frequencies, damping and shapes about the equilibrium at one time of a motion.",
+    "campbell": "Frequencies against the speed of a hub, and where its multiples meet them.",
+    "critical-speed": "The hub rate at which the beam's equilibrium is lost.",
+    "linearize": "State-space model A, B, C, D about the equilibrium at one time of a motion.",
+    "models": "The same scenario by every model, compared with the exact one.",
+    "plan": "Plan the axis motions of a centrifuge within its limits; needs no beam.",
+    "place": "Find where to put the specimen on the centrifuge.",
+    "check": "Say what a scenario means, without computing a response.",
+    "new": "Write a commented scenario to start from.",
+    "schema": "Print the JSON schema of scenario files, for editors.",
+}
+_INTERRUPTED = 130
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        The arguments after the program's name; by default the process's.
+
+    Returns
+    -------
+    int
+        Exit status: 0 done, 1 the computation failed and said why, 2 the input is wrong and it said where, 130
+        interrupted.
+    """
+    tokens = list(sys.argv[1:] if argv is None else argv)
+    as_json = "--json" in tokens
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a terminal without µ or ² is no reason to fail
+    try:
+        status = _app()(tokens, exit_on_error=False, print_error=False, result_action="return_value")
+        sys.stdout.flush()
+    except CycloptsError as error:
+        return answer_syntax(str(error), as_json)
+    except GbeamError as error:
+        return answer(error, as_json)
+    except KeyboardInterrupt:
+        return _INTERRUPTED
+    except OSError as error:
+        # Stdout is closed (`gbeam run ... | head`, where nobody listens any more) or its disk is full.
+        if not isinstance(error, BrokenPipeError):
+            complain(str(error))
+        _abandon_stdout()
+        return FAILED
+    return status if isinstance(status, int) else 0
+
+
+def _abandon_stdout() -> None:
+    """Send what is left in the buffer nowhere, so that Python does not fail once more as it exits."""
+    with open(os.devnull, "wb") as nowhere:
+        os.dup2(nowhere.fileno(), sys.stdout.fileno())
+
+
+def _app() -> App:
+    app = App(
+        name="gbeam",
+        help="How a flexible beam responds while its base moves a lot: in flight, on a centrifuge, on a hub.",
+        version=gbeam.__version__,
+        suppress_keyboard_interrupt=False,
+    )
+    for verb, told in VERBS.items():
+        app.command(f"gbeam.cli.{verb.replace('-', '_')}:{verb.replace('-', '_')}", name=verb, help=told)
+    return app

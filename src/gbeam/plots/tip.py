@@ -1,0 +1,69 @@
+"""The tip's displacement in all environments, and how a centrifuge's differs from the flight's."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from gbeam.plots.style import REFERENCE, colour, heading, legend, panels, shade, show_zero, styled
+from gbeam.results import Study
+
+
+@styled
+def plot_tip(study: Study) -> Figure:
+    """Plot the tip's displacement along the axis in which it moves most.
+
+    Parameters
+    ----------
+    study : Study
+
+    Returns
+    -------
+    Figure
+        All environments overlaid; below, for each comparison, centrifuge less flight, with the held times shaded.
+    """
+    responses = study.responses
+    axis = main_axis(study)
+    heights = [1.6 if study.comparisons else 2.0] + [1.0] * len(study.comparisons)
+    title = heading(study.title, f"tip displacement along {'xyz'[axis]}, relative to the base", responses.values())
+    figure, (top, *below) = panels(title, len(heights), heights=heights)
+    flights = {c.flight for c in study.comparisons}
+    others = [name for name in responses if name not in flights]
+    for name, it in responses.items():
+        dot = "o" if len(it.time) == 1 else ""  # what diverged at once is no line
+        # A flight is drawn thin on what imitates it: a vibration would hide it.
+        if name in flights:
+            top.plot(it.time, 1e3 * it.tip[:, axis], color=REFERENCE, lw=0.8, zorder=3, marker=dot, label=name)
+        else:
+            line = colour(others.index(name))
+            top.plot(it.time, 1e3 * it.tip[:, axis], color=line, lw=1.6 if flights else 1.1, marker=dot, label=name)
+    show_zero(top)
+    top.set_ylabel("displacement, mm")
+    together = all(np.array_equal(it.covered, study.comparisons[0].covered) for it in study.comparisons)
+    if study.comparisons and together:
+        shade(top, study.comparisons[0].time, ~study.comparisons[0].covered)
+    if len(responses) > 1:
+        legend(top)
+    for panel, compared in zip(below, study.comparisons, strict=True):
+        difference, covered = 1e3 * compared.difference[:, axis], compared.covered
+        panel.plot(compared.time, difference, color=colour(others.index(compared.centrifuge)))
+        shade(panel, compared.time, ~covered)
+        if not together and not covered.all():
+            legend(panel)
+        show_zero(panel)
+        panel.set_ylabel("difference, mm")
+        scaled = ""
+        if covered.any() and not covered.all():
+            # What happens while the target is held is no difference from flight: it must not set the scale.
+            reach = 1.1 * np.abs(difference[covered]).max() or 1.0
+            panel.set_ylim(-reach, reach)
+            scaled = ", scaled to the times compared"
+        panel.set_title(f"{compared.centrifuge} − {compared.flight}{scaled}", loc="left", fontsize=9)
+    return figure
+
+
+def main_axis(study: Study) -> int:
+    """Axis (0, 1, 2) along which the tip moves most, in flight where there is one."""
+    flights = [it for it in study.responses.values() if it.environment == "flight"]
+    largest = [it.peaks.max_abs for it in flights or study.responses.values()]
+    return int(np.argmax(np.max(largest, axis=0)))

@@ -1,0 +1,52 @@
+"""The numbers that a report quotes from a centrifuge's axes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gbeam.results import AxesResult, Floats
+
+
+@dataclass(frozen=True)
+class Peak:
+    """Largest size of a history, and when."""
+
+    max_abs: float
+    time_of_max: float
+
+
+@dataclass(frozen=True)
+class Tracking:
+    """Largest tracking error while the target is the flight's load.
+
+    Parameters
+    ----------
+    max : float
+        m/s²; NaN where the target was held all the time.
+    time_of_max : float
+        s.
+    fraction : float
+        Of the load wanted at that time.
+    """
+
+    max: float
+    time_of_max: float
+    fraction: float
+
+
+def peak(time: Floats, values: Floats) -> Peak:
+    """Largest size of `values` (t,) over `time` (t,)."""
+    i = int(np.argmax(np.abs(values)))
+    return Peak(float(abs(values[i])), float(time[i]))
+
+
+def tracking(time: Floats, axes: AxesResult) -> Tracking:
+    """Largest tracking error of a centrifuge, where its target is not held."""
+    if axes.held.all():
+        return Tracking(np.nan, np.nan, np.nan)
+    error = np.where(axes.held, -1.0, axes.tracking_error)
+    i = int(np.argmax(error))
+    wanted = float(np.linalg.norm(axes.wanted[i]))
+    return Tracking(float(error[i]), float(time[i]), float(error[i]) / wanted if wanted > 0 else np.nan)

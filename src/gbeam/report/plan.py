@@ -1,0 +1,92 @@
+"""The plan of a machine in words: a table for people, one JSON object for programs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from rich.console import Group, RenderableType
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from gbeam.report.figures import tracking
+from gbeam.results import AxesResult, LimitUse, MachinePlan
+
+_SHORTFALLS = 8  # told at most; a rough record has hundreds
+
+
+def limits_table(uses: Iterable[LimitUse]) -> Table:
+    """Return a table of what is used of each limit, when, and the share of what is allowed."""
+    table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
+    table.add_column("machine")
+    for heading in ("used", "allowed", "share", "at, s"):
+        table.add_column(heading, justify="right")
+    table.add_column("unit")
+    for use in uses:
+        known = math.isfinite(use.allowed)
+        style = "bold red" if use.exceeded else None
+        table.add_row(
+            f"{use.axis} {use.quantity}",
+            f"{use.used:.4g}",
+            f"{use.allowed:.4g}" if known else "–",
+            f"{use.share:.0%}" if known else "–",
+            f"{use.time:.3f}" if use.used > 0 else "–",
+            use.unit,
+            style=style,
+        )
+    return table
+
+
+def plan_table(title: str, plans: Iterable[MachinePlan]) -> RenderableType:
+    """Return what `plan` prints."""
+    parts: list[RenderableType] = [Text(title, style="bold")] if title else []
+    for it in plans:
+        parts += ["", Text(f"{it.name} ({it.arm:g} m, tracks {it.tracks}): {it.outcome}")]
+        lines: list[RenderableType] = [limits_table(it.axes.limits), Text(_followed(it))]
+        lines += [Text(f"target held {start:.3f} to {end:.3f} s: {why}") for start, end, why in it.axes.episodes[:8]]
+        told = it.axes.unreachable[:_SHORTFALLS]
+        lines += [Text(f"warning: {each}", style="yellow") for each in told]
+        if len(it.axes.unreachable) > len(told):
+            lines.append(Text(f"and {len(it.axes.unreachable) - len(told)} more: see --json"))
+        parts += [Padding(line, (0, 0, 0, 2), expand=False) for line in lines]
+    return Group(*parts)
+
+
+def _followed(it: MachinePlan) -> str:
+    error = tracking(it.time, it.axes)
+    if not math.isfinite(error.max):
+        return "the target is held all the time"
+    return f"load followed within {error.max:.3g} m/s² ({error.fraction:.2%} of it) at {error.time_of_max:.3f} s"
+
+
+def limits_json(axes: AxesResult) -> list[dict[str, Any]]:
+    """Return the limits as objects; null is allowed where there is none."""
+    return [asdict(use) | {"share": use.share, "exceeded": use.exceeded} for use in axes.limits]
+
+
+def plan_json(title: str, plans: Iterable[MachinePlan], files: Iterable[Path] = ()) -> dict[str, Any]:
+    """Return what `plan --json` prints."""
+    told = list(plans)
+    failed = [it.outcome for it in told if it.outcome != "done"]
+    return {
+        "title": title,
+        "outcome": failed[0] if failed else "done",
+        "motions": {
+            it.name: {
+                "tracks": it.tracks,
+                "arm": it.arm,
+                "outcome": it.outcome,
+                "message": it.message,
+                "limits": limits_json(it.axes),
+                "tracking_error": asdict(tracking(it.time, it.axes)),
+                "held": [{"start": start, "end": end, "reason": why} for start, end, why in it.axes.episodes],
+                "unreachable": [asdict(each) for each in it.axes.unreachable],
+            }
+            for it in told
+        },
+        "files": [str(file) for file in files],
+    }

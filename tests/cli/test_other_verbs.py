@@ -1,0 +1,82 @@
+"""gbeam check, new and schema; and that help is fast and light."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from gbeam.cli import VERBS
+
+Call = Callable[..., Any]
+
+
+def test_check(fast: Path, gbeam: Call) -> None:
+    told = gbeam("check", fast, "--json").json
+    assert told["beam"]["mass"] == pytest.approx(2700 * 0.3 * 0.02 * 0.004)
+    # β₁² √(EI/ρA) / 2π L² of a cantilever
+    assert told["modes"][0] == {"frequency": pytest.approx(36.56, rel=1e-3), "direction": "z"}
+    assert told["motions"] == {"flight": {"kind": "flight"}, "spin": {"kind": "centrifuge", "tracks": "flight"}}
+    assert told["response"]["duration"] == 0.5
+    text = gbeam("check", fast).out
+    assert "0.0648 kg" in text and "36.56 (z)" in text and "spin: centrifuge that tracks flight" in text
+    assert not Path("out").exists()
+
+
+def test_check_writes_what_it_prints(hub: Path, gbeam: Call) -> None:
+    answer = gbeam("check", hub, "--json", "--out", "there")
+    assert json.loads(Path("there/check.json").read_text()) == answer.json
+
+
+@pytest.mark.parametrize("kind", ["flight", "hub"])
+def test_new_writes_a_sound_scenario_once(kind: str, tmp_path: Path, gbeam: Call) -> None:
+    file = tmp_path / "mine.toml"
+    assert gbeam("new", file, "--kind", kind).status == 0
+    assert gbeam("check", file).status == 0
+    written = file.read_text()
+    again = gbeam("new", file)
+    assert again.status == 2 and "exists" in again.err
+    assert file.read_text() == written
+
+
+def test_new_needs_a_place(tmp_path: Path, gbeam: Call) -> None:
+    assert "cannot be written" in gbeam("new", tmp_path / "no" / "x.toml").err
+    answer = gbeam("new", tmp_path / "x.json")
+    assert answer.status == 2 and "x.toml" in answer.err
+
+
+def test_schema(gbeam: Call) -> None:
+    assert "beam" in gbeam("schema").json["properties"]
+
+
+def test_version(gbeam: Call) -> None:
+    assert gbeam("--version").out.strip()
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_verb_has_help(verb: str, gbeam: Call) -> None:
+    answer = gbeam(verb, "--help")
+    assert answer.status == 0
+    assert VERBS[verb].split(",")[0].split(".")[0] in " ".join(answer.out.split())
+
+
+def test_help_is_light() -> None:
+    heavy = ("jax", "xarray", "matplotlib", "pint", "pydantic", "scipy")
+    code = (
+        "import sys; from gbeam.cli import main; status = main(['--help']);"
+        f"print([it for it in {heavy} if it in sys.modules], file=sys.stderr); sys.exit(status)"
+    )
+    seconds = []
+    for _ in range(3):
+        start = time.perf_counter()
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        seconds.append(time.perf_counter() - start)
+    assert done.stderr.strip() == "[]"
+    assert all(verb in done.stdout for verb in VERBS)
+    assert min(seconds) < 0.5

@@ -1,0 +1,122 @@
+"""gbeam run: the JSON contract of design.md section 4, the files, and what it does when the answer is bad."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from gbeam import analysis, store
+from gbeam.cli.console import Watch
+from gbeam.errors import ComputationError
+
+Call = Callable[..., Any]
+
+
+def test_json_contract(fast: Path, gbeam: Call) -> None:
+    answer = gbeam("run", fast, "--json")
+    assert answer.status == 0 and answer.err == ""
+    told = answer.json
+    assert told["title"] == "fast" and told["outcome"] == "done" and told["files"] == []
+    assert list(told["motions"]) == ["flight", "spin"]
+    for motion in told["motions"].values():
+        assert motion["outcome"] == "done" and motion["message"] == "" and motion["model"] == "FOAM"
+        assert motion["error_estimate"] >= 0 and motion["step"] > 0
+        for axis in "xyz":
+            assert set(motion["tip"][axis]) == {"max_abs", "time_of_max", "residual_amplitude"}
+            assert motion["tip"][axis]["residual_amplitude"] is None  # not asked for
+    # 6 g on a cantilever with one mode: close to w L⁴ / 8 EI = 1.721 mm.
+    assert told["motions"]["flight"]["tip"]["z"]["max_abs"] == pytest.approx(1.72e-3, rel=0.02)
+    spin = told["motions"]["spin"]
+    assert spin["axes"]["1"]["rate"]["max_abs"] == pytest.approx((6 * 9.80665 / 3.3) ** 0.5)
+    assert spin["tracking_error"]["max"] < 1e-9 and spin["held"] == []
+    (comparison,) = told["comparisons"]
+    assert (comparison["flight"], comparison["centrifuge"]) == ("flight", "spin")
+    assert comparison["relative"]["z"] < 1e-3 and comparison["covered"] == 1
+    assert comparison["relative"]["y"] is None  # there is none along y
+    assert not Path("out").exists()
+
+
+def test_json_of_a_hub(hub: Path, gbeam: Call) -> None:
+    told = gbeam("run", hub, "--json").json
+    slew = told["motions"]["slew"]
+    assert slew["hub"]["rate_max"] > 0 and slew["hub"]["angle_end"] > 0
+    assert slew["tip"]["y"]["residual_amplitude"] > 0
+    assert told["comparisons"] == []
+
+
+def test_files(fast: Path, gbeam: Call) -> None:
+    answer = gbeam("run", fast, "--set", "motion.flight.acceleration.z.level=3 g")
+    assert answer.status == 0
+    assert "agrees with flight" in " ".join(answer.out.split())
+    folder = Path("out/fast")
+    pictures = ["tip", "base_flight", "base_spin", "axes_spin"]
+    expected = {"result.nc"} | {f"{name}.{kind}" for name in pictures for kind in ("png", "svg")}
+    assert {it.name for it in folder.iterdir()} == expected
+    assert str(folder) in answer.out
+    tree = store.read(folder / "result.nc")
+    assert tree.attrs["overrides"] == "motion.flight.acceleration.z.level=3 g"
+    assert tree.attrs["command"].endswith("--set 'motion.flight.acceleration.z.level=3 g'")
+    assert str(tree["scenario"].values) == fast.read_text()
+
+
+def test_json_lists_the_files_it_wrote(hub: Path, gbeam: Call) -> None:
+    told = gbeam("run", hub, "--json", "--out", "there").json
+    assert "there/hub_slew.png" in told["files"]
+    assert all(Path(file).stat().st_size > 0 for file in told["files"])
+
+
+def test_diverged_is_told_stored_and_drawn(fast: Path, gbeam: Call) -> None:
+    """At 3000 g the tip moves by more than the beam is long."""
+    level = "motion.flight.acceleration.z.level=3000 g"
+    answer = gbeam("run", fast, "--set", level, "--json", "--out", "bad")
+    assert answer.status == 1
+    assert answer.json["outcome"] == "diverged"
+    assert answer.json["motions"]["flight"]["outcome"] == "diverged"
+    assert "motion.flight diverged" in answer.err and "exceeded the beam's length" in answer.err
+    assert store.read("bad/result.nc").attrs["outcome"] == "diverged"
+    again = gbeam("run", fast, "--set", level)
+    assert again.status == 1 and "diverged" in again.out and "out/fast" in again.out
+
+
+def test_no_result_leaves_no_files(fast: Path, gbeam: Call, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        raise ComputationError("not converged", "motion.flight: no relative equilibrium; use exact")
+
+    monkeypatch.setattr(analysis, "study", fail)
+    answer = gbeam("run", fast, "--json", "--out", "there")
+    assert answer.status == 1 and not Path("there").exists()
+    assert answer.json["outcome"] == "not converged"
+    assert answer.json["message"].startswith("motion.flight: no relative equilibrium")
+    assert answer.err == "gbeam: not converged: motion.flight: no relative equilibrium; use exact\n"
+
+
+def test_interrupted_quietly(fast: Path, gbeam: Call, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(analysis, "study", interrupt)
+    answer = gbeam("run", fast)
+    assert (answer.status, answer.out, answer.err) == (130, "", "")
+
+
+def test_an_interrupt_that_jax_swallows_still_ends_the_run() -> None:
+    with pytest.raises(KeyboardInterrupt), Watch() as watch:
+        with suppress(KeyboardInterrupt):  # as a callback of JAX does
+            signal.raise_signal(signal.SIGINT)
+        watch("integrating", 0.5)
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_full_disk_behind_stdout(fast: Path) -> None:
+    command = [sys.executable, "-c", "from gbeam.cli import main; raise SystemExit(main())", "check", str(fast)]
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert done.returncode == 1
+    assert done.stderr == "gbeam: [Errno 28] No space left on device\n"

@@ -1,0 +1,55 @@
+"""Responses made by hand: plots and reports read records, so no beam is needed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gbeam.results import AxesResult, BaseHistory, Comparison, HubResult, Peaks, Response, Study
+
+TIME = np.linspace(0, 2, 201)
+
+
+def _response(name: str, environment: str, turning: float) -> Response:
+    wave = 1e-3 * np.sin(np.outer(2 * np.pi * TIME, [1, 2, 3])) * [0.1, 0.2, 1.0]
+    zero = np.zeros((len(TIME), 3))
+    return Response(
+        name=name,
+        environment=environment,
+        model="FOAM",
+        outcome="done",
+        message="",
+        warnings=(),
+        time=TIME,
+        stations=np.array([0.3]),
+        displacement=wave[:, None],
+        q=zero,
+        qd=zero,
+        base=BaseHistory(zero + np.array([0, 0, 60.0]), zero + np.array([0, turning, 0]), zero),
+        peaks=Peaks(np.abs(wave).max(axis=0), TIME[np.abs(wave).argmax(axis=0)], np.array([0.0, 1e-4, 2e-4])),
+        integrator="newmark",
+        step=1e-3,
+        steps=2000,
+        error_estimate=1e-5,
+        residual_from=1.0,
+    )
+
+
+@pytest.fixture
+def study() -> Study:
+    """A flight, a centrifuge that is held in the middle, a hub; one comparison."""
+    flight = _response("flight", "flight", 0.0)
+    held = (TIME > 0.5) & (TIME < 0.8)
+    rate = np.outer(np.sin(TIME), [4.0, 1.0, 0.5])
+    load = np.outer(np.ones_like(TIME), [0, 0, 60.0])
+    off = np.where(held, 9.0, 0.3 * TIME)[:, None] * [0, 0, 1.0]
+    axes = AxesResult(rate, rate, 2 * rate, load, load + off, held, ((0.505, 0.795, "below idle"),))
+    hub = HubResult(TIME, 2 * TIME, np.full_like(TIME, 2.0), np.cos(TIME))
+    spin = replace(_response("spin", "centrifuge", 4.0), axes=axes)
+    slew = replace(_response("slew", "hub", 1.0), hub=hub)
+    difference = 0.1 * flight.tip
+    peaks = np.abs(flight.tip).max(axis=0)
+    comparison = Comparison("flight", "spin", TIME, difference, ~held, 0.1 * peaks, 0.05 * peaks, peaks, peaks)
+    return Study("a title", {"flight": flight, "spin": spin, "slew": slew}, (comparison,))

@@ -1,0 +1,71 @@
+"""The summary for people and the one for programs, from records made by hand."""
+
+from __future__ import annotations
+
+import io
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from gbeam.report import as_json, summary, summary_json
+from gbeam.results import Study
+
+
+def _text(study: Study) -> str:
+    console = Console(width=120, file=io.StringIO(), record=True)
+    console.print(summary(study))
+    return console.export_text()
+
+
+def test_summary_tells_what_matters(study: Study) -> None:
+    text = _text(study)
+    assert text.startswith("a title\n")
+    assert "spin (centrifuge): done" in text and "flight: done" in text
+    assert "FOAM, newmark, 2000 steps of 1.000 ms; estimated error 1.0e-05" in text
+    # Largest while not held: at the end, not the 9 m/s² in between.
+    assert "load followed within 0.600 m/s² (1 % of the load there), at 2.000 s" in text
+    assert "target held 0.505 to 0.795 s: below idle" in text
+    assert "hub: angle at the end 2.000 rad, largest rate 4.000 rad/s" in text
+    verdict = study.comparisons[0].verdict
+    assert verdict[1:] in " ".join(text.split())
+
+
+def test_summary_of_a_failure(study: Study) -> None:
+    bad = replace(study.responses["flight"], outcome="diverged", message="it [bold] left", warnings=("mind",))
+    text = _text(Study("", {"flight": bad}, ()))
+    assert "flight: diverged" in text and "It [bold] left" in text and "warning: mind" in text
+
+
+def test_rounding_is_not_a_displacement(study: Study) -> None:
+    it = study.responses["flight"]
+    peaks = replace(it.peaks, max_abs=np.array([1e-20, 0.0, 1e-3]))
+    rows = [line.split() for line in _text(Study("", {"flight": replace(it, peaks=peaks)}, ())).splitlines()]
+    assert ["x", "0", "–", "0"] in rows and ["y", "0", "–", "0"] in rows
+
+
+def test_many_episodes_are_counted(study: Study) -> None:
+    spin = study.responses["spin"]
+    axes = replace(spin.axes, episodes=tuple((i, i + 0.5, "below idle") for i in range(20)))
+    text = _text(Study("", {"spin": replace(spin, axes=axes)}, ()))
+    assert text.count("below idle") == 8 and "12 times more" in text
+
+
+def test_json(study: Study) -> None:
+    told = json.loads(as_json(summary_json(study)))
+    spin = told["motions"]["spin"]
+    assert spin["tracking_error"] == pytest.approx({"max": 0.6, "time_of_max": 2.0, "fraction": 0.01})
+    assert spin["held"] == [{"start": 0.505, "end": 0.795, "reason": "below idle"}]
+    assert spin["axes"]["1"]["acceleration"]["max_abs"] == pytest.approx(8 * np.sin(np.pi / 2), rel=1e-3)
+    assert told["motions"]["slew"]["hub"] == {"angle_end": 2.0, "rate_max": 4.0, "rate_end": 4.0}
+    assert told["comparisons"][0]["relative"]["z"] == pytest.approx(0.1)
+
+
+def test_json_has_null_for_what_is_no_number(study: Study) -> None:
+    held = replace(study.responses["spin"].axes, held=np.ones(201, dtype=bool))
+    it = replace(study.responses["spin"], axes=held, step=float("nan"), error_estimate=float("inf"))
+    spin = json.loads(as_json(summary_json(Study("", {"spin": it}, ()))))["motions"]["spin"]
+    assert spin["step"] is None and spin["error_estimate"] is None
+    assert spin["tracking_error"] == {"max": None, "time_of_max": None, "fraction": None}

@@ -1,0 +1,149 @@
+"""A study written, and read again with xarray and with h5py, is the same."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+import xarray as xr
+
+from gbeam import store
+from gbeam.errors import InputError
+from gbeam.results import AxesResult, BaseHistory, Comparison, HubResult, Peaks, Response, Study
+
+T, N = 11, 4
+RANDOM = np.random.default_rng(0)
+TIME = np.linspace(0, 1, T)
+SCENARIO = "title = 'ω'\n" + "# long\n" * 20_000  # more than an attribute of HDF5 holds
+
+
+def _random(*shape: int) -> np.ndarray:
+    return RANDOM.standard_normal(shape)
+
+
+def _response(name: str, environment: str) -> Response:
+    return Response(
+        name=name,
+        environment=environment,
+        model="FOAM",
+        outcome="done",
+        message="",
+        warnings=("one", "two"),
+        time=TIME,
+        stations=np.array([0.1, 0.3]),
+        displacement=_random(T, 2, 3),
+        q=_random(T, N),
+        qd=_random(T, N),
+        base=BaseHistory(_random(T, 3), _random(T, 3), _random(T, 3)),
+        peaks=Peaks(_random(3), _random(3), np.full(3, np.nan)),
+        integrator="newmark",
+        step=0.1,
+        steps=10,
+        error_estimate=float("nan"),
+        residual_from=float("nan"),
+    )
+
+
+@pytest.fixture
+def study() -> Study:
+    """All three environments, with a comparison."""
+    held = TIME > 0.5
+    axes = AxesResult(*(_random(T, 3) for _ in range(5)), held, ((0.55, 1.0, "below idle"),))
+    hub = HubResult(_random(T), _random(T), _random(T), np.full(T, np.nan))
+    responses = {
+        "flight": _response("flight", "flight"),
+        "spin": replace(_response("spin", "centrifuge"), axes=axes),
+        "slew": replace(_response("slew", "hub"), hub=hub, model="exact"),
+    }
+    comparison = Comparison("flight", "spin", TIME, _random(T, 3), ~held, *(abs(_random(3)) for _ in range(4)))
+    return Study("a title", responses, (comparison,))
+
+
+@pytest.fixture
+def file(study: Study, tmp_path: Path) -> Path:
+    """The study, written."""
+    path = tmp_path / "result.nc"
+    store.write(study, path, store.Provenance(SCENARIO, ["a=1", "b=2"], "gbeam run s.toml"))
+    return path
+
+
+def test_xarray_reads_what_was_written(study: Study, file: Path) -> None:
+    tree = store.read(file)
+    flight, spin, slew = (tree[f"motions/{name}"] for name in study.responses)
+    np.testing.assert_array_equal(flight["displacement"].sel(axis="y"), study.responses["flight"].displacement[:, :, 1])
+    np.testing.assert_array_equal(spin["load_wanted"], study.responses["spin"].axes.wanted)
+    assert list(spin["held_reason"].values) == ["below idle"]
+    np.testing.assert_array_equal(slew["hub_angle"], study.responses["slew"].hub.angle)
+    assert "hub_angle" not in flight and "held_reason" not in flight
+    np.testing.assert_array_equal(tree["comparisons/spin/difference"], study.comparisons[0].difference)
+    assert flight.attrs["warnings"] == "one\ntwo"
+    assert np.isnan(flight.attrs["error_estimate"])
+    assert tree["comparisons/spin"].attrs["verdict"] == study.comparisons[0].verdict
+
+
+def test_provenance(file: Path) -> None:
+    tree = store.read(file)
+    assert str(tree["scenario"].values) == SCENARIO
+    assert tree.attrs["title"] == "a title" and tree.attrs["outcome"] == "done"
+    assert tree.attrs["overrides"] == "a=1\nb=2" and tree.attrs["command"] == "gbeam run s.toml"
+    assert tree.attrs["date"].endswith("+00:00")
+    assert tree.attrs["gbeam_version"] and tree.attrs["jax_version"]
+
+
+def test_every_number_says_what_it_is(file: Path) -> None:
+    for group in store.read(file)["motions"].children.values():
+        for name, variable in group.variables.items():
+            if variable.dtype.kind == "f":
+                assert variable.attrs["units"] and variable.attrs["long_name"], name
+            if "axis" in variable.dims and name != "axis":
+                assert variable.attrs["frame"].startswith("B: base axes"), name
+    # The exact model's coordinates are angles and strains.
+    assert store.read(file)["motions/slew/coordinates"].attrs["units"] == "1"
+    assert store.read(file)["motions/slew/coordinate_rates"].attrs["units"] == "s-1"
+    assert store.read(file)["motions/flight/coordinate_rates"].attrs["units"] == "m s-1"
+
+
+def test_h5py_reads_it(study: Study, file: Path) -> None:
+    with h5py.File(file) as it:
+        group = it["motions/spin"]
+        np.testing.assert_array_equal(group["displacement"][:], study.responses["spin"].displacement)
+        assert [each.decode() for each in group["axis"]] == ["x", "y", "z"]
+        np.testing.assert_array_equal(group["held"][:], study.responses["spin"].axes.held)
+        # Attributes that MATLAB reads: text and numbers, nothing else.
+        kinds = {type(value) for node in (it, group) for value in node.attrs.values()}
+        assert kinds <= {str, np.float64, np.int64, np.ndarray, bytes, np.bytes_}
+        assert group.attrs["environment"] == "centrifuge"
+
+
+def test_a_group_opens_alone(file: Path) -> None:
+    with xr.open_dataset(file, group="motions/flight", engine="h5netcdf") as flight:
+        assert dict(flight.sizes) == {"time": T, "station": 2, "axis": 3, "coordinate": N}
+
+
+def test_a_file_is_replaced_whole_or_not_at_all(study: Study, file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = file.read_bytes()
+
+    def fail(*_: object, **__: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(xr.DataTree, "to_netcdf", fail)
+        with pytest.raises(OSError, match="No space"):
+            store.write(study, file)
+    assert file.read_bytes() == before
+    assert os.listdir(file.parent) == [file.name]
+    store.write(replace(study, title="another"), file)
+    assert store.read(file).attrs["title"] == "another"
+
+
+@pytest.mark.parametrize("content", [None, b"not netCDF"])
+def test_what_is_no_result_is_refused(content: bytes | None, tmp_path: Path) -> None:
+    path = tmp_path / "x.nc"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(InputError, match=r"x\.nc cannot be read"):
+        store.read(path)
