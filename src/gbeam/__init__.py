@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 from gbeam.beam import Beam, Material, PointMass, Section
 from gbeam.errors import ComputationError, GbeamError, InputError
+from gbeam.loads import Load
+from gbeam.root import Root
 
 if TYPE_CHECKING:
     from gbeam.analysis import compare, equilibrium, respond, study
@@ -71,11 +73,13 @@ __all__ = [
     "HubRate",
     "HubTorque",
     "InputError",
+    "Load",
     "Material",
     "Model",
     "PointMass",
     "Response",
     "ResponseSettings",
+    "Root",
     "Section",
     "Sine",
     "SmoothStep",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +18,10 @@ class Shapes(NamedTuple):
     value: Array
     slope: Array
     curvature: Array
+
+
+Family = Callable[[Array], Shapes]
+Families = tuple[Family, Family, Family]  # of the axial displacement, the one along y, the one along z
 
 
 def bar_shapes(x: Array, length: float, count: int) -> Shapes:
@@ -93,6 +97,34 @@ def legendre_shapes(x: Array, length: float, count: int) -> Shapes:
     return Shapes(values, slopes, curvatures)
 
 
+def legendre_bending(x: Array, length: float, count: int) -> Shapes:
+    """Shapes whose slopes are the integrated Legendre shapes: polynomials, zero with their slopes at the root."""
+    turn = legendre_shapes(x, length, count)
+    xi = 2 * np.asarray(x) / length - 1
+    value = [legendre.Legendre.basis(k).integ(2, lbnd=-1)(xi) * length / 4 for k in range(count)]
+    return Shapes(np.stack(value, axis=-1) if count else turn.value, turn.value, turn.slope)
+
+
+def closed_forms(length: float, counts: tuple[int, int, int]) -> Families:
+    """Fixed-free bar shapes and clamped-free bending shapes: those of the bare uniform beam."""
+    axial, along_y, along_z = counts
+    return (
+        lambda x: bar_shapes(x, length, axial),
+        lambda x: bending_shapes(x, length, along_y),
+        lambda x: bending_shapes(x, length, along_z),
+    )
+
+
+def polynomials(length: float, counts: tuple[int, int, int]) -> Families:
+    """Legendre polynomials as strains and as curvatures, for the exact field."""
+    axial, along_y, along_z = counts
+    return (
+        lambda x: Shapes(*(length * part for part in legendre_shapes(x, length, axial))),
+        lambda x: legendre_bending(x, length, along_y),
+        lambda x: legendre_bending(x, length, along_z),
+    )
+
+
 class Quadrature(NamedTuple):
     """Gauss-Legendre nodes (g,) m and weights (g,) m over the beam, in panels with the given edges."""
 
@@ -102,27 +134,42 @@ class Quadrature(NamedTuple):
 
     def cumulative(self, x: Array) -> Array:
         """Matrix (points, g) that integrates nodal values from the root to each x, spectrally in each panel."""
+        return self._matrix(x, integrate=True)
+
+    def interpolation(self, x: Array) -> Array:
+        """Matrix (points, g) that interpolates nodal values at each x by the polynomial of its panel."""
+        return self._matrix(x, integrate=False)
+
+    def _matrix(self, x: Array, *, integrate: bool) -> Array:
         per_panel = len(self.node) // (len(self.edges) - 1)
         xi, _ = legendre.leggauss(per_panel)
         to_coefficients = np.linalg.inv(legendre.legvander(xi, per_panel - 1))
-        integrals = np.zeros((per_panel, per_panel + 1))
-        for k in range(per_panel):
-            integral = legendre.legint(np.eye(per_panel)[k], lbnd=-1)
-            integrals[k, : len(integral)] = integral
+        operator = np.eye(per_panel, per_panel + 1)
+        if integrate:
+            operator[:] = 0
+            for k in range(per_panel):
+                integral = legendre.legint(np.eye(per_panel)[k], lbnd=-1)
+                operator[k, : len(integral)] = integral
         out = np.zeros((len(x), len(self.node)))
         panel = np.clip(np.searchsorted(self.edges, x, side="left") - 1, 0, len(self.edges) - 2)
         for row, (at, last) in enumerate(zip(x, panel, strict=True)):
-            out[row, : last * per_panel] = self.weight[: last * per_panel]
             low, high = self.edges[last], self.edges[last + 1]
             vander = legendre.legvander(np.array([2 * (at - low) / (high - low) - 1]), per_panel)
             inside = slice(last * per_panel, (last + 1) * per_panel)
-            out[row, inside] = (vander @ integrals.T @ to_coefficients)[0] * (high - low) / 2
+            out[row, inside] = (vander @ operator.T @ to_coefficients)[0]
+            if integrate:
+                out[row, inside] *= (high - low) / 2
+                out[row, : last * per_panel] = self.weight[: last * per_panel]
         return out
 
 
 def quadrature(length: float, per_panel: int, breaks: Sequence[float] = ()) -> Quadrature:
-    """Gauss-Legendre rule on [0, length], `per_panel` nodes between the `breaks` (where the section has corners)."""
-    inner = [b for b in breaks if 0 < b < length]
+    """Gauss-Legendre rule on [0, length], `per_panel` nodes between the `breaks` (corners of the section)."""
+    near = 1e-9 * length
+    inner: list[float] = []
+    for b in sorted(breaks):
+        if near < b < length - near and (not inner or b - inner[-1] > near):
+            inner.append(b)
     edges = np.array([0.0, *inner, length])
     xi, w = legendre.leggauss(per_panel)
     half = np.diff(edges)[:, None] / 2

@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from gbeam.checks import positive
 from gbeam.errors import InputError
+from gbeam.loads import Load
+from gbeam.root import Root
 
 Array = NDArray[np.float64]
 
@@ -296,7 +298,7 @@ class PointMass:
 
 @dataclass(frozen=True)
 class Beam:
-    """A straight beam along x, clamped at x = 0 to the moving base.
+    """A straight beam along x, held at x = 0 by the moving base.
 
     Parameters
     ----------
@@ -307,11 +309,14 @@ class Beam:
     masses : sequence of PointMass
     damping_ratio : float or sequence of float
         Modal damping ratio: one for all modes, or one per mode of the model, ascending in frequency.
+    root : Root
+        Springs that hold the root; clamped where there is none.
+    loads : sequence of Load
 
     Raises
     ------
     InputError
-        If a value is impossible, a mass lies off the beam, or the section's stations do not cover it.
+        If a value is impossible, a mass or a load lies off the beam, or the section's stations do not cover it.
     """
 
     length: float
@@ -319,15 +324,20 @@ class Beam:
     material: Material
     masses: Sequence[PointMass] = field(default=())
     damping_ratio: float | Sequence[float] = 0.0
+    root: Root = field(default_factory=Root)
+    loads: Sequence[Load] = field(default=())
 
     def __post_init__(self) -> None:
         positive("length", self.length, "m")
         object.__setattr__(self, "masses", tuple(self.masses))
-        for i, mass in enumerate(self.masses):
-            if mass.at > self.length * (1 + 1e-12):
+        object.__setattr__(self, "loads", tuple(self.loads))
+        places = [(f"masses[{i}].at", mass.at) for i, mass in enumerate(self.masses)]
+        places += [(f"loads[{i}].at", load.at) for i, load in enumerate(self.loads) if load.at is not None]
+        for place, at in places:
+            if at > self.length * (1 + 1e-12):
                 raise InputError(
-                    f"masses[{i}].at",
-                    f"is {mass.at:g} m, beyond the tip",
+                    place,
+                    f"is {at:g} m, beyond the tip",
                     f"give 0 to {self.length:g} m from the root",
                 )
         stations = self.section.stations

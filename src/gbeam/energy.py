@@ -46,7 +46,7 @@ class FieldEnergy(eqx.Module):
     station : (particles,) index of each particle's point in the field
     mass : (particles,) kg
     offset : (particles, 3) m, from the beam's axis in section axes; None where all particles lie on the axis
-    rigidity : (g,) each, EA N, EI_y and EI_z N m² times the quadrature weights, N m and N m³
+    rigidity : (g,) each, EA N, EI_y and EI_z N m² times the quadrature weights, N m and N m³; and the root's springs
     """
 
     field: Field
@@ -70,7 +70,10 @@ class FieldEnergy(eqx.Module):
         return 0.5 * jnp.sum(self.mass[:, None] * v**2)
 
     def potential(self, q: Coordinates) -> Float[Array, ""]:
-        """Strain energy ½ ∫ EA ε² + EI_y κ_y² + EI_z κ_z² dx, J (2009 (10); 2020 (8), corrected)."""
+        """Energy of beam and root's springs, ½ ∫ EA ε² + EI_y κ_y² + EI_z κ_z² dx + ½ Σ k s², J.
+
+        2009 (10); 2020 (8), corrected.
+        """
         pairs = zip(self.rigidity, self.field.strains(q), strict=True)
         return 0.5 * sum((jnp.sum(k * e**2) for k, e in pairs), start=jnp.zeros(()))
 
@@ -107,6 +110,19 @@ class QuadraticEnergy(eqx.Module):
     def potential(self, q: Coordinates) -> Float[Array, ""]:
         """Strain energy, J."""
         return 0.5 * q @ self.stiffness @ q
+
+
+def mass_and_moment(energy: Energy, q: Coordinates) -> tuple[Float[Array, ""], Float[Array, 3]]:
+    """Mass, kg, and its first moment Σ m r about the root, base axes, kg m: what gravity acts on.
+
+    Both are read from the linear momentum of a base that moves or turns, so that they are truncated as T is.
+    """
+
+    def momentum(axis: int) -> Array:
+        return jax.grad(energy.kinetic)(jnp.zeros(6).at[axis].set(1.0), q, 0 * q)
+
+    about_x, about_z = momentum(3), momentum(5)
+    return momentum(0)[0], jnp.stack([about_z[1], -about_z[0], -about_x[1]])
 
 
 @eqx.filter_jit

@@ -2,7 +2,7 @@
 
 A field answers three things: positions along its axis, the rotation of its sections, and the strains that store energy
 (axial strain, curvatures). The base axes are B: x along the beam,
-z through the thickness. Coordinates are ordered axial, bending along y, bending along z.
+z through the thickness. Coordinates are ordered axial, bending along y, bending along z, springs of the root.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 import gbeam._jax  # noqa: F401
-from gbeam.basis import Quadrature, bar_shapes, bending_shapes, legendre_shapes
+from gbeam.basis import Families, Quadrature, closed_forms, polynomials
 
 Points = Float[Array, "points 3"]
 Rotations = Float[Array, "points 3 3"]
@@ -23,11 +23,15 @@ Coordinates = Float[Array, " n"]
 
 
 class Strains(NamedTuple):
-    """Axial strain, curvature about y and about z, 1/m, at the quadrature nodes, (g,) each."""
+    """What stores energy: axial strain, curvature about y and about z, 1/m, at the quadrature nodes, (g,) each.
+
+    `root` is the stretch of the root's springs, m or rad, (springs,); empty for a clamped root.
+    """
 
     axial: Array
     about_y: Array
     about_z: Array
+    root: Array | np.ndarray = np.zeros(0)
 
 
 class Field(Protocol):
@@ -65,6 +69,7 @@ class ProjectedField(eqx.Module):
     s: Float[Array, "points n"]
     v: Float[Array, "points n"]
     w: Float[Array, "points n"]
+    slope_s: Float[Array, "points n"]
     slope_v: Float[Array, "points n"]
     slope_w: Float[Array, "points n"]
     node_slope_v: Float[Array, "g n"]
@@ -84,9 +89,16 @@ class ProjectedField(eqx.Module):
         return jnp.stack([along, self.v @ q, self.w @ q], axis=-1)
 
     def rotation(self, q: Coordinates) -> Rotations:
-        """Rotations of the sections about the slopes, (points, 3, 3); exact to the second order that T needs."""
-        slope_v, slope_w = self.slope_v @ q, self.slope_w @ q
-        return rotation_matrix(jnp.stack([jnp.zeros_like(slope_v), -slope_w, slope_v], axis=-1))
+        """Rotations of the sections, (points, 3, 3), right to the second order that T needs.
+
+        The sections follow the tangent, whose slopes the axial strain lessens, in a frame free of torsion.
+        """
+        stretch = 1 - self.slope_s @ q
+        slope_v, slope_w = stretch * (self.slope_v @ q), stretch * (self.slope_w @ q)
+        arc = rotation_matrix(jnp.stack([jnp.zeros_like(slope_v), -slope_w, slope_v], axis=-1))
+        v, w = self.node_slope_v @ q, self.node_slope_w @ q
+        twist = 0.5 * self.cumulative @ (v * (self.curvature_w @ q) - w * (self.curvature_v @ q))
+        return arc @ _about_x(twist)
 
     def strains(self, q: Coordinates) -> Strains:
         """Strains s', −w'', v'' at the quadrature nodes: linear (2009 (10); 2020 (8), corrected)."""
@@ -146,6 +158,50 @@ class ExactField(eqx.Module):
         return versine * (y * (self.node_slope_z @ q) - z * (self.node_slope_y @ q))
 
 
+class RootedField(eqx.Module):
+    """Another field on a root that springs hold: moved by p and turned by R(φ) as a whole.
+
+    Its last coordinates are the stretches of the springs: components of p, m, and of the rotation vector φ, rad.
+
+    Parameters
+    ----------
+    inner : Field
+    x : (points,) positions of the points along the beam, m
+    move, turn : (3, springs) directions of p and φ
+    linear : bool
+        Whether the points move linearly with φ, as TLAM's do.
+    """
+
+    inner: Field
+    x: Float[Array, " points"]
+    move: Float[Array, "3 springs"]
+    turn: Float[Array, "3 springs"]
+    linear: bool = eqx.field(static=True)
+
+    def _split(self, q: Coordinates) -> tuple[Coordinates, Coordinates]:
+        springs = self.move.shape[1]
+        return q[:-springs], q[-springs:]
+
+    def position(self, q: Coordinates) -> Points:
+        """Positions of the points of the axis, (points, 3) m."""
+        beam, root = self._split(q)
+        r, turned = self.inner.position(beam), self.turn @ root
+        if self.linear:
+            straight = jnp.stack([self.x, 0 * self.x, 0 * self.x], axis=-1)
+            return r + self.move @ root + jnp.cross(turned, straight)
+        return r @ rotation_matrix(turned).T + self.move @ root
+
+    def rotation(self, q: Coordinates) -> Rotations:
+        """Rotations of the sections, (points, 3, 3)."""
+        beam, root = self._split(q)
+        return rotation_matrix(self.turn @ root) @ self.inner.rotation(beam)
+
+    def strains(self, q: Coordinates) -> Strains:
+        """Strains of the beam, and the springs' stretches."""
+        beam, root = self._split(q)
+        return self.inner.strains(beam)._replace(root=root)
+
+
 def _exponential(square: Array) -> tuple[Array, Array, Array]:
     """sin φ/φ, (1 − cos φ)/φ² and cos φ of φ², smooth through zero."""
     small = square < 1e-4
@@ -179,7 +235,13 @@ def _block(shapes: np.ndarray, start: int, total: int) -> np.ndarray:
 
 
 def projected_field(
-    length: float, rule: Quadrature, x: np.ndarray, counts: tuple[int, int, int], *, foreshortening: bool
+    length: float,
+    rule: Quadrature,
+    x: np.ndarray,
+    counts: tuple[int, int, int],
+    *,
+    foreshortening: bool,
+    families: Families | None = None,
 ) -> ProjectedField:
     """Build the field of TLAM, FOAM, SFOAM and CFOAM.
 
@@ -190,16 +252,14 @@ def projected_field(
     x : (points,) positions where r is wanted, m
     counts : numbers of axial shapes, bending shapes along y, bending shapes along z
     foreshortening : whether the transverse shapes shorten the beam (not in TLAM)
+    families : the shapes; clamped-free closed forms unless given
     """
-    axial, along_y, along_z = counts
     n = sum(counts)
+    starts = (0, counts[0], counts[0] + counts[1])
 
-    def at(points: np.ndarray) -> tuple[list[np.ndarray], ...]:
-        s = bar_shapes(points, length, axial)
-        v = bending_shapes(points, length, along_y)
-        w = bending_shapes(points, length, along_z)
-        starts = (0, axial, axial + along_y)
-        return tuple([_block(f, i, n) for f in shape] for shape, i in zip((s, v, w), starts, strict=True))
+    def at(points: np.ndarray) -> list[list[np.ndarray]]:
+        shapes = [family(points) for family in families or closed_forms(length, counts)]
+        return [[_block(f, i, n) for f in shape] for shape, i in zip(shapes, starts, strict=True)]
 
     s, v, w = at(x)
     node_s, node_v, node_w = at(rule.node)
@@ -208,6 +268,7 @@ def projected_field(
         s[0],
         v[0],
         w[0],
+        s[1],
         v[1],
         w[1],
         node_v[1],
@@ -220,31 +281,39 @@ def projected_field(
     return ProjectedField(*map(jnp.array, arrays), foreshortening)  # type: ignore[call-arg, arg-type]
 
 
-def exact_field(length: float, rule: Quadrature, x: np.ndarray, counts: tuple[int, int, int]) -> ExactField:
-    """Build the geometrically exact field.
+def exact_field(
+    length: float,
+    rule: Quadrature,
+    x: np.ndarray,
+    counts: tuple[int, int, int],
+    families: Families | None = None,
+) -> ExactField:
+    """Build the geometrically exact field: axial slopes are its strains, bending slopes its rotations.
 
     Parameters
     ----------
     length, rule : as :func:`projected_field`
     x : (points,) positions where r is wanted, m; they start with the quadrature nodes
     counts : numbers of strain shapes, and of rotation shapes for bending along y and along z
+    families : the shapes; polynomials unless given
     """
     strain, along_y, along_z = counts
-    n = sum(counts)
-    if not np.array_equal(x[: len(rule.node)], rule.node):
+    n, nodes = sum(counts), len(rule.node)
+    if not np.array_equal(x[:nodes], rule.node):
         raise ValueError("the points of an exact field start with the quadrature nodes")
-
-    def rotations(points: np.ndarray, order: int) -> tuple[np.ndarray, np.ndarray]:
-        """Rotation shapes (order 0) or their slopes (1) about y and z; bending towards +z turns about −y."""
-        y, z = legendre_shapes(points, length, along_y), legendre_shapes(points, length, along_z)
-        return -_block(z[order], strain + along_y, n), _block(y[order], strain, n)
-
-    node_strain = _block(legendre_shapes(rule.node, length, strain).slope * length, 0, n)
+    s, v, w = families or polynomials(length, counts)
+    shapes_v, shapes_w = v(x), w(x)
+    # Bending towards +z turns about −y.
+    about_y = [-_block(f, strain + along_y, n) for f in (shapes_w.slope, shapes_w.curvature)]
+    about_z = [_block(f, strain, n) for f in (shapes_v.slope, shapes_v.curvature)]
     arrays = (
-        *rotations(x, 0),
-        *rotations(rule.node, 0),
-        node_strain,
-        *rotations(rule.node, 1),
+        about_y[0],
+        about_z[0],
+        about_y[0][:nodes],
+        about_z[0][:nodes],
+        _block(s(rule.node).slope, 0, n),
+        about_y[1][:nodes],
+        about_z[1][:nodes],
         rule.cumulative(x),
     )
     planar = along_y == 0 or along_z == 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -12,12 +13,15 @@ from jaxtyping import Array, Float
 from numpy.typing import ArrayLike, NDArray
 
 import gbeam._jax  # noqa: F401
-from gbeam.basis import quadrature
+from gbeam.adapted import adapted_shapes
+from gbeam.basis import Quadrature, quadrature
 from gbeam.beam import Beam
 from gbeam.energy import FieldEnergy, rest_matrices, second_order
 from gbeam.equations import Damped
 from gbeam.errors import InputError
-from gbeam.field import Coordinates, Field, Points, Strains, exact_field, projected_field
+from gbeam.field import Coordinates, Field, Points, RootedField, Strains, exact_field, projected_field
+from gbeam.motion import constant
+from gbeam.work import FieldWork, LoadHistory, Work, first_order
 
 
 @dataclass(frozen=True)
@@ -45,6 +49,7 @@ class Kind:
     axial: bool = True
 
 
+SHAPES = ("clamped-free", "adapted")
 KINDS = {
     "TLAM": Kind(foreshortening=False),
     "FOAM": Kind(),
@@ -66,21 +71,26 @@ class Model:
     axial, y, z : int
         Numbers of axial shapes and of bending shapes along y and along z; for exact: strain shapes, and rotation
         shapes for bending along y and along z.
+    shapes : str
+        clamped-free: those of the bare uniform beam (for exact, polynomials). adapted: the modes at rest of the beam
+        with its tapers, bodies and root springs.
 
     Raises
     ------
     InputError
-        If the kind is unknown, a number is negative, or there is no coordinate.
+        If the kind or the shapes are unknown, a number is negative, or there is no coordinate.
     """
 
     kind: str
     axial: int
     y: int
     z: int
+    shapes: str = "clamped-free"
 
     def __post_init__(self) -> None:
-        if self.kind not in KINDS:
-            raise InputError("kind", f"is {self.kind!r}", f"choose one of {', '.join(KINDS)}")
+        for name, value, choices in (("kind", self.kind, tuple(KINDS)), ("shapes", self.shapes, SHAPES)):
+            if value not in choices:
+                raise InputError(name, f"is {value!r}", f"choose one of {', '.join(choices)}")
         for name, count in zip(("axial", "y", "z"), self.counts, strict=True):
             if not isinstance(count, int) or count < 0:
                 raise InputError(f"modes.{name}", f"is {count!r}", "give a whole number, 0 or more")
@@ -95,7 +105,7 @@ class Model:
 
     @property
     def counts(self) -> tuple[int, int, int]:
-        """Numbers of coordinates: axial, along y, along z."""
+        """Numbers of shapes: axial, along y, along z."""
         return self.axial, self.y, self.z
 
     @property
@@ -110,20 +120,29 @@ class Structure(eqx.Module):
     Parameters
     ----------
     system : Damped
-        Energy and damping matrix.
+        Energy, damping matrix and the work of the loads, as they are at time zero.
     field : Field
-        Displacement field at the quadrature nodes, the bodies and the stations.
+        Displacement field at the quadrature nodes, the bodies, the loads and the stations.
+    particles : FieldEnergy
+        The field's complete energy: its particles carry the inertia, also where the system's energy is truncated.
     stations : (s,) positions of output along the beam, m; the last is the tip
     first_station : int
         Index of the first station among the field's points.
     linear, hub_force : bool
         From the model's row.
+    counts : (axial, along y, along z)
+        Numbers of shapes; the root's springs come after them.
     length : float
         m.
+    history : LoadHistory or None
+        The loads over time.
+    applied : FieldWork or None
+        Where they act on the field, not truncated.
     """
 
     system: Damped
     field: Field
+    particles: FieldEnergy
     stations: Float[Array, " s"]
     first_station: int = eqx.field(static=True)
     linear: bool = eqx.field(static=True)
@@ -131,11 +150,19 @@ class Structure(eqx.Module):
     counts: tuple[int, int, int] = eqx.field(static=True)
     kind: str = eqx.field(static=True)
     length: float
+    history: LoadHistory | None = None
+    applied: FieldWork | None = None
 
     @property
     def size(self) -> int:
         """Number of coordinates."""
-        return sum(self.counts)
+        return self.system.damping.shape[0]
+
+    def at_time(self, time: float) -> Structure:
+        """The same structure with its loads frozen as they are at a time, s; static, modes and stability see those."""
+        if self.history is None:
+            return self
+        return eqx.tree_at(lambda s: s.system, self, self.system.under(self.history(jnp.asarray(time, dtype=float))))
 
     def displacement(self, q: Coordinates) -> Points:
         """Displacement of the stations relative to the base axes, (s, 3) m."""
@@ -186,14 +213,24 @@ def assemble(beam: Beam, model: Model, stations: ArrayLike = ()) -> Structure:
         if not 0 <= x <= beam.length:
             raise InputError(f"stations[{i}]", f"is {x:g} m, off the beam", f"give 0 to {beam.length:g} m")
     wanted = np.append(wanted[wanted < beam.length], beam.length)
+    bodies = [m.at for m in beam.masses]
+    adapted = model.shapes == "adapted"
     # Enough for the fourth powers of the highest shape (2009's tensors need 32 nodes for five modes).
-    rule = quadrature(beam.length, 12 + 4 * max(counts), beam.section.stations)
-    bodies = np.array([m.at for m in beam.masses])
-    x = np.concatenate([rule.node, bodies, wanted])
+    breaks = [*beam.section.stations, *(bodies if adapted else ())]
+    rule = quadrature(beam.length, 12 + 4 * max(counts), breaks)
+    loaded = [load.at for load in beam.loads if load.at is not None]
+    x = np.concatenate([rule.node, bodies, loaded, wanted])
+    families = adapted_shapes(beam, rule, counts) if adapted else None
     if row.exact:
-        field: Field = exact_field(beam.length, rule, x, counts)
+        field: Field = exact_field(beam.length, rule, x, counts, families)
     else:
-        field = projected_field(beam.length, rule, x, counts, foreshortening=row.foreshortening)
+        foreshortening = row.foreshortening
+        field = projected_field(beam.length, rule, x, counts, foreshortening=foreshortening, families=families)
+    springs = beam.root.springs
+    if springs:
+        move, turn = map(jnp.array, beam.root.directions())
+        field = RootedField(field, jnp.array(x), move, turn, linear=not row.foreshortening)
+    size = sum(counts) + len(springs)
 
     nodes, section, e = len(rule.node), beam.section.at(rule.node), beam.material.youngs_modulus
     station, mass, offset = [np.arange(nodes)], [beam.material.density * section.area * rule.weight], []
@@ -210,20 +247,62 @@ def assemble(beam: Beam, model: Model, stations: ArrayLike = ()) -> Structure:
         mass=jnp.array(np.concatenate(mass)),
         offset=jnp.array(places) if places.any() else None,
         rigidity=Strains(
-            *(jnp.array(e * r * rule.weight) for r in (section.area, section.inertia_y, section.inertia_z))
+            jnp.array(e * section.area * rule.weight),
+            jnp.array(e * section.inertia_y * rule.weight),
+            jnp.array(e * section.inertia_z * rule.weight),
+            jnp.array([*springs.values()]),
         ),
-        size=sum(counts),
+        size=size,
     )
     energy = second_order(complete) if row.truncated else complete
+    history = _history(beam)
+    work: Work | None = None
+    applied, full = None, None
+    if history is not None:
+        applied = history(jnp.zeros(()))
+        full = _work(beam, field, rule, nodes + len(bodies))
+        work = first_order(full, applied, size) if row.truncated else full
     ratio = beam.damping_ratio if isinstance(beam.damping_ratio, (int, float)) else tuple(beam.damping_ratio)
     return Structure(
-        system=Damped(energy, _damping(ratio, *rest_matrices(energy))),
+        system=Damped(energy, _damping(ratio, *rest_matrices(energy)), work, applied),
         field=field,
+        particles=complete,
         stations=jnp.array(wanted),
-        first_station=nodes + len(bodies),
+        first_station=nodes + len(bodies) + len(loaded),
         linear=row.truncated,
         hub_force=row.hub_force,
         counts=counts,
         kind=model.kind,
         length=beam.length,
+        history=history,
+        applied=full,
+    )
+
+
+def _history(beam: Beam) -> LoadHistory | None:
+    def profile(value: Any) -> Any:
+        return value if callable(value) else constant(np.zeros(3) if value is None else value)
+
+    return LoadHistory(tuple((profile(it.force), profile(it.moment)) for it in beam.loads)) if beam.loads else None
+
+
+def _work(beam: Beam, field: Field, rule: Quadrature, first: int) -> FieldWork:
+    """Where the loads act: at a point of their own, counted from `first`, or on all quadrature nodes."""
+    station, load, weight = [], [], []
+    for k, it in enumerate(beam.loads):
+        if it.at is None:
+            station.append(np.arange(len(rule.node)))
+            weight.append(rule.weight)
+        else:
+            station.append(np.array([first]))
+            weight.append(np.ones(1))
+            first += 1
+        load.append(np.full(len(station[-1]), k))
+    which = np.concatenate(load)
+    return FieldWork(
+        field=field,
+        station=jnp.array(np.concatenate(station)),
+        load=jnp.array(which),
+        weight=jnp.array(np.concatenate(weight)),
+        follows=jnp.array([it.follows for it in beam.loads])[which],
     )

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+
+from gbeam.results_comparison import Mismatch, RootLoads, Shock, Statistics
+from gbeam.results_loads import Influence, Loads
 
 Floats = NDArray[np.float64]
 
@@ -38,6 +43,86 @@ class HubResult:
 
 
 @dataclass(frozen=True)
+class LimitUse:
+    """How much of one of its limits a machine uses.
+
+    Parameters
+    ----------
+    axis : str
+        axis 1, axis 2, axis 3 or arm.
+    quantity : str
+        rate, acceleration, jerk or power.
+    unit : str
+        Of `used` and `allowed`.
+    used : float
+        Largest size.
+    allowed : float
+        Infinite where no limit is given.
+    time : float
+        When it is used, s.
+    """
+
+    axis: str
+    quantity: str
+    unit: str
+    used: float
+    allowed: float
+    time: float
+
+    @property
+    def share(self) -> float:
+        """Used over allowed; zero where no limit is given."""
+        return self.used / self.allowed
+
+    @property
+    def exceeded(self) -> bool:
+        """Whether more is used than allowed, beyond rounding."""
+        return self.share > 1 + 1e-9
+
+    def __str__(self) -> str:
+        return (
+            f"{self.axis} {self.quantity} {self.used:.4g} of {self.allowed:.4g} {self.unit} ({self.share:.0%}) "
+            f"at {self.time:.3f} s"
+        )
+
+
+@dataclass(frozen=True)
+class Shortfall:
+    """A stretch of time in which a machine cannot make the load of the flight.
+
+    Parameters
+    ----------
+    start, end : float
+        s.
+    reason : str
+        below idle, below gravity, across below gravity, turns sharply.
+    time : float
+        When it is worst, s.
+    wanted, possible : float
+        There: what the flight asks for, and the nearest that the machine can make.
+    unit : str
+        Of both.
+    remedy : str
+        The smallest change that would make it reachable.
+    """
+
+    start: float
+    end: float
+    reason: str
+    time: float
+    wanted: float
+    possible: float
+    unit: str
+    remedy: str
+
+    def __str__(self) -> str:
+        return (
+            f"{self.start:.3f} to {self.end:.3f} s: {self.reason}, {self.wanted:.3g} {self.unit} at {self.time:.3f} s "
+            f"where {self.possible:.3g} {self.unit} can be made; {self.remedy}"
+        )
+
+
+@dataclass(frozen=True)
 class AxesResult:
     """A three-axis centrifuge over time.
 
@@ -51,6 +136,12 @@ class AxesResult:
         Where the target is not the flight's load.
     episodes : tuple of (start s, end s, reason)
         The stretches of time in which it is not.
+    limits : tuple of LimitUse
+        Rate, acceleration and jerk of every axis, used and allowed.
+    unreachable : tuple of Shortfall
+        Where the machine cannot make the flight's load, by how much, and what would help.
+    control_point : float
+        From the root along the beam, m.
     """
 
     angle: Floats
@@ -60,11 +151,78 @@ class AxesResult:
     achieved: Floats
     held: NDArray[np.bool_]
     episodes: tuple[tuple[float, float, str], ...]
+    limits: tuple[LimitUse, ...] = ()
+    unreachable: tuple[Shortfall, ...] = ()
+    control_point: float = math.nan
+
+    @property
+    def within_limits(self) -> bool:
+        """Whether no limit of the machine is exceeded."""
+        return not any(use.exceeded for use in self.limits)
 
     @property
     def tracking_error(self) -> Floats:
         """Size of achieved − wanted, (t,) m/s²."""
         return np.asarray(np.linalg.norm(self.achieved - self.wanted, axis=1))
+
+
+@dataclass(frozen=True)
+class MachinePlan:
+    """What a centrifuge does to imitate a flight, without a beam.
+
+    Parameters
+    ----------
+    name, tracks : str
+        Of the motion, and of the flight.
+    arm : float
+        m.
+    outcome : str
+        done or limits exceeded.
+    message : str
+        Which limits, where the outcome is not done.
+    time : (t,) s
+    axes : AxesResult
+        At these times.
+    """
+
+    name: str
+    tracks: str
+    arm: float
+    outcome: str
+    message: str
+    time: Floats
+    axes: AxesResult
+
+
+@dataclass(frozen=True)
+class Commands:
+    """The axis motions at a controller's sample time.
+
+    Parameters
+    ----------
+    sample : float
+        s.
+    time : (t,) s
+    angle, rate, acceleration : (t, 3)
+        Of axes 1, 2, 3; rad, rad/s, rad/s².
+    """
+
+    sample: float
+    time: Floats
+    angle: Floats
+    rate: Floats
+    acceleration: Floats
+
+
+class Told(Protocol):
+    """What a plot's title says of a result: the motion's name and how its computation ended."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def outcome(self) -> str: ...
+    @property
+    def time(self) -> Floats: ...
 
 
 @dataclass(frozen=True)
@@ -120,6 +278,14 @@ class Response:
         s; NaN where not given.
     hub : HubResult or None
     axes : AxesResult or None
+    qdd : (t, n)
+        Accelerations of the coordinates.
+    frequencies : (n,)
+        Natural frequencies at rest, rad/s, ascending.
+    loads : Loads or None
+        Internal loads at the root and the stations.
+    influence : Influence or None
+        Static answer of the beam to acceleration fields.
     """
 
     name: str
@@ -142,6 +308,10 @@ class Response:
     residual_from: float
     hub: HubResult | None = None
     axes: AxesResult | None = None
+    qdd: Floats = field(default_factory=lambda: np.empty((0, 0)))
+    frequencies: Floats = field(default_factory=lambda: np.empty(0))
+    loads: Loads | None = None
+    influence: Influence | None = None
 
     @property
     def tip(self) -> Floats:
@@ -166,6 +336,14 @@ class Comparison:
         Over the covered times, m.
     peak_flight, peak_centrifuge : (3,)
         Largest displacement over the covered times, m.
+    stations : Statistics or None
+        Displacement of every station, with trend and elastic vibration apart; None where the record is too short.
+    mismatch : Mismatch or None
+        Acceleration that the centrifuge gives the beam's points and the flight does not, and what it implies.
+    root : RootLoads or None
+        What the root carries in both environments.
+    shock : Shock or None
+        Shock response spectra of the tip's acceleration.
     """
 
     flight: str
@@ -177,6 +355,10 @@ class Comparison:
     rms_difference: Floats
     peak_flight: Floats
     peak_centrifuge: Floats
+    stations: Statistics | None = None
+    mismatch: Mismatch | None = None
+    root: RootLoads | None = None
+    shock: Shock | None = None
 
     @property
     def relative(self) -> Floats:
@@ -190,12 +372,28 @@ class Comparison:
         if not self.covered.any():
             return f"{self.centrifuge} never carries {self.flight}'s load: the target was held all the time"
         main = int(np.argmax(self.peak_flight))
-        axis, share = "xyz"[main], self.covered.mean()
+        axis = "xyz"[main]
+        root = "" if self.root is None else f", root moment within {_percent(self.root.moment_agreement)}"
         return (
             f"tip displacement along {axis} on {self.centrifuge} agrees with {self.flight} within "
-            f"{self.relative[main]:.3g} of its peak ({1e3 * self.max_difference[main]:.4g} mm of "
-            f"{1e3 * self.peak_flight[main]:.4g} mm), over {share:.0%} of the time"
+            f"{_percent(float(self.relative[main]))} of its peak ({1e3 * self.max_difference[main]:.4g} mm of "
+            f"{1e3 * self.peak_flight[main]:.4g} mm){root}, {self._when}"
         )
+
+    @property
+    def _when(self) -> str:
+        """The times compared, in words."""
+        if self.covered.all():
+            return "throughout"
+        first = int(np.argmax(self.covered))
+        if self.covered[first:].all():
+            return f"from {self.time[first]:.4g} s on"
+        return f"over {self.covered.mean():.0%} of the time"
+
+
+def _percent(share: float) -> str:
+    # Rounded first: two digits without an exponent.
+    return f"{float(f'{100 * share:.2g}'):g} %" if math.isfinite(share) else "an unknown share"
 
 
 @dataclass(frozen=True)

@@ -165,6 +165,17 @@ def _response(it: Response) -> xr.Dataset:
         "coordinate": v(("coordinate",), np.arange(it.q.shape[1]), "1", "axial, along y, along z"),
         "axis": _AXIS,
     }
+    if it.loads is not None:
+        section, tsa = ("section",), ("time", "section", "axis")
+        coords["section"] = v(section, it.loads.stations, "m", "position of the section along the beam from the root")
+        axes = "S: axes of the deformed section"
+        data |= {
+            "section_force": v(tsa, it.loads.section_force, "N", "axial force and shear", frame=axes),
+            "section_moment": v(tsa, it.loads.section_moment, "N m", "torque and bending moments", frame=axes),
+            "stress": v(("time", "section"), it.loads.stress, "Pa", "largest normal stress at the outer fibre"),
+        }
+        if it.loads.hub_torque is not None:
+            data["beam_torque"] = v(t, it.loads.hub_torque, "N m", "torque about the hub's axis that the beam asks for")
     if it.hub is not None:
         turn = {
             "hub_angle": ("rad", it.hub.angle),
@@ -233,6 +244,26 @@ def _comparison(it: Comparison) -> xr.Dataset:
         "peak_flight": v(("axis",), it.peak_flight, "m", f"largest displacement in {it.flight} {across}"),
         "peak_centrifuge": v(("axis",), it.peak_centrifuge, "m", f"largest displacement on {it.centrifuge} {across}"),
     }
-    described = xr.Dataset(data, {"time": v(("time",), it.time, "s", "time"), "axis": _AXIS})
+    coords = {"time": v(("time",), it.time, "s", "time"), "axis": _AXIS}
+    if it.stations is not None:
+        split, ta = it.stations, ("time", "axis")
+        how = f"Butterworth 4th order, zero phase, {split.cutoff:.6g} Hz"
+        for where, trend, rest in (
+            (it.flight, split.trend_flight, split.vibration_flight),
+            (it.centrifuge, split.trend_centrifuge, split.vibration_centrifuge),
+        ):
+            place = "flight" if where == it.flight else "centrifuge"
+            data[f"trend_{place}"] = v(ta, trend, "m", f"tip displacement in {where} below the cut-off", method=how)
+            data[f"vibration_{place}"] = v(ta, rest, "m", f"tip displacement in {where} above the cut-off", method=how)
+    if it.mismatch is not None:
+        data["mismatch_gradient"] = v(
+            ("time", "axis"), it.mismatch.gradient, "s-2", "mismatch acceleration per distance from the control point"
+        )
+    if it.shock is not None:
+        coords["frequency"] = v(("frequency",), it.shock.frequency, "Hz", "frequency of the oscillators")
+        for place, values in (("flight", it.shock.flight), ("centrifuge", it.shock.centrifuge)):
+            name = f"shock response spectrum of the tip, Q = {it.shock.quality:g}"
+            data[f"shock_{place}"] = v(("frequency", "axis"), values, "m s-2", name)
+    described = xr.Dataset(data, coords)
     described.attrs = {"flight": it.flight, "centrifuge": it.centrifuge, "verdict": it.verdict}
     return described

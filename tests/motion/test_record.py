@@ -10,7 +10,7 @@ from gbeam.motion import STANDARD_GRAVITY, read_record
 
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 HEADER = "t,ax,ay,az"
-ROWS = [f"{0.1 * i:.1f},{i},{2 * i},{-3 * i}" for i in range(6)]
+ROWS = [f"{0.1 * i:.1f},{i / 10:g},{i / 5:g},{-3 * i / 10:g}" for i in range(12)]
 
 
 def read(tmp_path: Path, lines: list[str], time: str = "t", z: str = "az", unit: str = "m/s^2"):  # type: ignore[no-untyped-def]
@@ -20,7 +20,7 @@ def read(tmp_path: Path, lines: list[str], time: str = "t", z: str = "az", unit:
 
 
 def test_columns_signs_and_units(tmp_path: Path) -> None:
-    i = np.arange(6)
+    i = np.arange(12) / 10
     np.testing.assert_allclose(read(tmp_path, [HEADER, *ROWS]).values, np.stack([i, -2 * i, -3 * i], axis=1))
     in_g = read(tmp_path, ["\ufefft , ax,ay,-az", *ROWS, ""], z="-az", unit="g")  # a dash in the header is a name
     np.testing.assert_allclose(in_g.values, STANDARD_GRAVITY * np.stack([i, -2 * i, -3 * i], axis=1))
@@ -51,10 +51,15 @@ def replaced(row: int, text: str) -> list[str]:
         (replaced(3, "inf,1,2,-3"), {}, "record.time", ["row 3", "inf"]),
         (replaced(5, "0.2,3,6,-9"), {}, "record.time", ["repeats", "row 5"]),
         (replaced(5, "0.05,3,6,-9"), {}, "record.time", ["goes back", "row 5"]),
-        (replaced(7, "0.8,5,10,-15"), {}, "record.time", ["gap", "0.4 s to 0.8 s", "row 7"]),
+        (
+            [*[HEADER, *ROWS][:6], *ROWS[8:], "1.2,5,10,-15", "1.3,5,10,-15", "1.4,5,10,-15"],
+            {},
+            "record.time",
+            ["gap", "0.4 s to 0.8 s", "row 7"],
+        ),
         (replaced(7, "0.502,5,10,-15"), {}, "record.time", ["unevenly", "row 7"]),
         (replaced(6, "0.4,4,8"), {}, "record.file", ["row 6", "3 cells", "4"]),
-        ([HEADER, *ROWS[:3]], {}, "record.file", ["3 row(s)", "4 samples"]),
+        ([HEADER, *ROWS[:3]], {}, "record.file", ["3 row(s)", "6 samples"]),
         ([line.replace(",", ";") for line in [HEADER, *ROWS]], {}, "record.file", ["commas"]),
     ],
 )
@@ -69,7 +74,7 @@ def test_refusals_name_the_row_and_the_fix(
 
 
 def test_slight_unevenness_of_a_clock_is_accepted(tmp_path: Path) -> None:
-    assert read(tmp_path, replaced(7, "0.5004,5,10,-15")).times.size == 6
+    assert read(tmp_path, replaced(7, "0.5004,5,10,-15")).times.size == 12
 
 
 def test_missing_empty_and_binary_files(tmp_path: Path) -> None:

@@ -27,8 +27,14 @@ TRAPEZOID = stack(z=trapezoid(10 * G, 4 * G, 1.0, 4.0))
 T = np.linspace(0, 12, 1201)
 
 
-def target(raw: Profile, idle: float | None = None, smoothing: float | None = 0.06, gravity: bool = False) -> Target:
-    return build_target(raw, span=(0.0, 12.0), idle=idle, smoothing=smoothing, gravity=gravity)
+def target(
+    raw: Profile,
+    idle: float | None = None,
+    smoothing: float | None = 0.06,
+    gravity: bool = False,
+    clip: bool = False,
+) -> Target:
+    return build_target(raw, span=(0.0, 12.0), idle=idle, smoothing=smoothing, gravity=gravity, clip=clip)
 
 
 def sizes(load: np.ndarray) -> np.ndarray:
@@ -75,7 +81,9 @@ def test_loads_gravity_exceeds_are_bridged_and_the_axial_one_is_kept() -> None:
         [0.0, 4.0, 5.0, 6.0, 12.0],
         np.array([[2, 0, 3], [2, 0, 3], [2, 0.15, 0.15], [2, 3, 0], [2, 3, 0]]) * G,
     )
-    made = target(raw, gravity=True)
+    with pytest.raises(InputError, match=r"0\.212 g only at 5\.000 s.*clip = true"):
+        target(raw, gravity=True)  # a held target only if asked for: by idle, or by clip
+    made = target(raw, gravity=True, clip=True)
     load = np.asarray(made.load(T))
     across = np.hypot(load[:, 1], load[:, 2])
     assert across.min() > 1.01 * G

@@ -181,10 +181,6 @@ CASES = {
         'tracks = "flight"', 'tracks = "fligth"', f"{SPIN}.tracks",
         "'fligth' names no motion", "did you mean 'flight'?", '"fligth"',
     ),
-    "exact inverse": (
-        'inverse = "flat"', 'inverse = "exact"', f"{SPIN}.inverse",
-        "the inverse 'exact' comes with a later version", "use flat", '"exact"',
-    ),
     "unknown inverse": (
         'inverse = "flat"', 'inverse = "flatt"', f"{SPIN}.inverse", "unknown choice 'flatt'", "'flat'?",
         '"flatt"',

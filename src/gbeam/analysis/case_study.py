@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 from gbeam.analysis.comparison import compare
+from gbeam.analysis.loads import influence, internal_loads
 from gbeam.analysis.response import respond
-from gbeam.case import Case
+from gbeam.case import Case, Motion
 from gbeam.errors import ComputationError, InputError
 from gbeam.model import Structure, assemble
-from gbeam.results import Study
+from gbeam.motion import Centrifuge, Flight, HubRate, HubTorque
+from gbeam.results import Response, Study
 
 
 def structure_of(case: Case) -> Structure:
@@ -42,20 +46,36 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
         If a motion has no relative equilibrium to start from; the message names the motion.
     """
     structure = structure_of(case)
-    responses = {}
-    for name, motion in case.motions.items():
 
-        def report(what: str, share: float, name: str = name) -> None:
+    def answer(name: str) -> Response:
+        motion = case.motions[name]
+
+        def report(what: str, share: float) -> None:
             if progress is not None:
                 progress(f"{name}: {what}", share)
 
         try:
-            responses[name] = respond(structure, motion, case.response, name=name, progress=report)
+            response = respond(structure, motion, case.response, name=name, progress=report)
         except ComputationError as error:
             raise ComputationError(error.outcome, f"motion.{name}: {error}") from None
+        return _with_loads(structure, case, motion, response)
+
+    # Compiling and integrating both leave the interpreter free, so two environments cost little more than one.
+    with ThreadPoolExecutor(max_workers=2) as pool:
+        responses = dict(zip(case.motions, pool.map(answer, case.motions), strict=True))
     comparisons = tuple(
         compare(responses[flight], responses[name])
         for name, flight in case.tracks.items()
         if responses[flight].outcome == responses[name].outcome == "done"
     )
     return Study(case.title, responses, comparisons)
+
+
+def _with_loads(structure: Structure, case: Case, motion: Motion, response: Response) -> Response:
+    """Add what the sections carry, and on a centrifuge what its mismatch can do."""
+    radius = float(motion.radius) if isinstance(motion, (HubRate, HubTorque)) else None
+    inertia = float(motion.inertia) if isinstance(motion, HubTorque) else None
+    loads = internal_loads(structure, case.beam, response, hub_radius=radius, hub_inertia=inertia)
+    notes = tuple(f"record: {note}" for note in motion.notes) if isinstance(motion, Flight) else ()
+    response = replace(response, warnings=response.warnings + notes)
+    return replace(response, loads=loads, influence=influence(structure) if isinstance(motion, Centrifuge) else None)

@@ -15,6 +15,7 @@ from jaxtyping import Array
 
 import gbeam._jax  # noqa: F401
 from gbeam.analysis.definiteness import first_loss
+from gbeam.analysis.plan import axes_result
 from gbeam.analysis.static import equilibrium
 from gbeam.case import Motion, ResponseSettings
 from gbeam.energy import rest_matrices
@@ -27,6 +28,7 @@ from gbeam.integrate import (
     OneStep,
     State,
     Trajectory,
+    evaluate,
     generalized_alpha,
     hht,
     integrate,
@@ -34,19 +36,23 @@ from gbeam.integrate import (
     newmark,
 )
 from gbeam.model import Structure, rest_modes
-from gbeam.motion import Base, Centrifuge, HubRate, HubTorque, axis_history
-from gbeam.results import AxesResult, BaseHistory, Floats, HubResult, Peaks, Response
+from gbeam.motion import Base, Centrifuge, HubRate, HubTorque
+from gbeam.motion.blocks import in_blocks
+from gbeam.motion.derivative import with_rate
+from gbeam.results import BaseHistory, Floats, HubResult, Peaks, Response
+from gbeam.work import Applied, LoadHistory
 
 MAX_STEPS = 4_000_000
 
 
 class _Matrices(eqx.Module):
-    """C, K, F of a linear model at a base motion."""
+    """C, K, F of a linear model at a base motion and under loads."""
 
     coefficients: Coefficients
 
-    def __call__(self, base: Base) -> tuple[Array, Array, Array]:
-        return self.coefficients.at(base.a_WO_B, base.w_WB_B, base.al_WB_B)
+    def __call__(self, inputs: tuple[Base, Applied | None]) -> tuple[Array, Array, Array]:
+        base, applied = inputs
+        return self.coefficients.at(base.a_WO_B, base.w_WB_B, base.al_WB_B, applied)
 
 
 class _OnBase(eqx.Module):
@@ -54,8 +60,9 @@ class _OnBase(eqx.Module):
 
     system: Damped
 
-    def __call__(self, q: Array, qd: Array, qdd: Array, base: Base) -> Array:
-        return on_prescribed_base(self.system, q, qd, qdd, base.a_WO_B, base.w_WB_B, base.al_WB_B)
+    def __call__(self, q: Array, qd: Array, qdd: Array, inputs: tuple[Base, Applied | None]) -> Array:
+        base, applied = inputs
+        return on_prescribed_base(self.system.under(applied), q, qd, qdd, base.a_WO_B, base.w_WB_B, base.al_WB_B)
 
 
 class _OnHub(eqx.Module):
@@ -65,8 +72,26 @@ class _OnHub(eqx.Module):
     hub: Hub
     hub_force: bool = eqx.field(static=True)
 
-    def __call__(self, y: Array, yd: Array, ydd: Array, torque: Array) -> Array:
-        return on_free_hub(self.system, self.hub, y, yd, ydd, torque, hub_force=self.hub_force)
+    def __call__(self, y: Array, yd: Array, ydd: Array, inputs: tuple[Array, Applied | None]) -> Array:
+        torque, applied = inputs
+        return on_free_hub(self.system.under(applied), self.hub, y, yd, ydd, torque, hub_force=self.hub_force)
+
+
+class _Inputs(eqx.Module):
+    """What drives a system over time: the base's motion or the hub's torque, and the loads on the beam."""
+
+    drive: Motion
+    history: LoadHistory | None
+
+    def __call__(self, t: Array) -> tuple[Base | Array, Applied | None]:
+        base = self.drive.torque(t) if isinstance(self.drive, HubTorque) else self.drive.base(t)
+        return base, None if self.history is None else self.history(t)
+
+
+def free_hub(motion: HubTorque) -> Hub:
+    """The hub of a motion, for the equations."""
+    m = motion.mount
+    return Hub(m.radius, motion.inertia, m.R_HB, motion.stiffness, motion.damping, m.gravity)
 
 
 @dataclass(frozen=True)
@@ -80,20 +105,19 @@ class _Problem:
 
 
 def _problem(structure: Structure, motion: Motion, start: float) -> _Problem:
+    inputs = _Inputs(motion, structure.history)
     if isinstance(motion, HubTorque):
-        hub = Hub(jnp.asarray(motion.radius), jnp.asarray(motion.inertia))
-        residual = _OnHub(structure.system, hub, structure.hub_force)
-        return _Problem(NonlinearSystem(residual, motion.torque), State.rest(jnp.zeros(structure.size + 1)), 1, None)
-    q = equilibrium(structure, jax.tree.map(lambda x: x[0], _base(motion, np.array([start]))))
+        residual = _OnHub(structure.system, free_hub(motion), structure.hub_force)
+        q = jnp.zeros(structure.size)
+        if motion.mount.gravity is not None or structure.history is not None:
+            o = jnp.zeros(())
+            q = equilibrium(structure, motion.mount.base(o, o, o), start)
+        return _Problem(NonlinearSystem(residual, inputs), State.rest(jnp.append(0.0, q)), 1, None)
+    q = equilibrium(structure, jax.tree.map(lambda x: x[0], in_blocks(evaluate, inputs, np.array([start]))[0]), start)
     if structure.linear:
         constants = coefficients(structure.system)
-        return _Problem(LinearSystem(constants.mass, _Matrices(constants), motion.base), State.rest(q), 0, constants)
-    return _Problem(NonlinearSystem(_OnBase(structure.system), motion.base), State.rest(q), 0, None)
-
-
-@eqx.filter_jit
-def _base(motion: Motion, time: Any) -> Base:
-    return motion.base(time)  # type: ignore[union-attr]
+        return _Problem(LinearSystem(constants.mass, _Matrices(constants), inputs), State.rest(q), 0, constants)
+    return _Problem(NonlinearSystem(_OnBase(structure.system), inputs), State.rest(q), 0, None)
 
 
 @eqx.filter_jit
@@ -205,7 +229,9 @@ def respond(
     error = math.nan
     if settings.integrator == "adaptive":
         times = np.asarray(settings.start + coarse * np.arange(round(settings.duration / coarse) + 1), dtype=np.float64)
-        jumps = None if isinstance(motion, HubTorque) else np.asarray(motion.breaks)
+        jumps = np.asarray(motion.breaks)
+        if structure.history is not None:
+            jumps = np.append(jumps, np.asarray(structure.history.breaks))
 
         def adapt(tolerance: float) -> Trajectory:
             return integrate_adaptively(
@@ -287,9 +313,9 @@ def _result(
         hub: HubResult | None = free
         environment = "hub"
     else:
-        there = _base(motion, time)
+        there, _ = in_blocks(evaluate, problem.system.drive, time)
         base = BaseHistory(*(np.asarray(x) for x in (there.a_WO_B, there.w_WB_B, there.al_WB_B)))
-        hub = _given_hub(time, base) if isinstance(motion, HubRate) else None
+        hub = _given_hub(motion, time) if isinstance(motion, HubRate) else None
         environment = type(motion).__name__.lower() if hub is None else "hub"
     outcome, message, warnings = _describe(structure, problem, settings, trajectory, base, peaks, time, error)
     return Response(
@@ -312,7 +338,9 @@ def _result(
         error_estimate=error,
         residual_from=math.nan if settings.residual_from is None else settings.residual_from,
         hub=hub,
-        axes=_axes(motion, time) if isinstance(motion, Centrifuge) else None,
+        axes=axes_result(motion, time) if isinstance(motion, Centrifuge) else None,
+        qdd=qdd[:, beam],
+        frequencies=rest_modes(*rest_matrices(structure.system.energy))[0],
     )
 
 
@@ -328,41 +356,16 @@ def _peaks(time: Floats, tip: Floats, residual_from: float | None) -> Peaks:
 def _free_hub(motion: HubTorque, time: Floats, y: Floats, yd: Floats, ydd: Floats) -> tuple[BaseHistory, HubResult]:
     rate, acceleration = yd[:, 0], ydd[:, 0]
     hub = HubResult(y[:, 0], rate, acceleration, np.asarray(motion.torque(jnp.asarray(time))))
-    o, radius = np.zeros_like(rate), float(motion.radius)
-    base = BaseHistory(
-        np.stack([-radius * rate**2, radius * acceleration, o], axis=1),
-        np.stack([o, o, rate], axis=1),
-        np.stack([o, o, acceleration], axis=1),
-    )
-    return base, hub
+    there = motion.mount.base(*(jnp.asarray(x) for x in (y[:, 0], rate, acceleration)))
+    return BaseHistory(*(np.asarray(x) for x in (there.a_WO_B, there.w_WB_B, there.al_WB_B))), hub
 
 
-def _given_hub(time: Floats, base: BaseHistory) -> HubResult:
-    rate, acceleration = base.w_WB_B[:, 2], base.al_WB_B[:, 2]
+def _given_hub(motion: HubRate, time: Floats) -> HubResult:
+    rate, acceleration = (np.asarray(x) for x in with_rate(motion.rate, jnp.asarray(time)))
     # The trapezium rule with its end correction, since the slopes are known.
     h = np.diff(time)
     turned = h * (rate[1:] + rate[:-1]) / 2 - h**2 * np.diff(acceleration) / 12
     return HubResult(np.append(0.0, np.cumsum(turned)), rate, acceleration, np.full_like(rate, np.nan))
-
-
-@eqx.filter_jit
-def _centrifuge_states(motion: Centrifuge, time: Any) -> Any:
-    return motion.axes(time), motion.wanted(time), motion.achieved(time), motion.held(time)
-
-
-def _axes(motion: Centrifuge, time: Floats) -> AxesResult:
-    axes, wanted, achieved, held = _centrifuge_states(motion, time)
-    history = axis_history(axes, time)
-    a = history.axes
-    return AxesResult(
-        angle=np.stack([history.angle1, a.angle2, a.angle3], axis=1),
-        rate=np.stack([a.rate1, a.rate2, a.rate3], axis=1),
-        acceleration=np.stack([a.acceleration1, a.acceleration2, a.acceleration3], axis=1),
-        wanted=np.asarray(wanted),
-        achieved=np.asarray(achieved),
-        held=np.asarray(held),
-        episodes=tuple((e.start, e.end, e.reason) for e in motion.episodes()),
-    )
 
 
 def _describe(

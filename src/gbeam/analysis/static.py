@@ -18,12 +18,13 @@ from gbeam.motion import Base
 
 @eqx.filter_jit
 def _newton(system: Damped, base: Base, share: Array, q: Array) -> tuple[Array, Array]:
-    """Solve at a share of the base motion's loads: accelerations by the share, rates by its root."""
+    """Solve at a share of all loads: accelerations and what is applied by the share, rates by its root."""
+    loaded = system if system.applied is None else system.under(share * system.applied)
 
     def residual(q: Array) -> Array:
         o = jnp.zeros_like(q)
         return on_prescribed_base(
-            system, q, o, o, share * base.a_WO_B, jnp.sqrt(share) * base.w_WB_B, share * base.al_WB_B
+            loaded, q, o, o, share * base.a_WO_B, jnp.sqrt(share) * base.w_WB_B, share * base.al_WB_B
         )
 
     def iterate(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
@@ -39,8 +40,8 @@ def _newton(system: Damped, base: Base, share: Array, q: Array) -> tuple[Array, 
     return q, (count < 30) & jnp.all(jnp.isfinite(q))
 
 
-def equilibrium(structure: Structure, base: Base) -> Coordinates:
-    """Coordinates at which the beam rests relative to a base whose motion is frozen.
+def equilibrium(structure: Structure, base: Base, time: float | None = None) -> Coordinates:
+    """Coordinates at which the beam rests relative to a base whose motion is frozen, under its loads.
 
     Newton's method, along a path of growing load where one stride fails.
 
@@ -49,6 +50,9 @@ def equilibrium(structure: Structure, base: Base) -> Coordinates:
     structure : Structure
     base : Base
         Of one time: arrays (3,).
+    time : float, optional
+        Time at which the beam's loads are taken, s; without, those that the structure has, of time zero or of its
+        :meth:`~gbeam.model.Structure.at_time`.
 
     Returns
     -------
@@ -59,10 +63,11 @@ def equilibrium(structure: Structure, base: Base) -> Coordinates:
     ComputationError
         ``not converged``, with the share of the load that was reached.
     """
+    system = structure.system if time is None else structure.at_time(time).system
     q, reached, stride = jnp.zeros(structure.size), 0.0, 1.0
     while reached < 1.0:
         attempt = min(reached + stride, 1.0)
-        found, ok = _newton(structure.system, base, jnp.asarray(attempt), q)
+        found, ok = _newton(system, base, jnp.asarray(attempt), q)
         if bool(ok):
             q, reached = found, attempt
         else:

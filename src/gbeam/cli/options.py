@@ -24,3 +24,9 @@ Out = Annotated[
 Json = Annotated[
     bool, Parameter(name="--json", negative="", show_default=False, help="Print one JSON object and nothing else.")
 ]
+AllowLimits = Annotated[
+    bool,
+    Parameter(
+        name="--allow-limits", negative="", show_default=False, help="Exit with 0 though a machine's limit is exceeded."
+    ),
+]

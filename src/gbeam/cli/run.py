@@ -7,15 +7,23 @@ from pathlib import Path
 from gbeam.cli.console import Watch, stdout
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import read
-from gbeam.cli.options import Json, Out, Overrides, ScenarioFile
+from gbeam.cli.options import AllowLimits, Json, Out, Overrides, ScenarioFile
 from gbeam.cli.outputs import publish, refuse_unwritable
 
 
-def run(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = None, json: Json = False) -> int:
+def run(
+    scenario: ScenarioFile,
+    /,
+    *,
+    overrides: Overrides = (),
+    out: Out = None,
+    json: Json = False,
+    allow_limits: AllowLimits = False,
+) -> int:
     """Compute the response in every environment of a scenario, and compare them.
 
     Writes result.nc and plots into --out, by default out/ and the scenario's name; with --json only if --out is
-    given. Exit status: 0 done, 1 the computation failed, 2 the input is wrong.
+    given. Exit status: 0 done, 1 the computation failed or a machine's limit is exceeded, 2 the input is wrong.
     """
     folder = out if out is not None or json else Path("out") / scenario.stem
     if folder is not None:
@@ -48,7 +56,10 @@ def run(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = None
     for name, it in answer.responses.items():
         if it.outcome != "done":
             complain(f"motion.{name} {it.outcome}: {it.message}")
-    return 0 if answer.outcome == "done" else FAILED
+    broken = [name for name, it in answer.responses.items() if it.axes is not None and not it.axes.within_limits]
+    for name in broken:
+        complain(f"motion.{name} exceeds its machine's limits" + (" (allowed)" if allow_limits else ""))
+    return 0 if answer.outcome == "done" and (allow_limits or not broken) else FAILED
 
 
 def _names(files: list[Path]) -> list[str]:

@@ -5,7 +5,7 @@ chunks of fixed length, so that one compiled program serves every duration and s
 """
 
 from gbeam.integrate.adaptive import integrate_adaptively
-from gbeam.integrate.driver import Trajectory, integrate
+from gbeam.integrate.driver import Trajectory, evaluate, integrate
 from gbeam.integrate.gauss import Gauss4
 from gbeam.integrate.stepper import OneStep, generalized_alpha, hht, newmark
 from gbeam.integrate.system import LinearSystem, NonlinearSystem, State, System
@@ -18,6 +18,7 @@ __all__ = [
     "State",
     "System",
     "Trajectory",
+    "evaluate",
     "generalized_alpha",
     "hht",
     "integrate",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import equinox as eqx
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from gbeam.integrate.gauss import Gauss4
 from gbeam.integrate.stepper import OneStep
-from gbeam.integrate.system import LinearSystem, State, System
+from gbeam.integrate.system import LinearSystem, NonlinearSystem, State, System
 
 CHUNK = 1000  # steps per compiled call: long enough to hide the call, short enough for progress and an early stop
 Floats = NDArray[np.float64]
@@ -43,16 +43,19 @@ class Trajectory:
 
 
 @eqx.filter_jit
-def _begin(system: System, scheme: OneStep | Gauss4, state: State, t: Any) -> Any:
-    inputs = system.inputs(jnp.atleast_1d(t))
-    return scheme.start(system, state, jax.tree.map(lambda x: x[0], inputs))  # type: ignore[arg-type]
+def evaluate(drive: Callable[[Any], Any], t: Any) -> Any:
+    """What drives a system at times t: the one compiled form of it, so give CHUNK times."""
+    return drive(t)
 
 
 @eqx.filter_jit
-def _chunk(system: System, scheme: OneStep | Gauss4, state: State, first: Any, h: Any, t0: Any) -> Any:
-    """CHUNK steps from step number `first`; times are products, not sums, so that they do not drift."""
-    steps = first + jnp.arange(CHUNK)
-    inputs = tuple(system.inputs(t0 + (steps + c) * h) for c in scheme.offsets)
+def _begin(system: System, scheme: OneStep | Gauss4, state: State, inputs: Any) -> Any:
+    return scheme.start(system, state, inputs)  # type: ignore[arg-type]
+
+
+@eqx.filter_jit
+def _chunk(system: System, scheme: OneStep | Gauss4, state: State, inputs: tuple[Any, ...], h: Any) -> Any:
+    """CHUNK steps with the inputs at the scheme's offsets in each."""
 
     def step(carry: tuple[State, Any], at: tuple[Any, ...]) -> Any:
         state, fine = carry
@@ -64,7 +67,7 @@ def _chunk(system: System, scheme: OneStep | Gauss4, state: State, first: Any, h
 
 
 def integrate(
-    system: System | LinearSystem,
+    system: LinearSystem | NonlinearSystem,
     scheme: OneStep | Gauss4,
     state: State,
     *,
@@ -78,7 +81,7 @@ def integrate(
 
     Parameters
     ----------
-    system : System
+    system : LinearSystem or NonlinearSystem
     scheme : OneStep or Gauss4
     state : State
         Initial q and q̇; the accelerations are found.
@@ -97,11 +100,17 @@ def integrate(
     Trajectory
         Of count + 1 times; fewer where a step failed, a value was not finite, or `stop` said so.
     """
-    state, ok = _begin(system, scheme, state, jnp.asarray(start))
+    # Apart from its drive a system is the same for every environment, and so is its compiled program.
+    drive, system = system.drive, replace(system, drive=None)  # type: ignore[arg-type]
+    first = evaluate(drive, jnp.asarray(np.full(CHUNK, start)))
+    state, ok = _begin(system, scheme, state, jax.tree.map(lambda x: x[0], first))
     pieces: list[tuple[Floats, ...]] = [tuple(np.asarray(x)[None] for x in state[:3])]
     converged, stopped, done = bool(ok), False, 0
     while converged and not stopped and done < count:
-        state, history = _chunk(system, scheme, state, jnp.asarray(float(done)), jnp.asarray(step), jnp.asarray(start))
+        # Times are products, not sums, so that they do not drift.
+        number = done + np.arange(CHUNK)
+        inputs = tuple(evaluate(drive, jnp.asarray(start + (number + c) * step)) for c in scheme.offsets)
+        state, history = _chunk(system, scheme, state, inputs, jnp.asarray(step))
         wanted = min(CHUNK, count - done)
         q, qd, qdd, good = (np.asarray(x)[:wanted] for x in history)
         good = good & np.isfinite(qdd).all(axis=1)

@@ -7,8 +7,11 @@ from gbeam.motion.base import Base
 from gbeam.motion.centrifuge import AxisHistory, Centrifuge, axis_history
 from gbeam.motion.flight import Flight, stack
 from gbeam.motion.hub import HubRate, HubTorque
-from gbeam.motion.inverse import INVERSES
 from gbeam.motion.kinematics import Axes, forward, moved
+from gbeam.motion.limits import AxisLimit, Limits, MachineLimits, usage
+from gbeam.motion.machines import MACHINES, Machine
+from gbeam.motion.methods import INVERSES
+from gbeam.motion.mount import Mount
 from gbeam.motion.piecewise import PiecewiseLinear, constant, table, trapezoid
 from gbeam.motion.profile import Profile, Stack, Sum, smoothed
 from gbeam.motion.pulse import Sine, SmoothStep
@@ -17,15 +20,21 @@ from gbeam.motion.target import Episode, Target, build_target
 
 __all__ = [
     "INVERSES",
+    "MACHINES",
     "STANDARD_GRAVITY",
     "Axes",
     "AxisHistory",
+    "AxisLimit",
     "Base",
     "Centrifuge",
     "Episode",
     "Flight",
     "HubRate",
     "HubTorque",
+    "Limits",
+    "Machine",
+    "MachineLimits",
+    "Mount",
     "PiecewiseLinear",
     "Profile",
     "Sine",
@@ -43,4 +52,5 @@ __all__ = [
     "stack",
     "table",
     "trapezoid",
+    "usage",
 ]

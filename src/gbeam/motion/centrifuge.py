@@ -14,10 +14,18 @@ from numpy.typing import NDArray
 from gbeam.checks import positive
 from gbeam.errors import InputError
 from gbeam.motion.base import Base
+from gbeam.motion.blocks import in_blocks
 from gbeam.motion.derivative import with_rate
-from gbeam.motion.inverse import INVERSES, Geometry, Inverse
+from gbeam.motion.inverse import Geometry, Inverse
 from gbeam.motion.kinematics import Axes, forward, moved
+from gbeam.motion.limits import Limits, MachineLimits, usage
+from gbeam.motion.methods import INVERSES
+from gbeam.motion.profile import sampled
+from gbeam.motion.reach import shortfalls
 from gbeam.motion.target import Episode, Target
+from gbeam.results import LimitUse, Shortfall
+
+_GRID, _MOST = 1e-3, 200_000  # s between the times at which limits are looked at; most of them
 
 
 class Centrifuge(eqx.Module):
@@ -32,11 +40,13 @@ class Centrifuge(eqx.Module):
     control_point : float
         x_c, from the root along the beam to the point where axes 2 and 3 meet, m.
     inverse : str
-        A key of :data:`gbeam.motion.INVERSES`: ``quasi-static`` or ``flat``.
+        A key of :data:`gbeam.motion.INVERSES`: ``quasi-static``, ``flat``, ``exact`` or ``planned``.
     gravity : bool
         As the target was built.
     sign : int
         +1 or −1: which of the two mountings of the specimen in the gimbals.
+    limits : MachineLimits, optional
+        Of the machine; ``planned`` keeps them, the others only report.
 
     Raises
     ------
@@ -47,10 +57,18 @@ class Centrifuge(eqx.Module):
     target: Target
     geometry: Geometry
     inverse: Inverse
+    limits: Limits
     control_point: Float[Array, ""]
 
     def __init__(
-        self, target: Target, arm: float, control_point: float, inverse: str, gravity: bool, sign: int = 1
+        self,
+        target: Target,
+        arm: float,
+        control_point: float,
+        inverse: str,
+        gravity: bool,
+        sign: int = 1,
+        limits: MachineLimits | None = None,
     ) -> None:
         if inverse not in INVERSES:
             close = difflib.get_close_matches(str(inverse), INVERSES, n=1)
@@ -71,7 +89,8 @@ class Centrifuge(eqx.Module):
             target.gravity,
             jnp.asarray(sign, dtype=float),
         )
-        self.inverse = method.build(target.load, self.geometry)
+        self.limits = Limits(limits)
+        self.inverse = method.build(target, self.geometry, self.limits)
         self.control_point = jnp.asarray(positive("control_point", control_point, "m", zero=True), dtype=float)
 
     def axes(self, t: ArrayLike) -> Axes:
@@ -88,6 +107,11 @@ class Centrifuge(eqx.Module):
             angle3=at[2], rate3=rate[2], acceleration3=acceleration[2],
         )  # fmt: skip
 
+    def axes_and_jerks(self, t: ArrayLike) -> tuple[Axes, Float[Array, "*t 3"]]:
+        """States of the axes and their jerks (rad/s³) at times `t` (s), from the closed forms."""
+        axes, rate = with_rate(self.axes, jnp.asarray(t, dtype=float))
+        return axes, jnp.stack([rate.acceleration1, rate.acceleration2, rate.acceleration3], axis=-1)
+
     def base(self, t: ArrayLike) -> Base:
         """Motion of the root at times `t` (s, any shape)."""
         here = forward(self.axes(t), self.geometry.arm, self.geometry.gravity)
@@ -99,7 +123,11 @@ class Centrifuge(eqx.Module):
 
     def achieved(self, t: ArrayLike) -> Float[Array, "... 3"]:
         """Load that the axes make at the control point at times `t` (s), base axes, m/s²."""
-        return forward(self.axes(t), self.geometry.arm, self.geometry.gravity).a_WO_B
+        return self.achieved_by(self.axes(t))
+
+    def achieved_by(self, axes: Axes) -> Float[Array, "... 3"]:
+        """Load that given states of the axes make at the control point, base axes, m/s²."""
+        return forward(axes, self.geometry.arm, self.geometry.gravity).a_WO_B
 
     def tracking_error(self, t: ArrayLike) -> Float[Array, "... 3"]:
         """Achieved less wanted at times `t` (s), base axes, m/s²."""
@@ -113,10 +141,28 @@ class Centrifuge(eqx.Module):
         """Stretches of time in which it is not, with the reason."""
         return self.target.episodes()
 
+    def usage(self) -> tuple[LimitUse, ...]:
+        """What the motion uses of the machine's limits, over the target's span."""
+        first, last = (float(end) for end in self.target.span)
+        time = sampled(first, last, max(_GRID, (last - first) / _MOST))
+        axes, jerk = in_blocks(_states, self, time)
+        rate = np.stack([axes.rate1, axes.rate2, axes.rate3], axis=1)
+        acceleration = np.stack([axes.acceleration1, axes.acceleration2, axes.acceleration3], axis=1)
+        return usage(time, rate, acceleration, jerk, self.limits)
+
+    def unreachable(self) -> tuple[Shortfall, ...]:
+        """Where no such machine can make the flight's load, and what would help."""
+        return shortfalls(self.target, float(self.geometry.arm))
+
     @property
     def breaks(self) -> Float[Array, " b"]:
         """Times at which an integrator should stop and start afresh, s."""
         return self.target.load.breaks
+
+
+@eqx.filter_jit
+def _states(machine: Centrifuge, t: Array) -> tuple[Axes, Array]:
+    return machine.axes_and_jerks(t)
 
 
 @dataclass(frozen=True)

@@ -91,6 +91,21 @@ def keep_in_reach(times: Floats, load: Floats) -> tuple[Floats, Flags]:
     return np.where(reachable[:, None], load, np.column_stack([load[:, 0], pushed])), ~reachable
 
 
+def refuse_far(times: Floats, load: Floats, far: Flags) -> None:
+    """Raise InputError: the load leaves the gimbals' reach, and nobody asked to carry on with a held one."""
+    across = np.linalg.norm(load[:, 1:], axis=1) / STANDARD_GRAVITY
+    worst = int(np.argmin(across))
+    wrong = np.flatnonzero(far)
+    raise InputError(
+        "tracks",
+        f"loads the beam across by {across[worst]:.3g} g only at {times[worst]:.3f} s; where gravity acts the gimbals "
+        f"reach {REACH / STANDARD_GRAVITY:g} g or more (out of reach from {times[wrong[0]]:.3f} s, "
+        f"last at {times[wrong[-1]]:.3f} s)",
+        'set idle = "1.4 g", or clip = true to carry on with a held target there, '
+        f"or add {(REACH / STANDARD_GRAVITY - across[worst]):.2g} g across the beam",
+    )
+
+
 def refuse_reversal(times: Floats, points: Floats, least: float) -> None:
     """Raise InputError if the polyline through `points` (k, n) at `times` passes within `least` of zero."""
     when, distance = nearest_to_zero(times, points)

@@ -1,15 +1,12 @@
 """Which axis angles make a given load: the inverse of the three-axis centrifuge (Zhang 2020, corrected).
 
 An inverse maps a target (the load wanted at the control point, over time) to the arm's rate and the two
-gimbal angles; their rates follow by differentiation. `INVERSES` names those there are; one that must
-integrate or plan ahead does so in its builder.
+gimbal angles; their rates follow by differentiation. Here are those in closed form; `methods` names all.
 """
 
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable
-from typing import NamedTuple
 
 import equinox as eqx
 import jax
@@ -109,16 +106,3 @@ class Flat(Inverse):
         load, dload = with_rate(target, t)
         rate, drate = jax.jvp(lambda f: speed(f, self.geometry), (load,), (dload,))
         return rate, *gimbals(load, jnp.arctan(drate / rate**2), self.geometry)
-
-
-class Method(NamedTuple):
-    """How to build an inverse, and whether it can follow corners of a load that does not turn."""
-
-    build: Callable[[Profile, Geometry], Inverse]
-    follows_corners: bool
-
-
-INVERSES: dict[str, Method] = {
-    "quasi-static": Method(lambda target, geometry: QuasiStatic(geometry), True),
-    "flat": Method(lambda target, geometry: Flat(geometry), False),
-}

@@ -1,24 +1,86 @@
-"""Flight records: CSV files with a header line, one row per sample, checked before they are used."""
+"""Flight records: CSV files with a header line, one row per sample, checked and conditioned before they are used."""
 
 from __future__ import annotations
 
 import csv
 import difflib
 import os
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.errors import InputError
+from gbeam.motion.conditioning import FEWEST, filtered, refuse_unsound, spikes, without_spikes
+from gbeam.motion.conditioning import STANDARD_GRAVITY as STANDARD_GRAVITY  # re-exported
 from gbeam.motion.piecewise import PiecewiseLinear
 
-STANDARD_GRAVITY = 9.80665  # m/s²
 UNITS = {"g": STANDARD_GRAVITY, "m/s^2": 1.0, "m/s²": 1.0}
+RATE_UNITS = {"rad/s": 1.0, "deg/s": np.pi / 180}
 _UNEVEN, _GAP = 0.01, 1.5  # of the median interval
 _NO_COLUMN = "0"
 
 
-def read_record(path: str | os.PathLike[str], time: str, x: str, y: str, z: str, unit: str) -> PiecewiseLinear:
+@dataclass(frozen=True)
+class Rates:
+    """Columns of a record that hold the body's rates about the base axes, with their signs, and their unit."""
+
+    p: str
+    q: str
+    r: str
+    unit: str
+
+
+@dataclass(frozen=True)
+class Conditioning:
+    """What is done to a record.
+
+    Parameters
+    ----------
+    cutoff : float or None
+        Of a zero-phase low-pass (fourth-order Butterworth forwards and backwards, −6 dB), Hz.
+    resample : float or None
+        New sampling rate, Hz.
+    despike : bool
+        Replace single samples far off their neighbours.
+    trust : bool
+        Take the record as it is, without looking at its size, rate and dropouts.
+    """
+
+    cutoff: float | None = None
+    resample: float | None = None
+    despike: bool = False
+    trust: bool = False
+
+
+@dataclass(frozen=True)
+class FlightRecord:
+    """A record ready to be flown.
+
+    Parameters
+    ----------
+    acceleration : PiecewiseLinear
+        m/s², base axes.
+    rates : PiecewiseLinear or None
+        Angular velocity, rad/s, base axes.
+    notes : tuple of str
+        What was done to it, and what looks odd.
+    """
+
+    acceleration: PiecewiseLinear
+    rates: PiecewiseLinear | None = None
+    notes: tuple[str, ...] = ()
+
+
+def read_record(
+    path: str | os.PathLike[str],
+    time: str,
+    x: str,
+    y: str,
+    z: str,
+    unit: str,
+    conditioning: Conditioning = Conditioning(),
+) -> PiecewiseLinear:
     """Read an acceleration (or specific-force) record.
 
     Parameters
@@ -32,6 +94,8 @@ def read_record(path: str | os.PathLike[str], time: str, x: str, y: str, z: str,
         records have z down), ``0`` stands for a component that is zero.
     unit : str
         ``g`` (9.80665 m/s²) or ``m/s^2``.
+    conditioning : Conditioning
+        By default nothing is done to it.
 
     Returns
     -------
@@ -41,15 +105,63 @@ def read_record(path: str | os.PathLike[str], time: str, x: str, y: str, z: str,
     Raises
     ------
     InputError
-        If the file, a column, a cell or the sampling is wrong; the header is row 1.
+        If the file, a column, a cell or the sampling is wrong, or the record looks unsound; the header is row 1.
+    """
+    return read_flight(path, time, x, y, z, unit, conditioning=conditioning).acceleration
+
+
+def read_flight(
+    path: str | os.PathLike[str],
+    time: str,
+    x: str,
+    y: str,
+    z: str,
+    unit: str,
+    *,
+    rates: Rates | None = None,
+    conditioning: Conditioning = Conditioning(),
+) -> FlightRecord:
+    """Read a record with the body's rates, and say what was done to it; see :func:`read_record`.
+
+    Parameters
+    ----------
+    rates : Rates, optional
+        Which columns hold them.
     """
     if unit not in UNITS:
         raise InputError("record.unit", f"is {unit!r}", "choose g or m/s^2")
+    if rates is not None and rates.unit not in RATE_UNITS:
+        raise InputError("record.rate_unit", f"is {rates.unit!r}", "choose rad/s or deg/s")
     header, rows, numbers = _rows(path)
     clock = _column(header, rows, numbers, "time", time)
     _check_sampling(clock, numbers)
-    components = [_component(header, rows, numbers, axis, name) for axis, name in (("x", x), ("y", y), ("z", z))]
-    return PiecewiseLinear(clock, UNITS[unit] * np.stack(components, axis=-1))
+    load = UNITS[unit] * _vector(header, rows, numbers, {"x": x, "y": y, "z": z})
+    if not conditioning.trust:
+        refuse_unsound(clock, load, (x, y, z), unit, numbers)
+    notes = []
+    odd = spikes(load)
+    if odd.any():
+        first = int(np.argmax(odd.any(axis=1)))
+        where = f"{int(odd.any(axis=1).sum())} sample(s) that look like spikes, the first at {clock[first]:g} s (row "
+        where += f"{numbers[first]})"
+        notes.append(
+            f"{where}, {'were replaced' if conditioning.despike else 'are kept; despike = true replaces them'}"
+        )
+        load = without_spikes(clock, load, odd) if conditioning.despike else load
+    turning = np.empty((len(clock), 0))
+    if rates is not None:
+        turning = RATE_UNITS[rates.unit] * _vector(header, rows, numbers, {"p": rates.p, "q": rates.q, "r": rates.r})
+    new, both = filtered(clock, np.concatenate([load, turning], axis=1), conditioning.cutoff, conditioning.resample)
+    if conditioning.cutoff is not None:
+        notes.append(f"low-pass at {conditioning.cutoff:g} Hz, zero phase")
+    if conditioning.resample is not None:
+        notes.append(f"resampled at {conditioning.resample:g} Hz")
+    about = None if rates is None else PiecewiseLinear(new, both[:, 3:])
+    return FlightRecord(PiecewiseLinear(new, both[:, :3]), about, tuple(notes))
+
+
+def _vector(header: list[str], rows: list[list[str]], numbers: list[int], names: dict[str, str]) -> NDArray[np.float64]:
+    return np.stack([_component(header, rows, numbers, axis, name) for axis, name in names.items()], axis=-1)
 
 
 def _rows(path: str | os.PathLike[str]) -> tuple[list[str], list[list[str]], list[int]]:
@@ -76,8 +188,8 @@ def _rows(path: str | os.PathLike[str]) -> tuple[list[str], list[list[str]], lis
                 f"row {number} has {len(cells)} cells, the header {len(header)}",
                 "complete the row",
             )
-    if len(lines) < 5:
-        raise InputError("record.file", f"{path} has {len(lines) - 1} row(s)", "give 4 samples or more")
+    if len(lines) <= FEWEST:
+        raise InputError("record.file", f"{path} has {len(lines) - 1} row(s)", f"give {FEWEST} samples or more")
     return header, [cells for _, cells in lines[1:]], [number for number, _ in lines[1:]]
 
 

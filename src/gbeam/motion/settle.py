@@ -53,10 +53,11 @@ def settle(times: Floats, load: Floats, held: Flags, period: float, idle: float,
     path = _smooth(times, np.column_stack([load / size[:, None], size]), held, period)
     direction = path[:, :3] / np.linalg.norm(path[:, :3], axis=1)[:, None]
     gentle = direction * np.asarray(soft_floor(jnp.asarray(path[:, 3]), idle, BAND * idle))[:, None]
-    across = np.linalg.norm(gentle[:, 1:], axis=1)
-    gentle[:, 1:] *= (np.asarray(soft_floor(jnp.asarray(across), reach, BAND * reach)) / np.maximum(across, 1e-9))[
-        :, None
-    ]
+    if reach > 0:
+        across = np.linalg.norm(gentle[:, 1:], axis=1)
+        gentle[:, 1:] *= (np.asarray(soft_floor(jnp.asarray(across), reach, BAND * reach)) / np.maximum(across, 1e-9))[
+            :, None
+        ]
     return np.where(held[:, None], gentle, load)
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from gbeam.checks import positive
 from gbeam.errors import InputError
 from gbeam.motion.derivative import with_rate
-from gbeam.motion.hold import OPPOSED, REACH, hold_idle, keep_in_reach, nearest_to_zero, refuse_reversal
+from gbeam.motion.hold import OPPOSED, REACH, hold_idle, keep_in_reach, nearest_to_zero, refuse_far, refuse_reversal
 from gbeam.motion.lifted import Lifted
 from gbeam.motion.piecewise import PiecewiseLinear
 from gbeam.motion.profile import Profile, sampled, smoothed
@@ -25,7 +25,7 @@ _CURVE = 0.002  # s, the same along a curved profile
 _PER_WIDTH = 6  # knots per width of the smoothing kernel
 _NEAR_ZERO = 0.02  # of the peak load
 _ALONG_BEAM = 1e-3  # of the peak load
-_LEAST_IDLE = 1.1  # g, with gravity
+LEAST_IDLE = 1.1  # g, with gravity
 # The guard lies wholly between gravity and the least load asked for: it leaves every reachable load as it is.
 _FLOOR, _BAND = 1.03 * STANDARD_GRAVITY, 0.04 * STANDARD_GRAVITY
 
@@ -46,6 +46,10 @@ class Target(eqx.Module):
     ----------
     load : Profile
         Vector, base axes, m/s²: specific force where gravity acts, else acceleration.
+    flight : Profile
+        What it was made from, likewise.
+    idle : array
+        Least load, m/s²; zero if there is none.
     gravity : array
         γ, m/s²: 9.80665 or 0.
     times : array, shape (k,)
@@ -63,6 +67,8 @@ class Target(eqx.Module):
     """
 
     load: Profile
+    flight: Profile
+    idle: Float[Array, ""]
     gravity: Float[Array, ""]
     times: Float[Array, " k"]
     below_idle: Array
@@ -111,6 +117,7 @@ def build_target(
     smoothing: float | None,
     gravity: bool,
     arm: float | None = None,
+    clip: bool = False,
 ) -> Target:
     """Make of a flight's load one that a centrifuge can follow.
 
@@ -135,6 +142,8 @@ def build_target(
         Gravity is there on the machine and `raw` is specific force.
     arm : float, optional
         R, m; without it a held load follows every change of direction.
+    clip : bool
+        Whether to carry on with a held target where the gimbals cannot reach; to give `idle` is to ask for it too.
 
     Raises
     ------
@@ -147,13 +156,15 @@ def build_target(
         raise InputError("span", f"is {first:g} s to {final:g} s", "end after the start")
     width = 0.0 if smoothing is None else positive("smoothing", smoothing, "s", zero=True)
     least = None if idle is None else positive("idle", idle, "m/s²")
-    if gravity and least is not None and least < _LEAST_IDLE * STANDARD_GRAVITY:
+    if gravity and least is not None and least < LEAST_IDLE * STANDARD_GRAVITY:
         raise InputError(
-            "idle", f"is {least / STANDARD_GRAVITY:.3g} g and gravity 1 g", f"give at least {_LEAST_IDLE} g"
+            "idle", f"is {least / STANDARD_GRAVITY:.3g} g and gravity 1 g", f"give at least {LEAST_IDLE} g"
         )
     times = _knots(raw, first - width / 2, final + width / 2, width / _PER_WIDTH or _GRID)
     wanted = np.asarray(_sample(raw, times))
     asked, low, far = _hold(times, wanted, least, gravity)
+    if far.any() and least is None and not clip:
+        refuse_far(times, wanted, far)
     if least is not None and arm is not None and (low | far).any():
         period = 2 * np.pi * np.sqrt(arm / least)
         altered = without_gaps(times, low | far, period / 2)
@@ -167,6 +178,8 @@ def build_target(
     steady = asked if gravity else asked / np.maximum(np.linalg.norm(asked, axis=1), 1e-12)[:, None]
     return Target(
         load=load,
+        flight=raw,
+        idle=jnp.asarray(least or 0.0, dtype=float),
         gravity=jnp.asarray(STANDARD_GRAVITY if gravity else 0.0, dtype=float),
         times=jnp.asarray(times),
         below_idle=_running(low),

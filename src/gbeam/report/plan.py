@@ -10,35 +10,13 @@ from typing import Any
 
 from rich.console import Group, RenderableType
 from rich.padding import Padding
-from rich.table import Table
 from rich.text import Text
 
 from gbeam.report.figures import tracking
-from gbeam.results import AxesResult, LimitUse, MachinePlan
+from gbeam.report.limits import limits_json, limits_table
+from gbeam.results import MachinePlan
 
 _SHORTFALLS = 8  # told at most; a rough record has hundreds
-
-
-def limits_table(uses: Iterable[LimitUse]) -> Table:
-    """Return a table of what is used of each limit, when, and the share of what is allowed."""
-    table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
-    table.add_column("machine")
-    for heading in ("used", "allowed", "share", "at, s"):
-        table.add_column(heading, justify="right")
-    table.add_column("unit")
-    for use in uses:
-        known = math.isfinite(use.allowed)
-        style = "bold red" if use.exceeded else None
-        table.add_row(
-            f"{use.axis} {use.quantity}",
-            f"{use.used:.4g}",
-            f"{use.allowed:.4g}" if known else "–",
-            f"{use.share:.0%}" if known else "–",
-            f"{use.time:.3f}" if use.used > 0 else "–",
-            use.unit,
-            style=style,
-        )
-    return table
 
 
 def plan_table(title: str, plans: Iterable[MachinePlan]) -> RenderableType:
@@ -61,11 +39,6 @@ def _followed(it: MachinePlan) -> str:
     if not math.isfinite(error.max):
         return "the target is held all the time"
     return f"load followed within {error.max:.3g} m/s² ({error.fraction:.2%} of it) at {error.time_of_max:.3f} s"
-
-
-def limits_json(axes: AxesResult) -> list[dict[str, Any]]:
-    """Return the limits as objects; null is allowed where there is none."""
-    return [asdict(use) | {"share": use.share, "exceeded": use.exceeded} for use in axes.limits]
 
 
 def plan_json(title: str, plans: Iterable[MachinePlan], files: Iterable[Path] = ()) -> dict[str, Any]:

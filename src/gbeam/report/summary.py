@@ -12,7 +12,9 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from gbeam.report.figures import peak, tracking
+from gbeam.report.comparison import comparison_lines
+from gbeam.report.figures import tracking
+from gbeam.report.limits import limits_table
 from gbeam.results import AxesResult, HubResult, Response, Study
 
 ROUNDING = 1e-9  # of what it belongs to: a smaller number is none
@@ -37,6 +39,7 @@ def summary(study: Study) -> RenderableType:
         parts += ["", *_response(it)]
     for comparison in study.comparisons:
         parts += ["", Text(_sentence(comparison.verdict), style="bold")]
+        parts += [_indented(Text(line)) for line in comparison_lines(comparison)]
     return Group(*parts)
 
 
@@ -62,7 +65,7 @@ def _response(it: Response) -> Iterator[RenderableType]:
     if it.hub is not None:
         yield _indented(Text(_hub(it.hub)))
     if it.axes is not None:
-        yield _indented(_axes(it, it.axes))
+        yield _indented(limits_table(it.axes.limits))
         yield from (_indented(Text(line)) for line in _tracking(it, it.axes))
     for warning in it.warnings:
         yield _indented(Text(f"warning: {warning}", style="yellow"))
@@ -110,19 +113,6 @@ def _hub(it: HubResult) -> str:
     return f"hub: angle at the end {number(it.angle[-1])} rad, largest rate {number(float(abs(it.rate).max()))} rad/s"
 
 
-def _axes(response: Response, it: AxesResult) -> Table:
-    table = _grid("machine", "rate, rad/s", "at, s", "acceleration, rad/s²", "at, s")
-    for i in range(3):
-        rate, acceleration = peak(response.time, it.rate[:, i]), peak(response.time, it.acceleration[:, i])
-        cells = (
-            cell
-            for each in (rate, acceleration)
-            for cell in (number(each.max_abs), f"{each.time_of_max:.3f}" if each.max_abs > 0 else "–")
-        )
-        table.add_row(f"axis {i + 1}", *cells)
-    return table
-
-
 def _tracking(response: Response, it: AxesResult) -> Iterator[str]:
     error = tracking(response.time, it)
     if error.fraction < ROUNDING:
@@ -136,3 +126,5 @@ def _tracking(response: Response, it: AxesResult) -> Iterator[str]:
         yield f"target held {start:.3f} to {end:.3f} s: {reason}"
     if len(it.episodes) > EPISODES:
         yield f"target held {len(it.episodes) - EPISODES} times more: see the result file"
+    for each in it.unreachable[:EPISODES]:
+        yield f"warning: {each}"

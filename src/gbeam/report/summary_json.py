@@ -9,7 +9,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from gbeam.report.comparison import comparison_parts
 from gbeam.report.figures import peak, tracking
+from gbeam.report.limits import limits_json
 from gbeam.results import AxesResult, Comparison, HubResult, Response, Study
 
 
@@ -92,7 +94,9 @@ def _centrifuge(response: Response, it: AxesResult) -> dict[str, Any]:
     return {
         "axes": {str(i + 1): peaks(i) for i in range(3)},
         "tracking_error": asdict(tracking(response.time, it)),
+        "limits": limits_json(it),
         "held": [{"start": start, "end": end, "reason": reason} for start, end, reason in it.episodes],
+        "unreachable": [asdict(each) for each in it.unreachable],
     }
 
 
@@ -107,4 +111,5 @@ def _comparison(it: Comparison) -> dict[str, Any]:
         "peak_flight": _xyz(it.peak_flight),
         "peak_centrifuge": _xyz(it.peak_centrifuge),
         "relative": _xyz(it.relative),
+        **comparison_parts(it),
     }

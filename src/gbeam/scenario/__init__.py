@@ -5,23 +5,26 @@ and where; load puts them together; build makes the objects; template is for tho
 who write scenarios.
 """
 
-from gbeam.scenario.build import build
+from gbeam.scenario.build import build, build_machines
 from gbeam.scenario.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.explain import placed
-from gbeam.scenario.load import load, loads
-from gbeam.scenario.schema import Scenario
+from gbeam.scenario.load import load, load_environments, loads
+from gbeam.scenario.schema import Environments, Scenario
 from gbeam.scenario.template import json_schema, template
 from gbeam.scenario.units import UnitError, argument, quantity
 
 __all__ = [
     "Diagnostic",
+    "Environments",
     "Scenario",
     "ScenarioError",
     "UnitError",
     "argument",
     "build",
+    "build_machines",
     "json_schema",
     "load",
+    "load_environments",
     "loads",
     "placed",
     "quantity",

@@ -7,12 +7,15 @@ from typing import Any
 from gbeam import motion
 from gbeam.case import Motion
 from gbeam.motion import Profile
+from gbeam.motion.flight import body_rates
+from gbeam.motion.record import Conditioning, FlightRecord, Rates, read_flight
 from gbeam.scenario import schema
 from gbeam.scenario.collect import Collector
+from gbeam.scenario.schema.motion import Record
 
 
 def flights_and_hubs(
-    parts: Collector, scenario: schema.Scenario
+    parts: Collector, scenario: schema.Environments
 ) -> tuple[dict[str, Motion], list[motion.PiecewiseLinear]]:
     """Build the motions that need no other, by name; and the records that were read for them.
 
@@ -20,7 +23,7 @@ def flights_and_hubs(
     ----------
     parts : Collector
         Takes the errors; a motion that has one is left out.
-    scenario : Scenario
+    scenario : Environments
     """
     built: dict[str, Motion | None] = {}
     records: list[motion.PiecewiseLinear] = []
@@ -29,20 +32,18 @@ def flights_and_hubs(
         if isinstance(it, schema.Hub):
             built[name] = _hub(parts, where, it)
         elif isinstance(it, schema.Flight):
-            acceleration: Profile | None
             if it.record is not None:
-                r = it.record
-                record = parts.attempt(where, motion.read_record, r.file, r.time, r.x, r.y, r.z, r.unit)
-                records += [record] if record is not None else []
-                acceleration = record
+                record = parts.attempt(where, _record, it.record)
+                records += [record.acceleration] if record is not None else []
+                built[name] = None if record is None else _recorded(record, it.smoothing)
             else:
-                acceleration = _components(parts, f"{where}.acceleration", it.acceleration)
-            built[name] = None if acceleration is None else motion.Flight(_rounded(acceleration, it.smoothing))
+                acceleration = components(parts, f"{where}.acceleration", it.acceleration)
+                built[name] = None if acceleration is None else motion.Flight(_rounded(acceleration, it.smoothing))
     return {name: it for name, it in built.items() if it is not None}, records
 
 
 def centrifuges(
-    parts: Collector, scenario: schema.Scenario, others: dict[str, Motion], span: tuple[float, float]
+    parts: Collector, scenario: schema.Environments, others: dict[str, Motion], span: tuple[float, float]
 ) -> dict[str, Motion]:
     """Build the motions that track a flight, by name.
 
@@ -50,7 +51,7 @@ def centrifuges(
     ----------
     parts : Collector
         Takes the errors; a motion that has one is left out, and so is one whose flight is missing.
-    scenario : Scenario
+    scenario : Environments
     others : dict of str to motion
         From :func:`flights_and_hubs`.
     span : tuple of float
@@ -68,20 +69,59 @@ def centrifuges(
 
 
 def _centrifuge(it: schema.Centrifuge, load: Profile, span: tuple[float, float]) -> motion.Centrifuge:
-    target = motion.build_target(load, span=span, idle=it.idle, smoothing=it.smoothing, gravity=it.gravity, arm=it.arm)
+    machine = None if it.machine is None else motion.MACHINES[it.machine]
+    arm = it.arm if it.arm is not None or machine is None else machine.arm
+    assert arm is not None  # the schema sees to it
+    target = motion.build_target(
+        load, span=span, idle=it.idle, smoothing=it.smoothing, gravity=it.gravity, arm=arm, clip=it.clip
+    )
     sign = 1 if it.mounting == "upright" else -1
-    return motion.Centrifuge(target, it.arm, it.control_point, it.inverse, it.gravity, sign)
+    limits = _limits(it.limits, machine.limits if machine else motion.MachineLimits())
+    return motion.Centrifuge(target, arm, it.control_point, it.inverse, it.gravity, sign, limits)
+
+
+def _limits(it: schema.Limits, example: motion.MachineLimits) -> motion.MachineLimits:
+    """The limits that are given, and the example machine's where none is."""
+
+    def axis(given: schema.AxisLimit, otherwise: motion.AxisLimit) -> motion.AxisLimit:
+        return motion.AxisLimit(*(mine if mine is not None else theirs for mine, theirs in (
+            (given.rate, otherwise.rate),
+            (given.acceleration, otherwise.acceleration),
+            (given.jerk, otherwise.jerk),
+        )))  # fmt: skip
+
+    return motion.MachineLimits(
+        axis(it.axis1, example.axis1),
+        axis(it.axis2, example.axis2),
+        axis(it.axis3, example.axis3),
+        example.inertia if it.inertia is None else it.inertia,
+        example.power if it.power is None else it.power,
+    )
 
 
 def _hub(parts: Collector, where: str, it: schema.Hub) -> Motion | None:
+    mount = (it.pointing, it.setting_angle, it.gravity)
     if it.rate is not None:
         rate = _profile(parts, f"{where}.rate", it.rate)
-        return None if rate is None else parts.attempt(where, motion.HubRate, it.radius, rate)
+        return None if rate is None else parts.attempt(where, motion.HubRate, it.radius, rate, *mount)
     torque = _profile(parts, f"{where}.torque", it.torque)
-    return None if torque is None else parts.attempt(where, motion.HubTorque, it.radius, it.inertia, torque)
+    if torque is None:
+        return None
+    ground = (it.stiffness or 0.0, it.damping or 0.0)
+    return parts.attempt(where, motion.HubTorque, it.radius, it.inertia, torque, *mount, *ground)
 
 
-def _components(parts: Collector, where: str, it: schema.Components | None) -> Profile | None:
+def components(parts: Collector, where: str, it: Any) -> Profile | None:
+    """Build the vector profile of a table with x, y and z, each a profile, a constant quantity or left out.
+
+    Parameters
+    ----------
+    parts : Collector
+        Takes the errors.
+    where : str
+        Place of the table in the scenario.
+    it : table of the schema
+    """
     given = {axis: getattr(it, axis) for axis in "xyz" if getattr(it, axis) is not None}
     built = {axis: _profile(parts, f"{where}.{axis}", profile) for axis, profile in given.items()}
     return None if None in built.values() else motion.stack(**built)
@@ -90,6 +130,8 @@ def _components(parts: Collector, where: str, it: schema.Components | None) -> P
 def _profile(parts: Collector, where: str, it: Any) -> Profile | None:
     """Build one profile; `it` is any of the schema's, of any quantity."""
     profile: Profile | None
+    if isinstance(it, float):
+        return parts.attempt(where, motion.constant, it)
     match it:
         case schema.Constant():
             profile = parts.attempt(where, motion.constant, it.level)
@@ -106,6 +148,19 @@ def _profile(parts: Collector, where: str, it: Any) -> Profile | None:
             sound = tuple(term for term in terms if term is not None)
             profile = motion.Sum(sound) if len(sound) == len(terms) else None
     return None if profile is None else _rounded(profile, it.smoothing)
+
+
+def _record(it: Record) -> FlightRecord:
+    rates = None
+    if it.p is not None and it.q is not None and it.r is not None and it.rate_unit is not None:
+        rates = Rates(it.p, it.q, it.r, it.rate_unit)
+    conditioning = Conditioning(it.cutoff, it.resample, it.despike, it.trust)
+    return read_flight(it.file, it.time, it.x, it.y, it.z, it.unit, rates=rates, conditioning=conditioning)
+
+
+def _recorded(record: FlightRecord, smoothing: float) -> motion.Flight:
+    rates = None if record.rates is None else body_rates(record.rates, smoothing)
+    return motion.Flight(_rounded(record.acceleration, smoothing), rates, record.notes)
 
 
 def _rounded(profile: Profile, width: float) -> Profile:

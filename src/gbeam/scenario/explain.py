@@ -11,7 +11,7 @@ from gbeam.scenario.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.fields import Quantity, Table
 from gbeam.scenario.paths import parse_path
 from gbeam.scenario.place import Path
-from gbeam.scenario.schema import Scenario
+from gbeam.scenario.schema import Environments, Scenario
 from gbeam.scenario.source import Mark, Source
 from gbeam.scenario.suggest import advise
 from gbeam.scenario.units import KINDS, spoken
@@ -189,12 +189,12 @@ def _filled(source: Source, path: Path, text: str) -> str:
     return _PLACEHOLDER.sub(shown, text)
 
 
-def placed(scenario: Scenario, errors: Iterable[InputError]) -> ScenarioError:
+def placed(scenario: Environments, errors: Iterable[InputError]) -> ScenarioError:
     """Return the ScenarioError of what the objects of the core refused.
 
     Parameters
     ----------
-    scenario : Scenario
+    scenario : Environments
         What they were built from.
     errors : iterable of InputError
         Whose ``where`` are paths from the top of the scenario, such as ``beam.masses[0].at``.

@@ -126,6 +126,12 @@ AngularRate = Annotated[float, Quantity("angular rate")]
 AngularAcceleration = Annotated[float, Quantity("angular acceleration", "positive")]
 Torque = Annotated[float, Quantity("torque")]
 TorqueRate = Annotated[float, Quantity("torque rate", "positive")]
+Force = Annotated[float, Quantity("force")]
+ForceRate = Annotated[float, Quantity("force rate", "positive")]
+ForcePerLength = Annotated[float, Quantity("force per length")]
+ForcePerLengthRate = Annotated[float, Quantity("force per length rate", "positive")]
+Stiffness = Annotated[float, Quantity("stiffness", "positive")]
+RotationalStiffness = Annotated[float, Quantity("rotational stiffness", "positive")]
 
 # A union would report the errors of both branches; the tags pick one, and explain drops them from the place.
 _ONE_OR_LIST = Discriminator(lambda value: "list" if isinstance(value, (list, tuple)) else "one")

@@ -5,14 +5,17 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from pathlib import Path
+from typing import TypeVar
 
 from pydantic import ValidationError
 
 from gbeam.scenario.diagnostics import ScenarioError
 from gbeam.scenario.explain import explain
 from gbeam.scenario.overrides import override
-from gbeam.scenario.schema import Scenario
+from gbeam.scenario.schema import Environments, Scenario
 from gbeam.scenario.source import Source, parse, read_text
+
+T = TypeVar("T", bound=Environments)
 
 
 def load(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Scenario:
@@ -64,10 +67,34 @@ def loads(
     ScenarioError
         With everything that is wrong, each with its place.
     """
+    return _validated(Scenario, _source(text, name, overrides, folder))
+
+
+def load_environments(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Environments:
+    """Read a scenario file that may lack the beam, for questions about the machine alone.
+
+    Parameters, errors
+        As for :func:`load`.
+
+    Returns
+    -------
+    Environments
+        A Scenario if the file has a [beam] or a [model], which are then validated too.
+    """
+    file = Path(path)
+    source = _source(read_text(file), os.fspath(path), overrides, file.parent)
+    kind = Scenario if {"beam", "model"} & source.data.keys() else Environments
+    return _validated(kind, source)
+
+
+def _source(text: str, name: str, overrides: Iterable[str], folder: str | os.PathLike[str]) -> Source:
     data, done = override(parse(name, text), name, overrides)
-    source = Source(name, text, Path(folder), data, done)
+    return Source(name, text, Path(folder), data, done)
+
+
+def _validated(kind: type[T], source: Source) -> T:
     try:
-        return Scenario.model_validate(data, context={"folder": source.folder, "source": source})
+        return kind.model_validate(source.data, context={"folder": source.folder, "source": source})
     except ValidationError as error:
         found = [explain(source, each) for each in error.errors(include_url=False, include_input=False)]
         raise ScenarioError(found) from None

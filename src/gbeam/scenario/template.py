@@ -25,10 +25,13 @@ section = { shape = "rectangle", width = "20 mm", thickness = "4 mm" }
 material = { density = "2700 kg/m^3", youngs_modulus = "70 GPa" }
 damping_ratio = 0.01  # of critical; a list gives one per mode
 # masses = [ { at = "300 mm", mass = "0.1 kg" } ]
+# root = { rotation_y = "500 N m/rad" }  # springs instead of a perfect clamp; what is left out is rigid
+# loads = [ { at = "300 mm", force = { z = "5 N" }, follows = false } ]  # moment likewise; or { distributed = ... }
 
 [model]
 kind = "FOAM"  # TLAM | FOAM | SFOAM | CFOAM | exact
 modes = { axial = 1, y = 3, z = 3 }
+# shapes = "adapted"  # modes of this beam with its tapers, masses and root springs: fewer are needed
 
 # What the base does: as many [motion.NAME] as you like, each an environment for the same beam.
 [motion.flight]
@@ -48,7 +51,7 @@ kind = "centrifuge"
 tracks = "flight"  # the motion it imitates
 arm = "3.3 m"
 control_point = "150 mm"  # point of the beam that feels the flight's load, from the root
-inverse = "flat"  # quasi-static | flat
+inverse = "flat"  # quasi-static | flat | exact | planned
 gravity = true  # the target is specific force (what accelerometers measure); gravity is there on the machine
 idle = "1.4 g"  # the target is held up to this
 smoothing = "60 ms"  # width of the kernel that rounds the target's corners
@@ -81,6 +84,9 @@ rate = { profile = "smooth-step", level = "2 rad/s", duration = "30 s" }
 # or a free hub under a torque, instead of the rate:
 # inertia = "200 kg m^2"
 # torque = { profile = "sine", amplitude = "50 N m", duration = "10 s" }
+# stiffness = "50 N m/rad"  # and damping = "2 N m s/rad": from a free hub to the ground
+# pointing = "inward"  # setting_angle = "30 deg" turns the section about the beam
+# gravity = [0, 0, "-1 g"]  # in hub axes at hub angle zero: z is the hub's axis
 
 [response]
 duration = "50 s"

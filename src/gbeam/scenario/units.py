@@ -42,6 +42,7 @@ hertz = revolution / second = Hz
 gee = 9.80665 * meter / second ** 2 = g0
 newton = kilogram * meter / second ** 2 = N
 pascal = newton / meter ** 2 = Pa
+watt = newton * meter / second = W
 inch = 0.0254 * meter = in
 foot = 12 * inch = ft
 pound = 453.59237 * gram = lb
@@ -50,8 +51,8 @@ psi = pound_force / inch ** 2
 """
 # What a misspelt unit is compared with: the usual spellings, not every prefix of every unit.
 _SPELLINGS = """
-m mm cm km µm um g kg mg s ms us min h rad mrad deg rev rpm Hz kHz g0 N kN MN Pa kPa MPa GPa in ft lb lbf
-psi % meter metre millimeter gram kilogram second millisecond minute hour radian degree revolution hertz
+m mm cm km µm um g kg mg s ms us min h rad mrad deg rev rpm Hz kHz g0 N kN MN W kW MW Pa kPa MPa GPa in ft lb lbf
+psi % watt meter metre millimeter gram kilogram second millisecond minute hour radian degree revolution hertz
 newton pascal inch foot pound percent
 """
 
@@ -84,6 +85,12 @@ KINDS: dict[str, Kind] = {
     "moment of inertia": Kind("a moment of inertia", "kg m^2", "200 kg m^2"),
     "pressure": Kind("a pressure", "Pa", "70 GPa"),
     "force": Kind("a force", "N", "5 N"),
+    "force rate": Kind("a rate of force", "N/s", "10 N/s"),
+    "force per length": Kind("a force per length", "N/m", "20 N/m"),
+    "force per length rate": Kind("a rate of force per length", "N/m/s", "20 N/m/s"),
+    "stiffness": Kind("a stiffness", "N/m", "1e6 N/m"),
+    "rotational stiffness": Kind("a rotational stiffness", "N m/rad", "5000 N m/rad"),
+    "rotational damping": Kind("a rotational damping", "N m s/rad", "2 N m s/rad"),
     "torque": Kind("a torque", "N m", "200 N m"),
     "torque rate": Kind("a rate of torque", "N m/s", "10 N m/s"),
     "time": Kind("a time", "s", "16 s"),
@@ -93,6 +100,8 @@ KINDS: dict[str, Kind] = {
     "angle": Kind("an angle", "rad", "30 deg"),
     "angular rate": Kind("an angular rate", "rad/s", "3 rad/s"),
     "angular acceleration": Kind("an angular acceleration", "rad/s^2", "1 rad/s^2"),
+    "angular jerk": Kind("an angular jerk", "rad/s^3", "10 rad/s^3"),
+    "power": Kind("a power", "W", "50 kW"),
     "frequency": Kind("a frequency", "1/s", "20 Hz"),
     "ratio": Kind("a ratio", "", "1 %"),
 }

@@ -20,11 +20,14 @@ from gbeam.scenario.fields import (
     Position,
     Pressure,
     Ratios,
+    RotationalStiffness,
     SecondMoments,
+    Stiffness,
     Table,
     refuse,
     wrong,
 )
+from gbeam.scenario.schema.load import Load
 
 
 class Stations(Table):
@@ -115,8 +118,18 @@ class PointMass(Table):
     )
 
 
+class Root(Table):
+    """Springs between the base and the beam's root; a direction left out is rigid."""
+
+    translation_x: Stiffness | None = Field(default=None, description="spring along x, along the beam")
+    translation_y: Stiffness | None = Field(default=None, description="spring along y, along the width")
+    translation_z: Stiffness | None = Field(default=None, description="spring along z, through the thickness")
+    rotation_y: RotationalStiffness | None = Field(default=None, description="spring about y, against bending along z")
+    rotation_z: RotationalStiffness | None = Field(default=None, description="spring about z, against bending along y")
+
+
 class Beam(Table):
-    """The beam: clamped at its root to the moving base, straight along x."""
+    """The beam: held at its root by the moving base, straight along x."""
 
     length: Length = Field(description="length from root to tip")
     section: Section = Field(description="cross-section, by shape or by properties: { area, inertia_y, inertia_z }")
@@ -124,9 +137,17 @@ class Beam(Table):
     damping_ratio: Ratios = Field(description="modal damping ratio: one for all modes, or a list with one per mode")
     masses: tuple[PointMass, ...] = Field(default=(), description="masses fixed to the beam: [ { at, mass } ]")
 
+    root: Root = Field(default=Root(), description="springs that hold the root, which is rigid where left out")
+    loads: tuple[Load, ...] = Field(
+        default=(), description="forces and moments on the beam: [ { at, force, moment, distributed, follows } ]"
+    )
+
     @model_validator(mode="after")
     def _on_the_beam(self) -> Beam:
         def problems() -> Iterator[tuple[Loc, PydanticCustomError]]:
+            for i, load in enumerate(self.loads):
+                if load.at is not None and load.at > self.length * (1 + 1e-12):
+                    yield ("loads", i, "at"), beyond_the_tip()
             for i, mass in enumerate(self.masses):
                 if mass.at > self.length * (1 + 1e-12):
                     yield ("masses", i, "at"), beyond_the_tip()

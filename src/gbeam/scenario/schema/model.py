@@ -33,6 +33,11 @@ class Model(Table):
         "without axial coordinates. CFOAM: FOAM's field, complete energy. exact: any rotation"
     )
     modes: Modes = Field(description="numbers of shapes: { axial, y, z }")
+    shapes: Literal["clamped-free", "adapted"] = Field(
+        default="clamped-free",
+        description="clamped-free: shapes of the bare uniform beam (for `exact`, polynomials). adapted: the modes at "
+        "rest of this beam with its tapers, masses and root springs, of which fewer are needed",
+    )
 
     @model_validator(mode="after")
     def _coordinates(self) -> Model:

@@ -10,6 +10,8 @@ from pydantic import AfterValidator, Discriminator, Field, StrictBool, Validatio
 from pydantic_core import PydanticCustomError
 
 from gbeam.scenario.fields import (
+    Acceleration,
+    Duration,
     Length,
     Loc,
     Position,
@@ -61,6 +63,31 @@ class Record(Table):
     y: str = Field(description='column of the y component, along the width; "-" in front changes the sign, "0" is none')
     z: str = Field(description='column of the z component, through the thickness; "-" and "0" likewise')
     unit: Literal["g", "m/s^2"] = Field(description="unit of the components: g is 9.80665 m/s^2")
+    p: str | None = Field(
+        default=None, description="column of the body rate about x; p, q and r fly the specimen with them"
+    )
+    q: str | None = Field(default=None, description='column of the body rate about y; "-" and "0" as for x, y and z')
+    r: str | None = Field(default=None, description='column of the body rate about z; "-" and "0" likewise')
+    rate_unit: Literal["rad/s", "deg/s"] | None = Field(default=None, description="unit of p, q and r")
+    cutoff: Annotated[float, Quantity("frequency", "positive")] | None = Field(
+        default=None, description="cut-off of a zero-phase low-pass, -6 dB, such as 5 Hz; none if left out"
+    )
+    resample: Annotated[float, Quantity("frequency", "positive")] | None = Field(
+        default=None, description="new sampling rate, such as 200 Hz; the record's own if left out"
+    )
+    despike: StrictBool = Field(default=False, description="replace single samples far off their neighbours")
+    trust: StrictBool = Field(
+        default=False, description="take the record as it is: no look at its size, sampling rate and dropouts"
+    )
+
+    @model_validator(mode="after")
+    def _rates_together(self) -> Record:
+        given = [name for name in ("p", "q", "r", "rate_unit") if getattr(self, name) is not None]
+        if given and len(given) < 4:
+            missing = next(name for name in ("p", "q", "r", "rate_unit") if name not in given)
+            hint = 'give p, q and r ("0" for none) and rate_unit = "rad/s" or "deg/s"'
+            refuse([((), wrong(f"{missing} is missing beside {given[0]}", hint, mark="key"))])
+        return self
 
 
 class Components(Table):
@@ -95,11 +122,45 @@ class Flight(Table):
         return self
 
 
-def _available(inverse: str) -> str:
-    # Delete this, and its use below, when the exact inverse comes.
-    if inverse == "exact":
-        raise wrong("the inverse {value} comes with a later version", "use flat")
-    return inverse
+class AxisLimit(Table):
+    """What one axis of the machine can do."""
+
+    rate: Annotated[float, Quantity("angular rate", "positive")] | None = Field(
+        default=None, description="largest rate, of either sign"
+    )
+    acceleration: Annotated[float, Quantity("angular acceleration", "positive")] | None = Field(
+        default=None, description="largest acceleration, of either sign"
+    )
+    jerk: Annotated[float, Quantity("angular jerk", "positive")] | None = Field(
+        default=None, description="largest jerk, of either sign"
+    )
+
+
+class Limits(Table):
+    """What the machine can do; exceeding it ends in exit status 1 unless allowed."""
+
+    axis1: AxisLimit = Field(default=AxisLimit(), description="the arm: { rate, acceleration, jerk }")
+    axis2: AxisLimit = Field(default=AxisLimit(), description="yaw at the arm's end: { rate, acceleration, jerk }")
+    axis3: AxisLimit = Field(default=AxisLimit(), description="roll about the beam: { rate, acceleration, jerk }")
+    inertia: Annotated[float, Quantity("moment of inertia", "positive")] | None = Field(
+        default=None, description="moment of inertia of all that turns about axis 1; gives the arm's power"
+    )
+    power: Annotated[float, Quantity("power", "positive")] | None = Field(
+        default=None, description="largest power that speeds the arm up or brakes it; needs inertia"
+    )
+
+    @model_validator(mode="after")
+    def _power_needs_inertia(self) -> Limits:
+        if self.power is not None and self.inertia is None:
+            hint = 'add the arm\'s: inertia = "2000 kg m^2"'
+            refuse([(("power",), wrong("is given without the inertia", hint, mark="key"))])
+        return self
+
+
+class Commands(Table):
+    """The axis motions as the machine's controller takes them."""
+
+    sample: Duration = Field(description="sample time of the controller")
 
 
 class Centrifuge(Table):
@@ -107,11 +168,15 @@ class Centrifuge(Table):
 
     kind: Literal["centrifuge"] = Field(description="kind of the motion")
     tracks: str = Field(description="NAME of the flight motion that it imitates")
-    arm: Length = Field(description="radius from the main axis to the control point")
+    machine: Literal["human-7.6m", "specimen-3.3m", "large-15m"] | None = Field(
+        default=None, description="an example machine, which gives arm and limits where they are left out"
+    )
+    arm: Length | None = Field(default=None, description="radius from the main axis to the control point; or machine")
     control_point: Position = Field(description="point of the beam that feels the flight's load, from the root")
-    inverse: Annotated[Literal["quasi-static", "flat", "exact"], AfterValidator(_available)] = Field(
+    inverse: Literal["quasi-static", "flat", "exact", "planned"] = Field(
         description="how the axis motions are found. quasi-static: the arm's tangential acceleration is "
-        "ignored; flat: yaw makes up for it"
+        "ignored; flat: yaw makes up for it; exact: size and direction of the load both right; planned: the least "
+        "tracking error within the limits"
     )
     gravity: StrictBool = Field(
         description="true if the target is specific force, of which gravity is a part on the machine; "
@@ -120,12 +185,26 @@ class Centrifuge(Table):
     idle: Annotated[float, Quantity("acceleration", "positive")] | None = Field(
         default=None, description="load below which the target is held up to this magnitude"
     )
+    clip: StrictBool = Field(
+        default=False, description="true to carry on with a held target where the gimbals cannot reach; idle implies it"
+    )
     smoothing: Time = Field(
         default=0.0, description="width of the kernel that rounds the target's corners; 0 leaves them sharp"
     )
     mounting: Literal["upright", "inverted"] = Field(
         default="upright", description="which of the two ways the specimen sits in the gimbals"
     )
+    limits: Limits = Field(
+        default=Limits(), description="what the machine can do: { axis1, axis2, axis3, inertia, power }"
+    )
+    commands: Commands | None = Field(default=None, description="axis motions for the controller: { sample }")
+
+    @model_validator(mode="after")
+    def _some_arm(self) -> Centrifuge:
+        if self.arm is None and self.machine is None:
+            hint = 'add arm = "3.3 m": radius from the main axis to the control point'
+            refuse([((), wrong("arm is missing", hint, mark="key"))])
+        return self
 
 
 class Hub(Table):
@@ -138,6 +217,23 @@ class Hub(Table):
         default=None, description="moment of inertia of the hub about its axis"
     )
     torque: TorqueProfile | None = Field(default=None, description="profile of the torque on the hub; needs inertia")
+    stiffness: Annotated[float, Quantity("rotational stiffness", "zero or more")] | None = Field(
+        default=None, description="torsional spring from a free hub to the ground, at ease at the hub's initial angle"
+    )
+    damping: Annotated[float, Quantity("rotational damping", "zero or more")] | None = Field(
+        default=None, description="torsional damper from a free hub to the ground"
+    )
+    pointing: Literal["outward", "inward"] = Field(
+        default="outward", description="from the root away from the hub's axis, or towards it"
+    )
+    setting_angle: Annotated[float, Quantity("angle")] = Field(
+        default=0.0, description="turn of the section about the beam; at 0 its y axis lies in the plane of rotation"
+    )
+    gravity: tuple[Acceleration, Acceleration, Acceleration] | None = Field(
+        default=None,
+        description='acceleration of free fall [x, y, z] in hub axes at hub angle zero, such as [0, 0, "-1 g"]: '
+        "x to the root, z the hub's axis; it keeps its direction as the hub turns",
+    )
 
     @model_validator(mode="after")
     def _one_drive(self) -> Hub:
@@ -152,11 +248,10 @@ class Hub(Table):
                         mark="key",
                     ),
                 )
-            if self.torque is None and self.inertia is not None and self.rate is not None:
-                yield (
-                    ("inertia",),
-                    wrong("is given beside rate", "a hub with a prescribed rate needs none", mark="key"),
-                )
+            for name in ("inertia", "stiffness", "damping"):
+                if self.torque is None and self.rate is not None and getattr(self, name) is not None:
+                    fix = "a hub with a prescribed rate needs none"
+                    yield (name,), wrong("is given beside rate", fix, mark="key")
 
         refuse(problems())
         return self

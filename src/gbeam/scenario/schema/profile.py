@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Any, Generic, Literal, TypeVar, get_args
 
-from pydantic import Discriminator, Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
 from gbeam.scenario.fields import (
@@ -13,6 +13,10 @@ from gbeam.scenario.fields import (
     AngularAcceleration,
     AngularRate,
     Duration,
+    Force,
+    ForcePerLength,
+    ForcePerLengthRate,
+    ForceRate,
     Jerk,
     Loc,
     Table,
@@ -144,4 +148,41 @@ TorqueProfile = Annotated[
     | Listed[Torque, TorqueRate]
     | Sum[Torque, TorqueRate],
     Discriminator("profile"),
+]
+
+
+def _constant_or_profile(value: Any) -> Any:
+    """Tag of a value: a table's profile, or ``one`` for a bare quantity, which is constant."""
+    return value.get("profile") if isinstance(value, dict) else getattr(value, "profile", "one")
+
+
+ForceOverTime = Annotated[
+    Annotated[Force, Tag("one")]
+    | Annotated[Constant[Force, ForceRate], Tag("constant")]
+    | Annotated[Trapezoid[Force, ForceRate], Tag("trapezoid")]
+    | Annotated[SmoothStep[Force, ForceRate], Tag("smooth-step")]
+    | Annotated[Sine[Force, ForceRate], Tag("sine")]
+    | Annotated[Listed[Force, ForceRate], Tag("table")]
+    | Annotated[Sum[Force, ForceRate], Tag("sum")],
+    Discriminator(_constant_or_profile),
+]
+MomentOverTime = Annotated[
+    Annotated[Torque, Tag("one")]
+    | Annotated[Constant[Torque, TorqueRate], Tag("constant")]
+    | Annotated[Trapezoid[Torque, TorqueRate], Tag("trapezoid")]
+    | Annotated[SmoothStep[Torque, TorqueRate], Tag("smooth-step")]
+    | Annotated[Sine[Torque, TorqueRate], Tag("sine")]
+    | Annotated[Listed[Torque, TorqueRate], Tag("table")]
+    | Annotated[Sum[Torque, TorqueRate], Tag("sum")],
+    Discriminator(_constant_or_profile),
+]
+SpreadForceOverTime = Annotated[
+    Annotated[ForcePerLength, Tag("one")]
+    | Annotated[Constant[ForcePerLength, ForcePerLengthRate], Tag("constant")]
+    | Annotated[Trapezoid[ForcePerLength, ForcePerLengthRate], Tag("trapezoid")]
+    | Annotated[SmoothStep[ForcePerLength, ForcePerLengthRate], Tag("smooth-step")]
+    | Annotated[Sine[ForcePerLength, ForcePerLengthRate], Tag("sine")]
+    | Annotated[Listed[ForcePerLength, ForcePerLengthRate], Tag("table")]
+    | Annotated[Sum[ForcePerLength, ForcePerLengthRate], Tag("sum")],
+    Discriminator(_constant_or_profile),
 ]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, model_validator
 from pydantic_core import PydanticCustomError
@@ -29,15 +30,20 @@ def _word(name: str) -> str:
     return name
 
 
-class Scenario(Table):
-    """A validated scenario: SI floats throughout, frozen.
-
-    Built by :func:`gbeam.scenario.load` and :func:`gbeam.scenario.loads`.
-    """
+class _Titled(Table):
+    """What every scenario has; a class of its own only to keep the tables in the order they are written in."""
 
     title: str = Field("", description="what the scenario is about, for reports")
+
+
+class _Structure(_Titled):
     beam: Beam = Field(description="the structure")
     model: Model = Field(description="the model of its deformation")
+
+
+class Environments(_Titled):
+    """A scenario without a beam: the motions and how long they last. Enough to plan a machine's."""
+
     motion: dict[Annotated[str, AfterValidator(_word)], Motion] = Field(
         min_length=1, description="what the base does: one environment or more, each [motion.NAME]"
     )
@@ -55,25 +61,16 @@ class Scenario(Table):
         self._source = (context or {}).get("source")
 
     @model_validator(mode="after")
-    def _agree(self, info: ValidationInfo) -> Scenario:
-        refuse(self._problems())
+    def _agree(self, info: ValidationInfo) -> Self:
+        # Here for both kinds of scenario, so that everything that is wrong is said at once.
+        beside = self.beside_the_beam() if isinstance(self, Scenario) else ()
+        refuse([*self._about_motions(), *beside])
         return self
 
-    def _problems(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
+    def _about_motions(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
         for name, motion in self.motion.items():
             if isinstance(motion, Centrifuge):
                 yield from self._tracking(name, motion)
-            if isinstance(motion, Hub) and not self.model.modes.y:
-                yield (
-                    ("model", "modes", "y"),
-                    wrong(
-                        f"there is no bending shape along y, the plane of the hub {name!r}",
-                        "give y = 1 or more",
-                    ),
-                )
-        for i, station in enumerate(self.response.stations or ()):
-            if self._beyond(station):
-                yield ("response", "stations", i), beyond_the_tip()
         recorded = any(isinstance(motion, Flight) and motion.record for motion in self.motion.values())
         if self.response.duration is None and not recorded:
             yield (
@@ -82,15 +79,34 @@ class Scenario(Table):
             )
 
     def _tracking(self, name: str, motion: Centrifuge) -> Iterator[tuple[Loc, PydanticCustomError]]:
-        place = ("motion", name)
         flights = [other for other, it in self.motion.items() if isinstance(it, Flight)]
         if motion.tracks not in flights:
             target = self.motion.get(motion.tracks)
             message = f"names a {target.kind}, not a flight" if target else "names no motion"
             hint = advise(motion.tracks, flights) if flights else "add a motion of kind flight"
-            yield (*place, "tracks"), wrong(f"{{value}} {message}", hint)
-        if self._beyond(motion.control_point):
-            yield (*place, "control_point"), beyond_the_tip()
+            yield ("motion", name, "tracks"), wrong(f"{{value}} {message}", hint)
+
+
+class Scenario(Environments, _Structure):
+    """A validated scenario: SI floats throughout, frozen.
+
+    Built by :func:`gbeam.scenario.load` and :func:`gbeam.scenario.loads`.
+    """
+
+    def beside_the_beam(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
+        """What does not agree with the beam or its model."""
+        for name, motion in self.motion.items():
+            if isinstance(motion, Centrifuge) and self._beyond(motion.control_point):
+                yield ("motion", name, "control_point"), beyond_the_tip()
+            if isinstance(motion, Hub):
+                # A section set at a right angle bends along z in the plane of the hub.
+                axis = "y" if abs(math.cos(motion.setting_angle)) > 1e-9 else "z"
+                if not getattr(self.model.modes, axis):
+                    problem = f"there is no bending shape along {axis}, the plane of the hub {name!r}"
+                    yield ("model", "modes", axis), wrong(problem, f"give {axis} = 1 or more")
+        for i, station in enumerate(self.response.stations or ()):
+            if self._beyond(station):
+                yield ("response", "stations", i), beyond_the_tip()
 
     def _beyond(self, position: float) -> bool:
         return position > self.beam.length * (1 + 1e-12)

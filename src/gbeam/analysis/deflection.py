@@ -1,0 +1,61 @@
+"""Static deflection: the relative equilibrium at a frozen base motion, along the beam."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg
+
+from gbeam.analysis.modal import frozen
+from gbeam.analysis.operating import OperatingPoint, linear_matrices, operating_point
+from gbeam.case import Motion
+from gbeam.model import Structure
+from gbeam.results_modal import Deflection
+
+
+def lowest_stiffness_at(mass: np.ndarray, stiffness: np.ndarray) -> tuple[float, np.ndarray]:
+    """Lowest eigenvalue of the symmetric part of K in the measure of M, rad²/s², and its mode (n,)."""
+    value, mode = scipy.linalg.eigh((stiffness + stiffness.T) / 2, (mass + mass.T) / 2, subset_by_index=(0, 0))
+    return float(value[0]), mode[:, 0]
+
+
+def beam_block(point: OperatingPoint) -> tuple[np.ndarray, np.ndarray]:
+    """M and K of the beam's own coordinates about an operating point."""
+    linear, i = linear_matrices(point), point.first
+    return linear.mass[i:, i:], linear.stiffness[i:, i:]
+
+
+def deflect(structure: Structure, motion: Motion, time: float, *, name: str = "") -> Deflection:
+    """Where the beam rests relative to a base whose motion is frozen at a time.
+
+    Parameters
+    ----------
+    structure : Structure
+        From :func:`gbeam.assemble`; the shape is told at its stations.
+    motion : Flight, Centrifuge, HubRate or HubTorque
+    time : float
+        s.
+    name : str
+        For the result.
+
+    Returns
+    -------
+    Deflection
+
+    Raises
+    ------
+    ComputationError
+        ``not converged``: the beam buckles or diverges before the whole load is on.
+    """
+    point = operating_point(structure, motion, time)
+    lowest, _ = lowest_stiffness_at(*beam_block(point))
+    return Deflection(
+        motion=name,
+        model=structure.kind,
+        time=time,
+        base=frozen(point.base),
+        stations=np.asarray(structure.stations),
+        displacement=np.asarray(structure.displacement(point.q)),
+        q=np.asarray(point.q),
+        strain_energy=float(structure.system.energy.potential(point.q)),
+        stable=lowest > 0,
+    )

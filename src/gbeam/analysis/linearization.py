@@ -1,0 +1,244 @@
+"""State-space models about an operating point: A, B, C, D with names and units."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import scipy.linalg
+from jaxtyping import Array
+
+import gbeam._jax  # noqa: F401
+from gbeam.analysis.operating import (
+    OnHub,
+    OperatingPoint,
+    linear_matrices,
+    on_base,
+    on_hub,
+    operating_point,
+    steady_base,
+)
+from gbeam.analysis.stability import hub_of
+from gbeam.analysis.state_space import Signal, StateSpace
+from gbeam.case import Motion
+from gbeam.errors import InputError
+from gbeam.model import Structure
+from gbeam.motion import HubTorque
+
+TORQUE: tuple[Signal, ...] = (Signal("torque", "N m"),)
+BASE_INPUTS = tuple(
+    [Signal(f"base_acceleration_{i}", "m/s^2") for i in "xyz"]
+    + [Signal(f"base_angular_acceleration_{i}", "rad/s^2") for i in "xyz"]
+)
+BASE_RATES = tuple(Signal(f"base_rate_{i}", "rad/s") for i in "xyz")
+_NEAREST = 12  # quadrature nodes that a strain is interpolated from
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """A strain gauge along the beam.
+
+    Parameters
+    ----------
+    at : float
+        Position from the root, m.
+    y, z : float
+        Where it sits in the section, m from the axis.
+    """
+
+    at: float
+    y: float = 0.0
+    z: float = 0.0
+
+
+class Outputs(eqx.Module):
+    """What is measured, as a function of (y, ẏ, ÿ, u).
+
+    Tip displacement relative to the base axes; tip acceleration, absolute; moment of the base on the root; strains;
+    on a free hub its angle and rate. Vectors in base axes.
+    """
+
+    structure: Structure
+    point: OperatingPoint
+    weights: Array
+    places: Array
+
+    def __call__(self, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
+        """Outputs (p,)."""
+        i, residual = self.point.first, self.point.residual
+        if isinstance(residual, OnHub):
+            twist = residual.hub.twist(jnp.ones(()))
+            w, al = twist[3:] * yd[0], twist[3:] * ydd[0]
+            a_WO_B = twist[:3] * ydd[0] + jnp.cross(w, twist[:3] * yd[0])
+        else:
+            a_WO_B, w, al = u[:3], u[3:6], u[6:]
+        q, qd, qdd = y[i:], yd[i:], ydd[i:]
+
+        def velocity(q: Array, qd: Array) -> Any:
+            return jax.jvp(lambda q: self.structure.field.position(q)[-1], (q,), (qd,))
+
+        (r, rd), (_, rdd) = jax.jvp(velocity, (q, qd), (qd, qdd))
+        acceleration = a_WO_B + jnp.cross(al, r) + jnp.cross(w, jnp.cross(w, r)) + 2 * jnp.cross(w, rd) + rdd
+
+        # The moment that turns the root is the rate of the angular momentum ∂T/∂ω, less what loads bring.
+        def momentum(u: Array, q: Array, qd: Array) -> Array:
+            return jax.grad(residual.system.energy.kinetic)(u, q, qd)[3:]
+
+        u6, ud6 = jnp.concatenate([jnp.zeros(3), w]), jnp.concatenate([a_WO_B, al])
+        h, rate = jax.jvp(momentum, (u6, q, qd), (ud6, qd, qdd))
+        moment = rate + jnp.cross(w, h) - residual.system.generalised(q)[3:6]
+
+        strains = self.structure.field.strains(q)
+        axial, about_y, about_z = (self.weights @ e for e in strains[:3])
+        strain = axial - self.places[:, 0] * about_z + self.places[:, 1] * about_y
+        hub = jnp.stack([y[0], yd[0]]) if i else jnp.zeros(0)
+        return jnp.concatenate([self.structure.displacement(q)[-1], acceleration, moment, strain, hub])
+
+
+def _interpolation(structure: Structure, gauges: Sequence[Gauge]) -> Array:
+    """Weights (gauges, nodes) that take nodal strains to the gauges."""
+    until = np.asarray(structure.field.cumulative)  # type: ignore[attr-defined]  # every field integrates along the beam
+    nodes = until.sum(axis=1)[: until.shape[1]]
+    weights = np.zeros((len(gauges), len(nodes)))
+    for row, gauge in zip(weights, gauges, strict=True):
+        if not 0 <= gauge.at <= structure.length:
+            raise InputError("gauge.at", f"is {gauge.at:g} m, off the beam", f"give 0 to {structure.length:g} m")
+        near = np.sort(np.argsort(np.abs(nodes - gauge.at))[:_NEAREST])
+        for k in near:
+            others = near[near != k]
+            row[k] = np.prod((gauge.at - nodes[others]) / (nodes[k] - nodes[others]))
+    return jnp.asarray(weights)
+
+
+def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
+    """Names and units of (y, ẏ)."""
+    units = ("1", "rad", "rad") if structure.kind == "exact" else ("m", "m", "m")
+    names = [("hub_angle", "rad")] if first else []
+    for group, unit, count in zip(("axial", "y", "z"), units, structure.counts, strict=True):
+        names += [(f"q_{group}_{k + 1}", unit) for k in range(count)]
+    names += [(f"q_root_{k + 1}", "m or rad") for k in range(structure.size - sum(structure.counts))]
+    rates = [Signal("hub_rate" if name == "hub_angle" else f"rate_{name}", f"{unit}/s") for name, unit in names]
+    return tuple([Signal(*it) for it in names] + rates)
+
+
+def output_signals(gauges: Sequence[Gauge], first: int) -> tuple[Signal, ...]:
+    """Names and units of the outputs."""
+    kinds = (("tip", "m"), ("tip_acceleration", "m/s^2"), ("root_moment", "N m"))
+    signals = [Signal(f"{name}_{i}", unit) for name, unit in kinds for i in "xyz"]
+    signals += [Signal(f"strain_{k + 1}", "1") for k in range(len(gauges))]
+    return tuple(signals + ([Signal("hub_angle", "rad"), Signal("hub_rate", "rad/s")] if first else []))
+
+
+def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gauge]) -> Outputs:
+    """What is measured at an operating point."""
+    places = jnp.asarray([[it.y, it.z] for it in gauges]).reshape(-1, 2)
+    return Outputs(structure, point, _interpolation(structure, gauges), places)
+
+
+@eqx.filter_jit
+def _output_matrices(outputs: Outputs) -> tuple[Array, ...]:
+    p = outputs.point
+    n, z = len(p.y), jnp.concatenate([p.y, p.yd, p.ydd, p.u])
+
+    def stacked(z: Array) -> Array:
+        return outputs(z[:n], z[n : 2 * n], z[2 * n : 3 * n], z[3 * n :])
+
+    d = jax.jacfwd(stacked)(z)
+    return stacked(z), d[:, :n], d[:, n : 2 * n], d[:, 2 * n : 3 * n], d[:, 3 * n :]
+
+
+def linearize(
+    structure: Structure,
+    motion: Motion,
+    time: float = 0.0,
+    *,
+    rate: float | None = None,
+    q: Array | None = None,
+    gauges: Sequence[Gauge] = (),
+    name: str = "",
+) -> StateSpace:
+    """State-space model of small departures from an operating point.
+
+    Parameters
+    ----------
+    structure : Structure
+    motion : Flight, Centrifuge, HubRate or HubTorque
+        A free hub has the torque as input; on any other base the root's acceleration and the angular acceleration
+        are, in base axes.
+    time : float
+        At which the motion is frozen, s.
+    rate : float, optional
+        A hub's steady rate in its place, rad/s.
+    q : (n,), optional
+        Coordinates to linearise at; by default the relative equilibrium.
+    gauges : sequence of Gauge
+        Where strain is measured.
+    name : str
+        Of the motion.
+
+    Returns
+    -------
+    StateSpace
+        States are the coordinates and their rates. Where the base's angular velocity acts to first order, that is
+        about a turning base, its components are states too: the integrals of the angular acceleration.
+
+    Raises
+    ------
+    InputError
+        If a gauge lies off the beam, or a rate is asked of a motion without a hub.
+    ComputationError
+        If there is no relative equilibrium.
+    """
+    if rate is None:
+        point = operating_point(structure, motion, time, q)
+    else:
+        hub = hub_of(motion, "a rate", "leave it out and give a time", name)
+        if isinstance(hub, HubTorque):
+            point = on_hub(structure, hub, rate, q=q)
+        else:
+            point = on_base(structure, steady_base(hub, rate), q)
+    linear = linear_matrices(point)
+    value, c_y, c_yd, c_ydd, c_u = (np.asarray(x) for x in _output_matrices(outputs_of(structure, point, gauges)))
+    n = len(linear.mass)
+    factor = scipy.linalg.lu_factor(linear.mass)
+    k, c, b = (scipy.linalg.lu_solve(factor, x) for x in (linear.stiffness, linear.velocity, linear.inputs))
+    zero = np.zeros((n, n))
+    a = np.block([[zero, np.eye(n)], [-k, -c]])
+    drive = np.concatenate([np.zeros_like(b), b])
+    out = np.concatenate([c_y - c_ydd @ k, c_yd - c_ydd @ c], axis=1)
+    through = c_ydd @ b + c_u
+    states = coordinate_signals(structure, point.first)
+    at = np.concatenate([point.y, point.yd])
+    inputs, given = TORQUE, np.asarray(point.u)
+    if not point.first:
+        # u = (a, ω, α): ω becomes a state where it acts, fed by α.
+        acts = [i for i in range(3, 6) if np.abs(drive[:, i]).max() > 1e-12 or np.abs(through[:, i]).max() > 1e-12]
+        m = len(acts)
+        a = np.block([[a, drive[:, acts]], [np.zeros((m, 2 * n + m))]])
+        out = np.concatenate([out, through[:, acts]], axis=1)
+        kept = [0, 1, 2, 6, 7, 8]
+        drive = np.concatenate([drive[:, kept], np.eye(9)[acts][:, [0, 1, 2, 3, 4, 5]]])
+        through = through[:, kept]
+        states += tuple(BASE_RATES[i - 3] for i in acts)
+        at = np.concatenate([at, given[acts]])
+        inputs, given = BASE_INPUTS, given[kept]
+    return StateSpace(
+        a=a,
+        b=drive,
+        c=out,
+        d=through,
+        states=states,
+        inputs=inputs,
+        outputs=output_signals(gauges, point.first),
+        state=at,
+        input=given,
+        output=value,
+        model=structure.kind,
+        motion=name,
+        time=time,
+    )

@@ -1,0 +1,208 @@
+"""Internal loads along the beam by the inertia-force integral; nothing here differentiates a mode shape.
+
+The section at x carries what the particles outboard of it need and do not get: F(x) = −Σ m_k a_k and
+M(x) = −Σ (r_k − r_x) × m_k a_k, and what loads on the outboard part bring besides, with the absolute acceleration (or
+specific force, where gravity acts) a = a_O + α × r + ω × (ω × r) + 2ω × ṙ + r̈ (2020 (4), complete). The beam's share
+of the sum is an integral from x to the tip, as accurate as the quadrature of the energy.
+
+A truncated model (TLAM, FOAM, SFOAM) takes its loads from the positions of its displacement field, which are those of
+the complete energy: its loads differ from its own generalised forces by terms of third order in (q, q̇).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array
+
+import gbeam._jax  # noqa: F401
+from gbeam.beam import Beam
+from gbeam.equations import coefficients
+from gbeam.field import ExactField, ProjectedField, RootedField
+from gbeam.model import Structure
+from gbeam.results import BaseHistory, Floats, Response
+from gbeam.results_loads import Influence, Loads
+
+_BLOCK = 1024  # times per compiled call
+
+
+def _outboard(structure: Structure) -> tuple[Array, Array, Array]:
+    """Stations' points in the field (s − 1,), and what lies outboard: of particles (s, p) kg, of loads (s, l) 1 or m.
+
+    The root is put before the structure's stations: on the base's side of its springs, if it has any.
+    """
+    particles, field = structure.particles, structure.field
+    inner = field.inner if isinstance(field, RootedField) else field
+    assert isinstance(inner, (ProjectedField, ExactField))
+    until = np.asarray(inner.cumulative)
+    first, nodes = structure.first_station, until.shape[1]
+    weight = until[-1]  # the tip is the last point: the whole integral
+    at = until.sum(axis=1)
+    inboard = np.concatenate([np.zeros((1, nodes)), until[first:]])
+    stations = np.concatenate([[0.0], at[first:]])
+    share = 1 - inboard / weight
+    # Of each of the field's points: of a node the share of its panel, of another point all or nothing.
+    whole = at[None, nodes:] >= stations[:, None] - 1e-9 * structure.length
+    outboard = np.concatenate([share, whole], axis=1)
+    mass = outboard[:, np.asarray(particles.station)] * np.asarray(particles.mass)
+    work = structure.applied
+    loaded = np.empty((len(stations), 0)) if work is None else outboard[:, np.asarray(work.station)] * work.weight
+    return jnp.arange(first, len(at)), jnp.asarray(mass), jnp.asarray(loaded)
+
+
+@eqx.filter_jit
+def _sections(structure: Structure, outboard: Any, t: Array, base: Any, q: Array, qd: Array, qdd: Array) -> Any:
+    """Force and moment in base and in section axes, and acceleration, of the sections at times (t, ...)."""
+    points, mass, loaded = outboard
+
+    def everything(q: Array) -> tuple[Array, Array]:
+        positions = structure.field.position(q)[points]
+        return structure.particles.particles(q), jnp.concatenate([jnp.zeros((1, 3)), positions])
+
+    def applied(t: Array, q: Array) -> tuple[Array, Array]:
+        """Forces and moments of the loads outboard of the sections, about the root, (s, 3) each."""
+        work, history = structure.applied, structure.history
+        if work is None or history is None:
+            return jnp.zeros((mass.shape[0], 3)), jnp.zeros((mass.shape[0], 3))
+        r, rotation = structure.field.position(q)[work.station], structure.field.rotation(q)[work.station]
+        axes = jnp.where(work.follows[:, None, None], rotation, jnp.eye(3))
+        here = history(t)[work.load]
+        force, moment = (jnp.einsum("pij,pj->pi", axes, part) for part in (here[:, :3], here[:, 3:]))
+        return loaded @ force, loaded @ (jnp.cross(r, force) + moment)
+
+    def at(t: Array, a_WO_B: Array, w: Array, al: Array, q: Array, qd: Array, qdd: Array) -> tuple[Array, ...]:
+        def moving(q: Array, qd: Array) -> Any:
+            return jax.jvp(everything, (q,), (qd,))
+
+        (r, rd), (_, rdd) = jax.jvp(moving, (q, qd), (qd, qdd))
+
+        def absolute(r: Array, rd: Array, rdd: Array) -> Array:
+            turning = jnp.cross(al, r) + jnp.cross(w, jnp.cross(w, r) + 2 * rd)
+            return a_WO_B + turning + rdd
+
+        (particle, station), a = r, [absolute(*each) for each in zip(r, rd, rdd, strict=True)]
+        outer_force, outer_moment = applied(t, q)
+        force = outer_force - mass @ a[0]
+        # Σ m (r − r_x) × a = Σ m r × a − r_x × Σ m a
+        moment = outer_moment - mass @ jnp.cross(particle, a[0]) - jnp.cross(station, force)
+        rotation = jnp.concatenate([jnp.eye(3)[None], structure.field.rotation(q)[points]])
+        inward = jnp.swapaxes(rotation, 1, 2)
+        return force, moment, jnp.einsum("sij,sj->si", inward, force), jnp.einsum("sij,sj->si", inward, moment), a[1]
+
+    return jax.vmap(at)(t, base[0], base[1], base[2], q, qd, qdd)
+
+
+def section_loads(
+    structure: Structure,
+    beam: Beam,
+    base: BaseHistory,
+    q: Floats,
+    qd: Floats,
+    qdd: Floats,
+    time: Floats | None = None,
+) -> Loads:
+    """Return the loads at the root and the structure's stations for given motions of beam and base.
+
+    Parameters
+    ----------
+    structure : Structure
+    beam : Beam
+        The one that the structure was assembled from: its section tells the stress.
+    base : BaseHistory
+        (t, 3) each.
+    q, qd, qdd : (t, n)
+        Coordinates, their rates and accelerations; zeros of the last two for a relative equilibrium.
+    time : (t,), optional
+        s; needed where loads act on the beam that change with time, else zero.
+
+    Returns
+    -------
+    Loads
+    """
+    outboard = _outboard(structure)
+    when = np.zeros(len(q)) if time is None else time
+    given = tuple(np.asarray(x) for x in (when, base.a_WO_B, base.w_WB_B, base.al_WB_B, q, qd, qdd))
+    count = len(given[0])
+    size = min(_BLOCK, max(count, 1))
+    padded = [np.concatenate([x, np.repeat(x[-1:], -count % size, axis=0)]) for x in given]
+    pieces = []
+    for i in range(0, len(padded[0]), size):
+        part = [jnp.asarray(x[i : i + size]) for x in padded]
+        pieces.append([np.asarray(x) for x in _sections(structure, outboard, part[0], part[1:4], *part[4:])])
+    force, moment, section_force, section_moment, a = (
+        np.concatenate([piece[k] for piece in pieces])[:count] for k in range(5)
+    )
+    stations = np.append(0.0, np.asarray(structure.stations))
+    here = beam.section.at(stations)
+    bending = np.abs(section_moment[..., 1]) * here.fibre_z / here.inertia_y
+    bending = bending + np.abs(section_moment[..., 2]) * here.fibre_y / here.inertia_z
+    stress = section_force[..., 0] / here.area + bending
+    return Loads(stations, force, moment, section_force, section_moment, stress, a)
+
+
+def internal_loads(
+    structure: Structure,
+    beam: Beam,
+    response: Response,
+    *,
+    hub_radius: float | None = None,
+    hub_inertia: float | None = None,
+) -> Loads:
+    """Return the internal loads of a response.
+
+    Parameters
+    ----------
+    structure : Structure
+        Of the response's model; its stations may be others than the response's.
+    beam : Beam
+    response : Response
+    hub_radius : float, optional
+        From the hub's axis, z, to the root, m: with it the torque that a slew needs is told.
+    hub_inertia : float, optional
+        kg m².
+
+    Returns
+    -------
+    Loads
+    """
+    loads = section_loads(structure, beam, response.base, response.q, response.qd, response.qdd, response.time)
+    if hub_radius is None:
+        return loads
+    torque = loads.root_moment[:, 2] + hub_radius * loads.root_force[:, 1]
+    inertia = np.nan if hub_inertia is None else hub_inertia
+    return Loads(
+        **{**vars(loads), "hub_torque": torque, "drive_torque": torque + inertia * response.base.al_WB_B[:, 2]}
+    )
+
+
+def influence(structure: Structure) -> Influence:
+    """Return the static answer of the straight beam at rest to uniform and linearly growing acceleration fields.
+
+    The fields are those of the base itself: translation, angular acceleration about z and y (a_y = α_z x, a_z = −α_y x)
+    and a centripetal field (a_x = −ω² x), so that the answer holds for any model, section and bodies.
+    """
+    c = coefficients(structure.system)
+    stiffness = np.asarray(c.stiffness)
+    uniform = np.asarray(c.f_a)
+    linear = np.stack([-np.asarray(c.f_ww)[2, 2], np.asarray(c.f_al)[2], -np.asarray(c.f_al)[1]])
+    per_q = np.asarray(jax.jacfwd(structure.displacement)(jnp.zeros(structure.size)))[-1]
+
+    def tip(load: Floats) -> Floats:
+        return np.asarray(np.diagonal(per_q @ np.linalg.solve(stiffness, load.T)))
+
+    particles = structure.particles
+    mass, x = np.asarray(particles.mass), np.asarray(particles.particles(jnp.zeros(structure.size)))[:, 0]
+    first, second = float(mass @ x), float(mass @ x**2)
+    across = np.array([0.0, 1.0, 1.0])
+    return Influence(
+        tip_uniform=tip(uniform),
+        tip_linear=tip(linear),
+        force_uniform=np.full(3, -float(mass.sum())),
+        force_linear=np.full(3, -first),
+        moment_uniform=-first * across,
+        moment_linear=-second * across,
+    )

@@ -1,0 +1,117 @@
+"""Where a machine cannot make a flight's load: when, by how much, and the smallest change that would help."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+from numpy.typing import NDArray
+
+from gbeam.motion.blocks import in_blocks
+from gbeam.motion.derivative import with_rate
+from gbeam.motion.hold import REACH
+from gbeam.motion.profile import Profile, sampled
+from gbeam.motion.record import STANDARD_GRAVITY
+from gbeam.motion.target import LEAST_IDLE, Target
+from gbeam.results import Shortfall
+
+_GRID = 0.002  # s
+_JOINED = 0.1  # s: two stretches of one kind nearer than this are told as one
+_ROUNDING = 1e-6
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+def shortfalls(target: Target, arm: float) -> tuple[Shortfall, ...]:
+    """Find where the flight's load is below idle, across the beam below gravity, or turns too sharply.
+
+    The last is theory.md A1: at a maximum, and at the corner before a plateau, the horizontal load a can be followed
+    without a jump of the yaw rate only where −ä <= a²/R. A corner of slope change j rounded over T has −ä = 2j/T.
+
+    Parameters
+    ----------
+    target : Target
+    arm : float
+        R, m.
+    """
+    first, last = (float(end) for end in target.span)
+    time = sampled(first, last, _GRID)
+    flight, (size, _, turn), held = in_blocks(_seen, target, time)
+    idle, gravity, width = float(target.idle), float(target.gravity), 2 * float(target.reach)
+    found: list[Shortfall] = []
+    total, across = np.linalg.norm(flight, axis=-1), np.linalg.norm(flight[:, 1:], axis=-1)
+    found += _below(time, total, idle, "below idle", lambda least: _idle_remedy(least, gravity))
+    if gravity:
+        found += _below(time, across, REACH, "across below gravity", _across_remedy)
+    allowed = size**2 / arm
+    found += _too_sharp(time, -turn, allowed, (-turn > allowed * (1 + _ROUNDING)) & ~held, width)
+    return tuple(sorted(found, key=lambda it: it.start))
+
+
+@eqx.filter_jit
+def _seen(target: Target, time: Array) -> tuple[Array, tuple[Array, Array, Array], Array]:
+    """The flight's load; size of the horizontal target with two rates; whether it is held."""
+    return target.flight(time), size_and_rates(target.load, target.gravity, time), target.held(time)
+
+
+def size_and_rates(
+    load: Profile, gravity: Float[Array, ""], time: Float[Array, "*t"]
+) -> tuple[Float[Array, "*t"], Float[Array, "*t"], Float[Array, "*t"]]:
+    """Horizontal load H = sqrt(f² − γ²), m/s², with its first and second time derivatives."""
+
+    def size(t: Array) -> Array:
+        return jnp.sqrt(jnp.maximum(jnp.sum(load(t) ** 2, axis=-1) - gravity**2, 1e-12))
+
+    (value, rate), (_, second) = with_rate(lambda t: with_rate(size, t), time)
+    return value, rate, second
+
+
+def _idle_remedy(least: float, gravity: float) -> str:
+    floor = LEAST_IDLE * STANDARD_GRAVITY if gravity else 0.0
+    if least > max(floor, 0.02 * STANDARD_GRAVITY):
+        return f'idle = "{np.floor(100 * least / STANDARD_GRAVITY) / 100:.2f} g" would follow it'
+    lowest = f"below {LEAST_IDLE} g" if gravity else "so near to zero"
+    return f"no machine follows a load {lowest}: it is held"
+
+
+def _across_remedy(least: float) -> str:
+    missing, reach = (REACH - least) / STANDARD_GRAVITY, REACH / STANDARD_GRAVITY
+    return f"add {missing:.2g} g across the beam, or track a part of the flight with {reach:.3g} g there"
+
+
+def _runs(flags: Flags, time: Floats) -> list[slice]:
+    """Stretches of true flags, those nearer than _JOINED as one."""
+    edges = np.diff(flags.astype(int), prepend=0, append=0)
+    runs: list[slice] = []
+    for start, stop in zip(np.flatnonzero(edges > 0), np.flatnonzero(edges < 0), strict=True):
+        if runs and time[start] - time[runs[-1].stop - 1] < _JOINED:
+            runs[-1] = slice(runs[-1].start, int(stop))
+        else:
+            runs.append(slice(int(start), int(stop)))
+    return runs
+
+
+def _below(time: Floats, load: Floats, least: float, reason: str, remedy: Callable[[float], str]) -> list[Shortfall]:
+    found = []
+    for run in _runs(load < least * (1 - _ROUNDING), time):
+        worst = run.start + int(np.argmin(load[run]))
+        wanted, possible = load[worst] / STANDARD_GRAVITY, least / STANDARD_GRAVITY
+        start, end, when = float(time[run.start]), float(time[run.stop - 1]), float(time[worst])
+        found.append(Shortfall(start, end, reason, when, float(wanted), float(possible), "g", remedy(load[worst])))
+    return found
+
+
+def _too_sharp(time: Floats, turn: Floats, allowed: Floats, flags: Flags, width: float) -> list[Shortfall]:
+    found = []
+    for run in _runs(flags, time):
+        worst = run.start + int(np.argmax(turn[run] / allowed[run]))
+        needed = width * turn[worst] / allowed[worst]
+        remedy = f'smoothing = "{np.ceil(1e3 * needed):.0f} ms" or more would let it' if width else "give smoothing"
+        start, end, when = float(time[run.start]), float(time[run.stop - 1]), float(time[worst])
+        wanted, possible = float(turn[worst]), float(allowed[worst])
+        found.append(Shortfall(start, end, "turns sharply", when, wanted, possible, "m/s^4", remedy))
+    return found

@@ -1,0 +1,137 @@
+"""Uniform quintic B-splines: four times continuously differentiable, each piece of six coefficients."""
+
+from __future__ import annotations
+
+from math import comb, factorial
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+import scipy.linalg
+from jaxtyping import Array, Float
+from numpy.typing import NDArray
+
+import gbeam._jax  # noqa: F401
+
+DEGREE = 5
+PIECE = DEGREE + 1  # coefficients that one piece depends on
+
+Floats = NDArray[np.float64]
+
+
+def _matrix() -> Floats:
+    """Row k: coefficient of xᵏ in each of the six basis functions over one piece, 0 <= x < 1.
+
+    From B(u) = Σ_j (−1)^j C(6, j) (u − j)₊⁵ / 5!, basis i being B(x + 5 − i).
+    """
+    matrix = np.zeros((PIECE, PIECE))
+    for i in range(PIECE):
+        for j in range(PIECE - i):
+            for k in range(PIECE):
+                offset = DEGREE - i - j
+                matrix[k, i] += (-1) ** j * comb(PIECE, j) * comb(DEGREE, k) * offset ** (DEGREE - k)
+    return matrix / factorial(DEGREE)
+
+
+_BASIS = _matrix()
+
+
+class Spline(eqx.Module):
+    """k quintic splines with uniform knots from `start`, `step` s apart; its last piece goes on beyond the end.
+
+    Parameters
+    ----------
+    start, step : float
+        s.
+    coefficients : array, shape (pieces + 5, k)
+    """
+
+    start: Float[Array, ""]
+    step: Float[Array, ""]
+    coefficients: Float[Array, "n k"]
+
+    def __call__(self, t: Float[Array, "*t"]) -> Float[Array, "*t k"]:
+        """Values at times `t` (s)."""
+        u = (t - self.start) / self.step
+        piece = jnp.clip(jnp.floor(u).astype(int), 0, self.coefficients.shape[0] - PIECE)
+        x = u - piece
+        powers = jnp.stack([x**k for k in range(PIECE)], axis=-1)
+        near = self.coefficients[piece[..., None] + jnp.arange(PIECE)]
+        return jnp.sum((powers @ _BASIS)[..., None] * near, axis=-2)
+
+
+class Grid:
+    """Knots over a span, and the weights that give a spline and its rates at points within its pieces.
+
+    Parameters
+    ----------
+    first, last : float
+        s.
+    step : float
+        Largest distance of the knots, s.
+    points : array
+        Places within every piece, 0 to 1.
+    """
+
+    def __init__(self, first: float, last: float, step: float, points: Floats) -> None:
+        self.pieces = max(int(np.ceil((last - first) / step)), 1)
+        self.start, self.step = first, (last - first) / self.pieces
+        self.size = self.pieces + DEGREE
+        self.points = points
+        self.time = (first + self.step * (np.arange(self.pieces)[:, None] + points)).ravel()
+        self.first = np.repeat(np.arange(self.pieces), points.size)  # first coefficient that acts there
+
+    def weights(self, order: int) -> Floats:
+        """Weights (times, 6) of the `order`-th time derivative."""
+        k = np.arange(order, PIECE)
+        factor = np.array([factorial(int(n)) / factorial(int(n) - order) for n in k])
+        rows = (factor * self.points[:, None] ** (k - order)) @ _BASIS[order:] / self.step**order
+        return np.tile(rows, (self.pieces, 1))
+
+    def spline(self, coefficients: Floats) -> Spline:
+        """The spline of these coefficients."""
+        return Spline(jnp.asarray(self.start), jnp.asarray(self.step), jnp.asarray(coefficients))
+
+    def fit(self, values: Floats) -> Floats:
+        """Coefficients (n, k) of the least-squares fit to values (times, k)."""
+        w = self.weights(0)
+        columns = []
+        for column in values.T:
+            normal = Normal(self.size, 1)
+            normal.add(self.first, w[:, None, :], column[:, None])
+            columns.append(normal.solve(1e-14))
+        return np.stack(columns, axis=1)
+
+
+class Normal:
+    """Normal equations of a linear least-squares problem whose rows each act on six neighbouring coefficients.
+
+    Parameters
+    ----------
+    size : int
+        Number of coefficients of one function.
+    functions : int
+        How many functions are sought at once; unknowns run through them first.
+    """
+
+    def __init__(self, size: int, functions: int) -> None:
+        self.functions, self.block = functions, PIECE * functions
+        self.band = np.zeros((self.block, size * functions))  # upper form of scipy.linalg.solveh_banded, turned over
+        self.right = np.zeros(size * functions)
+
+    def add(self, first: NDArray[np.int64], rows: Floats, values: Floats) -> None:
+        """Add rows (times, m, 6·functions) with right-hand sides (times, m), acting from coefficient `first` on."""
+        across = rows.swapaxes(1, 2)
+        square, side = across @ rows, (across @ values[..., None])[..., 0]
+        at = first * self.functions
+        n = self.right.size
+        for i in range(self.block):
+            self.right += np.bincount(at + i, side[:, i], n)
+            for d in range(self.block - i):
+                self.band[d] += np.bincount(at + i, square[:, i, i + d], n)
+
+    def solve(self, damping: float) -> Floats:
+        """Solve with `damping` times the largest diagonal entry added to the diagonal."""
+        band = self.band.copy()
+        band[0] += damping * band[0].max()
+        return np.asarray(scipy.linalg.solveh_banded(band, self.right, lower=True, check_finite=False))

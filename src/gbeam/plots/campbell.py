@@ -1,0 +1,50 @@
+"""Campbell diagram: frequencies against speed, engine orders, and where they meet."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from gbeam.plots.style import REFERENCE, colour, heading, legend, panels, styled
+from gbeam.results_modal import Campbell
+
+_LINES = {"x": ":", "y": "-", "z": "--"}
+
+
+@styled
+def plot_campbell(diagram: Campbell, title: str) -> Figure:
+    """Plot a Campbell diagram.
+
+    Parameters
+    ----------
+    diagram : Campbell
+    title : str
+        Of the scenario.
+
+    Returns
+    -------
+    Figure
+        One line per mode, dashed where it moves the beam along z; grey lines are multiples of the speed, circles the
+        crossings, a vertical line the critical speed.
+    """
+    subject = f"{diagram.motion}: frequencies about the equilibrium, {diagram.model}"
+    figure, (panel,) = panels(heading(title, subject, []), 1, heights=[2.4])
+    panel.set_xlabel("hub rate, rad/s")
+    panel.set_ylabel("frequency, Hz")
+    for k, direction in enumerate(diagram.direction):
+        label = f"mode {k + 1}, {direction}"
+        panel.plot(diagram.speed, diagram.frequency[:, k], _LINES[direction], color=colour(k), label=label)
+    top = 1.05 * np.nanmax(diagram.frequency)
+    for order in diagram.orders:
+        line = order * diagram.speed / (2 * np.pi)
+        panel.plot(diagram.speed, line, color="0.6", lw=0.7, zorder=1)
+        inside = np.flatnonzero(line <= top)
+        if inside.size:
+            panel.annotate(f"{order}×", (diagram.speed[inside[-1]], line[inside[-1]]), color="0.4", fontsize=8)
+    for it in diagram.crossings:
+        panel.plot(it.speed, it.frequency, "o", mfc="none", mec=REFERENCE, ms=4, mew=0.8)
+    if diagram.critical is not None and diagram.critical.value is not None:
+        panel.axvline(diagram.critical.value, color=REFERENCE, lw=0.9, ls="-.", label=diagram.critical.kind)
+    panel.set_ylim(0, top)
+    legend(panel)
+    return figure

@@ -1,0 +1,232 @@
+"""Response over time: closed forms of the oscillator, honest error estimates, outcomes and warnings."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from gbeam import (
+    Flight,
+    HubRate,
+    HubTorque,
+    InputError,
+    ResponseSettings,
+    Sine,
+    SmoothStep,
+    Structure,
+    constant,
+    respond,
+    smoothed,
+    stack,
+    table,
+    trapezoid,
+)
+
+from .helpers import EI, LENGTH, LINE, OMEGA, made, strip
+
+HONEST = 3.0  # factor within which an error estimate brackets the error
+PERIOD = 2 * np.pi / OMEGA
+RAMP = table([0.0, 0.002, 1.0], [0.0, 50.0, 50.0])  # m/s², a kick of 0.07 periods
+
+
+def flight(acceleration: Any) -> Flight:
+    return Flight(stack(z=acceleration))
+
+
+def run(structure: Structure, motion: Any, duration: float, **how: Any) -> Any:
+    return respond(structure, motion, ResponseSettings(duration=duration, **how))
+
+
+# --- physics
+
+
+def test_steady_load_leaves_the_beam_at_rest() -> None:
+    """It starts in relative equilibrium, at any start."""
+    result = run(strip(), flight(constant(50.0)), 0.2, start=3.0)
+    assert result.outcome == "done" and result.warnings == ()
+    assert (result.time[0], result.time[-1]) == (3.0, pytest.approx(3.2))
+    np.testing.assert_allclose(result.tip[:, 2], -LINE * 50 * LENGTH**4 / (8 * EI), rtol=1e-3)
+    assert np.ptp(result.tip[:, 2]) < 1e-12
+    assert not result.tip[:, 1].any()
+
+
+@pytest.mark.parametrize("ratio", [0.01, 0.05])
+def test_vibration_decays_with_the_damping_ratio(ratio: float) -> None:
+    """Maxima of the first mode about its rest, over ten periods: ln(a₀/a₁₀) = 10 · 2πζ/√(1 − ζ²)."""
+    structure = strip("FOAM", (0, 0, 1), ratio)
+    result = run(structure, flight(RAMP), 12 * PERIOD, integrator="gauss", step=PERIOD / 400)
+    q = result.q[:, 0] - steady_first_mode(structure)
+    turning = np.flatnonzero((np.diff(np.sign(np.diff(q))) < 0) & (result.time[1:-1] > 0.002)) + 1
+    peaks = q[turning]
+    measured = np.log(peaks[0] / peaks[10]) / 10
+    assert measured == pytest.approx(2 * np.pi * ratio / np.sqrt(1 - ratio**2), rel=2e-3)
+    assert np.diff(result.time[turning]).mean() == pytest.approx(PERIOD / np.sqrt(1 - ratio**2), rel=1e-3)
+
+
+def steady_first_mode(structure: Structure) -> float:
+    return float(run(structure, flight(constant(50.0)), 0.01, step=0.005).q[0, 0])
+
+
+def test_undamped_ramp_response_is_the_oscillators() -> None:
+    """q = q_s (t − sin ωt/ω)/T on the ramp: one mode, against the closed form."""
+    structure = strip("FOAM", (0, 0, 1))
+    steady = steady_first_mode(structure)
+    result = run(structure, flight(table([0.0, 1.0], [0.0, 50.0])), 0.3, integrator="gauss")
+    wanted = steady * (result.time - np.sin(OMEGA * result.time) / OMEGA)
+    np.testing.assert_allclose(result.q[:, 0], wanted, atol=1e-4 * np.abs(wanted).max())
+
+
+def test_truncated_model_is_linear_in_the_load() -> None:
+    one, two = (run(strip(), flight(trapezoid(a, 100 * a, 0.0, 0.05)), 0.1, step=1e-3) for a in (10.0, 20.0))
+    np.testing.assert_allclose(two.q, 2 * one.q, atol=1e-15)
+    np.testing.assert_allclose(two.tip[:, 0], 4 * one.tip[:, 0], atol=1e-15)  # the foreshortening
+
+
+def test_hub_angle_is_the_integral_of_its_rate() -> None:
+    """A slew of 3 rad/s in 1 s turns by 1.5 rad, then by 3 rad each second."""
+    result = run(strip("FOAM", (0, 2, 0)), HubRate(0.5, SmoothStep(3.0, 1.0)), 2.0)
+    assert result.environment == "hub" and result.hub is not None
+    assert result.hub.angle[-1] == pytest.approx(4.5, abs=1e-6)
+    assert result.hub.rate[-1] == pytest.approx(3.0)
+    assert np.isnan(result.hub.torque).all()
+    np.testing.assert_allclose(result.base.a_WO_B[-1], [-0.5 * 9, 0, 0], atol=1e-12)
+
+
+def test_free_hub_turns_as_a_rigid_body_would() -> None:
+    """Against τ = J θ̈ of hub and beam together: the strip is 10⁵ times lighter than what turns it."""
+    inertia = 50.0 + LINE * ((0.5 + LENGTH) ** 3 - 0.5**3) / 3
+    result = run(strip("FOAM", (0, 2, 0)), HubTorque(0.5, 50.0, Sine(20.0, 2.0)), 2.0, step=2e-3)
+    assert result.hub is not None
+    wanted = 20 / inertia * (2 / (2 * np.pi)) * (result.time - np.sin(np.pi * result.time) / np.pi)
+    np.testing.assert_allclose(result.hub.angle, wanted, atol=1e-5 * wanted.max())
+    np.testing.assert_allclose(result.hub.torque, 20 * np.sin(np.pi * result.time), atol=1e-9)
+
+
+# --- steps and their errors
+
+
+@pytest.mark.parametrize(
+    ("integrator", "how"),
+    [
+        ("newmark", {"tolerance": 1e-3}),
+        ("newmark", {"tolerance": 1e-5}),
+        ("newmark", {"step": 5e-4, "tolerance": 1.0}),
+        ("gauss", {"tolerance": 1e-5}),
+        ("generalized-alpha", {"tolerance": 1e-3, "parameters": {"rho_inf": 0.8}}),
+        ("hht", {"step": 5e-4, "tolerance": 1.0}),
+    ],
+    ids=["newmark loose", "newmark tight", "newmark given step", "gauss", "generalised-α", "hht given step"],
+)
+def test_error_estimate_brackets_the_error(integrator: str, how: dict[str, Any]) -> None:
+    """The largest error of the tip over its largest size, against a step far below."""
+    load = flight(smoothed(trapezoid(50.0, 1000.0, 0.03, 0.1), 0.02))
+    found = run(strip(), load, 0.4, integrator=integrator, **how)
+    truth = run(strip(), load, 0.4, integrator="gauss", step=found.time[1] / 64)
+    error = np.abs(found.tip - truth.tip[::64]).max() / np.abs(truth.tip).max()
+    assert error / HONEST < found.error_estimate < error * HONEST
+    assert found.error_estimate <= how["tolerance"]
+
+
+def test_automatic_steps_come_back_to_the_common_grid() -> None:
+    """500 or more steps over the duration whatever the refinement; extremes are of every step computed."""
+    loose, tight = (run(strip(), flight(RAMP), 0.3, tolerance=t) for t in (1e-2, 1e-5))
+    np.testing.assert_allclose(loose.time, tight.time, rtol=1e-12)
+    assert len(loose.time) > 500 and tight.steps > 4 * loose.steps
+    assert loose.step == pytest.approx(0.3 / loose.steps)
+    assert tight.peaks.max_abs[2] >= np.abs(tight.tip[:, 2]).max()
+
+
+def test_given_step_is_kept_and_warned_about() -> None:
+    coarse = run(strip(), flight(RAMP), 0.2, step=5e-3)
+    assert coarse.step == pytest.approx(5e-3) and coarse.steps == 40
+    assert coarse.error_estimate > 1e-2
+    assert any("is above the tolerance" in w and "auto" in w for w in coarse.warnings)
+
+
+def test_residual_vibration_is_half_of_peak_to_peak() -> None:
+    """Rest in one, 2·(kick's share) in the other; not a number where not asked for."""
+    structure = strip("FOAM", (0, 0, 1))
+    settings = dict(integrator="gauss", step=PERIOD / 200)
+    found = run(structure, flight(RAMP), 5 * PERIOD, residual_from=2 * PERIOD, **settings)
+    after = found.tip[found.time >= 2 * PERIOD, 2]
+    assert found.peaks.residual_amplitude[2] == pytest.approx(np.ptp(after) / 2, rel=1e-12)
+    share = np.sin(OMEGA * 0.001) / (OMEGA * 0.001)  # of a step, by a ramp of 2 ms
+    assert found.peaks.residual_amplitude[2] == pytest.approx(abs(found.tip[:, 2].mean()) * share, rel=2e-2)
+    assert np.isnan(run(structure, flight(RAMP), PERIOD, **settings).peaks.residual_amplitude).all()
+
+
+@pytest.mark.slow
+def test_adaptive_needs_no_corners_in_the_load() -> None:
+    load = flight(smoothed(trapezoid(50.0, 1000.0, 0.03, 0.1), 0.02))
+    found = run(strip(), load, 0.3, integrator="adaptive", tolerance=1e-4)
+    gauss = run(strip(), load, 0.3, integrator="gauss", tolerance=1e-7)
+    assert found.outcome == "done" and np.isnan(found.step)
+    np.testing.assert_allclose(found.tip, gauss.tip, atol=1e-4 * np.abs(gauss.tip).max())
+
+
+def test_progress_is_told() -> None:
+    told: list[tuple[str, float]] = []
+    settings = ResponseSettings(duration=0.1, step=1e-3)
+    respond(strip(), flight(RAMP), settings, progress=lambda what, share: told.append((what, share)))
+    assert {what for what, _ in told} == {"integrating", "checking with half the step"}
+    assert told[-1][1] == 1.0
+
+
+# --- outcomes and warnings
+
+
+def test_tlam_is_warned_about_beyond_its_divergence_only() -> None:
+    stiff = 1.875104068711961**2 * np.sqrt(7e10 * 0.004 * 0.02**3 / 12 / (LINE * LENGTH**4))  # bending along y
+    below, beyond = (
+        run(strip("TLAM", (0, 1, 0)), HubRate(0.1, constant(share * stiff)), 0.1, step=1e-3) for share in (0.99, 1.01)
+    )
+    assert below.outcome == beyond.outcome == "done"
+    assert below.warnings == ()
+    (warning,) = (w for w in beyond.warnings if "definite" in w)
+    assert f"turns at {1.01 * stiff:.4g} rad/s" in warning and "not to be trusted" in warning
+
+
+def test_divergence_stops_the_run_where_the_model_ends() -> None:
+    result = run(strip("TLAM", (0, 2, 0)), HubRate(0.1, SmoothStep(4000.0, 0.5)), 1.0)
+    assert result.outcome == "diverged"
+    assert "TLAM's stiffness is not positive definite" in result.message and "FOAM or exact" in result.message
+    assert result.time[-1] < 1.0
+    assert np.isfinite(result.tip).all()
+
+
+def test_large_deflection_is_warned_about_in_second_order_models_only() -> None:
+    """Above a tenth of the length, where about 0.35 (v/L)² is lost: 2009, all cases of the exact references."""
+    heavy = flight(constant(1600.0))
+    foam = run(strip(), heavy, 0.02, step=1e-3)
+    (warning,) = (w for w in foam.warnings if "of the length" in w)
+    share = np.abs(foam.tip[:, 2]).max() / LENGTH
+    assert f"{share:.1%}" in warning and f"{0.35 * share**2:.1%}" in warning and "exact" in warning
+    small = run(strip(), flight(constant(600.0)), 0.02, step=1e-3)
+    assert small.warnings == ()
+
+
+def test_gauss_is_refused_for_what_is_not_linear_on_a_given_base() -> None:
+    for structure, motion in (
+        (strip("CFOAM"), flight(RAMP)),
+        (strip("FOAM", (0, 2, 0)), HubTorque(0.5, 50.0, Sine(20.0, 2.0))),
+    ):
+        with pytest.raises(InputError, match="needs a linear model on a prescribed base"):
+            run(structure, motion, 0.1, integrator="gauss")
+
+
+def test_unknown_integrator_is_refused() -> None:
+    with pytest.raises(InputError) as caught:
+        run(strip(), flight(RAMP), 0.1, integrator="euler")
+    assert caught.value.where == "response.integrator" and "'euler'" in caught.value.problem
+
+
+def test_result_carries_what_plots_need() -> None:
+    result = run(strip(), flight(RAMP), 0.1, step=1e-3, tolerance=1.0)
+    n = len(result.time)
+    assert result.displacement.shape == (n, 1, 3) and result.q.shape == result.qd.shape == (n, 2)
+    np.testing.assert_allclose(result.base.a_WO_B[:, 2], RAMP(result.time))
+    assert (result.model, result.environment, result.integrator, result.step) == ("FOAM", "flight", "newmark", 1e-3)
+    assert result.hub is None and result.axes is None
+    assert made("x", result.time, result.tip).tip.shape == (n, 3)

@@ -1,0 +1,107 @@
+"""Relative equilibrium: closed forms while deflections are small, the heavy elastica when they are not."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from scipy.integrate import solve_bvp
+
+from gbeam import Beam, ComputationError, Material, Model, PointMass, Section, Structure, assemble, equilibrium
+from gbeam.motion import Base
+
+from .helpers import EA, EI, LENGTH, LINE, SECTION, strip
+
+MODAL = 3e-5  # ten modes, relative
+ELASTICA = 1e-6  # of the length
+
+
+def translating(x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Base:
+    return Base(jnp.array([x, y, z]), jnp.zeros(3), jnp.zeros(3))
+
+
+def tip(structure: Structure, base: Base) -> np.ndarray:
+    return np.asarray(structure.displacement(equilibrium(structure, base))[-1])
+
+
+def test_uniform_acceleration_is_the_textbooks_cantilever() -> None:
+    """w L⁴/8EI across, w L²/2EA along; the load is against the acceleration."""
+    a = 10.0
+    structure = strip("FOAM", (10, 0, 10))
+    np.testing.assert_allclose(tip(structure, translating(z=a))[2], -LINE * a * LENGTH**4 / (8 * EI), rtol=MODAL)
+    # the sines converge to the linear tip displacement as 1/k²
+    np.testing.assert_allclose(tip(structure, translating(x=a))[0], -LINE * a * LENGTH**2 / (2 * EA), rtol=5e-3)
+
+
+def test_tip_mass_in_acceleration_is_a_tip_force() -> None:
+    """F L³/3EI from 2 kg, and F x²(3L − x)/6EI along the beam: an exact cubic in the exact model's polynomials."""
+    x = np.array([0.1, 0.2])
+    beam = Beam(LENGTH, SECTION, Material(1e-6, 7e10), [PointMass(LENGTH, 2.0)])
+    structure = assemble(beam, Model("exact", 1, 0, 3), x)
+    force, at = 2.0 * 1e-4, np.append(x, LENGTH)  # tiny, so that nothing is large
+    found = structure.displacement(equilibrium(structure, translating(z=1e-4)))
+    np.testing.assert_allclose(found[:, 2], -force * at**2 * (3 * LENGTH - at) / (6 * EI), rtol=1e-8)
+
+
+def test_linear_models_are_linear() -> None:
+    structure = strip()
+    one, two = (equilibrium(structure, translating(z=a)) for a in (7.0, 14.0))
+    np.testing.assert_allclose(two, 2 * one, rtol=1e-12)
+
+
+def test_small_loads_do_not_tell_the_models_apart() -> None:
+    found = [tip(strip(kind, (1, 0, 5)), translating(x=0.3, z=1.0))[2] for kind in ("FOAM", "CFOAM", "exact")]
+    np.testing.assert_allclose(found, found[0], rtol=2e-5)
+
+
+@cache
+def heavy_beam(counts: tuple[int, int, int]) -> Structure:
+    """EI = 1 N m², ρA = 1 kg/m, L = 1 m, hardly extensible: the acceleration is the load parameter w L³/EI."""
+    beam = Beam(1.0, Section.general(1.0, 1e-8, 1e-8), Material(1.0, 1e8))
+    return assemble(beam, Model("exact", *counts))
+
+
+def heavy_elastica(load: float) -> np.ndarray:
+    """Tip (x, y) under a dead uniform load along +y: θ'' = −w(1 − s) cos θ, θ(0) = 0, θ'(1) = 0."""
+
+    def right(s: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return np.stack([y[1], -load * (1 - s) * np.cos(y[0]), np.cos(y[0]), np.sin(y[0])])
+
+    def ends(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        return np.array([a[0], b[1], a[2], a[3]])
+
+    s = np.linspace(0, 1, 201)
+    guess = np.stack([np.tanh(load * s / 4), 0 * s, s, 0 * s])
+    found = solve_bvp(right, ends, s, guess, tol=1e-10, max_nodes=100_000)
+    assert found.success
+    return found.y[2:, -1]
+
+
+@pytest.mark.parametrize("load", [1.0, 10.0, 40.0])
+def test_exact_model_is_the_heavy_elastica(load: float) -> None:
+    """At 40 the tip has all but turned into the load."""
+    x, y = heavy_elastica(load)
+    np.testing.assert_allclose(tip(heavy_beam((1, 10, 0)), translating(y=-load)), [x - 1, y, 0], atol=ELASTICA)
+
+
+def test_beam_hangs_straight_and_stretched() -> None:
+    found = tip(heavy_beam((1, 10, 0)), translating(x=-40.0))
+    np.testing.assert_allclose(found, [40.0 / 2e8, 0, 0], atol=1e-11)
+
+
+def test_first_order_model_stiffens_in_tension_and_softens_in_compression() -> None:
+    """Against Euler's column of distributed weight: FOAM loses stiffness at w L³/EI = 7.837 (Greenhill), not before."""
+    beam = Beam(1.0, Section.general(1.0, 1e-8, 1e-8), Material(1.0, 1e8))
+    foam = assemble(beam, Model("FOAM", 0, 8, 0))
+    sideways = [tip(foam, translating(x=a, y=-1e-3))[1] for a in (-5.0, 0.0, 5.0, 7.8)]
+    assert sideways[0] < sideways[1] < sideways[2] < sideways[3]
+    assert sideways[3] > 100 * sideways[1]
+    assert tip(foam, translating(x=7.87, y=-1e-3))[1] < 0  # beyond, the answer is not an equilibrium one can stand in
+
+
+def test_no_equilibrium_is_an_error_that_says_how_far_it_got() -> None:
+    with pytest.raises(ComputationError, match=r"no relative equilibrium beyond 0 of the load") as caught:
+        equilibrium(strip(), translating(z=np.nan))
+    assert caught.value.outcome == "not converged"

@@ -1,0 +1,56 @@
+"""Modes followed through a true crossing, and the crossings with multiples of the speed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gbeam import InputError, Model, assemble
+from gbeam.analysis import campbell, critical_speed_map, modes
+from gbeam.motion import Flight, HubRate, constant, stack
+
+from .beams import HUB, HUB_2009, beam_2009, slender
+
+
+def test_a_true_crossing_is_followed():
+    """Flap stiffens with speed and passes the chord, which is stiffer at rest and does not couple to it."""
+    structure = assemble(slender(1e3, chord=2.0), Model("FOAM", 0, 4, 4))
+    found = campbell(structure, HUB, end=12.0, count=24, modes=4, orders=(1, 5))
+    assert found.direction == ("z", "y", "z", "y")
+    gap = found.frequency[:, 1] - found.frequency[:, 0]
+    assert gap[0] > 0 > gap[-1]
+    assert found.mac.min() > 0.99
+    # Each track alone, by the model that has its direction only.
+    for track, counts in ((0, (0, 0, 4)), (1, (0, 4, 0))):
+        alone = modes(assemble(slender(1e3, chord=2.0), Model("FOAM", *counts)), HubRate(0.0, constant(12.0)), 0.0)
+        assert found.frequency[-1, track] == pytest.approx(alone.frequency[0], rel=1e-9)
+
+
+def test_engine_orders():
+    structure = assemble(slender(1e3, chord=2.0), Model("FOAM", 0, 2, 4))
+    found = campbell(structure, HUB, end=6.0, count=12, modes=2, orders=(2, 3))
+    assert found.crossings
+    for it in found.crossings:
+        assert it.frequency == pytest.approx(it.order * it.speed / (2 * np.pi), rel=1e-12)
+        there = modes(structure, HubRate(0.0, constant(it.speed)), 0.0)
+        assert np.abs(there.frequency / it.frequency - 1).min() < 1e-8
+
+
+def test_it_ends_at_the_critical_speed():
+    structure = assemble(beam_2009(), Model("TLAM", 0, 3, 0))
+    found = campbell(structure, HUB_2009, end=5.0, count=10, modes=2)
+    assert found.critical is not None and found.critical.value == pytest.approx(2.91074, abs=1e-5)
+    assert found.speed[-1] < found.critical.value and found.frequency[-1, 0] < 1e-2
+
+
+def test_a_flight_has_none():
+    structure = assemble(beam_2009(), Model("TLAM", 0, 3, 0))
+    with pytest.raises(InputError, match="gbeam modes"):
+        campbell(structure, Flight(stack(z=constant(9.8))), end=5.0, name="flight")
+
+
+def test_map_falls_with_mass_and_towards_the_tip():
+    """2009 Fig. 9."""
+    found = critical_speed_map(beam_2009(), Model("TLAM", 0, 5, 0), HUB_2009, (0.1, 0.5), (2.0, 5.0, 8.0), 4.0)
+    assert found.speed[:, -1] == pytest.approx([2.6043, 1.9366], abs=1e-4)
+    assert (np.diff(found.speed, axis=1) < 0).all() and (np.diff(found.speed, axis=0) < 0).all()

@@ -1,0 +1,128 @@
+"""The linearisation is the residual's derivative, whatever the model; its exports and reductions keep the answer."""
+
+from __future__ import annotations
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+import pytest
+import scipy.io
+
+from gbeam import InputError, Model, assemble
+from gbeam.analysis import Gauge, balance, linearize, modes, nonlinear_system, truncate
+from gbeam.analysis.operating import linear_matrices, on_base, on_hub, operating_point
+from gbeam.motion import Base, HubRate, HubTorque, constant
+
+from .beams import FREE_2009, HUB_2009, beam_2009, structure_2009
+
+SOFT = structure_2009("SFOAM", 0, 3, mass=0.1, damping=0.01)
+BASE = Base(*(jnp.array(v) for v in ([-2.0, 0.5, 0.3], [0.1, 0.2, 1.5], [0.3, -0.1, 0.2])))
+
+
+def transfer(system, frequency):
+    """Matrix of gains at a circular frequency."""
+    return system.c @ np.linalg.solve(1j * frequency * np.eye(len(system.a)) - system.a, system.b) + system.d
+
+
+@pytest.mark.parametrize("kind", ["TLAM", "FOAM", "CFOAM", "exact"])
+def test_matrices_are_finite_differences(kind):
+    structure = assemble(beam_2009(0.1), Model(kind, 1, 2, 1))
+    q = np.random.default_rng(3).normal(size=4) * [1e-4, 0.1, 0.02, 0.1]
+    point = on_base(structure, BASE, jnp.asarray(q))
+    linear, residual = linear_matrices(point), eqx.filter_jit(point.residual)
+    state = [np.asarray(x) for x in (point.y, point.yd, point.ydd, point.u)]
+    for which, matrix in ((0, linear.stiffness), (1, linear.velocity), (2, linear.mass), (3, -linear.inputs)):
+        for k in range(matrix.shape[1]):
+            h = 1e-4 if which else 1e-6
+            ends = []
+            for sign in (1, -1):
+                moved = [x.copy() for x in state]
+                moved[which][k] += sign * h
+                ends.append(np.asarray(residual(*map(jnp.asarray, moved))))
+            column = (ends[0] - ends[1]) / (2 * h)
+            assert column == pytest.approx(matrix[:, k], rel=1e-6, abs=1e-6 * np.abs(matrix).max())
+
+
+def test_a_free_hub_keeps_its_momentum():
+    point = on_hub(structure_2009("FOAM", 1, 3), FREE_2009, 1.3)
+    linear = linear_matrices(point)
+    assert float(point.u[0]) == pytest.approx(0, abs=1e-9)
+    assert np.abs(linear.stiffness[:, 0]).max() == 0
+
+
+def test_state_space_of_a_free_hub():
+    system = linearize(SOFT, FREE_2009, gauges=[Gauge(0.0, y=0.01)])
+    assert [it.name for it in system.inputs] == ["torque"]
+    assert system.states[0] == ("hub_angle", "rad")
+    # A slow torque turns hub and beam as one rigid body.
+    angle = system.select(outputs=("hub_angle",))
+    rho, length, radius = 2766.7 * 7.2968e-5, 8.0, 0.5
+    inertia = 200 + rho * ((radius + length) ** 3 - radius**3) / 3 + 0.1 * (radius + length) ** 2
+    assert abs(transfer(angle, 1e-3)[0, 0]) == pytest.approx(1 / (inertia * 1e-6), rel=1e-5)
+    # The root moment turns the beam: what the torque leaves after the hub, of which the root force takes its lever.
+    strain, moment = (abs(transfer(system.select(outputs=(n,)), 0.5)[0, 0]) for n in ("strain_1", "root_moment_z"))
+    assert strain == pytest.approx(moment * 0.01 / (6.8952e10 * 8.2189e-9), rel=0.05)
+    with pytest.raises(InputError, match="choose from"):
+        system.select(outputs=("nose",))
+
+
+def test_state_space_of_a_turning_base_has_its_rate():
+    system = linearize(structure_2009("FOAM", 1, 3, mass=0.1, damping=0.01), HUB_2009, rate=2.0)
+    # The rate about x moves nothing in the plane, but the tip's accelerometer feels it.
+    assert [it.name for it in system.states[-2:]] == ["base_rate_x", "base_rate_z"]
+    assert system.a.shape == (10, 10) and system.b.shape == (10, 6)
+    faster = linearize(structure_2009("FOAM", 1, 3, mass=0.1, damping=0.01), HUB_2009, rate=2.0001)
+    stretch = (faster.output - system.output)[0] / 1e-4
+    n = 8
+    slope = system.c[0, :n] @ np.linalg.solve(-system.a[:n, :n], system.a[:n, -1]) + system.c[0, -1]
+    # The root's own acceleration −rΩ² changes as well: an input.
+    slope += (system.c[:1, :n] @ np.linalg.solve(-system.a[:n, :n], system.b[:n]) + system.d[:1])[0, 0] * -2 * 0.5 * 2.0
+    assert stretch == pytest.approx(slope, rel=1e-3)
+
+
+def test_reductions():
+    system = linearize(SOFT, FREE_2009).select(outputs=("tip_y", "hub_angle"))
+    small = truncate(system, 2)
+    assert len(small.a) == 4  # turning, and one vibration
+    assert transfer(small, 1.0) == pytest.approx(transfer(system, 1.0), rel=2e-3)
+    balanced, hankel = balance(system, 4)
+    assert len(balanced.a) == 6 and (np.diff(hankel) <= 1e-12).all()
+    for frequency in (0.5, 2.0, 3.5):
+        error = np.linalg.norm(transfer(balanced, frequency) - transfer(system, frequency), 2)
+        assert error <= 2 * hankel[4:].sum() + 1e-9
+    with pytest.raises(InputError, match="damping_ratio"):
+        balance(linearize(structure_2009("SFOAM", 0, 3), FREE_2009), 2)
+
+
+def test_exports(tmp_path):
+    control = pytest.importorskip("control")
+    system = linearize(SOFT, FREE_2009)
+    theirs = system.to_control()
+    assert isinstance(theirs, control.StateSpace) and theirs.input_labels == ["torque"]
+    assert np.asarray(theirs(2.0j)) == pytest.approx(transfer(system, 2.0))
+    assert pytest.approx(system.a) == system.to_scipy().A
+    system.to_mat(tmp_path / "x.mat")
+    read = scipy.io.loadmat(tmp_path / "x.mat", squeeze_me=True)
+    assert read["A"] == pytest.approx(system.a) and read["output_name"][1] == "tip_y"
+
+
+def test_nonlinear_system_has_the_same_linearisation():
+    pytest.importorskip("control")
+    system, theirs = linearize(SOFT, FREE_2009), nonlinear_system(SOFT, FREE_2009)
+    found = theirs.linearize(np.zeros(8), np.zeros(1), eps=1e-8)
+    assert pytest.approx(system.a, rel=1e-5, abs=1e-5) == found.A
+    assert pytest.approx(system.c, rel=1e-4, abs=1e-3) == found.C
+
+
+def test_a_gauge_off_the_beam():
+    with pytest.raises(InputError, match="off the beam"):
+        linearize(SOFT, HubRate(0.5, constant(1.0)), gauges=[Gauge(9.0)])
+
+
+def test_a_hub_on_a_spring_rests_where_it_balances_the_torque():
+    hub = HubTorque(0.5, 200.0, constant(30.0), stiffness=600.0, damping=5.0)
+    structure = structure_2009("FOAM", 1, 3)
+    point = operating_point(structure, hub, 2.0)
+    assert float(point.y[0]) == pytest.approx(0.05) and float(point.yd[0]) == 0
+    found = modes(structure, hub, 2.0)
+    assert found.rigid == 0 and found.damping_ratio[0] > 0 and found.stable

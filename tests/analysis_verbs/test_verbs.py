@@ -1,0 +1,104 @@
+"""The verbs as a user calls them: what they print, and what they refuse with the verb that can."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from gbeam.cli import main
+
+HUB = """\
+title = "hub"
+[beam]
+length = "8 m"
+section = { area = "7.2968e-5 m^2", inertia_y = "8.2189e-9 m^4", inertia_z = "8.2189e-9 m^4" }
+material = { density = "2766.7 kg/m^3", youngs_modulus = "6.8952e10 Pa" }
+damping_ratio = 0
+[model]
+kind = "TLAM"
+modes = { axial = 1, y = 3, z = 0 }
+[motion.slew]
+kind = "hub"
+radius = "0.5 m"
+rate = { profile = "smooth-step", level = "2 rad/s", duration = "30 s" }
+[motion.flight]
+kind = "flight"
+acceleration = { y = { profile = "constant", level = "0.1 g" } }
+[response]
+duration = "35 s"
+"""
+
+
+@pytest.fixture
+def call(tmp_path, monkeypatch, capsys):
+    """Call a verb on the scenario: exit status, JSON, stderr."""
+    monkeypatch.chdir(tmp_path)
+    Path("hub.toml").write_text(HUB)
+
+    def run(verb, *options):
+        status = main([verb, "hub.toml", "--json", *options])
+        said = capsys.readouterr()
+        assert "Traceback" not in said.err
+        return status, json.loads(said.out), said.err
+
+    return run
+
+
+def test_modes(call):
+    status, told, _ = call("modes", "--motion", "slew", "--at", "32 s", "--out", "there")
+    assert status == 0
+    frequencies = [it["frequency"] for it in told["modes"]]
+    assert frequencies == sorted(frequencies) and told["modes"][0]["direction"] == "y"
+    assert frequencies[0] == pytest.approx(0.336597, rel=1e-3)  # sqrt(2.91074² − 2²)/2π
+    assert {it.name for it in Path("there").iterdir()} == {"modes.json", "modes.png", "modes.svg"}
+
+
+def test_static(call):
+    status, told, _ = call("static", "--motion", "flight")
+    # w L⁴/8EI of a uniform load, down where the base accelerates up
+    wanted = 2766.7 * 7.2968e-5 * 0.980665 * 8**4 / (8 * 6.8952e10 * 8.2189e-9)
+    assert status == 0 and told["motions"]["flight"]["tip"]["y"] == pytest.approx(-wanted, rel=1e-3)
+
+
+def test_critical_speed(call):
+    status, told, _ = call("critical-speed")
+    assert status == 0 and told["critical_speed"] == pytest.approx(2.91074, abs=1e-5)
+    status, told, _ = call("critical-speed", "--set", "model.kind=FOAM", "--to", "60 rpm")
+    assert status == 0 and told["critical_speed"] is None and "keeps its equilibrium" in told["reason"]
+
+
+def test_campbell(call):
+    status, told, _ = call("campbell", "--modes", "2", "--out", "there")
+    assert status == 0 and told["speed"][-1] == pytest.approx(2.0) and len(told["tracks"]) == 2
+    assert Path("there/campbell.png").stat().st_size > 1000
+
+
+def test_linearize(call):
+    status, told, _ = call("linearize", "--motion", "flight", "--out", "there")
+    assert status == 0 and len(told["A"]) == 8 and told["inputs"][0]["unit"] == "m/s^2"
+    assert Path("there/linear.mat").exists()
+
+
+@pytest.mark.parametrize(("verb", "answers"), [("campbell", "gbeam modes"), ("critical-speed", "gbeam modes")])
+def test_a_flight_is_refused_with_the_verb_that_can(call, verb, answers):
+    status, told, said = call(verb, "--motion", "flight")
+    assert status == 2 and answers in said
+    assert told["error"][0]["path"] == "motion.flight"
+
+
+def test_unknown_motion_and_time(call):
+    assert "slew, flight" in call("modes", "--motion", "slow")[2]
+    assert call("modes", "--motion", "slew", "--at", "3 kg")[0] == 2
+    assert "name one of" in call("modes")[2]
+
+
+@pytest.mark.slow
+def test_models(call):
+    changes = ("motion.slew.rate.level=1 rad/s", "response.residual_from=30 s")
+    status, told, _ = call("models", *(word for it in changes for word in ("--set", it)))
+    rows = {it["model"]: it for it in told["rows"] if it["motion"] == "slew"}
+    assert status == 0 and set(rows) == {"TLAM", "FOAM", "SFOAM", "CFOAM", "exact"}
+    # The first-order models beat the linear one by far, and the complete one too.
+    assert abs(rows["FOAM"]["peak_error"]) < 1e-3 < 0.02 < abs(rows["TLAM"]["peak_error"])

@@ -1,0 +1,241 @@
+"""Theorems about the displacement fields: the exact one at any rotation, the projected one to second order."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.interpolate import BarycentricInterpolator
+
+from gbeam import Model, assemble
+from gbeam.analysis.response import displacement
+from gbeam.basis import bar_shapes, bending_shapes, legendre_shapes
+from gbeam.energy import rest_matrices, second_order
+from gbeam.equations import Damped, coefficients
+from gbeam.field import rotation_matrix
+from gbeam.model import Structure, rest_modes
+
+from .helpers import beam, states
+
+ROUNDING = 1e-12
+SPECTRAL = 1e-9  # of the shapes' quadrature, at rotations of a radian
+ODE = 1e-9
+LENGTH = 8.0
+PLACE = 5.0  # where a body might sit: the axial strain vanishes at the tip
+STATIONS = np.linspace(0.5, 7.5, 8)
+
+
+@cache
+def exact(strain: int = 2, y: int = 3, z: int = 3) -> Structure:
+    return assemble(beam(), Model("exact", strain, y, z), STATIONS)
+
+
+def bent(structure: Structure, seed: int, strain: float = 0.01, angle: float = 0.8) -> np.ndarray:
+    """Random coordinates of the exact field: strains of per cents, rotations of the order of a radian."""
+    count = structure.counts
+    scale = np.repeat([strain, angle, angle], count)
+    return states(sum(count), 1, 1.0, seed)[0] * scale
+
+
+@eqx.filter_jit
+def sampled(structure: Structure, q: jax.Array):  # type: ignore[no-untyped-def]
+    field = structure.field
+    return field.position(q), field.rotation(q), field.strains(q), structure.system.energy.potential(q)
+
+
+def nodes_of(structure: Structure) -> np.ndarray:
+    """Positions of the quadrature nodes: the field's points before the stations, undeformed."""
+    r, *_ = sampled(structure, jnp.zeros(structure.size))
+    return np.asarray(r)[: structure.first_station, 0]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_exact_sections_only_turn(seed: int) -> None:
+    _, rotation, _, _ = sampled(exact(), bent(exact(), seed))
+    np.testing.assert_allclose(
+        rotation @ jnp.swapaxes(rotation, 1, 2), np.broadcast_to(np.eye(3), rotation.shape), atol=ROUNDING
+    )
+    np.testing.assert_allclose(np.linalg.det(rotation), 1, atol=ROUNDING)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_exact_axis_has_slope_one_plus_strain_along_the_section_normal(seed: int) -> None:
+    structure = exact()
+    position, rotation, strains, _ = sampled(structure, bent(structure, seed))
+    x, n = nodes_of(structure), structure.first_station
+    slope = np.stack([BarycentricInterpolator(x, np.asarray(position)[:n, i]).derivative(x) for i in range(3)], axis=1)
+    np.testing.assert_allclose(slope, (1 + np.asarray(strains.axial))[:, None] * rotation[:n, :, 0], atol=1e-7)
+
+
+def test_exact_field_in_a_plane_is_the_integral_of_cosine_and_sine() -> None:
+    structure = exact(2, 4, 0)
+    q = bent(structure, seed=3, angle=1.5)
+    position, _, strains, _ = sampled(structure, q)
+    fine = (np.arange(20000) + 0.5) / 20000 * LENGTH
+    angle = legendre_shapes(fine, LENGTH, 4).value @ q[2:]
+    strain = legendre_shapes(fine, LENGTH, 2).slope @ q[:2] * LENGTH
+    tip = [np.mean((1 + strain) * f(angle)) * LENGTH for f in (np.cos, np.sin)]
+    np.testing.assert_allclose(position[-1], [*tip, 0], atol=1e-7)  # the midpoint rule's own error
+    np.testing.assert_allclose(strains.about_y, 0, atol=1e-15)
+
+
+def test_planar_and_spatial_forms_agree_in_either_plane() -> None:
+    q = bent(exact(2, 3, 0), seed=4)
+    none = np.zeros(3)
+    wide = {"y": np.concatenate([q, none]), "z": np.concatenate([q[:2], none, q[2:]])}
+    for plane, counts in (("y", (2, 3, 0)), ("z", (2, 0, 3))):
+        flat, full = sampled(exact(*counts), q), sampled(exact(), wide[plane])
+        for ours, theirs in zip(jax.tree.leaves(flat), jax.tree.leaves(full), strict=True):
+            np.testing.assert_allclose(ours, theirs, atol=1e-10)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_turning_the_bending_plane_of_a_round_beam_turns_the_field_and_keeps_the_energy(seed: int) -> None:
+    structure, turn = exact(), 0.7 + seed
+    q = bent(structure, seed)
+    along_y, along_z = q[2:5], q[5:]
+    c, s = np.cos(turn), np.sin(turn)
+    turned = np.concatenate([q[:2], c * along_y - s * along_z, s * along_y + c * along_z])
+    about_x = np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+    (r, R, _, U), (r_turned, R_turned, _, U_turned) = sampled(structure, q), sampled(structure, turned)
+    np.testing.assert_allclose(r_turned, r @ about_x.T, atol=1e-10)
+    np.testing.assert_allclose(R_turned, about_x @ R @ about_x.T, atol=1e-10)
+    np.testing.assert_allclose(U_turned, U, rtol=1e-10)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_exact_frame_is_the_integral_of_its_curvatures_without_torsion(seed: int) -> None:
+    """R' = R [κ]× with κ = (0, κ_y, κ_z) from `strains`, integrated independently, gives the same frame and tip."""
+    structure = exact(2, 3, 3)
+    position, rotation, strains, _ = sampled(structure, bent(structure, seed, angle=0.5))
+    x = nodes_of(structure)
+    kappa = (strains.axial, strains.about_y, strains.about_z)
+    axial, about_y, about_z = (BarycentricInterpolator(x, np.asarray(k)) for k in kappa)
+
+    def rates(s: float, y: np.ndarray) -> np.ndarray:
+        R, ky, kz = y[3:].reshape(3, 3), about_y(s), about_z(s)
+        bend = np.array([[0, -kz, ky], [kz, 0, 0], [-ky, 0, 0]])
+        return np.concatenate([(1 + axial(s)) * R[:, 0], (R @ bend).ravel()])
+
+    start = np.concatenate([np.zeros(3), np.eye(3).ravel()])
+    end = solve_ivp(rates, (0, LENGTH), start, method="DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
+    np.testing.assert_allclose(position[-1], end[:3], atol=LENGTH * ODE)
+    np.testing.assert_allclose(rotation[-1], end[3:].reshape(3, 3), atol=ODE)
+
+
+def test_exact_field_is_smooth_through_small_angles() -> None:
+    """The series near zero and the closed forms meet: values and third derivatives are continuous across the switch."""
+    structure = exact(0, 1, 1)
+    direction = np.array([0.6, 0.8])
+
+    def tip(size: jax.Array) -> jax.Array:
+        q = size * direction
+        return jnp.concatenate([structure.field.position(q)[-1], structure.field.strains(q).about_y[:1]])
+
+    third = jax.jit(jax.jacfwd(jax.jacfwd(jax.jacfwd(tip))))
+    for switch in (1e-2, 1e-1):  # φ² = 1e-4 and 1e-2 at the tip
+        below, above = (np.asarray(third(switch * (1 + side))) for side in (-1e-6, 1e-6))
+        np.testing.assert_allclose(below, above, atol=1e-4)
+    assert np.isfinite(third(0.0)).all()
+
+
+def test_rotation_matrix_is_the_exponential() -> None:
+    from scipy.spatial.transform import Rotation
+
+    angles = np.concatenate([states(3, 5, 1.5, seed=5), states(3, 5, 1e-3, seed=6), np.zeros((1, 3))])
+    np.testing.assert_allclose(
+        rotation_matrix(jnp.array(angles)), Rotation.from_rotvec(angles).as_matrix(), atol=ROUNDING
+    )
+
+
+def test_projected_field_is_the_sum_of_shapes_and_the_foreshortening() -> None:
+    x, counts = np.array([2.0, 5.0]), (2, 2, 2)
+    q = states(6, 1, 0.3, seed=7)[0]
+    s, v, w = (
+        shapes(x, LENGTH, 2).value @ part
+        for shapes, part in zip((bar_shapes, bending_shapes, bending_shapes), np.split(q, 3), strict=True)
+    )
+    fine = (np.arange(4000) + 0.5) / 4000
+    short = [
+        np.mean(sum((bending_shapes(fine * at, LENGTH, 2).slope @ part) ** 2 for part in np.split(q, 3)[1:])) * at / 2
+        for at in x
+    ]
+    for kind, shortened in (("CFOAM", short), ("FOAM", short), ("TLAM", 0 * x)):
+        moved = assemble(beam(), Model(kind, *counts), x).displacement(q)[:-1]
+        np.testing.assert_allclose(moved, np.stack([s - shortened, v, w], axis=1), atol=1e-7)
+
+
+@pytest.mark.parametrize(
+    "moving", [[0, 1, 1, 1, 1], [1, 1, 1, 0, 0]], ids=["bending in two planes", "bending and stretch in one plane"]
+)
+def test_projected_sections_follow_the_torsion_free_frame_to_second_order(moving: list[int]) -> None:
+    """A body off the axis feels the sections' rotation to the second order that T needs (field.py says so).
+
+    The frame of the axis r(x; q), carried along without torsion, differs from `rotation` by O(q³): an eighth at half q.
+    """
+    structure = assemble(beam(), Model("CFOAM", 1, 2, 2), [PLACE])
+    q = states(5, 1, 0.5, seed=8)[0] * moving
+
+    def tangent(x: float, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        at = np.array([x])
+        s, bend = bar_shapes(at, LENGTH, 1), bending_shapes(at, LENGTH, 2)
+        v1, w1 = bend.slope[0] @ q[1:3], bend.slope[0] @ q[3:]
+        v2, w2 = bend.curvature[0] @ q[1:3], bend.curvature[0] @ q[3:]
+        t = np.array([1 + s.slope[0, 0] * q[0] - (v1**2 + w1**2) / 2, v1, w1])
+        return t, np.array([s.curvature[0, 0] * q[0] - v1 * v2 - w1 * w2, v2, w2])
+
+    def torsion_free(q: np.ndarray) -> np.ndarray:
+        """Parallel transport of the second axis along the curve: e₂' = −(t·t')… with no turn about t."""
+
+        def rates(x: float, e: np.ndarray) -> np.ndarray:
+            t, rate = tangent(x, q)
+            size = np.linalg.norm(t)
+            unit = t / size
+            change = (rate - unit * (unit @ rate)) / size
+            return -unit * (change @ e)
+
+        end = solve_ivp(rates, (0, PLACE), [0.0, 1.0, 0.0], method="DOP853", rtol=1e-11, atol=1e-13).y[:, -1]
+        unit = tangent(PLACE, q)[0]
+        unit /= np.linalg.norm(unit)
+        return np.stack([unit, end, np.cross(unit, end)], axis=1)
+
+    def error(scale: float) -> float:
+        rotation = sampled(structure, scale * q)[1][-2]
+        return float(np.abs(np.asarray(rotation) - torsion_free(scale * q)).max())
+
+    assert error(0.1) / error(0.05) == pytest.approx(8, rel=0.3)
+
+
+@pytest.mark.slow
+def test_exact_field_to_second_order_has_foams_kinematics() -> None:
+    """Where no load acts across the beam the coordinates do not matter: equal frequencies at a steady spin."""
+    foam = assemble(beam(), Model("FOAM", 2, 10, 10))
+    full = assemble(beam(), Model("exact", 3, 7, 7))
+    expanded = Damped(second_order(full.system.energy), full.system.damping)
+    spin, radius = np.array([0.0, 1.0, 2.0]), 0.5
+    root = radius * np.array([-(spin @ spin), 0.0, 0.0])
+    found = []
+    for system in (foam.system, expanded):
+        velocity, stiffness, _ = coefficients(system).at(root, spin, jnp.zeros(3))
+        n, mass = velocity.shape[0], np.asarray(coefficients(system).mass)
+        first_order = np.block(
+            [[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(mass, np.hstack([stiffness, velocity]))]]
+        )
+        found.append(np.sort(np.abs(np.linalg.eigvals(first_order).imag))[::2][:4])
+    np.testing.assert_allclose(found[0], found[1], rtol=2e-4)  # FOAM's ten modes at 2 rad/s
+    at_rest = [rest_modes(*rest_matrices(system.energy))[0][:4] for system in (foam.system, expanded)]
+    np.testing.assert_allclose(at_rest[0], at_rest[1], rtol=1e-7)
+
+
+def test_displacement_history_in_blocks() -> None:
+    structure = assemble(beam(), Model("FOAM", 1, 1, 1), [2.0])
+    q = states(3, 5000, 0.1, seed=9)  # more than one block of the compiled length
+    history = displacement(structure, q)
+    assert history.shape == (5000, 2, 3)
+    for i in (0, 4095, 4096, 4999):
+        np.testing.assert_allclose(history[i], structure.displacement(q[i]), atol=1e-14)

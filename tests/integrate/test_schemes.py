@@ -1,0 +1,142 @@
+"""The schemes against their theory: period elongation, damping, observed order.
+
+Newmark 1959; Hilber, Hughes and Taylor 1977; Chung and Hulbert 1993; Hairer, Nørsett and Wanner, II.7.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from gbeam import InputError
+from gbeam.integrate import Gauss4, OneStep, State, generalized_alpha, hht, integrate, newmark
+
+from .systems import BEAD, OSCILLATOR, PENDULUM, VARYING, reference, state
+
+SCHEMES = {
+    "Newmark": newmark(),
+    "HHT -0.1": hht(-0.1),
+    "generalised-α 0.9": generalized_alpha(0.9),
+    "generalised-α 0.5": generalized_alpha(0.5),
+}
+# h/T: relative period elongation, algorithmic damping ratio of an undamped oscillator; spectral radius at infinity
+THEORY = {
+    "Newmark": ({0.01: (0.0003289, 0), 0.05: (0.0081712, 0), 0.1: (0.032075, 0), 0.2: (0.12003, 0)}, 1.0),
+    "HHT -0.1": (
+        {0.01: (0.00041268, 2.507e-6), 0.05: (0.010202, 0.0002997), 0.1: (0.039506, 0.002106), 0.2: (0.14243, 0.01113)},
+        0.81818,
+    ),
+    "generalised-α 0.9": (
+        {0.01: (0.000333, 1.807e-8), 0.05: (0.0082729, 2.222e-6), 0.1: (0.032472, 1.692e-5), 0.2: (0.12149, 0.0001145)},
+        0.90007,
+    ),
+    "generalised-α 0.5": (
+        {0.01: (0.00049318, 4.584e-6), 0.05: (0.012157, 0.000545), 0.1: (0.046715, 0.00378), 0.2: (0.16536, 0.01951)},
+        0.50008,
+    ),
+}
+DIGITS = 1e-3  # the theory's numbers have four or five
+
+
+@eqx.filter_jit
+def one_step(scheme: OneStep | Gauss4, s: State, h: Any) -> State:
+    new, _ = scheme.step(OSCILLATOR, s, h, tuple(jnp.zeros(()) for _ in scheme.offsets))  # type: ignore[arg-type]
+    return new
+
+
+def amplification(scheme: OneStep | Gauss4, h: float) -> np.ndarray:
+    """Matrix of one step on (q, q̇, a): the scheme's own acceleration is part of its state."""
+    columns = []
+    for q, qd, a in np.eye(3):
+        given = State(*(jnp.array([v]) for v in (q, qd, -((2 * np.pi) ** 2) * q, a)))
+        new = one_step(scheme, given, jnp.asarray(h))
+        columns.append([new.q[0], new.qd[0], new.a[0]])
+    return np.array(columns).T
+
+
+@pytest.mark.parametrize("name", THEORY)
+def test_period_elongation_and_damping_of_an_undamped_oscillator(name: str) -> None:
+    for h, (elongation, damping) in THEORY[name][0].items():
+        roots = np.linalg.eigvals(amplification(SCHEMES[name], h))
+        principal = roots[np.argmax(np.abs(roots) * (roots.imag > 0))]
+        angle, decay = np.angle(principal), -np.log(np.abs(principal))
+        assert 2 * np.pi * h / angle - 1 == pytest.approx(elongation, rel=DIGITS)
+        assert decay / np.hypot(angle, decay) == pytest.approx(damping, rel=DIGITS, abs=1e-11)
+
+
+@pytest.mark.parametrize("name", THEORY)
+def test_spectral_radius_at_infinite_frequency(name: str) -> None:
+    """And nowhere above one on the way there: unconditionally stable."""
+    radius = [np.abs(np.linalg.eigvals(amplification(SCHEMES[name], h))).max() for h in np.logspace(-2, 4, 31)]
+    assert max(radius) < 1 + 1e-7
+    assert radius[-1] == pytest.approx(THEORY[name][1], abs=1e-3)
+
+
+def test_gauss_neither_damps_nor_loses_stability() -> None:
+    for h in np.logspace(-2, 3, 11):
+        exact = amplification(Gauss4(), h)[:2, :2]  # no acceleration of its own
+        np.testing.assert_allclose(np.abs(np.linalg.eigvals(exact)), 1, atol=1e-9)
+    angle = np.angle(np.linalg.eigvals(amplification(Gauss4(), 0.05)[:2, :2])).max()
+    z = 2 * np.pi * 0.05  # of the diagonal Padé approximant (12 + 6iz − z²)/(12 − 6iz − z²)
+    assert angle == pytest.approx(2 * np.arctan2(6 * z, 12 - z**2), rel=1e-12)
+
+
+def observed_order(system: Any, scheme: Any, steps: int, end: float, q: Any, qd: Any) -> tuple[float, float]:
+    """Order from halving the step, for q and q̇ at the end."""
+    exact = reference(system, q, qd, end)
+    errors = []
+    for count in (steps, 2 * steps):
+        run = integrate(system, scheme, state(q, qd), step=end / count, count=count)
+        assert run.converged
+        errors.append(np.abs(np.concatenate([run.q[-1], run.qd[-1]]) - exact).reshape(2, -1).max(axis=1))
+    return tuple(np.log2(errors[0] / errors[1]))
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+def test_one_step_schemes_are_of_second_order(name: str) -> None:
+    scheme = SCHEMES[name]
+    assert scheme.order == 2
+    for system, q, qd in ((VARYING, [0.5, -0.3], [0.0, 1.0]), (PENDULUM, 2.0, 0.5), (BEAD, 1.0, 0.5)):
+        order = observed_order(system, scheme, 200, 4.0, q, qd)
+        assert order == pytest.approx((2, 2), abs=0.1)
+
+
+def test_gauss_is_of_fourth_order_with_varying_matrices_and_load() -> None:
+    assert Gauss4().order == 4
+    assert observed_order(VARYING, Gauss4(), 40, 4.0, [0.5, -0.3], [0.0, 1.0]) == pytest.approx((4, 4), abs=0.1)
+
+
+def test_known_members_of_the_family() -> None:
+    """HHT(0) and generalised-α(1) are Newmark's average acceleration; the parameters are the authors' own."""
+    wanted = np.linalg.eigvals(amplification(newmark(), 0.1))
+    for member in (hht(0.0), generalized_alpha(1.0)):
+        roots = np.linalg.eigvals(amplification(member, 0.1))
+        assert np.angle(roots).max() == pytest.approx(np.angle(wanted).max(), rel=1e-9)
+        np.testing.assert_allclose(np.abs(roots).max(), 1, rtol=1e-9)
+    middle = generalized_alpha(0.5)
+    assert (middle.alpha_m, middle.alpha_f) == pytest.approx((0, 1 / 3))
+    assert (middle.gamma, middle.beta) == pytest.approx((5 / 6, 4 / 9))
+
+
+@pytest.mark.parametrize(
+    ("make", "where"),
+    [
+        (lambda: newmark(0.25, 0.4), "beta"),
+        (lambda: newmark(0.2, 0.5), "beta"),
+        (lambda: newmark(float("nan")), "beta"),
+        (lambda: hht(0.1), "alpha"),
+        (lambda: hht(-0.4), "alpha"),
+        (lambda: generalized_alpha(1.1), "rho_inf"),
+        (lambda: generalized_alpha(-0.1), "rho_inf"),
+    ],
+)
+def test_unstable_parameters_are_refused(make: Callable[[], OneStep], where: str) -> None:
+    with pytest.raises(InputError) as caught:
+        make()
+    assert caught.value.where == where
+    assert caught.value.fix

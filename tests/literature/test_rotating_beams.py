@@ -1,0 +1,251 @@
+"""Rotating beams of the literature: frequencies against speed, the stretched bar, the spin-up of a robot arm.
+
+"Published" was transcribed from the named place, "independent" computed outside this project with formulations written
+for the purpose (finite elements, transcendental equations).
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+import scipy.linalg
+
+from gbeam import (
+    Beam,
+    HubRate,
+    Material,
+    Model,
+    PointMass,
+    ResponseSettings,
+    Section,
+    SmoothStep,
+    Structure,
+    assemble,
+    equilibrium,
+    respond,
+)
+from gbeam.energy import second_order
+from gbeam.equations import Coefficients, Damped, coefficients, on_prescribed_base
+from gbeam.motion import Base
+
+# A beam of unit length, unit mass per length and unit EI: nondimensional, with EA = α², α the slenderness.
+ROUNDED = 6e-4  # published values have three decimals, in places rounded twice
+MODES = 15  # the clamped-free modes converge slowly at high speed
+
+
+def unit_beam(slenderness: float = 1000.0, tip: float = 0.0) -> Beam:
+    area, inertia, modulus = 1.0, slenderness**-2, slenderness**2
+    masses = [PointMass(1.0, tip)] if tip else []
+    return Beam(1.0, Section.general(area, inertia, inertia), Material(1.0, modulus), masses)
+
+
+def spinning(rate: float, axis: int, radius: float = 0.0) -> Base:
+    """Steady rotation about y (axis 1) or z (axis 2)."""
+    w = jnp.zeros(3).at[axis].set(rate)
+    return Base(jnp.array([-radius * rate**2, 0.0, 0.0]), w, jnp.zeros(3))
+
+
+@cache
+def constants(counts: tuple[int, int, int], slenderness: float = 1000.0, tip: float = 0.0) -> Coefficients:
+    return coefficients(assemble(unit_beam(slenderness, tip), Model("FOAM", *counts)).system)
+
+
+def frequencies(c: Coefficients, base: Base, count: int) -> np.ndarray:
+    """Lowest circular frequencies of M q̈ + G q̇ + K q = 0."""
+    G, K, _ = (np.asarray(x) for x in c.at(base.a_WO_B, base.w_WB_B, base.al_WB_B))
+    return gyroscopic_frequencies(np.asarray(c.mass), G, K, count)
+
+
+def gyroscopic_frequencies(M: np.ndarray, G: np.ndarray, K: np.ndarray, count: int) -> np.ndarray:
+    n = len(M)
+    rates = scipy.linalg.eigvals(
+        np.block([[np.zeros((n, n)), np.eye(n)], [-K, -G]]), scipy.linalg.block_diag(np.eye(n), M)
+    )
+    assert np.abs(rates.real).max() < 1e-6 * np.abs(rates).max()  # stable
+    return np.sort(rates.imag[rates.imag > 0])[:count]
+
+
+# --- flap, Wright, Smith, Thresher, Wang (1982), J. Appl. Mech. 49(1) 197-202, hub radius 0; via Bir (2009) AIAA
+#     2009-1035, Table 3a, as transcribed in SMI-Lab-Inha/pyBModes, tests/fem/test_rotating_uniform_blade.py.
+#     ω and Ω in units of √(EI/(mL⁴)).
+
+# speed: published flap 1, 2, 3; independent
+UNIFORM = {
+    0: ([3.516, 22.035, 61.697], [3.516015, 22.034492, 61.697214]),
+    1: ([3.682, 22.181, 61.842], [3.681647, 22.181011, 61.841763]),
+    2: ([4.137, 22.615, 62.273], [4.13732, 22.614922, 62.273184]),
+    3: ([4.797, 23.32, 62.985], [4.797279, 23.320264, 62.984967]),
+    6: ([7.36, 26.809, 66.684], [7.360373, 26.809082, 66.683914]),
+    10: ([11.202, 33.64, 74.649], [11.202328, 33.640366, 74.649295]),
+    12: ([13.17, 37.603, 79.615], [13.17015, 37.603112, 79.614478]),
+}
+
+
+@pytest.mark.parametrize("speed", UNIFORM)
+def test_uniform_blade_flap(speed: float) -> None:
+    published, independent = UNIFORM[speed]
+    found = frequencies(constants((0, MODES, 0)), spinning(speed, axis=1), 3)
+    np.testing.assert_allclose(found, published, atol=ROUNDED)
+    np.testing.assert_allclose(found, independent, rtol=6e-6)
+    # The exact field to second order is the same theory, and its polynomials converge faster.
+    np.testing.assert_allclose(frequencies(polynomial_shapes(), spinning(speed, axis=1), 3), independent, atol=1.1e-6)
+
+
+@cache
+def polynomial_shapes() -> Coefficients:
+    exact = assemble(unit_beam(), Model("exact", 0, 10, 0)).system
+    return coefficients(Damped(second_order(exact.energy), exact.damping))
+
+
+# Wright et al. (1982) via Bir (2010) NREL/CP-500-47953, Table 5: tip mass m_t = mL
+TIP_MASS = {
+    0: ([1.557, 16.25], [1.5573, 16.25009]),
+    2: ([2.67, 18.19], [2.66964, 18.19097]),
+    5: ([5.522, 26.04], [5.52185, 26.04153]),
+    10: ([10.49, 43.45], [10.48644, 43.45172]),
+    12: ([12.48, 50.86], [12.48137, 50.85939]),
+}
+
+
+@pytest.mark.parametrize("speed", TIP_MASS)
+def test_blade_with_tip_mass_flap(speed: float) -> None:
+    """Clamped-free shapes know nothing of the tip mass and converge slowly: 15 of them."""
+    published, independent = TIP_MASS[speed]
+    found = frequencies(constants((0, MODES, 0), tip=1.0), spinning(speed, axis=1), 2)
+    np.testing.assert_allclose(found, published, rtol=5e-4)
+    np.testing.assert_allclose(found, independent, rtol=5e-5)
+
+
+def test_southwell_coefficients() -> None:
+    """d(ω²)/d(Ω²) of flap at Ω = 0: ∫(1 − x²)/2 f'² dx, by quadrature to 40 digits; the first, 1.193, is textbook."""
+    c = constants((0, MODES, 0))
+    slope = np.diag(c.k_ww[1, 1])[:3] / np.diag(c.mass)[:3]
+    np.testing.assert_allclose(slope, [1.193336374, 6.478224864, 17.859519880], atol=1e-8)
+    # in the plane of rotation the spin itself softens by one
+    in_plane = np.diag(c.k_ww[2, 2])[:3] / np.diag(c.mass)[:3]
+    np.testing.assert_allclose(in_plane, slope - 1, atol=1e-10)
+
+
+# --- flap and chord, Hamza Cherif and Houmat, 24th ICAS 2004, Table 2 (slenderness 70), as in
+#     octave-user/mboct-fem-pkg, inst/fem_tests_060.tst: the chord with gyroscopic coupling to the stretch (Yoo and Shin)
+
+
+@pytest.mark.parametrize(
+    ("speed", "flap", "chord", "exact_chord"), [(2, 4.1373, 3.6195, 3.6186), (10, 11.2023, 4.97, 4.9484)]
+)
+def test_flap_and_chord_of_slenderness_70(speed: float, flap: float, chord: float, exact_chord: float) -> None:
+    c = constants((6, MODES, 0), slenderness=70.0)
+    assert frequencies(constants((0, MODES, 0), slenderness=70.0), spinning(speed, axis=1), 1)[0] == pytest.approx(
+        flap, abs=1e-4
+    )
+    assert frequencies(c, spinning(speed, axis=2), 1)[0] == pytest.approx(chord, abs=1e-4)
+    # The exact beam is stretched by the rotation before it vibrates: it differs, as it should (independent).
+    stretched = vibration_about_equilibrium(exact_chordwise(70.0), spinning(speed, axis=2), 1)
+    assert stretched[0] == pytest.approx(exact_chord, rel=1e-4)
+    assert abs(stretched[0] - chord) > 8e-4
+
+
+@cache
+def exact_chordwise(slenderness: float) -> Structure:
+    return assemble(unit_beam(slenderness), Model("exact", 4, 7, 0))
+
+
+@eqx.filter_jit
+def linearised(s: Structure, base: Base, q: jax.Array) -> tuple[jax.Array, ...]:
+    """M, G, K about a relative equilibrium."""
+    none = jnp.zeros_like(q)
+
+    def residual(q: jax.Array, qd: jax.Array, qdd: jax.Array) -> jax.Array:
+        return on_prescribed_base(s.system, q, qd, qdd, base.a_WO_B, base.w_WB_B, base.al_WB_B)
+
+    return tuple(jax.jacfwd(residual, i)(q, none, none) for i in (2, 1, 0))
+
+
+def vibration_about_equilibrium(s: Structure, base: Base, count: int) -> np.ndarray:
+    M, G, K = (np.asarray(x) for x in linearised(s, base, equilibrium(s, base)))
+    return gyroscopic_frequencies(M, G, K, count)
+
+
+# --- the rotating bar, code_aster V3.04.104 and V3.04.105: u(x) = sin ax/(a cos aL) − x, a = ω √(ρ/E)
+
+
+@pytest.mark.parametrize("a", [0.1, 0.7])
+def test_rotating_bar(a: float) -> None:
+    """Centrifugal force on the displaced bar, ω²(x + u): FOAM and exact share the formula, each to its own shapes."""
+    base = spinning(a, axis=2)  # unit bar with EA = 1: a = ω
+    bar = Beam(1.0, Section.general(1.0, 1e-4, 1e-4), Material(1.0, 1.0))
+    tip = np.tan(a) / a - 1
+    exact = assemble(bar, Model("exact", 8, 1, 0))
+    q = equilibrium(exact, base)
+    np.testing.assert_allclose(exact.displacement(q)[-1], [tip, 0, 0], atol=1e-9)
+
+    foam = assemble(bar, Model("FOAM", 6, 1, 0))
+    amplitudes = np.asarray(equilibrium(foam, base))[:6]
+    x = (np.arange(20000) + 0.5) / 20000
+    u = np.sin(a * x) / (a * np.cos(a)) - x
+    k = (2 * np.arange(1, 7) - 1) * np.pi / 2
+    projected = np.mean(u * np.sqrt(2) * np.sin(np.outer(k, x)), axis=1)  # the formula's own share of each shape
+    np.testing.assert_allclose(amplitudes, projected, atol=1e-9)
+    # without the follower term u(x) = ρω²/(2E) (xL² − x³/3): the limit of slow rotation
+    linear = a**2 / 2 * (1 - 1 / 3)
+    assert tip / linear == pytest.approx(1 + 0.4 * a**2, rel=0.25 * a**4)
+
+
+def test_rotating_bar_on_a_hub() -> None:
+    """r'' + a² r = 0 with r(0) = R and r'(L) = 1."""
+    a, radius = 0.5, 0.8
+    bar = Beam(1.0, Section.general(1.0, 1e-4, 1e-4), Material(1.0, 1.0))
+    exact = assemble(bar, Model("exact", 8, 1, 0))
+    base = spinning(a, axis=2, radius=radius)
+    B = (1 / a + radius * np.sin(a)) / np.cos(a)
+    tip = radius * np.cos(a) + B * np.sin(a) - radius - 1
+    np.testing.assert_allclose(exact.displacement(equilibrium(exact, base))[-1, 0], tip, atol=1e-9)
+
+
+# --- spin-up, Simo and Vu-Quoc (1988) CMAME 66:125-161, example 5.1; Kane, Ryan and Banerjee (1987)
+
+SPIN_UP = SmoothStep(6.0, 15.0)  # ψ' of ψ = 6/15 (t²/2 + (15/2π)² (cos(2πt/15) − 1)), 6 rad/s after
+
+
+@cache
+def robot_arm() -> Structure:
+    """EA = 2.8e7 N, EI = 1.4e4 N m², ρA = 1.2 kg/m, L = 10 m; shear (GA = 1e7 N) and rotary inertia are left out."""
+    section = Section.general(4e-4, 2e-7, 2e-7)
+    return assemble(Beam(10.0, section, Material(3000.0, 7e10)), Model("exact", 2, 5, 0))
+
+
+@pytest.mark.slow
+def test_spin_up_of_the_robot_arm() -> None:
+    """Peaks: published within 2 %, independent (exact beam, finite elements) within 0.3 %."""
+    settings = ResponseSettings(duration=20.0, step=5e-3, residual_from=15.5)
+    result = respond(robot_arm(), HubRate(0.0, SPIN_UP), settings)
+    time, (axial, across) = result.time, result.tip[:, :2].T
+    assert across.min() == pytest.approx(-0.57384, rel=3e-3)
+    assert across.min() == pytest.approx(-0.5723, rel=2e-2)
+    assert time[across.argmin()] == pytest.approx(6.76, abs=0.03)
+    assert axial.min() == pytest.approx(-0.018823, rel=3e-3)
+    assert axial.min() == pytest.approx(-0.01869, rel=2e-2)
+    assert result.peaks.residual_amplitude[1] == pytest.approx(0.00365, rel=5e-3)
+    turned = np.abs(np.rad2deg(np.arctan2(*across_slope(result.q))))  # of the tip's section against the root's
+    assert turned.max() == pytest.approx(4.4288, rel=3e-3)
+    assert turned.max() == pytest.approx(4.37, rel=2e-2)
+    assert time[turned.argmax()] == pytest.approx(6.72, abs=0.03)
+
+
+def across_slope(q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    s = robot_arm()
+    tip = np.asarray(jax.vmap(s.field.rotation)(jnp.asarray(q)))[:, -1]
+    return tip[:, 1, 0], tip[:, 0, 0]
+
+
+def test_steady_state_of_the_robot_arm() -> None:
+    """At 6 rad/s: stretch tan(aL)/a − L = 5.143174550e-4 m, first in-plane frequency 4.51147 rad/s (independent)."""
+    base = spinning(6.0, axis=2)
+    stretch = robot_arm().displacement(equilibrium(robot_arm(), base))[-1, 0]
+    np.testing.assert_allclose(stretch, 5.143174550426011e-4, rtol=1e-6)
+    assert vibration_about_equilibrium(robot_arm(), base, 1)[0] == pytest.approx(4.51147, rel=2e-4)

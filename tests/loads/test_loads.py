@@ -1,0 +1,209 @@
+"""Internal loads: what the base gives is the rate of the particles' momentum; a hub's power that of their energy."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from gbeam import (
+    Beam,
+    Flight,
+    Material,
+    Model,
+    PointMass,
+    ResponseSettings,
+    Section,
+    assemble,
+    constant,
+    equilibrium,
+    respond,
+    stack,
+)
+from gbeam.analysis.loads import influence, internal_loads, section_loads
+from gbeam.energy import FieldEnergy
+from gbeam.equations import Hub, on_prescribed_base
+from gbeam.loads import Load
+from gbeam.motion import Base
+from gbeam.results import BaseHistory
+from gbeam.root import Root
+
+MATERIAL = Material(2700.0, 70e9)
+SPECIMEN = Beam(0.3, Section.rectangle(0.02, 0.004), MATERIAL)
+M, L = 2700 * 0.02 * 0.004, 0.3
+TAPERED = Beam(
+    8.0,
+    Section.rectangle([0.02, 0.015, 0.01], [0.01, 0.01, 0.006], stations=[0, 3, 8]),
+    MATERIAL,
+    [PointMass(8.0, 0.1), PointMass(5.0, 0.3, inertia=(0.02, 0.03, 0.04), offset=(0.05, -0.1, 0.08))],
+)
+SPATIAL = {kind: Model(kind, 1, 2, 2) for kind in ("TLAM", "FOAM", "CFOAM", "exact")}
+
+
+def history(base: Base) -> BaseHistory:
+    return BaseHistory(*(np.atleast_2d(x) for x in (base.a_WO_B, base.w_WB_B, base.al_WB_B)))
+
+
+@pytest.mark.parametrize("kind", SPATIAL)
+def test_root_reaction_is_the_rate_of_momentum(kind: str) -> None:
+    structure = assemble(TAPERED, SPATIAL[kind], [2.0, 5.0])
+    rng = np.random.default_rng(7)
+    waves, phase = rng.normal(size=(3, structure.size + 6)), rng.uniform(0, 6, structure.size + 6)
+    scale = 0.05 if kind == "exact" else 0.3
+
+    def motion(t: Any) -> Any:
+        """q, v_O and ω over time: random and smooth."""
+        s = waves[0] * jnp.sin(1.3 * t + phase) + waves[1] * jnp.cos(2.1 * t)
+        return scale * s[:-6], s[-6:-3], s[-3:]
+
+    def momenta(t: Any) -> Any:
+        """Linear momentum and angular momentum about the root, base axes."""
+        (q, v_O, w), (qd, _, _) = jax.jvp(motion, (t,), (1.0,))
+        r, rd = jax.jvp(structure.particles.particles, (q,), (qd,))
+        p = structure.particles.mass[:, None] * (v_O + jnp.cross(w, r) + rd)
+        return p.sum(axis=0), jnp.cross(r, p).sum(axis=0)
+
+    h, times = 1e-3, np.linspace(0.0, 2.0, 5)
+    compiled = jax.jit(momenta)
+    rates: Any = jax.jit(lambda t: jax.jvp(lambda s: jax.jvp(motion, (s,), (1.0,)), (t,), (1.0,)))
+    for t in times:
+        ((q, v_O, w), (qd, vd, al)), (_, (qdd, _, _)) = rates(t)
+        base = Base(vd + jnp.cross(w, v_O), w, al)
+        loads = section_loads(structure, TAPERED, history(base), *(np.asarray(x)[None] for x in (q, qd, qdd)))
+        ahead, back = ([compiled(t + s * k * h) for k in (1, 2)] for s in (1, -1))
+        (p, hh), slope = (
+            compiled(t),
+            [(8 * (ahead[0][i] - back[0][i]) - (ahead[1][i] - back[1][i])) / (12 * h) for i in range(2)],
+        )
+        force = slope[0] + np.cross(w, p)
+        moment = slope[1] + np.cross(w, hh) + np.cross(v_O, p)
+        np.testing.assert_allclose(loads.root_force[0], force, rtol=1e-8, atol=1e-8 * np.abs(force).max())
+        np.testing.assert_allclose(loads.root_moment[0], moment, rtol=1e-8, atol=1e-8 * np.abs(moment).max())
+
+
+@pytest.mark.parametrize("kind", ["CFOAM", "exact"])
+def test_power_of_a_driven_hub_is_the_rate_of_energy(kind: str) -> None:
+    radius = 0.5
+    structure = assemble(TAPERED, Model(kind, 1, 3, 0))
+    system, hub = structure.system, Hub(jnp.asarray(radius), jnp.asarray(0.0))
+    assert isinstance(system.energy, FieldEnergy)
+    rng = np.random.default_rng(3)
+
+    @jax.jit
+    def state(q: Any, qd: Any, rate: Any, acceleration: Any) -> Any:
+        """Base, the accelerations that satisfy the equations of motion, and the rate of T + U along them."""
+        o = jnp.zeros(())
+        a = jnp.stack([-radius * rate**2, radius * acceleration, o])
+        w, al = jnp.stack([o, o, rate]), jnp.stack([o, o, acceleration])
+
+        def residual(qdd: Any) -> Any:
+            return on_prescribed_base(system, q, qd, qdd, a, w, al)
+
+        none = jnp.zeros_like(q)
+        qdd = jnp.linalg.solve(jax.jacfwd(residual)(none), -residual(none))
+
+        def total(q: Any, qd: Any, rate: Any) -> Any:
+            return system.energy.kinetic(hub.twist(rate), q, qd) + system.energy.potential(q)
+
+        return Base(a, w, al), qdd, jax.jvp(total, (q, qd, rate), (qd, qdd, acceleration))[1]
+
+    for _ in range(4):
+        q, qd = (jnp.asarray(rng.normal(size=structure.size) * s) for s in (0.05, 0.1))
+        rate, acceleration = map(jnp.asarray, rng.normal(size=2))
+        base, qdd, power = state(q, qd, rate, acceleration)
+        loads = section_loads(structure, TAPERED, history(base), *(np.asarray(x)[None] for x in (q, qd, qdd)))
+        torque = loads.root_moment[0, 2] + radius * loads.root_force[0, 1]
+        np.testing.assert_allclose(torque * rate, power, rtol=1e-9)
+
+
+@pytest.mark.parametrize("kind", SPATIAL)
+def test_uniform_load(kind: str) -> None:
+    a, x = 0.01, np.linspace(0, L, 7)  # so small that the arm keeps its length
+    structure = assemble(SPECIMEN, SPATIAL[kind], x)
+    base = Base(jnp.array([3 * a, a, a]), jnp.zeros(3), jnp.zeros(3))
+    q = np.asarray(equilibrium(structure, base))[None]
+    loads = section_loads(structure, SPECIMEN, history(base), q, 0 * q, 0 * q)
+    carried = M * a * (L - loads.stations)
+    np.testing.assert_allclose(loads.root_force[0], M * L * a * np.array([3, 1, 1]), rtol=1e-12)
+    np.testing.assert_allclose(loads.root_moment[0] / (M * L**2 * a / 2), [0, -1, 1], atol=1e-5)
+    np.testing.assert_allclose(
+        loads.section_force[0] / (M * L * a), np.outer(carried / (M * L * a), [-3, -1, -1]), atol=1e-5
+    )
+    arm = M * a * (L - loads.stations) ** 2 / 2
+    np.testing.assert_allclose(loads.section_moment[0, :, 1], arm, atol=1e-5 * arm[0])
+    np.testing.assert_allclose(loads.section_moment[0, :, 2], -arm, atol=1e-5 * arm[0])
+    # Outer fibre: both bendings, 6M/(bh²) and 6M/(hb²), less the compression of the forward acceleration.
+    stress = 6 * arm / (0.02 * 0.004**2) + 6 * arm / (0.004 * 0.02**2) - 3 * carried / (0.02 * 0.004)
+    np.testing.assert_allclose(loads.stress[0], stress, rtol=1e-5, atol=1e-5 * stress[0])
+
+
+def test_bending_moment_is_what_the_section_bends_for() -> None:
+    """The integral's moment is the constitutive one: EI_y κ_y, which converges from below with the shapes."""
+    base = Base(jnp.array([0.0, 0.0, 0.1]), jnp.zeros(3), jnp.zeros(3))
+    errors = []
+    for count in (3, 6, 12):
+        structure = assemble(SPECIMEN, Model("FOAM", 0, 0, count), [0.1])
+        q = np.asarray(equilibrium(structure, base))
+        node = int(np.argmin(np.abs(np.asarray(structure.field.cumulative).sum(axis=1)[:-2] - 0.1)))
+        at = float(np.asarray(structure.field.cumulative).sum(axis=1)[node])
+        bent = 70e9 * 0.02 * 0.004**3 / 12 * float(structure.field.strains(jnp.asarray(q)).about_y[node])
+        errors.append(abs(bent / (M * 0.1 * (L - at) ** 2 / 2) - 1))
+    assert errors[-1] < 0.02 and errors[-1] < errors[0]
+
+
+def test_bodies_count_as_outboard_of_their_own_station() -> None:
+    beam = Beam(L, Section.rectangle(0.02, 0.004), MATERIAL, [PointMass(L, 0.5)])
+    structure = assemble(beam, Model("FOAM", 0, 0, 3))
+    zero = np.zeros((1, 3))
+    loads = section_loads(structure, beam, BaseHistory(np.array([[0, 0, 2.0]]), zero, zero), zero, zero, zero)
+    np.testing.assert_allclose(loads.force[0, :, 2], [-2 * (M * L + 0.5), -1.0])
+
+
+def test_response_carries_accelerations_and_gravity_hangs_on_the_root() -> None:
+    structure = assemble(SPECIMEN, Model("FOAM", 1, 1, 3))
+    settings = ResponseSettings(duration=0.05)
+    response = respond(structure, Flight(stack(z=constant(9.80665))), settings)
+    loads = internal_loads(structure, SPECIMEN, response)
+    assert response.qdd.shape == response.q.shape
+    np.testing.assert_allclose(loads.root_force[:, 2], M * L * 9.80665, rtol=1e-6)  # it starts in equilibrium
+    np.testing.assert_allclose(loads.acceleration[:, -1, 2], 9.80665, rtol=1e-6)
+
+
+def test_loads_on_the_beam_are_carried_to_the_root() -> None:
+    loads = [Load(L, force=(0, 0, 5.0)), Load(None, force=(0, 2.0, 0)), Load(0.1, moment=(0, 0.3, 0))]
+    beam = Beam(L, Section.rectangle(0.02, 0.004), MATERIAL, loads=loads)
+    structure = assemble(beam, Model("FOAM", 0, 2, 3), [0.2])
+    zero, q = np.zeros((1, 3)), np.zeros((1, 5))
+    found = section_loads(structure, beam, BaseHistory(zero, zero, zero), q, q, q)
+    np.testing.assert_allclose(found.root_force[0], [0, -2 * L, -5], atol=1e-12)
+    np.testing.assert_allclose(found.root_moment[0], [0, 5 * L - 0.3, -2 * L**2 / 2], atol=1e-12)
+    np.testing.assert_allclose(found.section_force[0, 1], [0, 2 * (L - 0.2), 5], atol=1e-12)
+    np.testing.assert_allclose(found.section_moment[0, 1], [0, -5 * (L - 0.2), 2 * (L - 0.2) ** 2 / 2], atol=1e-12)
+
+
+def test_sprung_root_carries_the_same() -> None:
+    beam = Beam(L, Section.rectangle(0.02, 0.004), MATERIAL, root=Root(rotation_y=200.0, translation_z=1e5))
+    structure = assemble(beam, Model("FOAM", 0, 0, 3))
+    zero, q = np.zeros((1, 3)), np.zeros((1, 5))
+    found = section_loads(structure, beam, BaseHistory(np.array([[0, 0, 2.0]]), zero, zero), q, q, q)
+    np.testing.assert_allclose(found.root_force[0], [0, 0, 2 * M * L], rtol=1e-12)
+    np.testing.assert_allclose(found.root_moment[0], [0, -(M * L**2), 0], rtol=1e-12)
+
+
+def test_unknown_fibres_leave_the_stress_open() -> None:
+    beam = Beam(L, Section.general(8e-5, 1e-10, 2e-9), MATERIAL)
+    structure = assemble(beam, Model("FOAM", 1, 1, 1))
+    zero = np.zeros((1, 3))
+    assert np.isnan(section_loads(structure, beam, BaseHistory(zero, zero, zero), zero, zero, zero).stress).all()
+
+
+def test_static_influence_of_a_uniform_cantilever() -> None:
+    found = influence(assemble(SPECIMEN, Model("FOAM", 4, 8, 8)))
+    ei = 70e9 * np.array([0.004 * 0.02**3, 0.02 * 0.004**3]) / 12
+    np.testing.assert_allclose(found.tip_uniform[1:], -M * L**4 / 8 / ei, rtol=1e-5)
+    np.testing.assert_allclose(found.tip_linear[1:], -M * L**5 * 11 / 120 / ei, rtol=1e-5)
+    np.testing.assert_allclose(found.moment_linear[1:], -M * L**3 / 3, rtol=1e-12)
+    np.testing.assert_allclose(found.force_linear, -M * L**2 / 2, rtol=1e-12)

@@ -1,0 +1,136 @@
+"""What is done to a record, and what is refused: each refusal tested on the F-16 record, spoilt in one way."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable
+from pathlib import Path
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from gbeam import Flight, InputError
+from gbeam.motion.conditioning import dropout
+from gbeam.motion.flight import body_rates
+from gbeam.motion.record import Conditioning, FlightRecord, Rates, read_flight
+
+F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
+NAMES = ("time_s", "n_x_g", "-n_y_g", "-n_z_g")
+Rows = list[list[str]]
+
+
+def spoilt(tmp_path: Path, change: Callable[[Rows], Rows]) -> Path:
+    with F16.open(newline="") as file:
+        rows = list(csv.reader(file))
+    path = tmp_path / "spoilt.csv"
+    with path.open("w", newline="") as file:
+        csv.writer(file).writerows([rows[0], *change(rows[1:])])
+    return path
+
+
+def fly(path: Path, unit: str = "g", rates: Rates | None = None, **conditioning: object) -> FlightRecord:
+    return read_flight(path, *NAMES, unit, rates=rates, conditioning=Conditioning(**conditioning))  # type: ignore[arg-type]
+
+
+def column(rows: Rows, index: int, at: slice, value: str | Callable[[str], str]) -> Rows:
+    for row in rows[at]:
+        row[index] = value if isinstance(value, str) else value(row[index])
+    return rows
+
+
+def stuck(rows: Rows) -> Rows:
+    return column(rows, 3, slice(400, 460), rows[400][3])
+
+
+REFUSED: dict[str, tuple[Callable[[Rows], Rows], str, list[str]]] = {
+    "m/s^2 declared as g": (
+        lambda rows: column(rows, 3, slice(None), lambda cell: str(9.80665 * float(cell))),
+        "record.unit",
+        ["m/s^2", "g of row"],
+    ),
+    "1 Hz": (lambda rows: rows[::100], "record.time", ["1 Hz", "20 Hz"]),
+    "too short": (lambda rows: rows[:5], "record.file", ["5 row(s)", "6 samples"]),
+    "zeros": (
+        lambda rows: column(rows, 3, slice(700, 720), "0"),
+        "record.z",
+        ["n_z_g", "7 s to 7.19 s", "rows 702 to 721"],
+    ),
+    "stuck": (stuck, "record.z", ["n_z_g", "stands still", "from 4 s to 4.59 s"]),
+    "dead to the end": (lambda rows: column(rows, 3, slice(900, None), rows[900][3]), "record.z", ["stands still"]),
+    "NaN": (lambda rows: column(rows, 3, slice(700, 701), "nan"), "record.z", ["row 702", "nan"]),
+    "not monotonic": (lambda rows: rows[:500] + rows[400:], "record.time", ["goes back", "row 502"]),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_unsound_records_are_refused_with_place_and_fix(tmp_path: Path, name: str) -> None:
+    change, where, words = REFUSED[name]
+    with pytest.raises(InputError) as caught:
+        fly(spoilt(tmp_path, change))
+    assert caught.value.where == where
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_rest_at_9_81_g_is_metres_per_second_squared(tmp_path: Path) -> None:
+    calm = spoilt(
+        tmp_path,
+        lambda rows: [[row[0], "0", "0", f"{-9.80665 - 1e-3 * i % 0.1:.5f}", *row[4:]] for i, row in enumerate(rows)],
+    )
+    with pytest.raises(InputError, match='unit = "m/s\\^2"'):
+        fly(calm)
+    assert fly(calm, "m/s^2").acceleration.times.size == 1600
+    assert fly(calm, trust=True).acceleration.times.size == 1600
+
+
+def test_plateaus_are_no_dropouts() -> None:
+    ramp = np.concatenate(
+        [np.zeros(50), np.linspace(0, 60, 101), np.full(200, 60.0), np.linspace(60, 0, 101), np.zeros(50)]
+    )
+    assert dropout(ramp, 0.01) is None
+    assert dropout(ramp[50:], 0.01) is None
+    ramp[200:210] = 0
+    assert dropout(ramp, 0.01) == (200, 209)
+
+
+def test_spikes_go_only_when_asked(tmp_path: Path) -> None:
+    path = spoilt(tmp_path, lambda rows: column(rows, 3, slice(800, 801), "-11"))
+    kept, mended = fly(path), fly(path, despike=True)
+    assert float(kept.acceleration.values[800, 2]) == pytest.approx(11 * 9.80665)
+    assert "row 802" in kept.notes[0] and "despike = true" in kept.notes[0]
+    clean = fly(F16).acceleration.values
+    assert float(jnp.abs(mended.acceleration.values - clean).max()) < 0.05
+    assert "were replaced" in mended.notes[0]
+
+
+def test_cutoff_and_resampling() -> None:
+    plain, slow = fly(F16), fly(F16, cutoff=5.0, resample=200.0)
+    assert slow.acceleration.times.size == 3199
+    assert slow.notes == ("low-pass at 5 Hz, zero phase", "resampled at 200 Hz")
+    inside = slow.acceleration(plain.acceleration.times[200:-200]) - plain.acceleration.values[200:-200]
+    assert float(jnp.sqrt(jnp.mean(inside**2))) < 0.5
+    with pytest.raises(InputError, match=r"record.resample is 20 Hz, below the record's 100 Hz, with no cut-off"):
+        fly(F16, resample=20.0)
+    with pytest.raises(InputError, match=r"record\.cutoff"):
+        fly(F16, cutoff=60.0)
+    assert fly(F16, resample=20.0, cutoff=5.0).acceleration.times.size == 320
+
+
+def test_body_rates_turn_the_base() -> None:
+    """x forward, y right, z down of the aircraft are x forward, y left, z up of the beam: q and r change sign."""
+    record = fly(F16, rates=Rates("p_rad_s", "-q_rad_s", "-r_rad_s", "rad/s"))
+    assert record.rates is not None
+    flight = Flight(record.acceleration, body_rates(record.rates))
+    t = jnp.linspace(1.2, 15.0, 200)
+    base, h = flight.base(t), 1e-4
+    np.testing.assert_allclose(base.w_WB_B, record.rates(t), atol=0.05)
+    slope = (flight.base(t + h).w_WB_B - flight.base(t - h).w_WB_B) / (2 * h)
+    np.testing.assert_allclose(base.al_WB_B, slope, atol=1e-4)
+    # A pull-up turns the nose up: about −y of a y axis that points left, while the load is upwards.
+    pull = np.argmax(base.a_WO_B[:, 2])
+    assert base.w_WB_B[pull, 1] < 0 < base.a_WO_B[pull, 2]
+    degrees = fly(F16, rates=Rates("p_rad_s", "-q_rad_s", "0", "deg/s"))
+    assert degrees.rates is not None
+    np.testing.assert_allclose(degrees.rates.values[:, 1], record.rates.values[:, 1] * np.pi / 180)
+    np.testing.assert_array_equal(degrees.rates.values[:, 2], 0)

@@ -1,0 +1,89 @@
+"""The exact inverse: forward of inverse is the identity at the control point; theory.md A1 (9) and its limit.
+
+Ledger of the source: "the control point is always consistent" holds for smooth loads with −ä <= a²/R at their maxima.
+"""
+
+import equinox as eqx
+import numpy as np
+import pytest
+
+from gbeam.errors import InputError
+from gbeam.motion import (
+    STANDARD_GRAVITY,
+    Centrifuge,
+    Profile,
+    Sine,
+    SmoothStep,
+    Sum,
+    build_target,
+    constant,
+    stack,
+    table,
+    trapezoid,
+)  # fmt: skip
+
+G, R = STANDARD_GRAVITY, 3.3
+seen = eqx.filter_jit(lambda m, t: (m.wanted(t), m.achieved(t), m.axes(t), m.base(t)))
+
+
+def machine(
+    raw: Profile, span: tuple[float, float], *, smoothing: float = 0.0, gravity: bool = False, sign: int = 1,
+    arm: float = R, inverse: str = "exact",
+) -> Centrifuge:  # fmt: skip
+    target = build_target(raw, span=span, idle=None, smoothing=smoothing, gravity=gravity, arm=arm)
+    return Centrifuge(target, arm, 0.15, inverse, gravity, sign)
+
+
+def swinging() -> Profile:
+    y, z = Sine(2 * G, 4.0, start=-1.0), Sum((constant(5 * G), Sine(1.5 * G, 5.0, start=-2.0)))
+    return stack(x=Sine(G, 6.0, start=-1.0), y=y, z=z)
+
+
+@pytest.mark.parametrize("gravity", [False, True])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_forward_of_inverse_is_the_identity_on_a_smooth_load(gravity: bool, sign: int) -> None:
+    it, t = machine(swinging(), (0.0, 2.0), gravity=gravity, sign=sign), np.linspace(0, 2, 2001)
+    wanted, achieved, axes, base = seen(it, t)
+    np.testing.assert_allclose(achieved, wanted, atol=1e-8)
+    np.testing.assert_allclose(achieved[20:-20], wanted[20:-20], atol=1e-9)  # within: the ends are one-sided
+    # (9): ω1⁴ + (dω1/dt)² = (H/R)²
+    horizontal = np.sqrt(np.sum(wanted**2, axis=1) - (G**2 if gravity else 0))
+    np.testing.assert_allclose(np.hypot(axes.rate1**2, axes.acceleration1), horizontal / R, rtol=1e-9)
+    assert np.isfinite(base.al_WB_B).all()
+
+
+@pytest.mark.parametrize("width", [0.06, 0.2, 0.8])
+def test_a_rounded_trapezoid_up_and_down_is_tracked_to_5e_7(width: float) -> None:
+    raw = stack(z=Sum((constant(2 * G), trapezoid(8 * G, 4 * G, 1.0, 4.0))))
+    t = np.linspace(0, 11, 11003)
+    wanted, achieved, axes, _ = seen(machine(raw, (0.0, 11.0), smoothing=width), t)
+    assert np.abs(achieved - wanted).max() < 5e-7 * 10 * G
+    # Flat's lag is the solution's first order: on a straight flank they agree to the second.
+    lag, first = np.arctan2(axes.acceleration1, axes.rate1**2), 4 * G * np.sqrt(R) / (2 * (6 * G) ** 1.5)
+    assert lag[np.argmin(np.abs(wanted[:, 2] - 6 * G))] == pytest.approx(first, rel=0.02)
+
+
+def test_smooth_step_and_rates() -> None:
+    it = machine(stack(z=Sum((constant(2 * G), SmoothStep(8 * G, 4.0, 1.0)))), (0.0, 8.0))
+    t, h = np.linspace(0.5, 7.5, 141), 1e-5
+    wanted, achieved, here, _ = seen(it, t)
+    assert np.abs(achieved - wanted).max() < 5e-7 * 10 * G
+    before, after = seen(it, t - h)[2], seen(it, t + h)[2]
+    for value, rate in (("rate1", "acceleration1"), ("angle2", "rate2"), ("rate2", "acceleration2")):
+        finite = (getattr(after, value) - getattr(before, value)) / (2 * h)
+        np.testing.assert_allclose(getattr(here, rate), finite, atol=1e-6)
+
+
+@pytest.mark.parametrize(("frequency", "arm", "possible"), [(0.5, 3.3, True), (1.0, 3.3, False), (0.5, 15.0, False)])
+def test_a_maximum_can_be_followed_where_it_is_flat_enough(frequency: float, arm: float, possible: bool) -> None:
+    t = np.arange(0, 4, 0.005)
+    raw = stack(z=table(t, 2 * G + 1.2 * G * np.sin(2 * np.pi * frequency * t)))
+    sharp = 1.2 * G * (2 * np.pi * frequency) ** 2 / ((3.2 * G) ** 2 / arm)  # −ä over a²/R
+    assert (sharp <= 1) == possible
+    if possible:
+        wanted, achieved, *_ = seen(machine(raw, (0.6, 3.4), smoothing=0.1, arm=arm), np.linspace(0.6, 3.4, 2801))
+        assert np.abs(achieved - wanted).max() < 2e-6 * 3.2 * G
+        return
+    with pytest.raises(InputError, match="the arm allows a²/R") as caught:
+        machine(raw, (0.6, 3.4), smoothing=0.1, arm=arm)
+    assert caught.value.where == "smoothing" and "planned" in caught.value.fix

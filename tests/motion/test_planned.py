@@ -1,0 +1,77 @@
+"""The planned inverse: least tracking error within the limits; the F-16 record; splines."""
+
+from pathlib import Path
+
+import equinox as eqx
+import numpy as np
+import pytest
+
+from gbeam.motion import (
+    STANDARD_GRAVITY,
+    AxisLimit,
+    Centrifuge,
+    MachineLimits,
+    Target,
+    build_target,
+    read_record,
+    stack,
+    trapezoid,
+)  # fmt: skip
+from gbeam.motion.spline import Grid
+
+G, R = STANDARD_GRAVITY, 3.3
+F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
+TIGHT = MachineLimits(AxisLimit(10, 20, 40), AxisLimit(20, 60, 3e3), AxisLimit(10, 30, 1e3), inertia=2e3, power=1e5)
+errors = eqx.filter_jit(lambda m, t: (m.tracking_error(t), m.held(t)))
+
+
+@pytest.fixture(scope="module")
+def target() -> Target:
+    record = read_record(F16, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
+    return build_target(record, span=(0.0, 15.99), idle=1.4 * G, smoothing=0.06, gravity=True, arm=R)
+
+
+def tracked(machine: Centrifuge) -> np.ndarray:
+    """Size of the tracking error, m/s², while the target is the flight's load."""
+    error, held = errors(machine, np.linspace(0, 15.99, 16001))
+    return np.linalg.norm(error, axis=1)[~held]
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_f16_record_is_followed_ten_times_better_than_flat_with_gentler_axes(target: Target, sign: int) -> None:
+    flat, best = (Centrifuge(target, R, 0.15, inverse, True, sign) for inverse in ("flat", "planned"))
+    assert tracked(flat).max() > 4 and tracked(best).max() < 0.02
+    use = {(it.axis, it.quantity): it.used for it in flat.usage()}
+    planned = {(it.axis, it.quantity): it.used for it in best.usage()}
+    assert planned["axis 2", "acceleration"] < use["axis 2", "acceleration"] / 5
+
+
+def test_limits_are_kept_where_flat_breaks_them(target: Target) -> None:
+    flat, best = (Centrifuge(target, R, 0.15, inverse, True, 1, TIGHT) for inverse in ("flat", "planned"))
+    assert any(use.exceeded for use in flat.usage()) and not any(use.exceeded for use in best.usage())
+    assert len(best.usage()) == 10 and max(use.share for use in best.usage()) > 0.97
+    assert tracked(best).max() < 0.2
+
+
+def test_what_no_machine_of_this_speed_can_do_is_left_out_but_the_limit_is_kept() -> None:
+    raw = stack(z=trapezoid(8 * G, 8 * G, 1.0, 2.0))
+    made = build_target(raw, span=(0.0, 5.0), idle=2 * G, smoothing=0.1, gravity=False, arm=R)
+    # 8 g needs 4.88 rad/s; with a strong arm and a quick gimbal it would swing to and fro to make up for that.
+    slow = MachineLimits(AxisLimit(4.5, 6.0, 200.0), AxisLimit(acceleration=100.0))
+    machine = Centrifuge(made, R, 0.15, "planned", False, 1, slow)
+    assert max(use.share for use in machine.usage()) <= 1
+    # In the middle of the plateau nothing helps; at its ends the arm's tangential acceleration does.
+    assert 8 * G - R * 4.5**2 <= float(np.linalg.norm(machine.tracking_error(3.0))) < 1.3 * (8 * G - R * 4.5**2)
+
+
+def test_spline_reproduces_quintics_and_their_derivatives() -> None:
+    grid = Grid(1.0, 3.0, 0.11, np.array([0.1, 0.5, 0.8]))
+    polynomial = np.polynomial.Polynomial([1, -2, 0.5, 3, -1, 0.2])
+    c = grid.fit(polynomial(grid.time)[:, None])
+    for order in range(4):
+        values = np.sum(grid.weights(order) * c[grid.first[:, None] + np.arange(6), 0], axis=1)
+        np.testing.assert_allclose(
+            values, (polynomial.deriv(order) if order else polynomial)(grid.time), rtol=10.0 ** (order - 7)
+        )
+    t = np.array([1.0, 1.7, 3.0])
+    np.testing.assert_allclose(grid.spline(c)(t)[:, 0], polynomial(t), rtol=1e-8)

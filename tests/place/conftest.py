@@ -1,0 +1,55 @@
+"""The beam of 2020 on a 3.3 m arm, from 5 g to a plateau of 10 g: one corner, no idle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from gbeam import (
+    Beam,
+    Centrifuge,
+    Flight,
+    Material,
+    Model,
+    ResponseSettings,
+    Section,
+    Structure,
+    assemble,
+    build_target,
+    stack,
+    table,
+)
+from gbeam.motion import Profile
+
+G = 9.80665
+SPECIMEN = Beam(0.3, Section.rectangle(0.02, 0.004), Material(2700.0, 70e9))
+
+
+@pytest.fixture(scope="session")
+def load() -> Profile:
+    return stack(z=table([0.0, 1.25], [5 * G, 10 * G]))  # 4 g/s
+
+
+@pytest.fixture(scope="session")
+def structure() -> Structure:
+    return assemble(SPECIMEN, Model("FOAM", 1, 1, 3))
+
+
+@pytest.fixture(scope="session")
+def settings() -> ResponseSettings:
+    return ResponseSettings(start=0.5, duration=1.5, integrator="gauss", step=0.5e-3)
+
+
+@pytest.fixture(scope="session")
+def spin(load: Profile) -> Callable[..., Centrifuge]:
+    def make(smoothing: float = 0.0596, control_point: float = 0.15, sign: int = 1) -> Centrifuge:
+        target = build_target(load, span=(0.5, 2.0), idle=None, smoothing=smoothing, gravity=False)
+        return Centrifuge(target, 3.3, control_point, "flat", False, sign)
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def flight(load: Profile) -> Flight:
+    return Flight(load)

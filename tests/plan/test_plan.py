@@ -1,0 +1,136 @@
+"""`gbeam plan`: the machine's side alone, its limits, its commands, and what is wrong with its input."""
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.io import loadmat
+
+from gbeam.cli import main
+
+PLAN = """\
+title = "plan"
+[motion.flight]
+kind = "flight"
+[motion.flight.acceleration.z]
+profile = "sum"
+terms = [
+  { profile = "constant", level = "2 g" },
+  { profile = "trapezoid", level = "4 g", jerk = "4 g/s", start = "0.5 s", hold = "0.5 s" },
+]
+[motion.spin]
+kind = "centrifuge"
+tracks = "flight"
+arm = "3.3 m"
+control_point = "150 mm"
+inverse = "flat"
+gravity = true
+smoothing = "100 ms"
+[motion.spin.limits]
+axis1 = { rate = "60 rpm", acceleration = "5 rad/s^2" }
+inertia = "2000 kg m^2"
+power = "50 kW"
+[motion.spin.commands]
+sample = "4 ms"
+[response]
+duration = "3 s"
+"""
+
+
+@pytest.fixture
+def scenario(tmp_path: Path) -> Path:
+    file = tmp_path / "plan.toml"
+    file.write_text(PLAN, encoding="utf-8")
+    return file
+
+
+def test_a_plan_needs_no_beam(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["plan", str(scenario), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    spin = told["motions"]["spin"]
+    assert told["outcome"] == spin["outcome"] == "done" and spin["tracks"] == "flight"
+    use = {(it["axis"], it["quantity"]): it for it in spin["limits"]}
+    assert use["axis 1", "rate"]["allowed"] == pytest.approx(2 * np.pi)
+    assert use["axis 1", "rate"]["used"] == pytest.approx((6**2 - 1) ** 0.25 * (9.80665 / 3.3) ** 0.5)
+    assert use["axis 2", "jerk"]["allowed"] is None and use["arm", "power"]["share"] > 0
+    assert 0 < spin["tracking_error"]["fraction"] < 0.3
+    assert main(["plan", str(scenario)]) == 0
+    assert "axis 2 jerk" in capsys.readouterr().out
+
+
+def test_commands_are_the_axes_at_the_samples(scenario: Path, tmp_path: Path) -> None:
+    assert main(["plan", str(scenario), "--out", str(tmp_path / "out"), "--json"]) == 0
+    lines = (tmp_path / "out" / "commands_spin.csv").read_text(encoding="utf-8").splitlines()
+    head = [line for line in lines if line.startswith("#")]
+    assert any("Units" in line for line in head) and any("zero" in line for line in head)
+    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    mat = loadmat(tmp_path / "out" / "commands_spin.mat")
+    assert len(rows) == mat["time"].size == 751 and float(mat["sample"].squeeze()) == 0.004
+    np.testing.assert_allclose([float(row["rate2_rad_per_s"]) for row in rows], mat["rate"][:, 1], atol=1e-11)
+    # What a controller would check: the derivatives belong to the angles.
+    for value, rate in (("angle", "rate"), ("rate", "acceleration")):
+        slope = (mat[value][2:] - mat[value][:-2]) / 0.008
+        np.testing.assert_allclose(slope, mat[rate][1:-1], atol=0.02 * np.abs(mat[rate]).max())
+    assert (tmp_path / "out" / "axes_spin.svg").is_file()
+
+
+def test_sample_of_the_command_line_wins_and_the_values_are_no_interpolation(scenario: Path, tmp_path: Path) -> None:
+    for sample in ("4 ms", "20 ms"):
+        assert main(["plan", str(scenario), "--sample", sample, "--out", str(tmp_path / sample), "--json"]) == 0
+    fine, coarse = (loadmat(tmp_path / s / "commands_spin.mat") for s in ("4 ms", "20 ms"))
+    for name in ("time", "angle", "rate", "acceleration"):
+        np.testing.assert_allclose(fine[name][::5], coarse[name], atol=1e-9)
+
+
+def test_exceeding_a_limit_is_status_1_unless_allowed(
+    scenario: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    low = ["--set", "motion.spin.limits.axis1.rate=20 rpm"]
+    assert main(["plan", str(scenario), *low, "--out", str(tmp_path / "low")]) == 1
+    assert "limits exceeded: exceeds axis 1 rate" in capsys.readouterr().err
+    assert "LIMITS EXCEEDED" in (tmp_path / "low" / "commands_spin.csv").read_text(encoding="utf-8")
+    assert main(["plan", str(scenario), *low, "--allow-limits", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["outcome"] == "limits exceeded"
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ("motion.spin.limits.axis1.rate=0 rpm", "is zero"),
+        ("motion.spin.limits.axis2.jerk=3 m", "jerk"),
+        ("motion.spin.limits.axis4.rate=3 rad/s", "unknown key"),
+        ("motion.spin.machine=human-9m", "unknown choice"),
+        ("motion.spin.commands.sample=0 s", "is zero"),
+        ("motion.spin.tracks=spin", "not a flight"),
+    ],
+)
+def test_wrong_input_is_status_2_at_its_place(
+    scenario: Path, change: str, words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["plan", str(scenario), "--set", change]) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_what_is_missing_is_said(scenario: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = PLAN.replace('arm = "3.3 m"\n', "")
+    file = tmp_path / "other.toml"
+    file.write_text(text, encoding="utf-8")
+    assert main(["plan", str(file)]) == 2 and "arm is missing" in capsys.readouterr().err
+    file.write_text(
+        text.replace('tracks = "flight"\n', 'tracks = "flight"\nmachine = "human-7.6m"\n'), encoding="utf-8"
+    )
+    assert main(["plan", str(file), "--json"]) == 1  # 4 g/s from 2 g asks more of a gimbal than such a machine gives
+    spin = json.loads(capsys.readouterr().out)["motions"]["spin"]
+    assert spin["arm"] == 7.6 and spin["limits"][0]["allowed"] == pytest.approx(2 * np.pi)  # the scenario's own wins
+    file.write_text(text.replace('inertia = "2000 kg m^2"\n', 'arm = "1 m"\n'), encoding="utf-8")
+    assert main(["plan", str(file)]) == 2
+    for sample in ("5", "-1 ms", "5 kg"):
+        status = main(["plan", str(scenario), "--sample", sample])
+        assert status == (0 if sample == "5" else 2)
+    flight = PLAN.split("[motion.spin]")[0] + '[response]\nduration = "3 s"\n'
+    file.write_text(flight, encoding="utf-8")
+    capsys.readouterr()
+    assert main(["plan", str(file)]) == 2 and "no centrifuge" in capsys.readouterr().err
+    assert main(["run", str(scenario)]) == 2 and "beam is missing" in capsys.readouterr().err

@@ -1,0 +1,175 @@
+"""Forces and moments on the beam: the classics of large deflection, stability, and loads over time."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+import scipy.linalg
+
+from gbeam import (
+    Beam,
+    Flight,
+    InputError,
+    Material,
+    Model,
+    ResponseSettings,
+    Section,
+    SmoothStep,
+    assemble,
+    equilibrium,
+    respond,
+    stack,
+    trapezoid,
+)
+from gbeam.equations import coefficients
+from gbeam.loads import Load
+from gbeam.motion import Base
+from gbeam.root import Root
+from gbeam.work import first_order
+
+STILL = Base(*[jnp.zeros(3)] * 3)
+# Elastica under a dead tip force F L²/EI: 1 − x/L, y/L, angle of the tip (elliptic integrals).
+ELASTICA = {
+    1: (0.056433, 0.301721, 0.461352),
+    2: (0.160642, 0.493457, 0.781750),
+    3: (0.254420, 0.603253, 0.986017),
+    5: (0.387628, 0.713792, 1.215368),
+    10: (0.554996, 0.810609, 1.430286),
+}
+
+
+def beam(length: float, bending: float, *loads: Load, axial: float = 1.0, **options: Any) -> Beam:
+    """A beam of unit density and modulus: EI and EA are its section's."""
+    return Beam(length, Section.general(axial, bending, bending), Material(1.0, 1.0), loads=loads, **options)
+
+
+def test_elastica_table() -> None:
+    for force, wanted in ELASTICA.items():
+        structure = assemble(beam(1.0, 1.0, Load(1.0, force=(0, 0, force))), Model("exact", 0, 0, 12))
+        q = equilibrium(structure, STILL)
+        moved, tangent = structure.displacement(q)[-1], structure.field.rotation(q)[-1][:, 0]
+        found = (-moved[0], moved[2], np.arctan2(tangent[2], tangent[0]))
+        np.testing.assert_allclose(found, wanted, atol=6e-7)
+
+
+@pytest.mark.parametrize("follows", [False, True])
+def test_roll_up_into_a_full_circle(follows: bool) -> None:
+    moment = 2 * np.pi * 3.0 / 10
+    structure = assemble(beam(10.0, 3.0, Load(10.0, moment=(0, 0, moment), follows=follows)), Model("exact", 0, 2, 0))
+    moved = structure.displacement(equilibrium(structure, STILL))[-1]
+    np.testing.assert_allclose(moved, [-10, 0, 0], atol=1e-11)
+
+
+def test_geradin_and_cardonas_cantilever_but_for_its_shear() -> None:
+    """Published with GA = 3.231e8 N: −2.1597 and −0.59647 m; without shear 0.27 % and 0.43 % less."""
+    structure = assemble(beam(5.0, 9.346e6, Load(5.0, force=(0, 0, -6e5)), axial=4.8e8), Model("exact", 8, 0, 8))
+    moved = structure.displacement(equilibrium(structure, STILL))[-1]
+    np.testing.assert_allclose(moved, [-0.593880, 0, -2.153761], atol=2e-6)
+    # Timoshenko's shear adds F L/GA = 9.3 mm where the beam is straight, and less where it has turned.
+    assert 0.5 < (2.1597 + float(moved[2])) / (6e5 * 5 / 3.231e8) < 1
+
+
+@pytest.mark.parametrize("kind", ["CFOAM", "exact"])
+def test_generalised_forces_are_the_virtual_work(kind: str) -> None:
+    """F·δr + M·δθ by finite differences of the points and of their rotations, root springs included."""
+    force, moment = np.array([1.0, -2.0, 3.0]), np.array([0.5, 0.7, -0.4])
+    loads = [Load(0.6, force, moment), Load(0.6, force, moment, follows=True)]
+    structure = assemble(beam(1.0, 1.0, *loads, root=Root(rotation_y=1.0)), Model(kind, 1, 2, 2), [0.6])
+    q, step = jnp.asarray(np.random.default_rng(5).normal(size=structure.size) * 0.2), 1e-6
+
+    @eqx.filter_jit
+    def place(q: Any) -> Any:
+        return structure.field.position(q)[-2], structure.field.rotation(q)[-2]
+
+    rotation = np.asarray(place(q)[1])
+    f, m = force + rotation @ force, moment + rotation @ moment
+    work = []
+    for direction in np.eye(structure.size):
+        (r1, R1), (r0, R0) = (place(q + sign * step * direction) for sign in (1, -1))
+        spin = np.asarray((R1 - R0) @ rotation.T) / (2 * step)
+        turned = np.array([spin[2, 1] - spin[1, 2], spin[0, 2] - spin[2, 0], spin[1, 0] - spin[0, 1]]) / 2
+        work.append(f @ np.asarray(r1 - r0) / (2 * step) + m @ turned)
+    np.testing.assert_allclose(structure.system.generalised(q)[6:], work, atol=1e-8)
+
+
+@cache
+def stiffness() -> tuple[np.ndarray, ...]:
+    """M, K and what K loses under a dead and under a following unit thrust, of FOAM."""
+    thrusts = [Load(1.0, force=(-1.0, 0.0, 0.0), follows=follows) for follows in (False, True)]
+    found = coefficients(assemble(beam(1.0, 1.0, *thrusts), Model("FOAM", 0, 0, 8)).system)
+    o, free = jnp.zeros(3), found.stiffness
+    under = [found.at(o, o, o, jnp.zeros((2, 6)).at[k, 0].set(-1.0))[1] for k in (0, 1)]
+    return tuple(np.asarray(m) for m in (found.mass, free, free - under[0], free - under[1]))
+
+
+def test_a_dead_thrust_buckles_at_eulers_load() -> None:
+    _, free, dead, _ = stiffness()
+    critical = 1 / scipy.linalg.eigvals(dead, free).real.max()
+    assert critical == pytest.approx(np.pi**2 / 4, rel=2e-4)
+
+
+def test_a_following_thrust_flutters_at_becks_load() -> None:
+    mass, free, _, following = stiffness()
+
+    def flutters(force: float) -> bool:
+        return bool(np.abs(scipy.linalg.eigvals(free - force * following, mass).imag).max() > 1e-6)
+
+    assert not flutters(20.04) and flutters(20.07)  # Beck 1952: 20.05
+
+
+@pytest.mark.parametrize(
+    "model",
+    [Model("FOAM", 0, 0, 2), pytest.param(Model("exact", 0, 0, 2), marks=pytest.mark.slow)],
+    ids=["FOAM", "exact"],
+)
+def test_a_spread_load_over_time_is_an_acceleration_of_the_base(model: Model) -> None:
+    """ρA = 1: the force per length −a(t) and the base's acceleration a(t) are one load."""
+    pulse = stack(z=trapezoid(0.4, 2.0, 0.1, 0.5))
+    counter = stack(z=trapezoid(-0.4, 2.0, 0.1, 0.5))
+    settings = ResponseSettings(1.5, step=0.005)
+    moving = respond(assemble(beam(1.0, 1.0), model), Flight(pulse), settings)
+    pushed = respond(assemble(beam(1.0, 1.0, Load(force=counter)), model), Flight(stack()), settings)
+    np.testing.assert_allclose(pushed.tip, moving.tip, atol=1e-9 * np.abs(moving.tip).max())
+
+
+def test_equilibrium_takes_the_loads_at_its_time() -> None:
+    structure = assemble(
+        beam(1.0, 1.0, Load(1.0, force=stack(z=SmoothStep(3e-3, 2.0)))), Model("FOAM", 0, 0, 2, "adapted")
+    )
+    tips = [float(structure.displacement(equilibrium(structure, STILL, t))[-1, 2]) for t in (0.0, 1.0, 2.0)]
+    np.testing.assert_allclose(tips, [0.0, 0.5e-3, 1e-3], rtol=0.05, atol=1e-12)
+    frozen = structure.at_time(2.0)
+    np.testing.assert_allclose(frozen.displacement(equilibrium(frozen, STILL))[-1, 2], tips[2])
+
+
+def test_truncated_work_is_the_first_order_of_the_complete_one() -> None:
+    loads = [Load(1.0, (1.0, 2.0, 3.0), (0.4, 0.5, 0.6)), Load(None, (0.2, 0.3, 0.4), follows=True)]
+    full = assemble(beam(1.0, 1.0, *loads), Model("CFOAM", 1, 2, 2)).system
+    truncated = first_order(full.work, full.applied, 5)
+    zero, q = jnp.zeros(5), jnp.asarray(np.random.default_rng(1).normal(size=5))
+    value, slope = eqx.filter_jit(lambda q: jax.jvp(full.generalised, (zero,), (q,)))(q)
+    np.testing.assert_allclose(truncated.generalised(q, full.applied), value + slope, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"at": 1.0}, "has neither force nor moment"),
+        ({"at": -1.0, "force": (0, 0, 1)}, "at is -1 m"),
+        ({"at": 1.0, "force": (0, 1)}, r"force is \(0, 1\)"),
+    ],
+)
+def test_impossible_loads_are_refused(wrong: dict[str, Any], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        Load(**wrong)
+
+
+def test_a_load_beyond_the_tip_is_refused() -> None:
+    with pytest.raises(InputError, match=r"loads\[0\].at is 2 m, beyond the tip"):
+        beam(1.0, 1.0, Load(2.0, force=(0, 0, 1)))
