@@ -50,7 +50,7 @@ def test_hubbeam_slews(rate: str, mass: str) -> None:
     assert peaks.residual_amplitude[1] == pytest.approx(residual, rel=1e-2)
 
 
-# Exact peaks (m) and FOAM's error in %, for tip masses 0, 0.1, 0.5 kg: the validity table of theory, two independent codes.
+# Exact peaks (m) and FOAM's error in %, for tip masses 0, 0.1, 0.5 kg, from two independent exact codes.
 TORQUES = {
     "50": ((0.26961, 0.02), (0.35208, 0.07), (0.59384, 0.18)),
     "200": ((1.12747, 0.58), (1.28835, 0.90), (2.25654, 2.84)),

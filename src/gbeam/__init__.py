@@ -15,7 +15,25 @@ from gbeam.loads import Load
 from gbeam.root import Root
 
 if TYPE_CHECKING:
-    from gbeam.analysis import compare, equilibrium, respond, study
+    from gbeam.analysis import (
+        Gauge,
+        StateSpace,
+        balance,
+        buckling_acceleration,
+        campbell,
+        compare,
+        compare_models,
+        critical_speed,
+        critical_speed_map,
+        deflect,
+        equilibrium,
+        linearize,
+        modes,
+        nonlinear_system,
+        respond,
+        study,
+        truncate,
+    )
     from gbeam.case import Case, ResponseSettings
     from gbeam.model import Model, Structure, assemble
     from gbeam.motion import (
@@ -39,7 +57,25 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOMES = {
-    "gbeam.analysis": ("compare", "equilibrium", "respond", "study"),
+    "gbeam.analysis": (
+        "Gauge",
+        "StateSpace",
+        "balance",
+        "buckling_acceleration",
+        "campbell",
+        "compare",
+        "compare_models",
+        "critical_speed",
+        "critical_speed_map",
+        "deflect",
+        "equilibrium",
+        "linearize",
+        "modes",
+        "nonlinear_system",
+        "respond",
+        "study",
+        "truncate",
+    ),
     "gbeam.case": ("Case", "ResponseSettings"),
     "gbeam.model": ("Model", "Structure", "assemble"),
     "gbeam.motion": (
@@ -69,6 +105,7 @@ __all__ = [
     "Comparison",
     "ComputationError",
     "Flight",
+    "Gauge",
     "GbeamError",
     "HubRate",
     "HubTorque",
@@ -83,15 +120,26 @@ __all__ = [
     "Section",
     "Sine",
     "SmoothStep",
+    "StateSpace",
     "Structure",
     "Study",
     "assemble",
+    "balance",
+    "buckling_acceleration",
     "build",
     "build_target",
+    "campbell",
     "compare",
+    "compare_models",
     "constant",
+    "critical_speed",
+    "critical_speed_map",
+    "deflect",
     "equilibrium",
+    "linearize",
     "load",
+    "modes",
+    "nonlinear_system",
     "read_record",
     "respond",
     "smoothed",
@@ -99,6 +147,7 @@ __all__ = [
     "study",
     "table",
     "trapezoid",
+    "truncate",
 ]
 
 

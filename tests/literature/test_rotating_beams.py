@@ -132,7 +132,7 @@ def test_southwell_coefficients() -> None:
 
 
 # --- flap and chord, Hamza Cherif and Houmat, 24th ICAS 2004, Table 2 (slenderness 70), as in
-#     octave-user/mboct-fem-pkg, inst/fem_tests_060.tst: the chord with gyroscopic coupling to the stretch (Yoo and Shin)
+#     octave-user/mboct-fem-pkg, inst/fem_tests_060.tst: chord with gyroscopic coupling to the stretch (Yoo and Shin)
 
 
 @pytest.mark.parametrize(

@@ -50,3 +50,16 @@ def tracking(time: Floats, axes: AxesResult) -> Tracking:
     i = int(np.argmax(error))
     wanted = float(np.linalg.norm(axes.wanted[i]))
     return Tracking(float(error[i]), float(time[i]), float(error[i]) / wanted if wanted > 0 else np.nan)
+
+
+def held_stretches(axes: AxesResult) -> list[tuple[float, float, str]]:
+    """Stretches in which the target is held, s, those that overlap joined with their reasons."""
+    joined: list[tuple[float, float, str]] = []
+    for start, end, reason in sorted(axes.episodes):
+        if joined and start <= joined[-1][1]:
+            first, last, reasons = joined[-1]
+            both = reasons if reason in reasons else f"{reasons}, {reason}"
+            joined[-1] = first, max(last, end), both
+        else:
+            joined.append((start, end, reason))
+    return joined

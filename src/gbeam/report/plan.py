@@ -12,7 +12,7 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from gbeam.report.figures import tracking
+from gbeam.report.figures import held_stretches, tracking
 from gbeam.report.limits import limits_json, limits_table
 from gbeam.results import MachinePlan
 
@@ -25,7 +25,9 @@ def plan_table(title: str, plans: Iterable[MachinePlan]) -> RenderableType:
     for it in plans:
         parts += ["", Text(f"{it.name} ({it.arm:g} m, tracks {it.tracks}): {it.outcome}")]
         lines: list[RenderableType] = [limits_table(it.axes.limits), Text(_followed(it))]
-        lines += [Text(f"target held {start:.3f} to {end:.3f} s: {why}") for start, end, why in it.axes.episodes[:8]]
+        lines += [
+            Text(f"target held {start:.3f} to {end:.3f} s: {why}") for start, end, why in held_stretches(it.axes)[:8]
+        ]
         told = it.axes.unreachable[:_SHORTFALLS]
         lines += [Text(f"warning: {each}", style="yellow") for each in told]
         if len(it.axes.unreachable) > len(told):

@@ -13,12 +13,13 @@ from rich.table import Table
 from rich.text import Text
 
 from gbeam.report.comparison import comparison_lines
-from gbeam.report.figures import tracking
+from gbeam.report.figures import held_stretches, tracking
 from gbeam.report.limits import limits_table
 from gbeam.results import AxesResult, HubResult, Response, Study
 
 ROUNDING = 1e-9  # of what it belongs to: a smaller number is none
 EPISODES = 8  # of holding listed; a rough record has hundreds
+SHORTFALLS = 2
 
 
 def summary(study: Study) -> RenderableType:
@@ -122,9 +123,14 @@ def _tracking(response: Response, it: AxesResult) -> Iterator[str]:
             f"load followed within {number(error.max, 3)} m/s² ({100 * error.fraction:.3g} % of the load there), "
             f"at {error.time_of_max:.3f} s"
         )
-    for start, end, reason in it.episodes[:EPISODES]:
+    stretches = held_stretches(it)
+    for start, end, reason in stretches[:EPISODES]:
         yield f"target held {start:.3f} to {end:.3f} s: {reason}"
-    if len(it.episodes) > EPISODES:
-        yield f"target held {len(it.episodes) - EPISODES} times more: see the result file"
-    for each in it.unreachable[:EPISODES]:
+    if len(stretches) > EPISODES:
+        yield f"target held {len(stretches) - EPISODES} times more: see the result file"
+    # What is held has just been said; what is not held and yet cannot be followed is news.
+    told = [each for each in it.unreachable if not any(start <= each.time <= end for start, end, _ in stretches)]
+    for each in told[:SHORTFALLS]:
         yield f"warning: {each}"
+    if len(told) > SHORTFALLS:
+        yield f"warning: {len(told) - SHORTFALLS} places more like these: see `gbeam plan`"
