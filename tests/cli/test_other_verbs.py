@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
+import resource
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -66,17 +66,23 @@ def test_every_verb_has_help(verb: str, gbeam: Call) -> None:
     assert VERBS[verb].split(",")[0].split(".")[0] in " ".join(answer.out.split())
 
 
+def spent() -> float:
+    """Processor time of the processes that this one has run, s."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def test_help_is_light() -> None:
     heavy = ("jax", "xarray", "matplotlib", "pint", "pydantic", "scipy")
     code = (
         "import sys; from gbeam.cli import main; status = main(['--help']);"
         f"print([it for it in {heavy} if it in sys.modules], file=sys.stderr); sys.exit(status)"
     )
-    seconds = []
+    seconds = []  # of processor time: the wall's belong to whatever else runs
     for _ in range(3):
-        start = time.perf_counter()
+        start = spent()
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-        seconds.append(time.perf_counter() - start)
+        seconds.append(spent() - start)
     assert done.stderr.strip() == "[]"
     assert all(verb in done.stdout for verb in VERBS)
     assert min(seconds) < 0.5
