@@ -14,10 +14,10 @@ from scipy.interpolate import BarycentricInterpolator
 
 from gbeam import Model, assemble
 from gbeam.analysis.response import displacement
-from gbeam.basis import bar_shapes, bending_shapes, legendre_shapes
+from gbeam.basis import bar_shapes, bending_shapes, legendre_shapes, quadrature
 from gbeam.energy import rest_matrices, second_order
 from gbeam.equations import Damped, coefficients
-from gbeam.field import rotation_matrix
+from gbeam.field import projected_field, rotation_matrix
 from gbeam.model import Structure, rest_modes
 
 from .helpers import beam, states
@@ -129,7 +129,7 @@ def test_exact_frame_is_the_integral_of_its_curvatures_without_torsion(seed: int
 
 
 def test_exact_field_is_smooth_through_small_angles() -> None:
-    """The series near zero and the closed forms meet: values and third derivatives are continuous across the switch."""
+    """The series near zero and the closed forms meet: second derivatives are continuous across the switch."""
     structure = exact(0, 1, 1)
     direction = np.array([0.6, 0.8])
 
@@ -137,11 +137,11 @@ def test_exact_field_is_smooth_through_small_angles() -> None:
         q = size * direction
         return jnp.concatenate([structure.field.position(q)[-1], structure.field.strains(q).about_y[:1]])
 
-    third = jax.jit(jax.jacfwd(jax.jacfwd(jax.jacfwd(tip))))
+    second = jax.jit(jax.jacfwd(jax.jacfwd(tip)))
     for switch in (1e-2, 1e-1):  # φ² = 1e-4 and 1e-2 at the tip
-        below, above = (np.asarray(third(switch * (1 + side))) for side in (-1e-6, 1e-6))
-        np.testing.assert_allclose(below, above, atol=1e-4)
-    assert np.isfinite(third(0.0)).all()
+        below, above = (np.asarray(second(switch * (1 + side))) for side in (-1e-6, 1e-6))
+        np.testing.assert_allclose(below, above, atol=1e-5)
+    assert np.isfinite(second(0.0)).all()
 
 
 def test_rotation_matrix_is_the_exponential() -> None:
@@ -165,9 +165,10 @@ def test_projected_field_is_the_sum_of_shapes_and_the_foreshortening() -> None:
         np.mean(sum((bending_shapes(fine * at, LENGTH, 2).slope @ part) ** 2 for part in np.split(q, 3)[1:])) * at / 2
         for at in x
     ]
-    for kind, shortened in (("CFOAM", short), ("FOAM", short), ("TLAM", 0 * x)):
-        moved = assemble(beam(), Model(kind, *counts), x).displacement(q)[:-1]
-        np.testing.assert_allclose(moved, np.stack([s - shortened, v, w], axis=1), atol=1e-7)
+    for foreshortening in (True, False):
+        field = projected_field(LENGTH, quadrature(LENGTH, 20), x, counts, foreshortening=foreshortening)
+        wanted = np.stack([x + s - foreshortening * np.array(short), v, w], axis=1)
+        np.testing.assert_allclose(field.position(q), wanted, atol=1e-7)
 
 
 @pytest.mark.parametrize(
@@ -211,11 +212,10 @@ def test_projected_sections_follow_the_torsion_free_frame_to_second_order(moving
     assert error(0.1) / error(0.05) == pytest.approx(8, rel=0.3)
 
 
-@pytest.mark.slow
 def test_exact_field_to_second_order_has_foams_kinematics() -> None:
     """Where no load acts across the beam the coordinates do not matter: equal frequencies at a steady spin."""
-    foam = assemble(beam(), Model("FOAM", 2, 10, 10))
-    full = assemble(beam(), Model("exact", 3, 7, 7))
+    foam = assemble(beam(), Model("FOAM", 2, 10, 0))
+    full = assemble(beam(), Model("exact", 3, 9, 0))
     expanded = Damped(second_order(full.system.energy), full.system.damping)
     spin, radius = np.array([0.0, 1.0, 2.0]), 0.5
     root = radius * np.array([-(spin @ spin), 0.0, 0.0])
@@ -226,9 +226,9 @@ def test_exact_field_to_second_order_has_foams_kinematics() -> None:
         first_order = np.block(
             [[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(mass, np.hstack([stiffness, velocity]))]]
         )
-        found.append(np.sort(np.abs(np.linalg.eigvals(first_order).imag))[::2][:4])
+        found.append(np.sort(np.abs(np.linalg.eigvals(first_order).imag))[::2][:3])
     np.testing.assert_allclose(found[0], found[1], rtol=2e-4)  # FOAM's ten modes at 2 rad/s
-    at_rest = [rest_modes(*rest_matrices(system.energy))[0][:4] for system in (foam.system, expanded)]
+    at_rest = [rest_modes(*rest_matrices(system.energy))[0][:3] for system in (foam.system, expanded)]
     np.testing.assert_allclose(at_rest[0], at_rest[1], rtol=1e-7)
 
 

@@ -311,6 +311,7 @@ TORQUE_ERRORS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("torque", "mt"), TORQUE_ERRORS)
 def test_foam_and_cfoam_are_wrong_by_as_much_as_is_known(torque: float, mt: float) -> None:
     """Erratum 16: the complete kinetic energy makes the response worse, not better, once it is large."""
@@ -320,6 +321,7 @@ def test_foam_and_cfoam_are_wrong_by_as_much_as_is_known(torque: float, mt: floa
         assert 100 * (peak / reference - 1) == pytest.approx(error, abs=0.05)
 
 
+@pytest.mark.slow
 def test_sfoam_is_foam_to_a_thousandth() -> None:
     """Paper: SFOAM leads by .45 rad with 24 % less amplitude at 200 N m. Not reproduced by any variant tried.
 

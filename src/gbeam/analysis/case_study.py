@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 from gbeam.analysis.comparison import compare
@@ -60,9 +59,7 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
             raise ComputationError(error.outcome, f"motion.{name}: {error}") from None
         return _with_loads(structure, case, motion, response)
 
-    # Compiling and integrating both leave the interpreter free, so two environments cost little more than one.
-    with ThreadPoolExecutor(max_workers=2) as pool:
-        responses = dict(zip(case.motions, pool.map(answer, case.motions), strict=True))
+    responses = {name: answer(name) for name in case.motions}
     comparisons = tuple(
         compare(responses[flight], responses[name])
         for name, flight in case.tracks.items()

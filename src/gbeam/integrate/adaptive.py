@@ -71,7 +71,7 @@ def integrate_adaptively(
     """
     inside = np.asarray([] if jumps is None else jumps, dtype=float)
     inside = np.unique(inside[(inside > times[0]) & (inside < times[-1])])
-    q, qd, qdd, ok = _solve(system, state, jnp.asarray(times), tolerance, jnp.asarray(inside))
+    q, qd, qdd, ok = _solve(system, state, jnp.asarray(times), tolerance, jnp.asarray(inside) if inside.size else None)
     q, qd, qdd = (np.asarray(x) for x in (q, qd, qdd))
     good = np.isfinite(q).all(axis=1)
     valid = len(times) if good.all() else int(np.argmin(good))
