@@ -25,7 +25,10 @@ def _rates(t: Any, y: tuple[Any, Any], system: System) -> tuple[Any, Any]:
 @eqx.filter_jit
 def _solve(system: System, state: State, times: Any, tolerance: Any, jumps: Any) -> Any:
     controller = diffrax.ClipStepSizeController(
-        diffrax.PIDController(rtol=tolerance, atol=tolerance * 1e-3), jump_ts=jumps
+        diffrax.PIDController(
+            rtol=tolerance, atol=tolerance * 1e-3, dtmin=1e-10 * (times[-1] - times[0]), force_dtmin=False
+        ),
+        jump_ts=jumps,
     )
     solution = diffrax.diffeqsolve(
         diffrax.ODETerm(_rates),
