@@ -9,7 +9,7 @@ demo: .venv/installed
 	$(BIN)/gbeam run $(EXAMPLE) --out out/f16_8g_turn
 
 test: .venv/dev-installed
-	$(BIN)/pytest -n 2 --dist worksteal
+	$(BIN)/pytest -n 2 --dist loadfile
 
 check: .venv/dev-installed
 	$(BIN)/ruff check src tests
