@@ -6,6 +6,8 @@ twist is u = (v_O, ω), base axes. Every model is such an energy; none has equat
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Protocol
 
 import equinox as eqx
@@ -65,8 +67,7 @@ class FieldEnergy(eqx.Module):
 
     def kinetic(self, u: Twist, q: Coordinates, qd: Coordinates) -> Float[Array, ""]:
         """Kinetic energy, J (2009 (9), 2020 (5))."""
-        r, rd = jax.jvp(self.particles, (q,), (qd,))
-        v = u[:3] + jnp.cross(u[3:], r) + rd
+        v = _velocities(self.particles, q, jnp.concatenate([u, qd]))
         return 0.5 * jnp.sum(self.mass[:, None] * v**2)
 
     def potential(self, q: Coordinates) -> Float[Array, ""]:
@@ -76,6 +77,12 @@ class FieldEnergy(eqx.Module):
         """
         pairs = zip(self.rigidity, self.field.strains(q), strict=True)
         return 0.5 * sum((jnp.sum(k * e**2) for k, e in pairs), start=jnp.zeros(()))
+
+
+def _velocities(particles: Callable[[Coordinates], Points], q: Coordinates, rates: Array) -> Points:
+    """Velocities v_O + ω × r + ṙ of particles, linear in the rates (v_O, ω, q̇), (particles, 3) m/s."""
+    r, rd = jax.jvp(particles, (q,), (rates[6:],))
+    return rates[:3] + jnp.cross(rates[3:6], r) + rd
 
 
 class QuadraticEnergy(eqx.Module):
@@ -135,21 +142,23 @@ def rest_matrices(energy: Energy) -> tuple[Float[Array, "n n"], Float[Array, "n 
 @eqx.filter_jit
 def second_order(energy: FieldEnergy) -> QuadraticEnergy:
     """Truncate a kinetic energy to second order in (q, q̇) by differentiating it at rest."""
-    zero = jnp.zeros(energy.size)
-    mass, stiffness = rest_matrices(energy)
+    zero, rates = jnp.zeros(energy.size), jnp.zeros(6 + energy.size)
+    # The derivatives wanted see no more of the places than their Taylor polynomial: quicker to differentiate.
+    place, slope = energy.particles(zero), jax.jacfwd(energy.particles)(zero)
+    bend = jax.jacfwd(jax.jacfwd(energy.particles))(zero)
 
-    def base(q: Coordinates) -> Array:
-        return jax.hessian(energy.kinetic)(jnp.zeros(6), q, zero)
+    def inertia(q: Coordinates) -> Array:
+        """The matrix of T, half a sum of squares of the velocities, in the rates (v_O, ω, q̇)."""
+        per_rate = jax.jacfwd(partial(_velocities, lambda q: place + (slope + 0.5 * bend @ q) @ q, q))(rates)
+        return jnp.einsum("kai,k,kaj->ij", per_rate, energy.mass, per_rate)
 
-    def mixed(q: Coordinates) -> Array:
-        return jax.jacfwd(jax.grad(energy.kinetic, 0), 2)(jnp.zeros(6), q, zero)
-
+    whole, first, second = inertia(zero), jax.jacfwd(inertia)(zero), jax.jacfwd(jax.jacfwd(inertia))(zero)
     return QuadraticEnergy(
-        a0=base(zero),
-        a1=jax.jacfwd(base)(zero),
-        a2=jax.jacfwd(jax.jacfwd(base))(zero),
-        b0=mixed(zero),
-        b1=jnp.swapaxes(jax.jacfwd(mixed)(zero), 1, 2),
-        mass=mass,
-        stiffness=stiffness,
+        a0=whole[:6, :6],
+        a1=first[:6, :6],
+        a2=second[:6, :6],
+        b0=whole[:6, 6:],
+        b1=jnp.swapaxes(first[:6, 6:], 1, 2),
+        mass=whole[6:, 6:],
+        stiffness=jax.hessian(energy.potential)(zero),
     )

@@ -212,29 +212,27 @@ def coefficients(system: Damped) -> Coefficients:
     def residual(q: Array, qd: Array, qdd: Array, a: Array, w: Array, al: Array) -> Array:
         return on_prescribed_base(unloaded, q, qd, qdd, a, w, al)
 
+    first = jax.jacfwd(residual, (0, 2, 3, 5))
+    second = jax.jacfwd(jax.jacfwd(residual, (0, 1, 4)), (3, 4, 5))
+    third = jax.jacfwd(jax.jacfwd(jax.jacfwd(residual, 0), 4), 4)
     at_rest = (q0, q0, q0, o, o, o)
+    (k, m, f_a, f_al), (of_q, of_qd, of_w), k_ww = first(*at_rest), second(*at_rest), third(*at_rest)
 
     def last_first(a: Array, base_axes: int) -> Array:
         """Move the base's axes, which differentiation puts last, to the front."""
         return jnp.moveaxis(a, tuple(range(-base_axes, 0)), tuple(range(base_axes)))
 
-    def d(*order: int) -> Array:
-        f = residual
-        for wrt in order:
-            f = jax.jacfwd(f, wrt)
-        return f(*at_rest)
-
     return Coefficients(
-        mass=d(2),
+        mass=m,
         damping=system.damping,
-        gyroscopic=last_first(d(1, 4), 1),
-        stiffness=d(0),
-        k_ww=last_first(d(0, 4, 4), 2) / 2,
-        k_al=last_first(d(0, 5), 1),
-        k_a=last_first(d(0, 3), 1),
-        f_ww=-last_first(d(4, 4), 2) / 2,
-        f_al=-last_first(d(5), 1),
-        f_a=-last_first(d(3), 1),
+        gyroscopic=last_first(of_qd[1], 1),
+        stiffness=k,
+        k_ww=last_first(k_ww, 2) / 2,
+        k_al=last_first(of_q[2], 1),
+        k_a=last_first(of_q[0], 1),
+        f_ww=-last_first(of_w[1], 2) / 2,
+        f_al=-last_first(f_al, 1),
+        f_a=-last_first(f_a, 1),
         k_p=k_p,
         f_p=f_p,
         applied=system.applied,

@@ -157,10 +157,10 @@ def _scheme(settings: ResponseSettings, linear: bool) -> OneStep | Gauss4:
 
 
 def first_step(structure: Structure, settings: ResponseSettings) -> float:
-    """Coarsest step tried, s: a whole number over the duration, at least 500 and 40 to the lowest period."""
+    """Step of the results, s: an even number over the duration, at least 500 and 40 to the lowest period."""
     frequency, _ = rest_modes(*rest_matrices(structure.system.energy))
     wanted = min(2 * math.pi / frequency[0] / 40, settings.duration / 500)
-    return settings.duration / math.ceil(settings.duration / wanted)
+    return settings.duration / (2 * math.ceil(settings.duration / wanted / 2))
 
 
 def respond(
@@ -267,11 +267,11 @@ def _refine(
     order: int,
     settings: ResponseSettings,
 ) -> tuple[Trajectory, float, float]:
-    """Halve the step until the error estimated from the last two runs is within the tolerance.
+    """Halve the step, from twice the results', until the error estimated from two runs is within the tolerance.
 
     The estimate is Richardson's: with steps h and h/r the finer run's error is their difference over rᵖ − 1.
     """
-    old, level = run(coarse, "integrating"), 0
+    old, level = run(2 * coarse, "integrating"), -1
     ratio = 2
     while True:
         step = coarse / 2**level / ratio

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array
 
 import gbeam._jax  # noqa: F401
-from gbeam.equations import Damped, on_prescribed_base
+from gbeam.equations import Coefficients, Damped, coefficients, on_prescribed_base
 from gbeam.errors import ComputationError
 from gbeam.field import Coordinates
 from gbeam.model import Structure
@@ -40,10 +40,17 @@ def _newton(system: Damped, base: Base, share: Array, q: Array) -> tuple[Array, 
     return q, (count < 30) & jnp.all(jnp.isfinite(q))
 
 
+@eqx.filter_jit
+def _direct(constants: Coefficients, base: Base, applied: Array | None) -> Array:
+    _, stiffness, load = constants.at(base.a_WO_B, base.w_WB_B, base.al_WB_B, applied)
+    return jnp.linalg.solve(stiffness, load)
+
+
 def equilibrium(structure: Structure, base: Base, time: float | None = None) -> Coordinates:
     """Coordinates at which the beam rests relative to a base whose motion is frozen, under its loads.
 
-    Newton's method, along a path of growing load where one stride fails.
+    A linear model's equations are solved at once; others by Newton's method, along a path of growing load where one
+    stride fails.
 
     Parameters
     ----------
@@ -64,6 +71,14 @@ def equilibrium(structure: Structure, base: Base, time: float | None = None) -> 
         ``not converged``, with the share of the load that was reached.
     """
     system = structure.system if time is None else structure.at_time(time).system
+    if structure.linear:
+        q = _direct(coefficients(structure.system), base, system.applied)
+        if bool(jnp.all(jnp.isfinite(q))):
+            return q
+        raise ComputationError(
+            "not converged",
+            f"no relative equilibrium: the stiffness is singular; the rate is {_rate(base):.4g} rad/s",
+        )
     q, reached, stride = jnp.zeros(structure.size), 0.0, 1.0
     while reached < 1.0:
         attempt = min(reached + stride, 1.0)
@@ -76,6 +91,10 @@ def equilibrium(structure: Structure, base: Base, time: float | None = None) -> 
                 raise ComputationError(
                     "not converged",
                     f"no relative equilibrium beyond {reached:.4g} of the load: the beam buckles or diverges there; "
-                    f"the rate is {float(np.linalg.norm(base.w_WB_B)):.4g} rad/s",
+                    f"the rate is {_rate(base):.4g} rad/s",
                 )
     return q
+
+
+def _rate(base: Base) -> float:
+    return float(np.linalg.norm(base.w_WB_B))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import diffrax
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -24,6 +23,8 @@ def _rates(t: Any, y: tuple[Any, Any], system: System) -> tuple[Any, Any]:
 
 @eqx.filter_jit
 def _solve(system: System, state: State, times: Any, tolerance: Any, jumps: Any) -> Any:
+    import diffrax  # here: it takes half a second, and few runs need it
+
     controller = diffrax.ClipStepSizeController(
         diffrax.PIDController(
             rtol=tolerance, atol=tolerance * 1e-3, dtmin=1e-10 * (times[-1] - times[0]), force_dtmin=False

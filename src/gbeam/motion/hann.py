@@ -50,6 +50,7 @@ def _hann_jvp(order, primals, tangents):  # type: ignore[no-untyped-def]
     return hann(order, x), hann(order + 1, x) * dx
 
 
+@jax.jit
 def soft_floor(value: Float[Array, "*t"], floor: Array | float, band: Array | float) -> Float[Array, "*t"]:
     """Return a three times differentiable max(value, floor).
 

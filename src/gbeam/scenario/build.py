@@ -128,7 +128,9 @@ def _model(parts: Collector, it: schema.Model) -> Model | None:
 
 def _covered(record: PiecewiseLinear) -> tuple[float, float, float]:
     """First and last time of a record, and the end of its last interval: 1600 samples at 100 Hz are 16 s of flight."""
-    times = record.times
+    import numpy as np
+
+    times = np.asarray(record.times)
     return float(times[0]), float(times[-1]), float(2 * times[-1] - times[-2])
 
 
