@@ -36,7 +36,7 @@ def test_tip_mass_variants() -> None:
 
 def test_flight_and_centrifuge_of_a_record() -> None:
     built = build(load(EXAMPLES / "f16_8g_turn.toml"))
-    assert built.tracks == {"centrifuge": "flight", "recentred": "flight"}
+    assert built.tracks == {"centrifuge": "flight"}
     assert built.response.duration == pytest.approx(15.99)
     # The aircraft's z points down and its record reads -1 g in level flight; the beam's points up.
     assert float(built.motions["flight"].base(0.0).a_WO_B[2]) > 9.0  # type: ignore[union-attr]
