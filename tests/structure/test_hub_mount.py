@@ -24,7 +24,7 @@ from gbeam import (
     assemble,
     constant,
 )
-from gbeam.analysis.response import free_hub
+from gbeam.analysis.problem import free_hub
 from gbeam.equations import coefficients, hub_kinetic, on_free_hub, on_prescribed_base
 from gbeam.loads import Load
 

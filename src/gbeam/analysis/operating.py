@@ -17,7 +17,7 @@ import scipy.integrate
 from jaxtyping import Array
 
 import gbeam._jax  # noqa: F401
-from gbeam.analysis.response import free_hub
+from gbeam.analysis.problem import free_hub
 from gbeam.analysis.static import equilibrium
 from gbeam.case import Motion
 from gbeam.equations import Damped, Hub, hub_kinetic, on_free_hub, on_prescribed_base

@@ -20,7 +20,8 @@ import gbeam._jax  # noqa: F401
 from gbeam.analysis.comparison import CUTOFF, compare
 from gbeam.analysis.loads import influence, internal_loads
 from gbeam.analysis.oscillator import displacement
-from gbeam.analysis.response import first_step, respond
+from gbeam.analysis.response import respond
+from gbeam.analysis.stepping import first_step
 from gbeam.beam import Beam
 from gbeam.case import ResponseSettings
 from gbeam.energy import rest_matrices

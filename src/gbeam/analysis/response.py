@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import equinox as eqx
@@ -16,108 +15,23 @@ from jaxtyping import Array
 import gbeam._jax  # noqa: F401
 from gbeam.analysis.definiteness import first_loss
 from gbeam.analysis.plan import axes_result
-from gbeam.analysis.static import equilibrium
+from gbeam.analysis.problem import Problem, problem_of
+from gbeam.analysis.stepping import difference, first_step, refine, scheme_of
 from gbeam.case import Motion, ResponseSettings
 from gbeam.energy import rest_matrices
-from gbeam.equations import Coefficients, Damped, Hub, coefficients, on_free_hub, on_prescribed_base
-from gbeam.errors import InputError
+from gbeam.equations import coefficients
 from gbeam.integrate import (
-    Gauss4,
     LinearSystem,
-    NonlinearSystem,
-    OneStep,
-    State,
     Trajectory,
     evaluate,
-    generalized_alpha,
-    hht,
     integrate,
     integrate_adaptively,
-    newmark,
 )
 from gbeam.model import Structure, rest_modes
-from gbeam.motion import Base, Centrifuge, HubRate, HubTorque
+from gbeam.motion import Centrifuge, HubRate, HubTorque
 from gbeam.motion.blocks import in_blocks
 from gbeam.motion.derivative import with_rate
 from gbeam.results import BaseHistory, Floats, HubResult, Peaks, Response
-from gbeam.work import Applied, LoadHistory
-
-MAX_STEPS = 4_000_000
-
-
-class _Matrices(eqx.Module):
-    """C, K, F of a linear model at a base motion and under loads."""
-
-    coefficients: Coefficients
-
-    def __call__(self, inputs: tuple[Base, Applied | None]) -> tuple[Array, Array, Array]:
-        base, applied = inputs
-        return self.coefficients.at(base.a_WO_B, base.w_WB_B, base.al_WB_B, applied)
-
-
-class _OnBase(eqx.Module):
-    """Residual of a model on a prescribed base."""
-
-    system: Damped
-
-    def __call__(self, q: Array, qd: Array, qdd: Array, inputs: tuple[Base, Applied | None]) -> Array:
-        base, applied = inputs
-        return on_prescribed_base(self.system.under(applied), q, qd, qdd, base.a_WO_B, base.w_WB_B, base.al_WB_B)
-
-
-class _OnHub(eqx.Module):
-    """Residual of a model on a free hub."""
-
-    system: Damped
-    hub: Hub
-    hub_force: bool = eqx.field(static=True)
-
-    def __call__(self, y: Array, yd: Array, ydd: Array, inputs: tuple[Array, Applied | None]) -> Array:
-        torque, applied = inputs
-        return on_free_hub(self.system.under(applied), self.hub, y, yd, ydd, torque, hub_force=self.hub_force)
-
-
-class _Inputs(eqx.Module):
-    """What drives a system over time: the base's motion or the hub's torque, and the loads on the beam."""
-
-    drive: Motion
-    history: LoadHistory | None
-
-    def __call__(self, t: Array) -> tuple[Base | Array, Applied | None]:
-        base = self.drive.torque(t) if isinstance(self.drive, HubTorque) else self.drive.base(t)
-        return base, None if self.history is None else self.history(t)
-
-
-def free_hub(motion: HubTorque) -> Hub:
-    """The hub of a motion, for the equations."""
-    m = motion.mount
-    return Hub(m.radius, motion.inertia, m.R_HB, motion.stiffness, motion.damping, m.gravity)
-
-
-@dataclass(frozen=True)
-class _Problem:
-    """What the integrator runs: the system, its initial state, and where the beam's coordinates start in it."""
-
-    system: LinearSystem | NonlinearSystem
-    state: State
-    first: int
-    coefficients: Coefficients | None
-
-
-def _problem(structure: Structure, motion: Motion, start: float) -> _Problem:
-    inputs = _Inputs(motion, structure.history)
-    if isinstance(motion, HubTorque):
-        residual = _OnHub(structure.system, free_hub(motion), structure.hub_force)
-        q = jnp.zeros(structure.size)
-        if motion.mount.gravity is not None or structure.history is not None:
-            o = jnp.zeros(())
-            q = equilibrium(structure, motion.mount.base(o, o, o), start)
-        return _Problem(NonlinearSystem(residual, inputs), State.rest(jnp.append(0.0, q)), 1, None)
-    q = equilibrium(structure, jax.tree.map(lambda x: x[0], in_blocks(evaluate, inputs, np.array([start]))[0]), start)
-    if structure.linear:
-        constants = coefficients(structure.system)
-        return _Problem(LinearSystem(constants.mass, _Matrices(constants), inputs), State.rest(q), 0, constants)
-    return _Problem(NonlinearSystem(_OnBase(structure.system), inputs), State.rest(q), 0, None)
 
 
 @eqx.filter_jit
@@ -131,36 +45,6 @@ def displacement(structure: Structure, q: Floats) -> Floats:
     padded = np.concatenate([q, np.repeat(q[-1:], -len(q) % block, axis=0)])
     pieces = [np.asarray(_displacement(structure, part)) for part in np.split(padded, len(padded) // block)]
     return np.concatenate(pieces)[: len(q)]
-
-
-def _scheme(settings: ResponseSettings, linear: bool) -> OneStep | Gauss4:
-    match settings.integrator:
-        case "newmark":
-            return newmark(**settings.parameters)
-        case "hht":
-            return hht(**{"alpha": -0.1, **settings.parameters})
-        case "generalized-alpha":
-            return generalized_alpha(**{"rho_inf": 0.9, **settings.parameters})
-        case "gauss":
-            if not linear:
-                raise InputError(
-                    "response.integrator",
-                    "is gauss, which needs a linear model on a prescribed base",
-                    "use newmark, generalized-alpha or adaptive",
-                )
-            return Gauss4()
-    raise InputError(
-        "response.integrator",
-        f"is {settings.integrator!r}",
-        "choose newmark, hht, generalized-alpha, gauss or adaptive",
-    )
-
-
-def first_step(structure: Structure, settings: ResponseSettings) -> float:
-    """Step of the results, s: an even number over the duration, at least 500 and 40 to the lowest period."""
-    frequency, _ = rest_modes(*rest_matrices(structure.system.energy))
-    wanted = min(2 * math.pi / frequency[0] / 40, settings.duration / 500)
-    return settings.duration / (2 * math.ceil(settings.duration / wanted / 2))
 
 
 def respond(
@@ -199,7 +83,7 @@ def respond(
     ComputationError
         If there is no relative equilibrium to start from.
     """
-    problem = _problem(structure, motion, settings.start)
+    problem = problem_of(structure, motion, settings.start)
     coarse = first_step(structure, settings)
     linear = isinstance(problem.system, LinearSystem)
 
@@ -239,61 +123,25 @@ def respond(
             )
 
         loose, trajectory = adapt(settings.tolerance * 1e-2), adapt(settings.tolerance * 1e-3)
-        step, error = math.nan, _difference(tip(loose), tip(trajectory), 1)
+        step, error = math.nan, difference(tip(loose), tip(trajectory), 1)
     else:
-        scheme = _scheme(settings, linear)
+        scheme = scheme_of(settings, linear)
         if settings.step is not None:
             step = settings.duration / max(1, round(settings.duration / settings.step))
             trajectory, check = run(step, "integrating"), run(step / 2, "checking with half the step")
             gain = 2**scheme.order
-            error = _difference(tip(trajectory), tip(check), 2) * gain / (gain - 1)
+            error = difference(tip(trajectory), tip(check), 2) * gain / (gain - 1)
         else:
-            trajectory, step, error = _refine(run, tip, coarse, scheme.order, settings)
+            trajectory, step, error = refine(run, tip, coarse, scheme.order, settings)
 
     return _result(structure, motion, settings, problem, trajectory, name, step, error, coarse)
-
-
-def _difference(coarse: Floats, fine: Floats, ratio: int) -> float:
-    """Largest difference of two tip histories at the coarse one's times, over the largest displacement."""
-    n = min(len(coarse), (len(fine) - 1) // ratio + 1)
-    size = np.abs(fine).max()
-    return float(np.abs(coarse[:n] - fine[: (n - 1) * ratio + 1 : ratio]).max() / size) if size > 0 else 0.0
-
-
-def _refine(
-    run: Callable[[float, str], Trajectory],
-    tip: Callable[[Trajectory], Floats],
-    coarse: float,
-    order: int,
-    settings: ResponseSettings,
-) -> tuple[Trajectory, float, float]:
-    """Halve the step, from twice the results', until the error estimated from two runs is within the tolerance.
-
-    The estimate is Richardson's: with steps h and h/r the finer run's error is their difference over rᵖ − 1.
-    """
-    old, level = run(2 * coarse, "integrating"), -1
-    ratio = 2
-    while True:
-        step = coarse / 2**level / ratio
-        new = run(step, f"refining the step to {1e3 * step:.3g} ms")
-        error = _difference(tip(old), tip(new), ratio) / (ratio**order - 1)
-        level += round(math.log2(ratio))
-        whole = new.converged and not new.stopped
-        if (error <= settings.tolerance and whole) or (not whole and not (old.converged and not old.stopped)):
-            return new, step, error
-        # Jump to the step that the order promises, at most 16 times finer.
-        wanted = math.ceil(math.log2(max(error / settings.tolerance, 2.0)) / order) if math.isfinite(error) else 1
-        ratio = 2 ** min(max(wanted, 1), 4)
-        if settings.duration / step * ratio > MAX_STEPS:
-            return new, step, error
-        old = new
 
 
 def _result(
     structure: Structure,
     motion: Motion,
     settings: ResponseSettings,
-    problem: _Problem,
+    problem: Problem,
     trajectory: Trajectory,
     name: str,
     step: float,
@@ -370,7 +218,7 @@ def _given_hub(motion: HubRate, time: Floats) -> HubResult:
 
 def _describe(
     structure: Structure,
-    problem: _Problem,
+    problem: Problem,
     settings: ResponseSettings,
     trajectory: Trajectory,
     base: BaseHistory,
