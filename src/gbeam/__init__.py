@@ -9,10 +9,11 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from gbeam.beam import Beam, Material, PointMass, Section
+from gbeam.beam import Beam, Material, PointMass
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.loads import Load
 from gbeam.root import Root
+from gbeam.section import Section
 
 if TYPE_CHECKING:
     from gbeam.analysis import (

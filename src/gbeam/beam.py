@@ -1,18 +1,19 @@
-"""What the structure is: material, section, point masses, beam. SI units; checked where built."""
+"""What the structure is: material, point masses, beam (its section: section.py). SI units; checked where built."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from gbeam.checks import positive
 from gbeam.errors import InputError
 from gbeam.loads import Load
 from gbeam.root import Root
+from gbeam.section import Section
 
 Array = NDArray[np.float64]
 
@@ -40,197 +41,6 @@ class Material:
     def __post_init__(self) -> None:
         positive("density", self.density, "kg/m³")
         positive("youngs_modulus", self.youngs_modulus, "Pa")
-
-
-def rectangle(width: Array, thickness: Array) -> tuple[Array, ...]:
-    """Area, I_y, I_z, outer fibres along y and z of a rectangle: width along y, thickness along z."""
-    return width * thickness, width * thickness**3 / 12, thickness * width**3 / 12, width / 2, thickness / 2
-
-
-def circle(diameter: Array) -> tuple[Array, ...]:
-    """Area, I_y, I_z, outer fibres of a solid circle."""
-    inertia = np.pi * diameter**4 / 64
-    return np.pi * diameter**2 / 4, inertia, inertia, diameter / 2, diameter / 2
-
-
-def tube(diameter: Array, wall: Array) -> tuple[Array, ...]:
-    """Area, I_y, I_z, outer fibres of a round tube: outer diameter and wall thickness."""
-    inner = diameter - 2 * wall
-    inertia = np.pi * (diameter**4 - inner**4) / 64
-    return np.pi * (diameter**2 - inner**2) / 4, inertia, inertia, diameter / 2, diameter / 2
-
-
-def general(
-    area: Array,
-    inertia_y: Array,
-    inertia_z: Array,
-    fibre_y: Array | None = None,
-    fibre_z: Array | None = None,
-) -> tuple[Array, ...]:
-    """Area and second moments as given; the outer fibres, if unknown, are NaN (no stress can be told)."""
-    unknown = np.full_like(area, np.nan)
-    return (
-        area,
-        inertia_y,
-        inertia_z,
-        unknown if fibre_y is None else fibre_y,
-        unknown if fibre_z is None else fibre_z,
-    )
-
-
-Rule = Callable[..., tuple[Array, ...]]
-SHAPES: dict[str, tuple[Rule, tuple[str, ...], tuple[str, ...]]] = {
-    "rectangle": (rectangle, ("width", "thickness"), ()),
-    "circle": (circle, ("diameter",), ()),
-    "tube": (tube, ("diameter", "wall"), ()),
-    "general": (general, ("area", "inertia_y", "inertia_z"), ("fibre_y", "fibre_z")),
-}
-_UNITS = {"area": "m²", "inertia_y": "m⁴", "inertia_z": "m⁴"}
-
-
-@dataclass(frozen=True)
-class Section:
-    """Cross-section of the beam, constant or given at stations and interpolated linearly in its dimensions.
-
-    Build it with :meth:`rectangle`, :meth:`circle`, :meth:`tube` or :meth:`general`.
-
-    Parameters
-    ----------
-    shape : str
-        ``rectangle``, ``circle``, ``tube`` or ``general``.
-    dimensions : dict of str to sequence of float
-        The shape's dimensions, one value per station (m; ``general``: m², m⁴, m).
-    stations : sequence of float
-        Positions along x from the root, m, strictly increasing; empty for a constant section.
-
-    Notes
-    -----
-    I_y = ∫z² dA bends the beam along z, I_z = ∫y² dA along y (2020 (14), (22)).
-    """
-
-    shape: str
-    dimensions: dict[str, tuple[float, ...]]
-    stations: tuple[float, ...] = ()
-
-    def __post_init__(self) -> None:
-        if self.shape not in SHAPES:
-            raise InputError("shape", f"is {self.shape!r}", f"choose one of {', '.join(SHAPES)}")
-        _, required, optional = SHAPES[self.shape]
-        for name in required:
-            if name not in self.dimensions:
-                raise InputError(name, "is missing", f"a {self.shape} section needs {', '.join(required)}")
-        for name in self.dimensions:
-            if name not in required + optional:
-                raise InputError(
-                    name, f"does not belong to a {self.shape}", f"it takes {', '.join(required + optional)}"
-                )
-        count = max(len(self.stations), 1)
-        for name, values in self.dimensions.items():
-            for i, value in enumerate(values):
-                place = f"{name}[{i}]" if len(values) > 1 else name
-                positive(place, value, _UNITS.get(name, "m"))
-            if len(values) != count:
-                raise InputError(
-                    name, f"has {len(values)} value(s) for {count} station(s)", "give one value per station"
-                )
-        for i, (before, after) in enumerate(zip(self.stations, self.stations[1:], strict=False)):
-            if not after > before:
-                raise InputError(
-                    f"stations[{i + 1}]",
-                    f"is {after:g} m, after {before:g} m",
-                    "list stations in increasing order",
-                )
-        if len(self.stations) == 1:
-            raise InputError("stations", "has one value", "give two or more, or leave it out for a constant section")
-        if self.stations and not (math.isfinite(self.stations[0]) and math.isfinite(self.stations[-1])):
-            raise InputError("stations", "holds a value that is not finite", "give finite positions in m")
-        if self.shape == "tube":
-            for outer, wall in zip(self.dimensions["diameter"], self.dimensions["wall"], strict=True):
-                if 2 * wall > outer:
-                    raise InputError("wall", f"is {wall:g} m", f"at most half the diameter {outer:g} m")
-
-    @classmethod
-    def of(cls, shape: str, stations: ArrayLike = (), **dimensions: ArrayLike | None) -> Section:
-        """Build a section from scalars or sequences; a scalar holds at every station.
-
-        Parameters
-        ----------
-        shape : str
-            A key of ``SHAPES``.
-        stations : array_like
-            Positions from the root, m; empty for a constant section.
-        **dimensions : array_like or None
-            As the shape takes them; None counts as not given.
-
-        Raises
-        ------
-        InputError
-            If the shape, a dimension or a station is impossible.
-        """
-        at = tuple(float(x) for x in np.atleast_1d(np.asarray(stations, dtype=float)))
-        values: dict[str, tuple[float, ...]] = {}
-        for name, value in dimensions.items():
-            if value is not None:
-                listed = tuple(float(x) for x in np.atleast_1d(np.asarray(value, dtype=float)))
-                values[name] = listed * len(at) if len(listed) == 1 and at else listed
-        return cls(shape, values, at)
-
-    @classmethod
-    def rectangle(cls, width: ArrayLike, thickness: ArrayLike, stations: ArrayLike = ()) -> Section:
-        """Rectangle: `width` along y and `thickness` along z, m."""
-        return cls.of("rectangle", stations, width=width, thickness=thickness)
-
-    @classmethod
-    def circle(cls, diameter: ArrayLike, stations: ArrayLike = ()) -> Section:
-        """Solid circle of the given `diameter`, m."""
-        return cls.of("circle", stations, diameter=diameter)
-
-    @classmethod
-    def tube(cls, diameter: ArrayLike, wall: ArrayLike, stations: ArrayLike = ()) -> Section:
-        """Round tube: outer `diameter` and `wall` thickness, m."""
-        return cls.of("tube", stations, diameter=diameter, wall=wall)
-
-    @classmethod
-    def general(
-        cls,
-        area: ArrayLike,
-        inertia_y: ArrayLike,
-        inertia_z: ArrayLike,
-        stations: ArrayLike = (),
-        fibre_y: ArrayLike | None = None,
-        fibre_z: ArrayLike | None = None,
-    ) -> Section:
-        """Any section: `area` m², second moments I_y and I_z m⁴, outer fibres along y and z m (for stress)."""
-        return cls.of(
-            "general",
-            stations,
-            area=area,
-            inertia_y=inertia_y,
-            inertia_z=inertia_z,
-            fibre_y=fibre_y,
-            fibre_z=fibre_z,
-        )
-
-    def at(self, x: ArrayLike) -> SectionValues:
-        """Area, second moments and outer fibres at positions `x`, m (any shape)."""
-        where = np.asarray(x, dtype=float)
-        rule = SHAPES[self.shape][0]
-        if self.stations:
-            here = {k: np.interp(where, self.stations, v) for k, v in self.dimensions.items()}
-        else:
-            here = {k: np.full(where.shape, v[0]) for k, v in self.dimensions.items()}
-        return SectionValues(*rule(**here))
-
-
-@dataclass(frozen=True)
-class SectionValues:
-    """Section properties at positions: area m², inertia_y and inertia_z m⁴, outer fibres along y and z m."""
-
-    area: Array
-    inertia_y: Array
-    inertia_z: Array
-    fibre_y: Array
-    fibre_z: Array
 
 
 @dataclass(frozen=True)

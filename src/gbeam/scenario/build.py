@@ -90,8 +90,9 @@ def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
 
 
 def _beam(parts: Collector, it: schema.Beam) -> Beam | None:
-    from gbeam.beam import Beam, Material, PointMass, Section
+    from gbeam.beam import Beam, Material, PointMass
     from gbeam.root import Root
+    from gbeam.section import Section
 
     dimensions = it.section.model_dump(exclude={"shape", "stations"}, exclude_none=True)
     section = parts.attempt("beam.section", Section.of, it.section.shape, it.section.stations, **dimensions)
