@@ -95,6 +95,28 @@ def test_exceeding_a_limit_is_status_1_unless_allowed(
     assert json.loads(capsys.readouterr().out)["outcome"] == "limits exceeded"
 
 
+@pytest.mark.parametrize("start", ["rest", "pre-yawed"])
+def test_a_spin_up_is_told_and_commanded(
+    scenario: Path, tmp_path: Path, start: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = PLAN.replace('inverse = "flat"', f'inverse = "flat"\nstart = "{start}"\nspin_up = "2 s"')
+    scenario.write_text(text.replace('duration = "3 s"', 'duration = "4 s"'), encoding="utf-8")
+    assert main(["plan", str(scenario), "--json", "--out", str(tmp_path)]) == 0
+    spin = json.loads(capsys.readouterr().out)["motions"]["spin"]
+    assert spin["held"] == [{"start": 0.0, "end": 2.0, "reason": "spin-up"}]
+    commands = loadmat(tmp_path / "commands_spin.mat")
+    np.testing.assert_allclose(commands["rate"][0], 0, atol=1e-12)
+    np.testing.assert_allclose(commands["acceleration"][0], 0, atol=1e-12)
+
+
+def test_start_and_spin_up_belong_together(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for change, words in (
+        ("start=rest", "spin_up is missing"), ("spin_up=1 s", "starts at idle"), ("start=still", "unknown choice"),
+    ):  # fmt: skip
+        assert main(["plan", str(scenario), "--set", f"motion.spin.{change}"]) == 2
+        assert words in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [

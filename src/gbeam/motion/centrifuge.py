@@ -22,6 +22,7 @@ from gbeam.motion.limits import Limits, MachineLimits, usage
 from gbeam.motion.methods import INVERSES
 from gbeam.motion.profile import sampled
 from gbeam.motion.reach import shortfalls
+from gbeam.motion.start import Start, build_start
 from gbeam.motion.target import Episode, Target
 from gbeam.results import LimitUse, Shortfall
 
@@ -47,6 +48,9 @@ class Centrifuge(eqx.Module):
         +1 or −1: which of the two mountings of the specimen in the gimbals.
     limits : MachineLimits, optional
         Of the machine; ``planned`` keeps them, the others only report.
+    start : str
+        ``idle``: the arm turns from the first instant. ``rest`` or ``pre-yawed``: it spins up from standstill while the
+        target waits, see :mod:`gbeam.motion.start`; the target is then built with a `spin_up`.
 
     Raises
     ------
@@ -58,6 +62,7 @@ class Centrifuge(eqx.Module):
     geometry: Geometry
     inverse: Inverse
     limits: Limits
+    start: Start
     control_point: Float[Array, ""]
 
     def __init__(
@@ -69,6 +74,7 @@ class Centrifuge(eqx.Module):
         gravity: bool,
         sign: int = 1,
         limits: MachineLimits | None = None,
+        start: str = "idle",
     ) -> None:
         if inverse not in INVERSES:
             close = difflib.get_close_matches(str(inverse), INVERSES, n=1)
@@ -90,6 +96,7 @@ class Centrifuge(eqx.Module):
             jnp.asarray(sign, dtype=float),
         )
         self.limits = Limits(limits)
+        self.start = build_start(start, target, self.geometry)
         self.inverse = method.build(target, self.geometry, self.limits)
         self.control_point = jnp.asarray(positive("control_point", control_point, "m", zero=True), dtype=float)
 
@@ -97,7 +104,7 @@ class Centrifuge(eqx.Module):
         """States of the three axes at times `t` (s); :func:`axis_history` unwraps the angles."""
 
         def pose(when: Array) -> tuple[Array, Array, Array]:
-            return self.inverse(self.target.load, when)
+            return self.start.pose(self.inverse, self.target.load, when)
 
         now = jnp.asarray(t, dtype=float)
         (at, rate), (_, acceleration) = with_rate(lambda when: with_rate(pose, when), now)
@@ -119,7 +126,7 @@ class Centrifuge(eqx.Module):
 
     def wanted(self, t: ArrayLike) -> Float[Array, "... 3"]:
         """Load wanted at the control point at times `t` (s), base axes, m/s²."""
-        return self.target.load(jnp.asarray(t, dtype=float))
+        return self.start.load(self.target.load, jnp.asarray(t, dtype=float))
 
     def achieved(self, t: ArrayLike) -> Float[Array, "... 3"]:
         """Load that the axes make at the control point at times `t` (s), base axes, m/s²."""
@@ -201,5 +208,5 @@ def axis_history(axes: Axes, times: ArrayLike) -> AxisHistory:
     return AxisHistory(
         time=time,
         angle1=np.append(0.0, np.cumsum(turned)),
-        axes=replace(axes, angle2=jnp.unwrap(axes.angle2), angle3=jnp.unwrap(axes.angle3)),
+        axes=replace(axes, angle2=jnp.asarray(np.unwrap(axes.angle2)), angle3=jnp.asarray(np.unwrap(axes.angle3))),
     )

@@ -38,7 +38,7 @@ def shortfalls(target: Target, arm: float) -> tuple[Shortfall, ...]:
     arm : float
         R, m.
     """
-    first, last = (float(end) for end in target.span)
+    first, last = float(target.ready), float(target.span[1])
     time = sampled(first, last, _GRID)
     flight, (size, _, turn), held = in_blocks(_seen, target, time)
     idle, gravity, width = float(target.idle), float(target.gravity), 2 * float(target.reach)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from gbeam.checks import positive
 from gbeam.errors import InputError
 from gbeam.motion.derivative import with_rate
+from gbeam.motion.held_before import held_before
 from gbeam.motion.hold import OPPOSED, REACH, hold_idle, keep_in_reach, nearest_to_zero, refuse_far, refuse_reversal
 from gbeam.motion.lifted import Lifted
 from gbeam.motion.piecewise import PiecewiseLinear
@@ -60,6 +61,8 @@ class Target(eqx.Module):
         How far a changed knot acts beyond its neighbours: half the kernel's width, s.
     span : array, shape (2,)
         s.
+    ready : array
+        End of the spin-up, s: before, the load waits at the one that it has then. The span's start if there is none.
     rounded : bool
         The load has no corners.
     turns : bool
@@ -75,28 +78,31 @@ class Target(eqx.Module):
     out_of_reach: Array
     reach: Float[Array, ""]
     span: Float[Array, " 2"]
+    ready: Float[Array, ""]
     rounded: bool = eqx.field(static=True)
     turns: bool = eqx.field(static=True)
 
     def held(self, t: ArrayLike) -> Bool[Array, "*t"]:
-        """Tell at which times `t` (s, any shape) a knot that was changed has a say in the load."""
+        """Tell at which times `t` (s, any shape) the machine spins up or a changed knot has a say in the load."""
         now = jnp.asarray(t, dtype=float)
         count, last = self.below_idle + self.out_of_reach, self.times.size - 1
         before = jnp.searchsorted(self.times, now - self.reach, side="right") - 1
         after = jnp.searchsorted(self.times, now + self.reach, side="left")
-        return count[jnp.minimum(after, last) + 1] > count[jnp.clip(before, 0, last)]
+        return (now < self.ready) | (count[jnp.minimum(after, last) + 1] > count[jnp.clip(before, 0, last)])
 
     def episodes(self) -> list[Episode]:
         """Stretches within the span where the load is not the flight's, by start; two reasons may overlap."""
         reasons = (("below idle", self.below_idle), ("out of reach of the gimbals", self.out_of_reach))
         changes = ((reason, np.diff(np.asarray(count))) for reason, count in reasons)
         found = [Episode(*run, reason) for reason, changed in changes for run in self._runs(changed)]
+        first, ready = float(self.span[0]), float(self.ready)
+        found += [Episode(first, ready, "spin-up")] if ready > first else []
         return sorted(found, key=lambda episode: episode.start)
 
     def _runs(self, changed: NDArray[np.int64]) -> list[tuple[float, float]]:
         """Start and end of each run of changed knots, joined where they act on the same times."""
         times, reach = np.asarray(self.times), float(self.reach)
-        first, last = (float(end) for end in self.span)
+        first, last = float(self.ready), float(self.span[1])
         edges = np.diff(changed, prepend=0, append=0)
         runs: list[tuple[float, float]] = []
         for start, stop in zip(np.flatnonzero(edges > 0), np.flatnonzero(edges < 0), strict=True):
@@ -118,6 +124,7 @@ def build_target(
     gravity: bool,
     arm: float | None = None,
     clip: bool = False,
+    spin_up: float | None = None,
 ) -> Target:
     """Make of a flight's load one that a centrifuge can follow.
 
@@ -144,6 +151,8 @@ def build_target(
         R, m; without it a held load follows every change of direction.
     clip : bool
         Whether to carry on with a held target where the gimbals cannot reach; to give `idle` is to ask for it too.
+    spin_up : float, optional
+        Time that the machine takes from standstill, s: until then the load waits at the one that it has at its end.
 
     Raises
     ------
@@ -160,7 +169,10 @@ def build_target(
         raise InputError(
             "idle", f"is {least / STANDARD_GRAVITY:.3g} g and gravity 1 g", f"give at least {LEAST_IDLE} g"
         )
-    times = _knots(raw, first - width / 2, final + width / 2, width / _PER_WIDTH or _GRID)
+    ready = first if spin_up is None else first + _spin_up(spin_up, width, final - first)
+    # The corner at which the load leaves the one that it waited at is over when the spin-up is.
+    leaves = ready - width / 2
+    times = _knots(raw, leaves, final + width / 2, width / _PER_WIDTH or _GRID)
     wanted = np.asarray(_sample(raw, times))
     asked, low, far = _hold(times, wanted, least, gravity)
     if far.any() and least is None and not clip:
@@ -170,9 +182,10 @@ def build_target(
         altered = without_gaps(times, low | far, period / 2)
         asked = settle(times, asked, altered, period, least, REACH if gravity else 0.0)
         low = altered & ~far
-    corners = PiecewiseLinear(times, asked) if (low | far).any() else raw
+    waiting = raw if spin_up is None else held_before(raw, leaves)
+    corners = PiecewiseLinear(times, asked) if (low | far).any() else waiting
     load = smoothed(corners, width) if width else corners
-    _refuse_singular(times, load, span, least, gravity)
+    _refuse_singular(times, load, (ready, final), least, gravity)
     if gravity:
         load = Lifted(load, jnp.asarray(_FLOOR, dtype=float), jnp.asarray(_BAND, dtype=float))
     steady = asked if gravity else asked / np.maximum(np.linalg.norm(asked, axis=1), 1e-12)[:, None]
@@ -186,9 +199,19 @@ def build_target(
         out_of_reach=_running(far),
         reach=jnp.asarray(width / 2, dtype=float),
         span=jnp.asarray([first, final], dtype=float),
+        ready=jnp.asarray(ready, dtype=float),
         rounded=width > 0 or not _has_corners(load, first, final),
         turns=bool(np.max(np.abs(steady - steady[0])) > 1e-9),
     )
+
+
+def _spin_up(given: float, width: float, duration: float) -> float:
+    """Return the time to spin up, s; InputError if it is not well within the duration and above the smoothing."""
+    time = positive("spin_up", given, "s")
+    if not 2 * width <= time < duration:
+        limits = f"from {2 * width:g} s (twice the smoothing) " if width else ""
+        raise InputError("spin_up", f"is {time:g} s of {duration:g} s", f"give a time {limits}to below {duration:g} s")
+    return time
 
 
 def _hold(

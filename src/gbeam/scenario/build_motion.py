@@ -73,11 +73,12 @@ def _centrifuge(it: schema.Centrifuge, load: Profile, span: tuple[float, float])
     arm = it.arm if it.arm is not None or machine is None else machine.arm
     assert arm is not None  # the schema sees to it
     target = motion.build_target(
-        load, span=span, idle=it.idle, smoothing=it.smoothing, gravity=it.gravity, arm=arm, clip=it.clip
-    )
+        load, span=span, idle=it.idle, smoothing=it.smoothing, gravity=it.gravity, arm=arm, clip=it.clip,
+        spin_up=it.spin_up,
+    )  # fmt: skip
     sign = 1 if it.mounting == "upright" else -1
     limits = _limits(it.limits, machine.limits if machine else motion.MachineLimits())
-    return motion.Centrifuge(target, arm, it.control_point, it.inverse, it.gravity, sign, limits)
+    return motion.Centrifuge(target, arm, it.control_point, it.inverse, it.gravity, sign, limits, it.start)
 
 
 def _limits(it: schema.Limits, example: motion.MachineLimits) -> motion.MachineLimits:

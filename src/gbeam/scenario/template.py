@@ -54,6 +54,7 @@ control_point = "150 mm"  # point of the beam that feels the flight's load, from
 inverse = "flat"  # quasi-static | flat | exact | planned
 gravity = true  # the target is specific force (what accelerometers measure); gravity is there on the machine
 idle = "1.4 g"  # the target is held up to this
+# start = "rest"  # or "pre-yawed"; with spin_up = "10 s". Left out, the arm turns already
 smoothing = "60 ms"  # width of the kernel that rounds the target's corners
 
 [response]
