@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -106,7 +106,15 @@ def test_interrupted_quietly(fast: Path, gbeam: Call, monkeypatch: pytest.Monkey
     assert (answer.status, answer.out, answer.err) == (130, "", "")
 
 
-def test_an_interrupt_that_jax_swallows_still_ends_the_run() -> None:
+@pytest.fixture
+def handled() -> Iterator[None]:
+    """Interrupts raise, also where the tests run in a background job, which ignores them."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+def test_an_interrupt_that_jax_swallows_still_ends_the_run(handled: None) -> None:
     with pytest.raises(KeyboardInterrupt), Watch() as watch:
         with suppress(KeyboardInterrupt):  # as a callback of JAX does
             signal.raise_signal(signal.SIGINT)

@@ -77,7 +77,8 @@ def equilibrium(structure: Structure, base: Base, time: float | None = None) -> 
             return q
         raise ComputationError(
             "not converged",
-            f"no relative equilibrium: the stiffness is singular; the rate is {_rate(base):.4g} rad/s",
+            f"no relative equilibrium: the stiffness is singular, or the base's motion not finite; "
+            f"the rate is {_rate(base):.4g} rad/s",
         )
     q, reached, stride = jnp.zeros(structure.size), 0.0, 1.0
     while reached < 1.0:
