@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import equinox as eqx
 import jax
@@ -14,8 +13,8 @@ import scipy.linalg
 from jaxtyping import Array
 
 import gbeam._jax  # noqa: F401
+from gbeam.analysis.loads import Outboard, cumulative_of, outboard_of, sections
 from gbeam.analysis.operating import (
-    OnHub,
     OperatingPoint,
     linear_matrices,
     on_base,
@@ -28,13 +27,8 @@ from gbeam.analysis.state_space import Signal, StateSpace
 from gbeam.case import Motion
 from gbeam.errors import InputError
 from gbeam.model import Structure
-from gbeam.motion import HubTorque
+from gbeam.motion import Centrifuge, HubRate, HubTorque
 
-TORQUE: tuple[Signal, ...] = (Signal("torque", "N m"),)
-BASE_INPUTS = tuple(
-    [Signal(f"base_acceleration_{i}", "m/s^2") for i in "xyz"]
-    + [Signal(f"base_angular_acceleration_{i}", "rad/s^2") for i in "xyz"]
-)
 BASE_RATES = tuple(Signal(f"base_rate_{i}", "rad/s") for i in "xyz")
 _NEAREST = 12  # quadrature nodes that a strain is interpolated from
 
@@ -59,50 +53,33 @@ class Gauge:
 class Outputs(eqx.Module):
     """What is measured, as a function of (y, ẏ, ÿ, u).
 
-    Tip displacement relative to the base axes; tip acceleration, absolute; moment of the base on the root; strains;
-    on a free hub its angle and rate. Vectors in base axes.
+    Tip displacement relative to the base axes; tip acceleration, absolute, or specific force where gravity acts; moment
+    of the base on the root, which is what the section there carries; strains; on a free hub its angle and rate. Vectors
+    in base axes; acceleration and moment as :mod:`gbeam.analysis.loads` tells them, from all particles.
     """
 
     structure: Structure
     point: OperatingPoint
+    outboard: Outboard
     weights: Array
     places: Array
 
     def __call__(self, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
         """Outputs (p,)."""
         i, residual = self.point.first, self.point.residual
-        if isinstance(residual, OnHub):
-            twist = residual.hub.twist(jnp.ones(()))
-            w, al = twist[3:] * yd[0], twist[3:] * ydd[0]
-            a_WO_B = twist[:3] * ydd[0] + jnp.cross(w, twist[:3] * yd[0])
-        else:
-            a_WO_B, w, al = u[:3], u[3:6], u[6:]
         q, qd, qdd = y[i:], yd[i:], ydd[i:]
-
-        def velocity(q: Array, qd: Array) -> Any:
-            return jax.jvp(lambda q: self.structure.field.position(q)[-1], (q,), (qd,))
-
-        (r, rd), (_, rdd) = jax.jvp(velocity, (q, qd), (qd, qdd))
-        acceleration = a_WO_B + jnp.cross(al, r) + jnp.cross(w, jnp.cross(w, r)) + 2 * jnp.cross(w, rd) + rdd
-
-        # The moment that turns the root is the rate of the angular momentum ∂T/∂ω, less what loads bring.
-        def momentum(u: Array, q: Array, qd: Array) -> Array:
-            return jax.grad(residual.system.energy.kinetic)(u, q, qd)[3:]
-
-        u6, ud6 = jnp.concatenate([jnp.zeros(3), w]), jnp.concatenate([a_WO_B, al])
-        h, rate = jax.jvp(momentum, (u6, q, qd), (ud6, qd, qdd))
-        moment = rate + jnp.cross(w, h) - residual.system.generalised(q)[3:6]
-
+        base, applied = residual.base(y, yd, ydd, u), residual.loaded(u).applied
+        _, moment, _, _, acceleration = sections(self.structure, self.outboard, base, q, qd, qdd, applied)
         strains = self.structure.field.strains(q)
         axial, about_y, about_z = (self.weights @ e for e in strains[:3])
         strain = axial - self.places[:, 0] * about_z + self.places[:, 1] * about_y
         hub = jnp.stack([y[0], yd[0]]) if i else jnp.zeros(0)
-        return jnp.concatenate([self.structure.displacement(q)[-1], acceleration, moment, strain, hub])
+        return jnp.concatenate([self.structure.displacement(q)[-1], acceleration[-1], -moment[0], strain, hub])
 
 
 def _interpolation(structure: Structure, gauges: Sequence[Gauge]) -> Array:
     """Weights (gauges, nodes) that take nodal strains to the gauges."""
-    until = np.asarray(structure.field.cumulative)  # type: ignore[attr-defined]  # every field integrates along the beam
+    until = cumulative_of(structure)
     nodes = until.sum(axis=1)[: until.shape[1]]
     weights = np.zeros((len(gauges), len(nodes)))
     for row, gauge in zip(weights, gauges, strict=True):
@@ -126,18 +103,46 @@ def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
     return tuple([Signal(*it) for it in names] + rates)
 
 
-def output_signals(gauges: Sequence[Gauge], first: int) -> tuple[Signal, ...]:
+def _acceleration(motion: Motion) -> str:
+    """What accelerations are where a motion goes: with gravity they are what accelerometers measure."""
+    if isinstance(motion, Centrifuge):
+        weighs = float(motion.geometry.gravity) > 0
+    else:
+        weighs = isinstance(motion, (HubRate, HubTorque)) and motion.mount.gravity is not None
+    return "specific_force" if weighs else "acceleration"
+
+
+def input_signals(structure: Structure, motion: Motion) -> tuple[Signal, ...]:
+    """Names and units of the inputs: torque or base, then the components of each load on the beam."""
+    if isinstance(motion, HubTorque):
+        signals = [Signal("torque", "N m")]
+    else:
+        signals = [Signal(f"base_{_acceleration(motion)}_{i}", "m/s^2") for i in "xyz"]
+        signals += [Signal(f"base_angular_acceleration_{i}", "rad/s^2") for i in "xyz"]
+    if structure.applied is not None:
+        counts = np.bincount(np.asarray(structure.applied.load))
+        for k, per in enumerate("/m" if points > 1 else "" for points in counts):
+            signals += [Signal(f"load_{k + 1}_force_{i}", f"N{per}") for i in "xyz"]
+            signals += [Signal(f"load_{k + 1}_moment_{i}", f"N m{per}") for i in "xyz"]
+    return tuple(signals)
+
+
+def output_signals(gauges: Sequence[Gauge], motion: Motion) -> tuple[Signal, ...]:
     """Names and units of the outputs."""
-    kinds = (("tip", "m"), ("tip_acceleration", "m/s^2"), ("root_moment", "N m"))
+    kinds = (("tip", "m"), (f"tip_{_acceleration(motion)}", "m/s^2"), ("root_moment", "N m"))
     signals = [Signal(f"{name}_{i}", unit) for name, unit in kinds for i in "xyz"]
     signals += [Signal(f"strain_{k + 1}", "1") for k in range(len(gauges))]
-    return tuple(signals + ([Signal("hub_angle", "rad"), Signal("hub_rate", "rad/s")] if first else []))
+    free = isinstance(motion, HubTorque)
+    return tuple(signals + ([Signal("hub_angle", "rad"), Signal("hub_rate", "rad/s")] if free else []))
 
 
 def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gauge]) -> Outputs:
     """What is measured at an operating point."""
     places = jnp.asarray([[it.y, it.z] for it in gauges]).reshape(-1, 2)
-    return Outputs(structure, point, _interpolation(structure, gauges), places)
+    every = outboard_of(structure)
+    ends = jnp.array([0, -1])  # root and tip
+    outboard = Outboard(every.points[-1:], every.mass[ends], every.loaded[ends])
+    return Outputs(structure, point, outboard, _interpolation(structure, gauges), places)
 
 
 @eqx.filter_jit
@@ -159,6 +164,7 @@ def linearize(
     *,
     rate: float | None = None,
     q: Array | None = None,
+    qd: Array | None = None,
     gauges: Sequence[Gauge] = (),
     name: str = "",
 ) -> StateSpace:
@@ -168,14 +174,16 @@ def linearize(
     ----------
     structure : Structure
     motion : Flight, Centrifuge, HubRate or HubTorque
-        A free hub has the torque as input; on any other base the root's acceleration and the angular acceleration
-        are, in base axes.
+        A free hub has the torque as input; on any other base the root's acceleration (specific force where gravity
+        acts, and then called so) and the angular acceleration are, in base axes. The components of each load on the
+        beam are inputs too.
     time : float
         At which the motion is frozen, s.
     rate : float, optional
         A hub's steady rate in its place, rad/s.
-    q : (n,), optional
-        Coordinates to linearise at; by default the relative equilibrium.
+    q, qd : (n,), optional
+        Coordinates and rates to linearise at; by default the relative equilibrium. Elsewhere the beam accelerates, and
+        the model is one of small departures from the motion that goes through this state.
     gauges : sequence of Gauge
         Where strain is measured.
     name : str
@@ -190,18 +198,18 @@ def linearize(
     Raises
     ------
     InputError
-        If a gauge lies off the beam, or a rate is asked of a motion without a hub.
+        If a gauge lies off the beam, a rate is asked of a motion without a hub, or a time of a hub that swings.
     ComputationError
         If there is no relative equilibrium.
     """
     if rate is None:
-        point = operating_point(structure, motion, time, q)
+        point = operating_point(structure, motion, time, q, qd)
     else:
         hub = hub_of(motion, "a rate", "leave it out and give a time", name)
         if isinstance(hub, HubTorque):
-            point = on_hub(structure, hub, rate, q=q)
+            point = on_hub(structure, hub, rate, q=q, qd=qd)
         else:
-            point = on_base(structure, steady_base(hub, rate), q)
+            point = on_base(structure, steady_base(hub, rate), q, qd)
     linear = linear_matrices(point)
     value, c_y, c_yd, c_ydd, c_u = (np.asarray(x) for x in _output_matrices(outputs_of(structure, point, gauges)))
     n = len(linear.mass)
@@ -213,28 +221,26 @@ def linearize(
     out = np.concatenate([c_y - c_ydd @ k, c_yd - c_ydd @ c], axis=1)
     through = c_ydd @ b + c_u
     states = coordinate_signals(structure, point.first)
-    at = np.concatenate([point.y, point.yd])
-    inputs, given = TORQUE, np.asarray(point.u)
+    at, given = np.concatenate([point.y, point.yd]), np.asarray(point.u)
     if not point.first:
-        # u = (a, ω, α): ω becomes a state where it acts, fed by α.
+        # u = (a, ω, α, loads): ω becomes a state where it acts, fed by α.
         acts = [i for i in range(3, 6) if np.abs(drive[:, i]).max() > 1e-12 or np.abs(through[:, i]).max() > 1e-12]
+        kept = [i for i in range(len(given)) if not 3 <= i < 6]
+        fed = np.array([[float(j == i + 3) for j in kept] for i in acts]).reshape(-1, len(kept))
         m = len(acts)
         a = np.block([[a, drive[:, acts]], [np.zeros((m, 2 * n + m))]])
         out = np.concatenate([out, through[:, acts]], axis=1)
-        kept = [0, 1, 2, 6, 7, 8]
-        drive = np.concatenate([drive[:, kept], np.eye(9)[acts][:, [0, 1, 2, 3, 4, 5]]])
-        through = through[:, kept]
+        drive, through = np.concatenate([drive[:, kept], fed]), through[:, kept]
         states += tuple(BASE_RATES[i - 3] for i in acts)
-        at = np.concatenate([at, given[acts]])
-        inputs, given = BASE_INPUTS, given[kept]
+        at, given = np.concatenate([at, given[acts]]), given[kept]
     return StateSpace(
         a=a,
         b=drive,
         c=out,
         d=through,
         states=states,
-        inputs=inputs,
-        outputs=output_signals(gauges, point.first),
+        inputs=input_signals(structure, motion),
+        outputs=output_signals(gauges, motion),
         state=at,
         input=given,
         output=value,

@@ -24,21 +24,42 @@ from gbeam.beam import Beam
 from gbeam.equations import coefficients
 from gbeam.field import ExactField, ProjectedField, RootedField
 from gbeam.model import Structure
+from gbeam.motion import Base
 from gbeam.results import BaseHistory, Floats, Response
 from gbeam.results_loads import Influence, Loads
 
 _BLOCK = 1024  # times per compiled call
 
 
-def _outboard(structure: Structure) -> tuple[Array, Array, Array]:
-    """Stations' points in the field (s − 1,), and what lies outboard: of particles (s, p) kg, of loads (s, l) 1 or m.
+class Outboard(eqx.Module):
+    """Sections, and what lies outboard of each.
+
+    Parameters
+    ----------
+    points : (s − 1,) index of the sections' points in the field; the first section is the root
+    mass : (s, particles) kg
+    loaded : (s, loaded points) 1, or m of a load per length
+    """
+
+    points: Array
+    mass: Array
+    loaded: Array
+
+
+def cumulative_of(structure: Structure) -> Floats:
+    """Weights (points, nodes) that integrate nodal values from the root to each of the field's points."""
+    field = structure.field
+    inner = field.inner if isinstance(field, RootedField) else field
+    assert isinstance(inner, (ProjectedField, ExactField))
+    return np.asarray(inner.cumulative)
+
+
+def outboard_of(structure: Structure) -> Outboard:
+    """Return what lies outboard of the root and of the structure's stations.
 
     The root is put before the structure's stations: on the base's side of its springs, if it has any.
     """
-    particles, field = structure.particles, structure.field
-    inner = field.inner if isinstance(field, RootedField) else field
-    assert isinstance(inner, (ProjectedField, ExactField))
-    until = np.asarray(inner.cumulative)
+    particles, until = structure.particles, cumulative_of(structure)
     first, nodes = structure.first_station, until.shape[1]
     weight = until[-1]  # the tip is the last point: the whole integral
     at = until.sum(axis=1)
@@ -47,53 +68,74 @@ def _outboard(structure: Structure) -> tuple[Array, Array, Array]:
     share = 1 - inboard / weight
     # Of each of the field's points: of a node the share of its panel, of another point all or nothing.
     whole = at[None, nodes:] >= stations[:, None] - 1e-9 * structure.length
-    outboard = np.concatenate([share, whole], axis=1)
-    mass = outboard[:, np.asarray(particles.station)] * np.asarray(particles.mass)
+    beyond = np.concatenate([share, whole], axis=1)
+    mass = beyond[:, np.asarray(particles.station)] * np.asarray(particles.mass)
     work = structure.applied
-    loaded = np.empty((len(stations), 0)) if work is None else outboard[:, np.asarray(work.station)] * work.weight
-    return jnp.arange(first, len(at)), jnp.asarray(mass), jnp.asarray(loaded)
+    loaded = np.empty((len(stations), 0)) if work is None else beyond[:, np.asarray(work.station)] * work.weight
+    return Outboard(jnp.arange(first, len(at)), jnp.asarray(mass), jnp.asarray(loaded))
+
+
+def sections(
+    structure: Structure, outboard: Outboard, base: Base, q: Array, qd: Array, qdd: Array, applied: Array | None
+) -> tuple[Array, ...]:
+    """Return what the sections carry at one time, and how they accelerate.
+
+    Parameters
+    ----------
+    structure : Structure
+    outboard : Outboard
+    base : Base
+        Arrays (3,).
+    q, qd, qdd : (n,)
+    applied : (loads, 6) or None
+        Components of the loads on the beam.
+
+    Returns
+    -------
+    force, moment : (s, 3) base axes, N and N m
+    force, moment : (s, 3) section axes
+    acceleration : (s, 3) base axes, m/s²; specific force where gravity acts
+    """
+    field, work = structure.field, structure.applied
+    w, al = base.w_WB_B, base.al_WB_B
+
+    def everything(q: Array) -> tuple[Array, Array]:
+        stations = jnp.concatenate([jnp.zeros((1, 3)), field.position(q)[outboard.points]])
+        return structure.particles.particles(q), stations
+
+    def moving(q: Array, qd: Array) -> Any:
+        return jax.jvp(everything, (q,), (qd,))
+
+    (r, rd), (_, rdd) = jax.jvp(moving, (q, qd), (qd, qdd))
+
+    def absolute(r: Array, rd: Array, rdd: Array) -> Array:
+        turning = jnp.cross(al, r) + jnp.cross(w, jnp.cross(w, r) + 2 * rd)
+        return base.a_WO_B + turning + rdd
+
+    (particle, station), a = r, [absolute(*each) for each in zip(r, rd, rdd, strict=True)]
+    # Σ m (r − r_x) × a = Σ m r × a − r_x × Σ m a, and so for the loads.
+    force, about_root = -outboard.mass @ a[0], -outboard.mass @ jnp.cross(particle, a[0])
+    if work is not None and applied is not None:
+        at, rotation = field.position(q)[work.station], field.rotation(q)[work.station]
+        axes = jnp.where(work.follows[:, None, None], rotation, jnp.eye(3))
+        here = applied[work.load]
+        pull, turn = (jnp.einsum("pij,pj->pi", axes, part) for part in (here[:, :3], here[:, 3:]))
+        force, about_root = force + outboard.loaded @ pull, about_root + outboard.loaded @ (jnp.cross(at, pull) + turn)
+    moment = about_root - jnp.cross(station, force)
+    rotation = jnp.concatenate([jnp.eye(3)[None], field.rotation(q)[outboard.points]])
+    inward = jnp.swapaxes(rotation, 1, 2)
+    return force, moment, jnp.einsum("sij,sj->si", inward, force), jnp.einsum("sij,sj->si", inward, moment), a[1]
 
 
 @eqx.filter_jit
-def _sections(structure: Structure, outboard: Any, t: Array, base: Any, q: Array, qd: Array, qdd: Array) -> Any:
-    """Force and moment in base and in section axes, and acceleration, of the sections at times (t, ...)."""
-    points, mass, loaded = outboard
+def _over_time(structure: Structure, outboard: Outboard, t: Array, base: Base, *state: Array) -> tuple[Array, ...]:
+    """Sections at times (t, ...)."""
 
-    def everything(q: Array) -> tuple[Array, Array]:
-        positions = structure.field.position(q)[points]
-        return structure.particles.particles(q), jnp.concatenate([jnp.zeros((1, 3)), positions])
+    def at(t: Array, base: Base, q: Array, qd: Array, qdd: Array) -> tuple[Array, ...]:
+        applied = None if structure.history is None else structure.history(t)
+        return sections(structure, outboard, base, q, qd, qdd, applied)
 
-    def applied(t: Array, q: Array) -> tuple[Array, Array]:
-        """Forces and moments of the loads outboard of the sections, about the root, (s, 3) each."""
-        work, history = structure.applied, structure.history
-        if work is None or history is None:
-            return jnp.zeros((mass.shape[0], 3)), jnp.zeros((mass.shape[0], 3))
-        r, rotation = structure.field.position(q)[work.station], structure.field.rotation(q)[work.station]
-        axes = jnp.where(work.follows[:, None, None], rotation, jnp.eye(3))
-        here = history(t)[work.load]
-        force, moment = (jnp.einsum("pij,pj->pi", axes, part) for part in (here[:, :3], here[:, 3:]))
-        return loaded @ force, loaded @ (jnp.cross(r, force) + moment)
-
-    def at(t: Array, a_WO_B: Array, w: Array, al: Array, q: Array, qd: Array, qdd: Array) -> tuple[Array, ...]:
-        def moving(q: Array, qd: Array) -> Any:
-            return jax.jvp(everything, (q,), (qd,))
-
-        (r, rd), (_, rdd) = jax.jvp(moving, (q, qd), (qd, qdd))
-
-        def absolute(r: Array, rd: Array, rdd: Array) -> Array:
-            turning = jnp.cross(al, r) + jnp.cross(w, jnp.cross(w, r) + 2 * rd)
-            return a_WO_B + turning + rdd
-
-        (particle, station), a = r, [absolute(*each) for each in zip(r, rd, rdd, strict=True)]
-        outer_force, outer_moment = applied(t, q)
-        force = outer_force - mass @ a[0]
-        # Σ m (r − r_x) × a = Σ m r × a − r_x × Σ m a
-        moment = outer_moment - mass @ jnp.cross(particle, a[0]) - jnp.cross(station, force)
-        rotation = jnp.concatenate([jnp.eye(3)[None], structure.field.rotation(q)[points]])
-        inward = jnp.swapaxes(rotation, 1, 2)
-        return force, moment, jnp.einsum("sij,sj->si", inward, force), jnp.einsum("sij,sj->si", inward, moment), a[1]
-
-    return jax.vmap(at)(t, base[0], base[1], base[2], q, qd, qdd)
+    return jax.vmap(at)(t, base, *state)
 
 
 def section_loads(
@@ -123,7 +165,7 @@ def section_loads(
     -------
     Loads
     """
-    outboard = _outboard(structure)
+    outboard = outboard_of(structure)
     when = np.zeros(len(q)) if time is None else time
     given = tuple(np.asarray(x) for x in (when, base.a_WO_B, base.w_WB_B, base.al_WB_B, q, qd, qdd))
     count = len(given[0])
@@ -132,7 +174,7 @@ def section_loads(
     pieces = []
     for i in range(0, len(padded[0]), size):
         part = [jnp.asarray(x[i : i + size]) for x in padded]
-        pieces.append([np.asarray(x) for x in _sections(structure, outboard, part[0], part[1:4], *part[4:])])
+        pieces.append([np.asarray(x) for x in _over_time(structure, outboard, part[0], Base(*part[1:4]), *part[4:])])
     force, moment, section_force, section_moment, a = (
         np.concatenate([piece[k] for piece in pieces])[:count] for k in range(5)
     )
@@ -179,6 +221,13 @@ def internal_loads(
     )
 
 
+@eqx.filter_jit
+def _straight(structure: Structure) -> tuple[Array, Array]:
+    """Displacement of the tip per coordinate, (3, n), and the places of the particles, of the straight beam."""
+    zero = jnp.zeros(structure.size)
+    return jax.jacfwd(structure.displacement)(zero)[-1], structure.particles.particles(zero)
+
+
 def influence(structure: Structure) -> Influence:
     """Return the static answer of the straight beam at rest to uniform and linearly growing acceleration fields.
 
@@ -189,13 +238,12 @@ def influence(structure: Structure) -> Influence:
     stiffness = np.asarray(c.stiffness)
     uniform = np.asarray(c.f_a)
     linear = np.stack([-np.asarray(c.f_ww)[2, 2], np.asarray(c.f_al)[2], -np.asarray(c.f_al)[1]])
-    per_q = np.asarray(jax.jacfwd(structure.displacement)(jnp.zeros(structure.size)))[-1]
+    per_q, places = (np.asarray(it) for it in _straight(structure))
 
     def tip(load: Floats) -> Floats:
         return np.asarray(np.diagonal(per_q @ np.linalg.solve(stiffness, load.T)))
 
-    particles = structure.particles
-    mass, x = np.asarray(particles.mass), np.asarray(particles.particles(jnp.zeros(structure.size)))[:, 0]
+    mass, x = np.asarray(structure.particles.mass), places[:, 0]
     first, second = float(mass @ x), float(mass @ x**2)
     across = np.array([0.0, 1.0, 1.0])
     return Influence(

@@ -13,12 +13,11 @@ from jaxtyping import Array
 
 import gbeam._jax  # noqa: F401
 from gbeam.analysis.linearization import (
-    BASE_INPUTS,
     BASE_RATES,
-    TORQUE,
     Gauge,
     Outputs,
     coordinate_signals,
+    input_signals,
     output_signals,
     outputs_of,
 )
@@ -38,7 +37,7 @@ def _rates(outputs: Outputs, x: Array, u: Array) -> tuple[Array, Array]:
     full = u if i else jnp.concatenate([u[:3], rate, u[3:]])
     o = jnp.zeros(n)
     ydd = jnp.linalg.solve(jax.jacfwd(residual, 2)(y, yd, o, full), -residual(y, yd, o, full))
-    return jnp.concatenate([yd, ydd, u[3:] if not i else jnp.zeros(0)]), outputs(y, yd, ydd, full)
+    return jnp.concatenate([yd, ydd, u[3:6] if not i else jnp.zeros(0)]), outputs(y, yd, ydd, full)
 
 
 def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[Gauge] = ()) -> Any:
@@ -63,11 +62,11 @@ def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[G
     rest = jnp.zeros(structure.size)
     if isinstance(motion, HubTorque):
         point = on_hub(structure, motion, 0.0, q=rest)
-        states, inputs = coordinate_signals(structure, 1), TORQUE
+        states = coordinate_signals(structure, 1)
     else:
         o = jnp.zeros(3)
         point = on_base(structure, Base(o, o, o), rest)
-        states, inputs = coordinate_signals(structure, 0) + BASE_RATES, BASE_INPUTS
+        states = coordinate_signals(structure, 0) + BASE_RATES
     outputs = outputs_of(structure, point, gauges)
 
     def update(t: float, x: Any, u: Any, params: Any) -> Any:
@@ -80,7 +79,7 @@ def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[G
         update,
         measure,
         states=[it.name for it in states],
-        inputs=[it.name for it in inputs],
-        outputs=[it.name for it in output_signals(gauges, point.first)],
+        inputs=[it.name for it in input_signals(structure, motion)],
+        outputs=[it.name for it in output_signals(gauges, motion)],
         name=structure.kind,
     )
