@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from pathlib import Path
+from threading import Thread
 
 from gbeam.cli.console import Watch, stdout
 from gbeam.cli.failures import FAILED, complain
@@ -32,6 +34,9 @@ def run(
 
     from gbeam.analysis import study
 
+    if folder is not None:
+        # Two seconds of imports, beside the compilation, which leaves a core idle.
+        Thread(target=lambda: [*map(import_module, ("gbeam.store", "gbeam.plots"))], daemon=True).start()
     with Watch() as watch, given.placing():
         answer = study(given.case, watch)
 
