@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from gbeam.results import LimitUse
+
 MEASURES = ("root-shear", "root-moment", "vibration", "tip")
 
 
@@ -26,6 +28,10 @@ class Option:
         The same with what smoothing and tracking change of the load: what options are chosen by.
     accelerations : tuple of float
         Largest accelerations of axes 1, 2, 3, rad/s².
+    share : float
+        Largest share of a limit of the machine that is used; zero where it has none.
+    exceeded : tuple of LimitUse
+        The limits that it breaks.
     """
 
     mounting: str
@@ -34,6 +40,8 @@ class Option:
     mismatch: float
     whole: float
     accelerations: tuple[float, float, float]
+    share: float = 0.0
+    exceeded: tuple[LimitUse, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -76,7 +84,7 @@ class Placement:
         Of the beam, m.
     best : Option
     options : tuple of Option
-        All that were tried, the best first.
+        All that were tried, the best first, those that break limits last.
     present : float
         The scenario's control point, m.
     values : mapping of str to (mapping of str to float)
@@ -84,6 +92,10 @@ class Placement:
         flight's peak.
     proofs : tuple of Proof
         Empty where none was asked for.
+    refused : tuple of str
+        Options that could not be built, and why.
+    widths : tuple of float
+        First and last width of smoothing that was tried, s.
     """
 
     flight: str
@@ -95,6 +107,8 @@ class Placement:
     present: float
     values: Mapping[str, Mapping[str, float]]
     proofs: tuple[Proof, ...] = field(default=())
+    refused: tuple[str, ...] = ()
+    widths: tuple[float, float] = (0.0, 0.0)
 
     @property
     def fraction(self) -> float:

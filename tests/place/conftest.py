@@ -20,7 +20,7 @@ from gbeam import (
     stack,
     table,
 )
-from gbeam.motion import Profile
+from gbeam.motion import MachineLimits, Profile
 
 G = 9.80665
 SPECIMEN = Beam(0.3, Section.rectangle(0.02, 0.004), Material(2700.0, 70e9))
@@ -43,9 +43,11 @@ def settings() -> ResponseSettings:
 
 @pytest.fixture(scope="session")
 def spin(load: Profile) -> Callable[..., Centrifuge]:
-    def make(smoothing: float = 0.0596, control_point: float = 0.15, sign: int = 1) -> Centrifuge:
+    def make(
+        smoothing: float = 0.0596, control_point: float = 0.15, sign: int = 1, limits: MachineLimits | None = None
+    ) -> Centrifuge:
         target = build_target(load, span=(0.5, 2.0), idle=None, smoothing=smoothing, gravity=False)
-        return Centrifuge(target, 3.3, control_point, "flat", False, sign)
+        return Centrifuge(target, 3.3, control_point, "flat", False, sign, limits)
 
     return make
 

@@ -1,16 +1,29 @@
-"""On a uniform cantilever the best control points are those of theory: 1/2, 2/3, 0.7265 and 11/15 of the length."""
+"""On a uniform cantilever the best control points are those of theory: 1/2, 2/3, 0.7265 and 11/15 of the length.
+
+Mounting and width are searched for within the machine's limits; what breaks them is told and not chosen.
+"""
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
-from gbeam import Beam, InputError, Material, Section
-from gbeam.analysis.place import Candidate, place
+from gbeam import Beam, ComputationError, InputError, Material, Section
+from gbeam.analysis.bounded_search import coarse, refine
+from gbeam.analysis.place import Choice, place
+from gbeam.cli import main
 from gbeam.cli.place import parse
+from gbeam.motion import AxisLimit, MachineLimits
 
 SPECIMEN = Beam(0.3, Section.rectangle(0.02, 0.004), Material(2700.0, 70e9))
+
+
+def only(spin: Any, width: float = 0.0596) -> Choice:
+    return Choice(lambda mounting, w: spin(w), ("upright",), (width,), refined=False)
 
 
 @pytest.mark.parametrize(
@@ -20,7 +33,7 @@ SPECIMEN = Beam(0.3, Section.rectangle(0.02, 0.004), Material(2700.0, 70e9))
 def test_best_control_point(
     structure: Any, flight: Any, spin: Any, settings: Any, measure: str, fraction: float
 ) -> None:
-    found = place(structure, flight, [Candidate("upright", 0.0596, spin())], settings, {measure: 1.0})
+    found = place(structure, flight, only(spin), settings, {measure: 1.0}, present=spin())
     # Three shapes put the static tip of a linear load 2e-4 of the length off.
     assert found.fraction == pytest.approx(fraction, abs=3e-4 if measure == "tip" else 1e-5)
     assert (
@@ -30,16 +43,13 @@ def test_best_control_point(
 
 
 def test_weighted_sum_lies_between(structure: Any, flight: Any, spin: Any, settings: Any) -> None:
-    candidate = Candidate("upright", 0.0596, spin())
-    found = place(structure, flight, [candidate], settings, {"root-shear": 1.0, "tip": 1.0})
+    found = place(structure, flight, only(spin), settings, {"root-shear": 1.0, "tip": 1.0}, present=spin())
     assert 0.5 - 1e-5 <= found.fraction <= 0.7334
 
 
 def test_proof_shows_the_gain_over_mid_span(structure: Any, flight: Any, spin: Any, settings: Any) -> None:
     """theory.md A3: 0.0873 mm at mid-span, 0.0009 mm at 0.7265 L."""
-    found = place(
-        structure, flight, [Candidate("upright", 0.0596, spin())], settings, {"vibration": 1.0}, beam=SPECIMEN
-    )
+    found = place(structure, flight, only(spin), settings, {"vibration": 1.0}, present=spin(), beam=SPECIMEN)
     proofs = {proof.name: proof for proof in found.proofs}
     # The corner's 0.0873 mm, and what the start on the ramp adds to it.
     assert 0.08e-3 < proofs["middle"].vibration < 0.2e-3
@@ -47,23 +57,104 @@ def test_proof_shows_the_gain_over_mid_span(structure: Any, flight: Any, spin: A
     assert proofs["best"].tip_difference < proofs["middle"].tip_difference
 
 
-def test_mirror_images_keep_the_scenario_and_smoothing_is_weighed(
+def test_mirror_images_keep_the_scenario_and_the_width_is_searched_for(
     structure: Any, flight: Any, spin: Any, settings: Any
 ) -> None:
-    options = [Candidate("upright", 0.0596, spin()), Candidate("inverted", 0.0596, spin(sign=-1))]
-    found = place(structure, flight, options, settings, {"tip": 1.0})
+    # The jerk of axis 2 at the corner goes with the width's inverse square: at 59.6 ms it is 470 rad/s³.
+    jerk = max(use.used for use in spin(0.0596).usage() if (use.axis, use.quantity) == ("axis 2", "jerk"))
+    limits = MachineLimits(axis2=AxisLimit(jerk=jerk))
+    made = []
+
+    def make(mounting: str, width: float) -> Any:
+        made.append(width)
+        return spin(width, sign=1 if mounting == "upright" else -1, limits=limits)
+
+    choice = Choice(make, ("upright", "inverted"), coarse(0.02, 0.32))
+    found = place(structure, flight, choice, settings, {"tip": 1.0}, present=spin())
+    # With no lever left, rounding the corners less changes the load less: down to what the machine can do.
     assert found.best.mounting == "upright"
-    assert found.options[0].whole == pytest.approx(found.options[1].whole, rel=1e-6)
-    options.append(Candidate("upright", 0.03, spin(0.03)))
-    # With no lever left, rounding the corners less changes the load less.
-    assert place(structure, flight, options, settings, {"tip": 1.0}).best.smoothing == 0.03
+    assert found.best.smoothing == pytest.approx(0.0596, rel=0.05) and 0.9 < found.best.share <= 1
+    assert len(made) <= 25
+    broken = [it for it in found.options if it.exceeded]
+    assert broken and all(it.smoothing < 0.0596 and it.exceeded[0].quantity == "jerk" for it in broken)
+    assert found.options[-1] in broken and not found.options[0].exceeded
+    whole = {(it.mounting, it.smoothing): it.whole for it in found.options}
+    assert whole["upright", 0.32] == pytest.approx(whole["inverted", 0.32], rel=1e-6)
+
+
+def test_no_option_within_the_limits_is_an_outcome_that_names_the_nearest(
+    structure: Any, flight: Any, spin: Any, settings: Any
+) -> None:
+    limits = MachineLimits(AxisLimit(rate=1.0), axis2=AxisLimit(jerk=1.0))
+    choice = Choice(lambda mounting, w: spin(w, limits=limits), ("upright",), (0.06, 0.24))
+    with pytest.raises(ComputationError, match=r"none of 2.*nearest comes upright, 240 ms: axis 1 rate") as caught:
+        place(structure, flight, choice, settings, {"tip": 1.0}, present=spin())
+    assert caught.value.outcome == "limits exceeded"
+
+
+def test_search_finds_an_inner_minimum_and_stops_at_what_is_allowed() -> None:
+    for allowed, best in ((0.0, 0.08), (0.1, 0.1), (0.5, 0.5)):
+        seen = {}
+
+        def evaluate(x: float, allowed: float = allowed, seen: dict[float, float] = seen) -> tuple[float, float]:
+            seen[x] = np.log(x / 0.08) ** 2
+            return seen[x], allowed / x
+
+        refine(evaluate, coarse(0.02, 0.64))
+        assert min((x for x in seen if x >= allowed), key=seen.__getitem__) == pytest.approx(best, rel=0.05)
+        assert len(seen) <= 20
 
 
 def test_refusals(structure: Any, flight: Any, spin: Any, settings: Any) -> None:
     with pytest.raises(InputError, match="choose of root-shear"):
-        place(structure, flight, [], settings, {"tips": 1.0})
+        place(structure, flight, only(spin), settings, {"tips": 1.0}, present=spin())
     with pytest.raises(InputError, match="no weight"):
-        place(structure, flight, [], settings, {"tip": 0.0})
+        place(structure, flight, only(spin), settings, {"tip": 0.0}, present=spin())
+    with pytest.raises(InputError, match=r"motion\.arm\.smoothing"):
+        place(structure, flight, only(spin, -1.0), settings, {"tip": 1.0}, present=spin(), names=("flight", "arm"))
     with pytest.raises(InputError, match="weight 'x'"):
         parse("tip=x")
     assert parse("tip=2, root-moment") == {"tip": 2.0, "root-moment": 1.0}
+
+
+SCENARIO = """\
+[beam]
+length = "300 mm"
+section = { shape = "rectangle", width = "20 mm", thickness = "4 mm" }
+material = { density = "2700 kg/m^3", youngs_modulus = "70 GPa" }
+damping_ratio = 0.01
+[model]
+kind = "FOAM"
+modes = { axial = 0, y = 1, z = 2 }
+[motion.flight]
+kind = "flight"
+acceleration = { z = { profile = "table", times = [0, 0.5, 1], values = ["5 g", "5 g", "7 g"] } }
+[motion.spin]
+kind = "centrifuge"
+tracks = "flight"
+arm = "3.3 m"
+control_point = "150 mm"
+inverse = "flat"
+gravity = false
+smoothing = "60 ms"
+[response]
+duration = "1.2 s"
+"""
+
+
+def test_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "s.toml"
+    file.write_text(SCENARIO, encoding="utf-8")
+    asked = ["place", str(file), "--measure", "vibration", "--no-proof"]
+    assert main([*asked, "--json", "--smoothing", "60 ms"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["fraction_of_length"] == pytest.approx(0.7265, abs=1e-4) and len(told["options"]) == 2
+    limit = ["--set", "motion.spin.limits.axis2.jerk=1 rad/s^3"]
+    assert main([*asked, *limit, "--smoothing", "60 ms", "--json"]) == 1
+    answer = capsys.readouterr()
+    assert json.loads(answer.out)["outcome"] == "limits exceeded" and "nearest comes upright, 60 ms" in answer.err
+    assert main([*asked, *limit, "--smoothing", "60 ms", "--allow-limits"]) == 0
+    assert "exceeds axis 2 jerk" in capsys.readouterr().out
+    for words in (["1 kg"], ["0 s", "1 s"], ["1 s", "2 s", "3 s"]):
+        assert main([*asked, *(part for it in words for part in ("--smoothing", it))]) == 2
+        assert "--smoothing" in capsys.readouterr().err

@@ -101,9 +101,11 @@ def test_a_spin_up_is_told_and_commanded(
 ) -> None:
     text = PLAN.replace('inverse = "flat"', f'inverse = "flat"\nstart = "{start}"\nspin_up = "2 s"')
     scenario.write_text(text.replace('duration = "3 s"', 'duration = "4 s"'), encoding="utf-8")
-    assert main(["plan", str(scenario), "--json", "--out", str(tmp_path)]) == 0
+    assert main(["plan", str(scenario), "--allow-limits", "--json", "--out", str(tmp_path)]) == 0
     spin = json.loads(capsys.readouterr().out)["motions"]["spin"]
     assert spin["held"] == [{"start": 0.0, "end": 2.0, "reason": "spin-up"}]
+    hardest = next(it for it in spin["limits"] if (it["axis"], it["quantity"]) == ("axis 1", "acceleration"))
+    assert hardest["time"] < 1.9 and hardest["exceeded"]  # 2 s from nothing to 6 g
     commands = loadmat(tmp_path / "commands_spin.mat")
     np.testing.assert_allclose(commands["rate"][0], 0, atol=1e-12)
     np.testing.assert_allclose(commands["acceleration"][0], 0, atol=1e-12)

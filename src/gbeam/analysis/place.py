@@ -2,12 +2,13 @@
 
 About the control point C the centrifuge adds Δa(x, t) = g(t)(x − x_c) to the load of the flight (2020 (4)), and the
 axis motions, so g, do not depend on where C lies in the specimen. Each measure of the response to Δa is then the size
-of A(t) − x_c B(t): two histories found once, and a convex function of x_c.
+of A(t) − x_c B(t): two histories found once, and a convex function of x_c. Which mounting and width of smoothing give
+the best such point within the machine's limits is searched for, each with axis motions of its own.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import equinox as eqx
@@ -16,57 +17,57 @@ import jax.numpy as jnp
 import numpy as np
 import scipy.optimize
 
-import gbeam._jax  # noqa: F401
+from gbeam.analysis.bounded_search import refine
 from gbeam.analysis.comparison import CUTOFF, compare
-from gbeam.analysis.loads import influence, internal_loads
-from gbeam.analysis.oscillator import displacement
+from gbeam.analysis.loads import internal_loads
+from gbeam.analysis.place_measures import Answers, Histories
 from gbeam.analysis.response import respond
-from gbeam.analysis.stepping import first_step
 from gbeam.beam import Beam
 from gbeam.case import ResponseSettings
-from gbeam.energy import rest_matrices
-from gbeam.equations import coefficients
-from gbeam.errors import InputError
-from gbeam.model import Structure, rest_modes
+from gbeam.errors import ComputationError, InputError
+from gbeam.model import Structure
 from gbeam.motion import Base, Centrifuge, Flight
-from gbeam.results import Floats, Response
+from gbeam.motion.limits import exceeded
+from gbeam.results import Response
 from gbeam.results_place import MEASURES, Option, Placement, Proof
 from gbeam.zero_phase import low_pass
 
-_BLOCK = 4096
+EXCEEDED = "limits exceeded"  # an outcome
 
 
 @dataclass(frozen=True)
-class Candidate:
-    """A centrifuge that tracks the flight, and what it differs in from the others: mounting, width of smoothing s."""
+class Choice:
+    """What may be chosen beside the control point.
 
-    mounting: str
-    smoothing: float
-    centrifuge: Centrifuge
+    Parameters
+    ----------
+    make : callable
+        Of mounting and width of smoothing, s: a centrifuge that tracks the flight; InputError where it cannot.
+    mountings : tuple of str
+        The scenario's own first.
+    widths : tuple of float
+        Tried with every mounting, ascending, s.
+    refined : bool
+        Whether to search on between the best of them and its neighbours.
+    limited : bool
+        Whether the machine's limits must be kept.
+    """
 
-
-@dataclass(frozen=True)
-class _Histories:
-    """A measure over the times compared: of the load's error at C, and of g x and g; (t, k) each; flight's own peak."""
-
-    whole: Floats
-    linear: Floats
-    uniform: Floats
-    scale: float
-
-    def size(self, at: float, whole: bool) -> float:
-        """Largest size with the control point at `at` m, over flight's peak."""
-        values = self.linear - at * self.uniform + (self.whole if whole else 0.0)
-        return float(np.sqrt(np.sum(values**2, axis=-1)).max(initial=0.0)) / self.scale
+    make: Callable[[str, float], Centrifuge]
+    mountings: tuple[str, ...]
+    widths: tuple[float, ...]
+    refined: bool = True
+    limited: bool = True
 
 
 def place(
     structure: Structure,
     flight: Flight,
-    candidates: Sequence[Candidate],
+    choice: Choice,
     settings: ResponseSettings,
     weights: Mapping[str, float],
     *,
+    present: Centrifuge,
     names: tuple[str, str] = ("flight", "centrifuge"),
     beam: Beam | None = None,
 ) -> Placement:
@@ -76,58 +77,132 @@ def place(
     ----------
     structure : Structure
     flight : Flight
-    candidates : sequence of Candidate
-        The first as the scenario has it.
+    choice : Choice
+        Mountings and widths of smoothing.
     settings : ResponseSettings
         Its span is what is looked at.
     weights : mapping of str to float
         Measures to add up, each as a fraction of its peak in flight, across the beam: ``root-shear`` and
         ``root-moment`` (quasi-static), ``vibration`` (of the first mode, at the tip), ``tip`` (quasi-static
-        displacement). For each candidate they choose the control point by what Δa does, and then the candidate by
-        that together with what smoothing and tracking change of the load.
+        displacement). For each option they choose the control point by what Δa does, and then the option by that
+        together with what smoothing and tracking change of the load.
+    present : Centrifuge
+        The scenario's own: its control point is compared with.
     names : tuple of str
         Of flight and centrifuge.
     beam : Beam, optional
-        With it the answer is proven by the model's own response, and so are the first candidate's control point and
-        the middle of the beam.
+        With it the answer is proven by the model's own response, and so are the present control point and the middle
+        of the beam.
 
     Raises
     ------
     InputError
-        If a measure is unknown or none has weight, or a candidate never carries the flight's load.
+        If a measure is unknown or none has weight, or no option can be built: the first one's reason.
+    ComputationError
+        If every option exceeds the machine's limits (outcome ``limits exceeded``); it names the nearest.
     """
     _check(weights)
-    length, answers = structure.length, _Answers(structure, settings)
-    found: list[tuple[Option, dict[str, _Histories], Candidate]] = []
-    for candidate in candidates:
-        histories, accelerations = answers.histories(flight, candidate.centrifuge)
-
-        def size(at: float, whole: bool = False, histories: dict[str, _Histories] = histories) -> float:
-            return sum(weight * histories[name].size(at, whole) for name, weight in weights.items())
-
-        best = scipy.optimize.minimize_scalar(
-            size, bounds=(0, length), method="bounded", options={"xatol": 1e-7 * length}
+    tried = _Tried(structure, flight, choice, settings, weights)
+    for width in reversed(choice.widths):  # the widest first, see Answers
+        for mounting in choice.mountings:
+            tried(mounting, width)
+    if not tried.found:
+        raise tried.reasons[0].within(f"motion.{names[1]}")
+    if choice.refined:
+        leader = tried.ranked()[0].option.mounting
+        refine(lambda width: tried(leader, width), choice.widths)
+    ranked = tried.ranked()
+    best = ranked[0]
+    if best.option.exceeded and choice.limited:
+        broken = "; ".join(str(use) for use in best.option.exceeded)
+        raise ComputationError(
+            EXCEEDED,
+            f"motion.{names[1]}: none of {len(ranked)} options keeps the machine's limits; nearest comes "
+            f"{best.option.mounting}, {1e3 * best.option.smoothing:.4g} ms: {broken}; "
+            'try wider smoothing or inverse = "planned"',
         )
-        at = float(best.x)
-        option = Option(candidate.mounting, candidate.smoothing, at, size(at), size(at, True), accelerations)
-        found.append((option, histories, candidate))
-    # Rounding must not choose between mirror images: then the scenario's own comes first.
-    found.sort(key=lambda it: float(f"{it[0].whole:.6g}"))
-    option, histories, candidate = found[0]
-    present = float(candidates[0].centrifuge.control_point)
-    places = {"best": option.control_point, "present": present, "middle": length / 2}
-    proofs = () if beam is None else _prove(structure, beam, flight, candidate.centrifuge, settings, places)
+    length, at = structure.length, best.option.control_point
+    places = {"best": at, "present": float(present.control_point), "middle": length / 2}
+    proofs = () if beam is None else _prove(structure, beam, flight, best.centrifuge, settings, places)
     return Placement(
         flight=names[0],
         centrifuge=names[1],
         weights=dict(weights),
         length=length,
-        best=option,
-        options=tuple(it[0] for it in found),
-        present=present,
-        values={name: {m: h.size(at, False) for m, h in histories.items()} for name, at in places.items()},
+        best=best.option,
+        options=tuple(it.option for it in ranked),
+        present=places["present"],
+        values={name: {m: h.size(x, False) for m, h in best.histories.items()} for name, x in places.items()},
         proofs=proofs,
+        refused=tuple(tried.refused),
+        widths=(choice.widths[0], choice.widths[-1]),
     )
+
+
+@dataclass(frozen=True)
+class _Found:
+    """An option with what it came from."""
+
+    option: Option
+    histories: dict[str, Histories]
+    centrifuge: Centrifuge
+
+
+class _Tried:
+    """The options tried so far; calling it tries one more."""
+
+    def __init__(
+        self,
+        structure: Structure,
+        flight: Flight,
+        choice: Choice,
+        settings: ResponseSettings,
+        weights: Mapping[str, float],
+    ) -> None:
+        self.answers, self.length, self.flight = Answers(structure, settings), structure.length, flight
+        self.choice, self.weights = choice, weights
+        self.found: dict[tuple[str, float], _Found] = {}
+        self.refused: list[str] = []
+        self.reasons: list[InputError] = []
+
+    def __call__(self, mounting: str, width: float) -> tuple[float, float]:
+        """Weighted measure at the best control point, and the largest share of a limit."""
+        if (mounting, width) not in self.found:
+            try:
+                self.found[mounting, width] = self._option(mounting, width)
+            except InputError as error:
+                self.refused.append(f"{mounting}, {1e3 * width:.4g} ms: {error}")
+                self.reasons.append(error)
+                return np.inf, np.inf
+        it = self.found[mounting, width].option
+        return it.whole, it.share if self.choice.limited else 0.0
+
+    def ranked(self) -> list[_Found]:
+        """Best first; those that break limits last, by how much."""
+
+        def rank(it: _Found) -> tuple[float, float]:
+            # Rounding must not choose between mirror images: then the scenario's own comes first.
+            excess = it.option.share if self.choice.limited and it.option.exceeded else 0.0
+            return excess, float(f"{it.option.whole:.6g}")
+
+        return sorted(self.found.values(), key=rank)
+
+    def _option(self, mounting: str, width: float) -> _Found:
+        centrifuge = self.choice.make(mounting, width)
+        histories, accelerations = self.answers.histories(self.flight, centrifuge)
+
+        def size(at: float, whole: bool = False) -> float:
+            return sum(weight * histories[name].size(at, whole) for name, weight in self.weights.items())
+
+        least = scipy.optimize.minimize_scalar(
+            size, bounds=(0, self.length), method="bounded", options={"xatol": 1e-7 * self.length}
+        )
+        at, uses = float(least.x), centrifuge.usage()
+        share = max(use.share for use in uses)
+        broken = exceeded(uses)
+        return _Found(
+            Option(mounting, width, at, size(at), size(at, True), accelerations, share, broken), histories, centrifuge
+        )
 
 
 def _check(weights: Mapping[str, float]) -> None:
@@ -138,86 +213,6 @@ def _check(weights: Mapping[str, float]) -> None:
             raise InputError("measure", f"gives {name} the weight {weight:g}", "give weights of 0 or more")
     if not any(weights.values()):
         raise InputError("measure", "has no weight", "give one measure a weight above 0")
-
-
-@eqx.filter_jit
-def _load_error(flight: Flight, centrifuge: Centrifuge, t: jax.Array) -> tuple[jax.Array, ...]:
-    """Load at C less the flight's, gradient less the flight's, the flight's load; axis accelerations; held or not."""
-    axes = centrifuge.axes(t)
-    there, here = flight.base(t), centrifuge.base(t)
-
-    def gradient(base: Base) -> jax.Array:
-        w, al = base.w_WB_B, base.al_WB_B
-        wx, wy, wz = w[..., 0], w[..., 1], w[..., 2]
-        return jnp.stack([-(wy**2 + wz**2), wx * wy + al[..., 2], wx * wz - al[..., 1]], axis=-1)
-
-    turning = jnp.stack([axes.acceleration1, axes.acceleration2, axes.acceleration3], axis=-1)
-    error = centrifuge.achieved(t) - there.a_WO_B
-    return error, gradient(here) - gradient(there), there.a_WO_B, turning, centrifuge.held(t)
-
-
-class _Answers:
-    """The structure's quasi-static answers and its first mode's, to loads that are uniform or linear along the beam."""
-
-    def __init__(self, structure: Structure, settings: ResponseSettings) -> None:
-        self.step = first_step(structure, settings)
-        self.time = settings.start + self.step * np.arange(round(settings.duration / self.step) + 1)
-        self.influence = influence(structure)
-        c = coefficients(structure.system)
-        frequency, modes = rest_modes(*rest_matrices(structure.system.energy))
-        self.frequency, first = float(frequency[0]), modes[:, 0]
-        self.damping = float(first @ np.asarray(c.damping) @ first) / (2 * self.frequency)
-        per_q = np.asarray(jax.jacfwd(structure.displacement)(jnp.zeros(structure.size)))[-1]
-        self.tip = float(np.abs(per_q @ first).max())
-        self.uniform = np.asarray(c.f_a) @ first
-        self.linear = np.array([0.0, np.asarray(c.f_al)[2] @ first, -np.asarray(c.f_al)[1] @ first])
-
-    def histories(
-        self, flight: Flight, centrifuge: Centrifuge
-    ) -> tuple[dict[str, _Histories], tuple[float, float, float]]:
-        """Every measure's, and the largest accelerations of the axes, rad/s²."""
-        error, gradient, load, turning, held = self._sampled(flight, centrifuge)
-        covered = ~held
-        if not covered.any():
-            raise InputError("tracks", "is never carried: the target is held all the time", "lower idle")
-        it, across = self.influence, np.array([0.0, 1.0, 1.0])
-
-        def quasi_static(uniform: Floats, linear: Floats) -> _Histories:
-            parts = ((error * uniform), (gradient * linear), (gradient * uniform))
-            own = (load * uniform * across)[covered]
-            whole, linear_part, uniform_part = ((part * across)[covered] for part in parts)
-            return _Histories(whole, linear_part, uniform_part, _peak(own))
-
-        def vibration(force: Floats) -> Floats:
-            trend = force / self.frequency**2
-            return self.tip * (displacement(force, self.frequency, self.damping, self.step) - trend)[covered, None]
-
-        found = {
-            "root-shear": quasi_static(it.force_uniform, it.force_linear),
-            "root-moment": quasi_static(it.moment_uniform, it.moment_linear),
-            "tip": quasi_static(it.tip_uniform, it.tip_linear),
-        }
-        transverse = self.uniform * across
-        found["vibration"] = _Histories(
-            vibration(error @ transverse), vibration(gradient @ self.linear), vibration(gradient @ transverse),
-            scale=found["tip"].scale,
-        )  # fmt: skip
-        accelerations = np.abs(turning).max(axis=0)
-        return found, (float(accelerations[0]), float(accelerations[1]), float(accelerations[2]))
-
-    def _sampled(self, flight: Flight, centrifuge: Centrifuge) -> list[np.ndarray]:
-        """In blocks of one compiled shape."""
-        count = len(self.time)
-        padded = np.concatenate([self.time, np.repeat(self.time[-1], -count % _BLOCK)])
-        parts = [_load_error(flight, centrifuge, jnp.asarray(t)) for t in np.split(padded, len(padded) // _BLOCK)]
-        return [np.concatenate([np.asarray(part[k]) for part in parts])[:count] for k in range(5)]
-
-
-def _peak(values: Floats) -> float:
-    peak = float(np.linalg.norm(values, axis=-1).max(initial=0.0))
-    if peak == 0:
-        raise InputError("tracks", "loads the beam along its axis only", "track a flight that loads it across")
-    return peak
 
 
 class _Carried(eqx.Module):

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
+from gbeam.cli.asked import number
 from gbeam.cli.console import stdout
 from gbeam.cli.inputs import Input, read
-from gbeam.cli.options import Json, Out, Overrides, ScenarioFile
+from gbeam.cli.options import AllowLimits, Json, Out, Overrides, ScenarioFile
 from gbeam.cli.outputs import publish, refuse_unwritable
 from gbeam.errors import InputError
-from gbeam.scenario import ScenarioError, build, load
 
 if TYPE_CHECKING:
-    from gbeam.analysis.place import Candidate
-    from gbeam.results_place import Placement
+    from gbeam.analysis.place import Choice
+    from gbeam.motion import Flight
 
 Measure = Annotated[
     str,
@@ -30,13 +29,15 @@ Widths = Annotated[
         name="--smoothing",
         negative="",
         show_default=False,
-        help='Widths of the kernel to try, "40 ms", any number of times; else half, once and twice the scenario\'s.',
+        help='Width of the kernel to keep, "60 ms"; given twice, the search goes from the one to the other. Without it '
+        "from a quarter to four times the scenario's.",
     ),
 ]
 Proven = Annotated[
     bool, Parameter(name="--proof", negative="--no-proof", help="Prove the answer by the model's own response.")
 ]
 MOUNTINGS = ("upright", "inverted")
+_FACTOR = 4.0  # of the scenario's smoothing, either way
 
 
 def place(
@@ -50,42 +51,46 @@ def place(
     overrides: Overrides = (),
     out: Out = None,
     json: Json = False,
+    allow_limits: AllowLimits = False,
 ) -> int:
     """Find the control point, mounting and smoothing that change the specimen's response least.
 
-    With --out also writes place.json. Exit status: 0 done, 1 the computation failed, 2 the input is wrong.
+    Options that exceed the machine's limits are told but not chosen, unless --allow-limits is given. With --out also
+    writes place.json. Exit status: 0 done, 1 every option exceeds the limits, 2 the input is wrong.
     """
     weights = parse(measure)
+    tried = [number("--smoothing", text, "time") for text in smoothing]
     if out is not None:
         refuse_unwritable(out)
     given = read("place", scenario, overrides)
     name = chosen(given, motion)
-    flight = given.case.motions[given.case.tracks[name]]
 
     from gbeam.analysis import structure_of
     from gbeam.analysis.place import place as best_place
-    from gbeam.motion import Flight
+    from gbeam.motion import Centrifuge, Flight
     from gbeam.report import as_json
+    from gbeam.report.place import place_json, place_text
 
-    assert isinstance(flight, Flight)  # the schema sees to it
-    tried, refused = candidates(scenario, overrides, given, name, smoothing)
+    flight, present = given.case.motions[given.case.tracks[name]], given.case.motions[name]
+    assert isinstance(flight, Flight) and isinstance(present, Centrifuge)  # the schema sees to it
     with given.placing():
         answer = best_place(
             structure_of(given.case),
             flight,
-            tried,
+            choice(given, name, flight, tried, not allow_limits),
             given.case.response,
             weights,
+            present=present,
             names=(given.case.tracks[name], name),
             beam=given.case.beam if proof else None,
         )
-    text = as_json(told(answer, refused))
+    text = as_json(place_json(answer))
     if out is not None:
         publish(out, lambda hidden: Path(hidden / "place.json").write_text(text + "\n", encoding="utf-8"))
     if json:
         print(text)
     else:
-        stdout().print(_lines(answer, refused), markup=False)
+        stdout().print(place_text(answer), markup=False, soft_wrap=True)
     return 0
 
 
@@ -115,86 +120,27 @@ def chosen(given: Input, name: str | None) -> str:
     return name or names[0]
 
 
-def candidates(
-    file: Path, overrides: tuple[str, ...], given: Input, name: str, widths: tuple[str, ...]
-) -> tuple[list[Candidate], list[str]]:
-    """The scenario's own centrifuge and its variants, and why others could not be built."""
-    from gbeam.analysis.place import Candidate
+def choice(given: Input, name: str, flight: Flight, tried: list[float], limited: bool) -> Choice:
+    """Both mountings, the scenario's own first, and the widths asked for."""
+    from gbeam.analysis.bounded_search import coarse
+    from gbeam.analysis.place import Choice
     from gbeam.motion import Centrifuge
+    from gbeam.scenario import schema
+    from gbeam.scenario.build_motion import centrifuge_of
 
-    own = given.scenario.motion[name]
-    width, mounting = float(getattr(own, "smoothing")), str(getattr(own, "mounting"))  # noqa: B009  # of any motion
-    wanted = list(widths) or [f"{factor * width!r} s" for factor in (1.0, 0.5, 2.0)][: 3 if width else 1]
-    first = given.case.motions[name]
-    assert isinstance(first, Centrifuge)
-    tried, refused = [] if widths else [Candidate(mounting, width, first)], []
-    for way in (mounting, *(it for it in MOUNTINGS if it != mounting)):
-        for text in wanted:
-            if not widths and way == mounting and text == wanted[0]:
-                continue
-            changes = (f"motion.{name}.mounting={way}", f"motion.{name}.smoothing={text}")
-            try:
-                scenario = load(file, (*overrides, *changes))
-                it = build(scenario).motions[name]
-            except ScenarioError as error:
-                refused.append(f"{way}, {text}: {error.diagnostics[0].message}")
-                if widths and not tried:
-                    raise
-                continue
-            assert isinstance(it, Centrifuge)
-            tried.append(Candidate(way, float(getattr(scenario.motion[name], "smoothing")), it))  # noqa: B009
-    return tried, refused
+    own, settings = given.scenario.motion[name], given.case.response
+    assert isinstance(own, schema.Centrifuge)
+    if len(tried) > 2:
+        raise InputError("--smoothing", f"is given {len(tried)} times", "give one width, or the ends of a range")
+    if any(width <= 0 for width in tried) and len(tried) > 1:
+        raise InputError("--smoothing", f"is {min(tried):g} s", "give two positive widths")
+    ends = sorted(tried) or [own.smoothing / _FACTOR, own.smoothing * _FACTOR]
+    widths = coarse(ends[0], ends[-1])
+    span = (settings.start, settings.start + settings.duration)
 
+    def make(mounting: str, width: float) -> Centrifuge:
+        changed = own.model_copy(update={"mounting": mounting, "smoothing": width})
+        return centrifuge_of(changed, flight.acceleration, span)
 
-def told(answer: Placement, refused: list[str]) -> dict[str, Any]:
-    """The answer for JSON, SI units; fractions are of flight's peaks."""
-    best = answer.best
-    return {
-        "outcome": "done",
-        "flight": answer.flight,
-        "centrifuge": answer.centrifuge,
-        "measure": dict(answer.weights),
-        "control_point": best.control_point,
-        "fraction_of_length": answer.fraction,
-        "mounting": best.mounting,
-        "smoothing": best.smoothing,
-        "present_control_point": answer.present,
-        "mismatch": {place: dict(values) for place, values in answer.values.items()},
-        "options": [asdict(it) for it in answer.options],
-        "proofs": {it.name: asdict(it) for it in answer.proofs},
-        "vibration_gain_over_middle": answer.vibration_gain,
-        "refused": refused,
-    }
-
-
-def _lines(answer: Placement, refused: list[str]) -> str:
-    best = answer.best
-    measure = " + ".join(f"{weight:g} {name}" for name, weight in answer.weights.items())
-    lines = [
-        f"{answer.centrifuge}, tracking {answer.flight}: least {measure}",
-        f"  control point  {1e3 * best.control_point:.2f} mm from the root, {answer.fraction:.4f} of the length "
-        f"(now {1e3 * answer.present:.2f} mm)",
-        f"  mounting       {best.mounting}",
-        f"  smoothing      {1e3 * best.smoothing:.4g} ms",
-        "",
-        "What the mismatch field does, of flight's peak" + " " * 10 + "best       present    middle",
-    ]
-    for name in answer.values["best"]:
-        row = "".join(f"{100 * answer.values[place][name]:<9.3g}% " for place in ("best", "present", "middle"))
-        lines.append(f"  {name:<54}{row}")
-    if answer.proofs:
-        lines += ["", "Proven by the model's response, against flight"]
-        for it in answer.proofs:
-            lines.append(
-                f"  {it.name:<8} {1e3 * it.control_point:8.2f} mm: tip within {1e3 * it.tip_difference:.4g} mm, "
-                f"vibration {1e3 * it.vibration:.3g} mm, root moment within {it.moment_difference:.3g} N m"
-            )
-        lines.append(f"  {answer.vibration_gain:.3g} times less vibration than with the control point at mid-span")
-    lines += ["", "Options, best first"]
-    for option in answer.options:
-        peaks = ", ".join(f"{a:.3g}" for a in option.accelerations)
-        lines.append(
-            f"  {option.mounting}, {1e3 * option.smoothing:.4g} ms: {100 * option.whole:.3g} % at "
-            f"{1e3 * option.control_point:.2f} mm; axis accelerations {peaks} rad/s²"
-        )
-    return "\n".join([*lines, *(f"  cannot: {it}" for it in refused)])
+    others = tuple(it for it in MOUNTINGS if it != own.mounting)
+    return Choice(make, (own.mounting, *others), widths, len(widths) > 1, limited)

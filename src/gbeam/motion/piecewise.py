@@ -125,7 +125,8 @@ class SmoothedPiecewiseLinear(Profile):
         self.table, self.width = table, jnp.asarray(width, dtype=float)
         self.bends = jnp.asarray(np.concatenate([np.diff(slopes, axis=0), np.zeros_like(slopes[:1])]))
         self.times = jnp.asarray(np.append(t, t[-1]))
-        self.count = int(np.max(ends - np.arange(t.size))) + 1  # one more: t − W/2 is rounded
+        # One more, since t − W/2 is rounded; then rounded up, so that widths share their programs.
+        self.count = 8 * -(-(int(np.max(ends - np.arange(t.size))) + 1) // 8)
 
     def __call__(self, t: ArrayLike) -> Float[Array, "*t"]:
         """Value at times `t` (s)."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -182,6 +183,7 @@ def build_target(
         altered = without_gaps(times, low | far, period / 2)
         asked = settle(times, asked, altered, period, least, REACH if gravity else 0.0)
         low = altered & ~far
+    times, asked, low, far = _padded(times, asked, low, far)
     waiting = raw if spin_up is None else held_before(raw, leaves)
     corners = PiecewiseLinear(times, asked) if (low | far).any() else waiting
     load = smoothed(corners, width) if width else corners
@@ -226,6 +228,16 @@ def _hold(
         again, _ = hold_idle(times, held, idle)
         held = np.where(far[:, None], again, held)
     return held, low, far
+
+
+def _padded(times: NDArray[np.float64], *columns: NDArray[Any]) -> tuple[NDArray[Any], ...]:
+    """Repeat the last knot, later and later, up to a round number: loads that differ in width share their programs."""
+    count, step = times.size, times[-1] - times[-2]
+    size = 1 << (count - 1).bit_length()
+    size = 3 * size // 4 if count <= 3 * size // 4 else size
+    later = times[-1] + step * np.arange(1, size - count + 1)
+    unchanged = [np.concatenate([it, np.repeat(it[-1:], size - count, axis=0)]) for it in columns]
+    return np.append(times, later), *unchanged
 
 
 _sample = eqx.filter_jit(lambda profile, t: profile(t))  # one compilation rather than one per operation

@@ -63,12 +63,13 @@ def centrifuges(
             continue
         flight = others.get(it.tracks)
         if isinstance(flight, motion.Flight):
-            centrifuge = parts.attempt(f"motion.{name}", _centrifuge, it, flight.acceleration, span)
+            centrifuge = parts.attempt(f"motion.{name}", centrifuge_of, it, flight.acceleration, span)
             built |= {} if centrifuge is None else {name: centrifuge}
     return built
 
 
-def _centrifuge(it: schema.Centrifuge, load: Profile, span: tuple[float, float]) -> motion.Centrifuge:
+def centrifuge_of(it: schema.Centrifuge, load: Profile, span: tuple[float, float]) -> motion.Centrifuge:
+    """Build one centrifuge for the load that it tracks, over a span, s; InputError if it cannot."""
     machine = None if it.machine is None else motion.MACHINES[it.machine]
     arm = it.arm if it.arm is not None or machine is None else machine.arm
     assert arm is not None  # the schema sees to it
