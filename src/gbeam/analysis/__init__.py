@@ -10,7 +10,7 @@ from gbeam.analysis.model_study import compare_models
 from gbeam.analysis.nonlinear_control import nonlinear_system
 from gbeam.analysis.reduction import balance, truncate
 from gbeam.analysis.response import respond
-from gbeam.analysis.stability import buckling_acceleration, critical_speed, critical_speed_map
+from gbeam.analysis.stability import buckling_acceleration, critical_load, critical_speed, critical_speed_map
 from gbeam.analysis.state_space import StateSpace
 from gbeam.analysis.static import equilibrium
 
@@ -22,6 +22,7 @@ __all__ = [
     "campbell",
     "compare",
     "compare_models",
+    "critical_load",
     "critical_speed",
     "critical_speed_map",
     "deflect",

@@ -21,6 +21,11 @@ ZERO = 1e-11  # of the largest eigenvalue: a smaller one is rounding about zero
 FLUTTER = 1e-6
 
 
+def growth_limit(value: Complex, largest: float) -> Floats:
+    """Real part above which each of some eigenvalues counts as one that grows, 1/s; `largest` is that of all."""
+    return np.maximum(np.where(value.imag != 0, FLUTTER * np.abs(value), 0.0), ZERO * largest)
+
+
 def eigenvalues(linear: Linear, *, gyroscopic: bool = True) -> tuple[Complex, Complex]:
     """Eigenvalues λ and modes of M ÿ + C ẏ + K y = 0.
 
@@ -102,7 +107,7 @@ def modes_at(
     # Turn each shape so that its largest component is 1.
     flat = shape.reshape(len(shape), -1)
     largest = flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)]
-    flutter = oscillating.real > np.maximum(FLUTTER * np.abs(oscillating), ZERO * size)
+    flutter = oscillating.real > growth_limit(oscillating, size)
     return Modes(
         motion=name,
         model=structure.kind,

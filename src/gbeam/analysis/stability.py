@@ -4,7 +4,7 @@ About a relative equilibrium on a steadily turning base the energy that counts i
 derivative is K. While K is positive definite the equilibrium is stable, with any damping inside the beam too; once it
 is not, such damping destroys whatever gyroscopic coupling might have saved (Kelvin, Tait, Chetayev). So the
 definiteness of K decides, for every model; only loads that follow the beam make K unsymmetric, and then the
-eigenvalues decide.
+eigenvalues decide. There damping matters: the least of it lowers the flutter load of Beck's column (Ziegler's paradox).
 """
 
 from __future__ import annotations
@@ -12,17 +12,20 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array
 from scipy.optimize import brentq
 
 from gbeam.analysis.deflection import lowest_stiffness_at
-from gbeam.analysis.modal import ZERO, directions, eigenvalues, modes_at
+from gbeam.analysis.modal import directions, eigenvalues, growth_limit, modes_at
 from gbeam.analysis.operating import Linear, OperatingPoint, linear_matrices, on_base, steady_base
 from gbeam.beam import Beam, PointMass
 from gbeam.case import Motion
 from gbeam.checks import positive
 from gbeam.energy import rest_matrices
+from gbeam.equations import coefficients
 from gbeam.errors import ComputationError, InputError
 from gbeam.model import Model, Structure, assemble, rest_modes
 from gbeam.motion import Base, HubRate, HubTorque
@@ -30,6 +33,7 @@ from gbeam.results_modal import Critical, CriticalMap
 
 SCAN = 64  # points at which a loss is looked for before its root is closed in on
 REACH = 10.0  # of the lowest natural frequency: how far a search goes unless told
+NOTHING = 1e-12  # of the beam's stiffness: loads that bring less are rounding about none
 UNSYMMETRIC = 1e-9  # of K: above it the loads follow the beam
 
 
@@ -56,7 +60,7 @@ def _margin(linear: Linear) -> float:
     if np.abs(stiffness - stiffness.T).max() <= UNSYMMETRIC * np.abs(stiffness).max():
         return lowest_stiffness_at(linear.mass, stiffness)[0]
     value, _ = eigenvalues(linear)
-    return float(ZERO * np.abs(value).max() - value.real.max())
+    return float((growth_limit(value, np.abs(value).max()) - value.real).min())
 
 
 def _point(structure: Structure, base: Base) -> OperatingPoint | None:
@@ -67,15 +71,14 @@ def _point(structure: Structure, base: Base) -> OperatingPoint | None:
 
 
 def first_loss_along(
-    structure: Structure, path: Callable[[float], Base], upper: float, quantity: str, unit: str
+    path: Callable[[float], tuple[Structure, Base]], upper: float, quantity: str, unit: str
 ) -> Critical:
-    """Raise a base motion from zero until the relative equilibrium is lost.
+    """Raise a quantity from zero until the relative equilibrium is lost.
 
     Parameters
     ----------
-    structure : Structure
     path : callable
-        Of the quantity that is raised: the base motion.
+        Of the quantity that is raised: the structure, with its loads, and the base motion.
     upper : float
         End of the search.
     quantity, unit : str
@@ -88,12 +91,13 @@ def first_loss_along(
     """
 
     def margin(value: float) -> float:
-        point = _point(structure, path(value))
+        point = _point(*path(value))
         return -1.0 if point is None else _margin(linear_matrices(point))
 
     def answer(value: float | None, kind: str, direction: str, reason: str) -> Critical:
         return Critical(quantity, unit, value, upper, kind, direction, reason, structure.kind)
 
+    structure, _ = path(0.0)
     grid = np.linspace(0.0, upper, SCAN + 1)
     margins = np.array([margin(float(value)) for value in grid])
     lost = np.flatnonzero(margins < 0)
@@ -104,8 +108,8 @@ def first_loss_along(
     if first == 0:
         return answer(0.0, "divergence", "", "the beam is unstable before anything moves")
     found = brentq(margin, grid[first - 1], grid[first], xtol=1e-11, rtol=4 * np.finfo(float).eps)
-    point = _point(structure, path(found)) or on_base(structure, path(float(grid[first - 1])))
-    beyond = _point(structure, path(found * (1 + 1e-5)))
+    point = _point(*path(found)) or on_base(*path(float(grid[first - 1])))
+    beyond = _point(*path(found * (1 + 1e-5)))
     if beyond is None:
         kind, direction = "no equilibrium", ""
     else:
@@ -146,7 +150,7 @@ def critical_speed(structure: Structure, motion: Motion, *, upper: float | None 
     instead = "ask `gbeam modes` for its frequencies at a time, or `gbeam static` for its shape"
     hub = hub_of(motion, "a critical speed", instead, name)
     limit = REACH * lowest_frequency(structure) if upper is None else positive("to", upper, "rad/s")
-    return first_loss_along(structure, lambda rate: steady_base(hub, rate), limit, "hub rate", "rad/s")
+    return first_loss_along(lambda rate: (structure, steady_base(hub, rate)), limit, "hub rate", "rad/s")
 
 
 def critical_speed_map(
@@ -193,9 +197,58 @@ def buckling_acceleration(structure: Structure, *, upper: float | None = None) -
     Critical
     """
     o = jnp.zeros(3)
-    limit = 10 * lowest_frequency(structure) ** 2 * structure.length if upper is None else upper
+    limit = REACH * lowest_frequency(structure) ** 2 * structure.length if upper is None else upper
 
-    def pushed(acceleration: float) -> Base:
-        return Base(jnp.array([acceleration, 0.0, 0.0]), o, o)
+    def pushed(acceleration: float) -> tuple[Structure, Base]:
+        return structure, Base(jnp.array([acceleration, 0.0, 0.0]), o, o)
 
-    return first_loss_along(structure, pushed, limit, "acceleration along x", "m/s²")
+    return first_loss_along(pushed, limit, "acceleration along x", "m/s²")
+
+
+def critical_load(structure: Structure, base: Base | None = None, *, upper: float | None = None) -> Critical:
+    """Factor on all loads on the beam at which its relative equilibrium is lost.
+
+    Euler's column under a dead load (π²/4 EI/L²), Beck's under one that follows the tip (20.05 EI/L², flutter).
+
+    Parameters
+    ----------
+    structure : Structure
+        With loads, of time zero or of its :meth:`~gbeam.model.Structure.at_time`.
+    base : Base, optional
+        Frozen motion of the base, arrays (3,); by default at rest.
+    upper : float, optional
+        End of the search; by default ten times the factor that makes the loads' stiffness as large as the beam's.
+
+    Returns
+    -------
+    Critical
+
+    Raises
+    ------
+    InputError
+        If there is no load, or none acts at the time, or they change no stiffness.
+    """
+    system, still = structure.system, Base(*[jnp.zeros(3)] * 3)
+    applied = system.applied
+    share = 0.0 if applied is None else _share(structure, applied)
+    if applied is None or share < NOTHING:
+        fix = "add one to beam.loads or give a time at which one acts; `gbeam critical-speed` can raise a hub's rate"
+        raise InputError("", "no load acts on the beam", fix)
+    limit = REACH / share if upper is None else positive("to", upper, "times the loads")
+
+    def loaded(factor: float) -> tuple[Structure, Base]:
+        under = eqx.tree_at(lambda s: s.system, structure, system.under(factor * applied))
+        return under, still if base is None else base
+
+    return first_loss_along(loaded, limit, "load factor", "times the loads")
+
+
+def _share(structure: Structure, applied: Array) -> float:
+    """Stiffness that the loads bring, over the beam's own."""
+    c = coefficients(structure.system)
+    assert c.k_p is not None and c.f_p is not None
+    scale = np.linalg.inv(np.linalg.cholesky(np.asarray(c.stiffness)))
+    size = np.linalg.norm(scale @ np.einsum("li,linm->nm", applied, c.k_p) @ scale.T, 2)
+    # Loads across the straight beam bring no stiffness to compare with: then what bends it by its own length.
+    bend = np.linalg.norm(np.linalg.solve(c.stiffness, np.einsum("li,lin->n", applied, c.f_p)))
+    return float(max(size, bend / structure.length))

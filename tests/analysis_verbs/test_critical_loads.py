@@ -1,0 +1,127 @@
+"""Loads, speeds and accelerations under which beams give way: classics in closed form.
+
+Euler 1744; Greenhill 1881; Beck 1952 and Leipholz 1962 for loads that follow the beam (Bolotin 1963; Langthjem and
+Sugiyama 2000): 20.0509536 and 40.0537, both by flutter. The exact beam also shortens: by 2e-5 under Beck's load here.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from scipy.special import jv
+
+from gbeam import Beam, InputError, Load, Material, Model, Section, assemble, critical_load
+from gbeam.analysis import buckling_acceleration, critical_speed, modes
+from gbeam.motion import Flight, HubRate, SmoothStep, constant, stack
+
+from .beams import slender
+
+BECK, BECK_FREQUENCY, LEIPHOLZ = 20.0509536, 11.0156, 40.0537
+GREENHILL = 9 / 4 * brentq(lambda z: jv(-1 / 3, z), 1.5, 2.2) ** 2
+MODELS = {
+    "FOAM": Model("FOAM", 1, 0, 8),
+    "SFOAM": Model("SFOAM", 0, 0, 8),
+    "CFOAM": Model("CFOAM", 1, 0, 6),
+    "exact": Model("exact", 1, 0, 7),
+}
+
+
+def column(model: Model, *loads: Load, damping: float = 0.0):
+    """ρA = EI = L = 1."""
+    section, material = Section.general(1e-2, 1e-8, 1e-8), Material(1e2, 1e8)
+    return assemble(Beam(1.0, section, material, damping_ratio=damping, loads=loads), model)
+
+
+@pytest.mark.parametrize("kind", MODELS)
+def test_euler(kind):
+    found = critical_load(column(MODELS[kind], Load(1.0, force=(-0.5, 0.0, 0.0))))
+    # Clamped-free shapes know nothing of the load and converge slowly; polynomials at once.
+    assert found.value == pytest.approx(2 * np.pi**2 / 4, rel=1e-5 if kind == "exact" else 6e-4)
+    assert (found.kind, found.direction, found.unit) == ("divergence", "z", "times the loads")
+
+
+@pytest.mark.parametrize("kind", MODELS)
+def test_beck(kind):
+    structure = column(MODELS[kind], Load(1.0, force=(-1.0, 0.0, 0.0), follows=True))
+    found = critical_load(structure)
+    assert found.value == pytest.approx(BECK, rel=3e-5 if kind == "exact" else 4e-4)
+    assert (found.kind, found.direction) == ("flutter", "z")
+
+
+def test_becks_two_modes_meet():
+    """Just below the critical load two frequencies are nearly one; above it `modes` says flutter."""
+    close, beyond = (
+        modes(
+            column(MODELS["exact"], Load(1.0, force=(-share * BECK, 0.0, 0.0), follows=True)),
+            Flight(stack(z=constant(0.0))),
+            0.0,
+        )
+        for share in (0.99999, 1.001)
+    )
+    assert close.stable and 2 * np.pi * close.frequency[:2] == pytest.approx(BECK_FREQUENCY, rel=1e-2)
+    assert [it.kind for it in beyond.instabilities] == ["flutter"]
+
+
+def test_leipholz():
+    structure = column(MODELS["exact"], Load(None, force=(-1.0, 0.0, 0.0), follows=True))
+    found = critical_load(structure)
+    assert found.value == pytest.approx(LEIPHOLZ, rel=1e-4) and found.kind == "flutter"
+
+
+def test_a_dead_load_along_the_beam_is_greenhills():
+    found = critical_load(column(MODELS["FOAM"], Load(None, force=(-1.0, 0.0, 0.0))))
+    assert found.value == pytest.approx(GREENHILL, rel=2e-5)
+    assert pytest.approx(7.8373, abs=1e-4) == GREENHILL
+
+
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_buckling_under_its_own_inertia(kind):
+    """a_x pushes the root: 7.8373 EI/(m L³)."""
+    found = buckling_acceleration(column(MODELS[kind]))
+    assert found.value == pytest.approx(GREENHILL, rel=4e-5)
+
+
+def test_loads_of_another_time_and_none():
+    ramp = Load(1.0, force=stack(x=SmoothStep(-1.0, 2.0)))
+    structure = column(MODELS["FOAM"], ramp)
+    with pytest.raises(InputError, match="no load acts"):
+        critical_load(structure)
+    assert critical_load(structure.at_time(1.0)).value == pytest.approx(np.pi**2 / 2, rel=6e-4)
+    with pytest.raises(InputError, match="gbeam critical-speed"):
+        critical_load(column(MODELS["FOAM"]))
+
+
+def test_pulling_never_buckles():
+    found = critical_load(column(MODELS["FOAM"], Load(1.0, force=(1.0, 0.0, 0.0))))
+    assert found.value is None and found.kind == "none" and found.searched_to == pytest.approx(24.7, abs=0.1)
+
+
+def test_dead_load_lowers_the_frequency():
+    """ω² falls nearly in proportion to the load, and vanishes with Euler's."""
+    rest, half = (
+        modes(column(MODELS["exact"], Load(1.0, force=(-p, 0.0, 0.0))), Flight(stack(z=constant(0.0))), 0.0)
+        for p in (1e-9, np.pi**2 / 8)
+    )
+    assert (half.frequency[0] / rest.frequency[0]) ** 2 == pytest.approx(0.5, abs=0.02)
+
+
+@pytest.mark.parametrize(("kind", "counts"), [("FOAM", (1, 8, 0)), ("exact", (2, 7, 0))])
+def test_a_beam_pointing_inward_diverges(kind, counts):
+    """Chebyshev collocation of w'''' − Ω²((Tw')' + w) = 0, T = −∫_x^1 (R − ξ) dξ: root at R, the beam to the axis."""
+    radius = 2.0
+    n = 24
+    k = np.arange(n + 1)
+    x = np.cos(np.pi * k / n)
+    c = np.where((k == 0) | (k == n), 2.0, 1.0) * (-1.0) ** k
+    d = np.outer(c, 1 / c) / (x[:, None] - x + np.eye(n + 1))
+    d = 2 * (d - np.diag(d.sum(axis=1)))  # on x from 1 (first) to 0 (last)
+    at = (x + 1) / 2
+    tension = -(radius * (1 - at) - (1 - at**2) / 2)
+    stiff, spin = d @ d @ d @ d, d @ np.diag(tension) @ d + np.eye(n + 1)
+    for row, condition in ((0, (d @ d)[0]), (1, (d @ d @ d)[0]), (n, np.eye(n + 1)[n]), (n - 1, d[n])):
+        stiff[row], spin[row] = condition, 0.0
+    square = 1 / np.linalg.eigvals(np.linalg.solve(stiff, spin)).real.max()
+    found = critical_speed(assemble(slender(1e4), Model(kind, *counts)), HubRate(radius, constant(1.0), "inward"))
+    assert found.value == pytest.approx(np.sqrt(square), rel=2e-5)
+    assert (found.kind, found.direction) == ("divergence", "y")
