@@ -81,6 +81,21 @@ def test_linearize(call):
     assert Path("there/linear.mat").exists()
 
 
+def test_linearize_balanced_with_strain_on_the_face_of_the_root(call):
+    rectangle = ("--set", 'beam.section={ shape = "rectangle", width = "20 mm", thickness = "4 mm" }')
+    options = ("--motion", "flight", *rectangle, "--set", "beam.damping_ratio=0.01")
+    status, told, _ = call("linearize", *options, "--strain-at", "0 mm", "--balanced", "4")
+    assert status == 0 and len(told["A"]) == 4 and len(told["hankel_singular_values"]) == 8
+    assert [it["name"] for it in told["outputs"]].count("strain_1") == 1
+    assert told["gauges"] == [{"at": 0.0, "y": 0.0, "z": 0.002}, {"at": 0.0, "y": 0.01, "z": 0.0}]
+    # ε = −v'' y at the root of a uniformly loaded cantilever, v'' = w L²/2EI; three shapes come within 8 %.
+    strain = told["outputs"][[it["name"] for it in told["outputs"]].index("strain_2")]["value"]
+    inertia, area = 0.004 * 0.02**3 / 12, 0.02 * 0.004
+    assert strain == pytest.approx(0.01 * 2766.7 * area * 0.980665 * 8**2 / (2 * 6.8952e10 * inertia), rel=0.1)
+    assert "--balanced is 40" in call("linearize", *options, "--balanced", "40")[2]
+    assert "--strain-at is 9 m" in call("linearize", *options, "--strain-at", "9 m")[2]
+
+
 @pytest.mark.parametrize(("verb", "answers"), [("campbell", "gbeam modes"), ("critical-speed", "gbeam modes")])
 def test_a_flight_is_refused_with_the_verb_that_can(call, verb, answers):
     status, told, said = call(verb, "--motion", "flight")

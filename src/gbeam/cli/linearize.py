@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+import numpy as np
 from cyclopts import Parameter
 
 from gbeam.cli.asked import At, MotionName, motion_of, number, time_of
@@ -12,9 +15,12 @@ from gbeam.cli.console import Watch, stdout
 from gbeam.cli.inputs import read
 from gbeam.cli.options import Json, Out, Overrides, ScenarioFile
 from gbeam.cli.outputs import publish, refuse_unwritable
+from gbeam.errors import InputError
 
 if TYPE_CHECKING:
+    from gbeam.analysis import Gauge
     from gbeam.analysis.state_space import StateSpace
+    from gbeam.beam import Beam
 
 
 def linearize(
@@ -29,6 +35,19 @@ def linearize(
     modes: Annotated[
         int | None, Parameter(name="--modes", help="Keep so many of the slowest modes; by default all.")
     ] = None,
+    balanced: Annotated[
+        int | None,
+        Parameter(name="--balanced", help="Keep so many states by balanced truncation, besides what does not decay."),
+    ] = None,
+    strain_at: Annotated[
+        tuple[str, ...],
+        Parameter(
+            name="--strain-at",
+            negative="",
+            show_default=False,
+            help='Strain at a station, "10 mm", on the faces towards +z and +y; any number of times.',
+        ),
+    ] = (),
     overrides: Overrides = (),
     out: Out = None,
     json: Json = False,
@@ -43,15 +62,26 @@ def linearize(
     name, chosen = motion_of(given, motion, hubs_only=rate is not None)
     time = time_of(given, at)
     turning = None if rate is None else number("--rate", rate, "angular rate")
+    if modes is not None and balanced is not None:
+        raise InputError("--balanced", "stands beside --modes", "give one of them")
 
+    from gbeam.analysis import balance, structure_of, truncate
     from gbeam.analysis import linearize as find
-    from gbeam.analysis import structure_of, truncate
     from gbeam.report import as_json
 
+    gauges = gauges_at(given.case.beam, strain_at)
     with Watch(), given.placing():
-        found = find(structure_of(given.case), chosen, time, rate=turning, name=name)
-        found = found if modes is None else truncate(found, modes)
-    text = as_json(told(found))
+        found = find(structure_of(given.case), chosen, time, rate=turning, gauges=gauges, name=name)
+    hankel: Iterable[float] = ()
+    try:
+        if modes is not None:
+            found = truncate(found, modes)
+        elif balanced is not None:
+            found, hankel = balance(found, balanced)
+    except InputError as error:
+        raise InputError("--modes" if balanced is None else "--balanced", error.problem, error.fix) from None
+    extra = {"gauges": [asdict(it) for it in gauges], "hankel_singular_values": [float(it) for it in hankel]}
+    text = as_json({**told(found), **extra})
     if out is not None:
 
         def make(hidden: Path) -> None:
@@ -64,6 +94,23 @@ def linearize(
     else:
         stdout().print(_text(found), markup=False)
     return 0
+
+
+def gauges_at(beam: Beam, stations: tuple[str, ...]) -> list[Gauge]:
+    """Two gauges at each station, on the outer fibres towards +z and +y."""
+    from gbeam.analysis import Gauge
+
+    gauges: list[Gauge] = []
+    for text in stations:
+        at = number("--strain-at", text, "length")
+        if not 0 <= at <= beam.length:
+            raise InputError("--strain-at", f"is {at:g} m, off the beam", f"give 0 to {beam.length:g} m")
+        section = beam.section.at(np.array([at]))
+        fibres = float(section.fibre_y[0]), float(section.fibre_z[0])
+        if not np.isfinite(fibres).all():
+            raise InputError("--strain-at", "needs the outer fibres", "add fibre_y and fibre_z to beam.section")
+        gauges += [Gauge(at, z=fibres[1]), Gauge(at, y=fibres[0])]
+    return gauges
 
 
 def told(found: StateSpace) -> dict[str, Any]:
