@@ -57,10 +57,7 @@ def test_wright_1982_tip_mass():
 
 
 def test_southwell():
-    """The derivative dω²/dΩ² at rest: ∫ (1 − x²)/2 f'² dx over the modes at rest, by quadrature of the textbook shapes.
-
-    references.json has 1.19333, 6.47744 and 17.85944: its second is wrong in the fourth digit.
-    """
+    """The slope dω²/dΩ² at rest, here a secant; exactly, and why a list has 6.47744: literature/test_rotating_beams."""
     structure = assemble(slender(1e4), Model("FOAM", 0, 0, 12))
     rest, slow = (along(structure, spin(rate), "z")[:3] ** 2 for rate in (0.0, 0.05))
     assert (slow - rest) / 0.05**2 == pytest.approx([1.193336, 6.478225, 17.859520], abs=1e-5)
