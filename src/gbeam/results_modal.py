@@ -147,7 +147,7 @@ class Critical:
     Parameters
     ----------
     quantity, unit : str
-        What was raised: ``hub rate``, rad/s, or ``deceleration``, m/s².
+        What was raised: ``hub rate``, rad/s; ``acceleration along x``, m/s²; or ``load factor``, times the loads.
     value : float or None
         None where it is not reached.
     searched_to : float
@@ -177,6 +177,7 @@ class CriticalMap:
 
     Parameters
     ----------
+    motion, model : str
     mass : (m,) kg
     position : (p,) m from the root
     speed : (m, p) rad/s; NaN where it is not reached
@@ -184,6 +185,8 @@ class CriticalMap:
         rad/s.
     """
 
+    motion: str
+    model: str
     mass: Floats
     position: Floats
     speed: Floats

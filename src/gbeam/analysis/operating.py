@@ -178,6 +178,11 @@ def _placed(structure: Structure, base: Base, q: Array | None, qd: Array | None)
     return here, moving, q is None and qd is None
 
 
+def held_base(motion: Motion, time: float) -> Base:
+    """Base motion at one time; that of a free hub held at rest, at angle zero."""
+    return steady_base(motion, 0.0) if isinstance(motion, HubTorque) else frozen_base(motion, time)
+
+
 def on_base(structure: Structure, base: Base, q: Array | None = None, qd: Array | None = None) -> OperatingPoint:
     """Operating point on a base with a frozen motion.
 

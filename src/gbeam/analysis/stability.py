@@ -154,7 +154,14 @@ def critical_speed(structure: Structure, motion: Motion, *, upper: float | None 
 
 
 def critical_speed_map(
-    beam: Beam, model: Model, motion: Motion, masses: Sequence[float], positions: Sequence[float], upper: float
+    beam: Beam,
+    model: Model,
+    motion: Motion,
+    masses: Sequence[float],
+    positions: Sequence[float],
+    upper: float | None = None,
+    *,
+    name: str = "",
 ) -> CriticalMap:
     """Critical hub rates with one more mass on the beam, against its size and position (2009 Fig. 9).
 
@@ -165,20 +172,29 @@ def critical_speed_map(
     motion : HubRate or HubTorque
     masses : (m,) kg
     positions : (p,) m from the root
-    upper : float
-        End of the search, rad/s.
+    upper : float, optional
+        End of the search, rad/s; by default ten times the lowest natural frequency without the mass.
+    name : str
+        Of the motion.
 
     Returns
     -------
     CriticalMap
+
+    Raises
+    ------
+    InputError
+        If the motion has no hub, or a mass or a position is impossible.
     """
+    limit = REACH * lowest_frequency(assemble(beam, model)) if upper is None else upper
     speed = np.full((len(masses), len(positions)), np.nan)
     for i, mass in enumerate(masses):
         for j, at in enumerate(positions):
             loaded = replace(beam, masses=(*beam.masses, PointMass(at, mass)))
-            value = critical_speed(assemble(loaded, model), motion, upper=upper).value
+            value = critical_speed(assemble(loaded, model), motion, upper=limit, name=name).value
             speed[i, j] = np.nan if value is None else value
-    return CriticalMap(np.asarray(masses, dtype=float), np.asarray(positions, dtype=float), speed, upper)
+    heavy, where = np.asarray(masses, dtype=float), np.asarray(positions, dtype=float)
+    return CriticalMap(name, model.kind, heavy, where, speed, limit)
 
 
 def buckling_acceleration(structure: Structure, *, upper: float | None = None) -> Critical:
@@ -232,8 +248,8 @@ def critical_load(structure: Structure, base: Base | None = None, *, upper: floa
     applied = system.applied
     share = 0.0 if applied is None else _share(structure, applied)
     if applied is None or share < NOTHING:
-        fix = "add one to beam.loads or give a time at which one acts; `gbeam critical-speed` can raise a hub's rate"
-        raise InputError("", "no load acts on the beam", fix)
+        fix = "add one, or give a time at which one acts; `gbeam critical-speed` can raise a hub's rate instead"
+        raise InputError("beam.loads", "has none that acts", fix)
     limit = REACH / share if upper is None else positive("to", upper, "times the loads")
 
     def loaded(factor: float) -> tuple[Structure, Base]:

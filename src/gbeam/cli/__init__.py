@@ -23,7 +23,7 @@ VERBS = {
     "static": "Where the beam rests relative to its base at one time of the motions.",
     "modes": "Frequencies, damping and shapes about the equilibrium at one time of a motion.",
     "campbell": "Frequencies against the speed of a hub, and where its multiples meet them.",
-    "critical-speed": "The hub rate at which the beam's equilibrium is lost.",
+    "critical-speed": "The hub rate, load or acceleration at which the beam's equilibrium is lost.",
     "linearize": "State-space model A, B, C, D about the equilibrium at one time of a motion.",
     "models": "The same scenario by every model, compared with the exact one.",
     "plan": "Plan the axis motions of a centrifuge within its limits; needs no beam.",
