@@ -82,9 +82,12 @@ def test_state_space_of_a_turning_base_has_its_rate():
 
 def test_reductions():
     system = linearize(SOFT, FREE_2009).select(outputs=("tip_y", "hub_angle"))
-    small = truncate(system, 2)
+    small = truncate(system, 1)
     assert len(small.a) == 4  # turning, and one vibration
     assert transfer(small, 1.0) == pytest.approx(transfer(system, 1.0), rel=2e-3)
+    assert truncate(system, 3) is system
+    with pytest.raises(InputError, match="1 to 3"):
+        truncate(system, 4)
     balanced, hankel = balance(system, 4)
     assert len(balanced.a) == 6 and (np.diff(hankel) <= 1e-12).all()
     for frequency in (0.5, 2.0, 3.5):

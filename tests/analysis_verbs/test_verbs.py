@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from gbeam.cli import main
@@ -94,6 +95,17 @@ def test_linearize_balanced_with_strain_on_the_face_of_the_root(call):
     assert strain == pytest.approx(0.01 * 2766.7 * area * 0.980665 * 8**2 / (2 * 6.8952e10 * inertia), rel=0.1)
     assert "--balanced is 40" in call("linearize", *options, "--balanced", "40")[2]
     assert "--strain-at is 9 m" in call("linearize", *options, "--strain-at", "9 m")[2]
+
+
+def test_linearize_of_some_signals(call):
+    options = ("--motion", "slew", "--rate", "1 rad/s", "--outputs", "tip_y", "--inputs", "base_acceleration_y")
+    # One vibration, and two components of the base's rate.
+    status, told, _ = call("linearize", *options, "--modes", "1")
+    assert status == 0 and np.shape(told["A"]) == (4, 4) and np.shape(told["D"]) == (1, 1)
+    assert [it["name"] for it in told["outputs"]] == ["tip_y"]
+    assert call("linearize", *options, "--at", "1 s")[0] == 2
+    status, _, said = call("linearize", "--motion", "slew", "--outputs", "nose")
+    assert status == 2 and "choose from tip_x" in said
 
 
 @pytest.mark.parametrize(("verb", "answers"), [("campbell", "gbeam modes"), ("critical-speed", "gbeam modes")])

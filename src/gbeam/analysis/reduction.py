@@ -13,6 +13,7 @@ from gbeam.errors import InputError
 from gbeam.results import Floats
 
 Parts = tuple[StateSpace, StateSpace]
+RIGID = 1e-7  # of the largest eigenvalue: what is slower has none, as a free hub's angle
 DECAYS = 1e-9  # of the largest eigenvalue: what decays more slowly counts as undamped
 
 
@@ -43,7 +44,8 @@ def truncate(system: StateSpace, modes: int) -> StateSpace:
     ----------
     system : StateSpace
     modes : int
-        Number of states kept are those of the `modes` lowest distinct |λ|: two for an oscillation.
+        Number of distinct |λ| that are kept, the lowest: two states for an oscillation. What has none, the turning of a
+        free hub and the rates of a base, is kept besides.
 
     Raises
     ------
@@ -51,13 +53,16 @@ def truncate(system: StateSpace, modes: int) -> StateSpace:
         If there are not so many modes.
     """
     size = np.abs(scipy.linalg.eigvals(system.a))
-    levels: list[float] = []
+    levels = [RIGID * size.max()]
     for value in np.sort(size):
-        if not levels or value > levels[-1] * (1 + 1e-6) + 1e-7 * size.max():
+        if value > levels[-1] * (1 + 1e-6):
             levels.append(float(value))
-    if not 1 <= modes < len(levels):
-        raise InputError("modes", f"is {modes}", f"give 1 to {len(levels) - 1}")
-    limit = (levels[modes - 1] + levels[modes]) / 2
+    last = len(levels) - 1
+    if not 1 <= modes <= last:
+        raise InputError("modes", f"is {modes}", f"give 1 to {last}")
+    if modes == last:
+        return system
+    limit = (levels[modes] + levels[modes + 1]) / 2
     slow, fast = _split(system, lambda value: abs(value) < limit)
     return replace(slow, d=slow.d - fast.c @ np.linalg.solve(fast.a, fast.b))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from gbeam.analysis.state_space import StateSpace
     from gbeam.beam import Beam
 
+WIDTH = 100  # columns of the text
+
 
 def linearize(
     scenario: ScenarioFile,
@@ -33,7 +36,10 @@ def linearize(
         str | None, Parameter(name="--rate", help='A hub\'s steady rate in place of a time, such as "2 rad/s".')
     ] = None,
     modes: Annotated[
-        int | None, Parameter(name="--modes", help="Keep so many of the slowest modes; by default all.")
+        int | None,
+        Parameter(
+            name="--modes", help="Keep so many of the slowest modes, besides what has no frequency; by default all."
+        ),
     ] = None,
     balanced: Annotated[
         int | None,
@@ -48,6 +54,10 @@ def linearize(
             help='Strain at a station, "10 mm", on the faces towards +z and +y; any number of times.',
         ),
     ] = (),
+    inputs: Annotated[
+        str | None, Parameter(name="--inputs", help='Only these, "torque"; by default all. So with --outputs.')
+    ] = None,
+    outputs: Annotated[str | None, Parameter(name="--outputs", help='Only these, "tip_y, hub_angle".')] = None,
     overrides: Overrides = (),
     out: Out = None,
     json: Json = False,
@@ -62,8 +72,12 @@ def linearize(
     name, chosen = motion_of(given, motion, hubs_only=rate is not None)
     time = time_of(given, at)
     turning = None if rate is None else number("--rate", rate, "angular rate")
-    if modes is not None and balanced is not None:
-        raise InputError("--balanced", "stands beside --modes", "give one of them")
+    for option, beside, both in (
+        ("--balanced", "--modes", modes is not None and balanced is not None),
+        ("--rate", "--at", rate is not None and at is not None),
+    ):
+        if both:
+            raise InputError(option, f"stands beside {beside}", "give one of them")
 
     from gbeam.analysis import balance, structure_of, truncate
     from gbeam.analysis import linearize as find
@@ -72,6 +86,7 @@ def linearize(
     gauges = gauges_at(given.case.beam, strain_at)
     with Watch(), given.placing():
         found = find(structure_of(given.case), chosen, time, rate=turning, gauges=gauges, name=name)
+    found = found.select(inputs=_names(inputs), outputs=_names(outputs))
     hankel: Iterable[float] = ()
     try:
         if modes is not None:
@@ -92,8 +107,12 @@ def linearize(
     if json:
         print(text)
     else:
-        stdout().print(_text(found), markup=False)
+        stdout().print(_text(found, gauges, hankel), markup=False)
     return 0
+
+
+def _names(text: str | None) -> tuple[str, ...] | None:
+    return None if text is None else tuple(it.strip() for it in text.split(","))
 
 
 def gauges_at(beam: Beam, stations: tuple[str, ...]) -> list[Gauge]:
@@ -131,8 +150,18 @@ def told(found: StateSpace) -> dict[str, Any]:
     }
 
 
-def _text(found: StateSpace) -> str:
+def _text(found: StateSpace, gauges: Iterable[Gauge], hankel: Iterable[float]) -> str:
     lines = [f"{found.motion}: {found.model}, {len(found.a)} states"]
     for what in ("states", "inputs", "outputs"):
-        lines.append(f"  {what:<8} {', '.join(f'{it.name} [{it.unit}]' for it in getattr(found, what))}")
+        # No line ends between a name and its unit.
+        signals = ", ".join(f"{it.name}\N{NO-BREAK SPACE}[{it.unit}]" for it in getattr(found, what))
+        lines += wrap(
+            signals, WIDTH, initial_indent=f"  {what:<8} ", subsequent_indent=11 * " ", break_on_hyphens=False
+        )
+    told = {it.name for it in found.outputs}
+    for name, it in ((f"strain_{k}", it) for k, it in enumerate(gauges, 1)):
+        if name in told:
+            lines.append(f"  {name} at {it.at:g} m, fibre y {1e3 * it.y:g} mm, z {1e3 * it.z:g} mm")
+    if hankel := list(hankel):
+        lines.append("  Hankel singular values " + " ".join(f"{it:.3g}" for it in hankel))
     return "\n".join([*lines, "--json prints the matrices, --out writes them for MATLAB too."])
