@@ -13,12 +13,38 @@ import xarray as xr
 
 from gbeam import store
 from gbeam.errors import InputError
-from gbeam.results import AxesResult, BaseHistory, Comparison, HubResult, Peaks, Response, Study
+from gbeam.results import (
+    AxesResult,
+    BaseHistory,
+    Comparison,
+    HubResult,
+    LimitUse,
+    Peaks,
+    Response,
+    Shortfall,
+    Study,
+)
+from gbeam.results_comparison import Sizes, Statistics
 
 T, N = 11, 4
 RANDOM = np.random.default_rng(0)
 TIME = np.linspace(0, 1, T)
 SCENARIO = "title = 'ω'\n" + "# long\n" * 20_000  # more than an attribute of HDF5 holds
+
+
+QUANTITIES = {"rate": "rad/s", "acceleration": "rad/s^2", "jerk": "rad/s^3"}
+LIMITS = (
+    *(
+        LimitUse(f"axis {i}", name, unit, 10.0 * i + k, np.inf if i == 3 else 20.0, 0.1 * i)
+        for i in (1, 2, 3)
+        for k, (name, unit) in enumerate(QUANTITIES.items())
+    ),
+    LimitUse("arm", "power", "W", 4e4, 5e4, 0.7),
+)
+SHORTFALLS = (
+    Shortfall(0.55, 1.0, "below idle", 0.8, 0.7, 1.4, "g", 'idle = "0.70 g" would follow it'),
+    Shortfall(0.3, 0.4, "turns sharply", 0.35, 302.0, 128.0, "m/s^4", 'smoothing = "142 ms" or more would let it'),
+)
 
 
 def _random(*shape: int) -> np.ndarray:
@@ -52,14 +78,18 @@ def _response(name: str, environment: str) -> Response:
 def study() -> Study:
     """All three environments, with a comparison."""
     held = TIME > 0.5
-    axes = AxesResult(*(_random(T, 3) for _ in range(5)), held, ((0.55, 1.0, "below idle"),))
+    axes = AxesResult(*(_random(T, 3) for _ in range(5)), held, ((0.55, 1.0, "below idle"),), LIMITS, SHORTFALLS, 0.15)
     hub = HubResult(_random(T), _random(T), _random(T), np.full(T, np.nan))
     responses = {
         "flight": _response("flight", "flight"),
         "spin": replace(_response("spin", "centrifuge"), axes=axes),
         "slew": replace(_response("slew", "hub"), hub=hub, model="exact"),
     }
-    comparison = Comparison("flight", "spin", TIME, _random(T, 3), ~held, *(abs(_random(3)) for _ in range(4)))
+    sizes = (Sizes(*(abs(_random(2, 3)) for _ in range(3))) for _ in range(3))
+    split = Statistics(np.array([0.1, 0.3]), 18.0, *sizes, *(_random(T, 3) for _ in range(4)))
+    comparison = Comparison(
+        "flight", "spin", TIME, _random(T, 3), ~held, *(abs(_random(3)) for _ in range(4)), stations=split
+    )
     return Study("a title", responses, (comparison,))
 
 
@@ -83,6 +113,35 @@ def test_xarray_reads_what_was_written(study: Study, file: Path) -> None:
     assert flight.attrs["warnings"] == "one\ntwo"
     assert np.isnan(flight.attrs["error_estimate"])
     assert tree["comparisons/spin"].attrs["verdict"] == study.comparisons[0].verdict
+
+
+def test_limits_and_what_cannot_be_followed(study: Study, file: Path) -> None:
+    tree = store.read(file)
+    spin = tree["motions/spin"]
+    np.testing.assert_array_equal(spin["acceleration_used"], [11, 21, 31])
+    np.testing.assert_array_equal(spin["acceleration_allowed"], [20, 20, np.inf])
+    np.testing.assert_array_equal(spin["jerk_time"].sel(machine_axis=[3, 1]), [0.1 * 3, 0.1])
+    assert spin["jerk_used"].attrs["units"] == "rad s-3"
+    assert (float(spin["power_used"]), float(spin["power_allowed"]), float(spin["power_time"])) == (4e4, 5e4, 0.7)
+    assert float(spin["control_point"]) == 0.15
+    assert list(spin["shortfall_reason"].values) == ["below idle", "turns sharply"]
+    assert list(spin["shortfall_unit"].values) == ["g", "m/s^4"] and list(spin["shortfall_wanted"].values) == [0.7, 302]
+    assert str(spin["shortfall_remedy"].values[1]).startswith("smoothing")
+    sizes = tree["comparisons/spin/station_rms_difference"]
+    assert study.comparisons[0].stations is not None
+    np.testing.assert_array_equal(sizes, study.comparisons[0].stations.difference.rms)
+    with h5py.File(file) as it:
+        group = it["motions/spin"]
+        np.testing.assert_array_equal(group["rate_used"][:], [10, 20, 30])
+        assert [each.decode() for each in group["shortfall_unit"]] == ["g", "m/s^4"]
+        assert [each.decode() for each in group["held_reason"]] == ["below idle"]
+        np.testing.assert_array_equal(group["held_to"][:], [1.0])
+        plain = {str, np.float64, np.int64, np.ndarray, bytes, np.bytes_}
+        skipped = {"DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME", "_Netcdf4Dimid", "_Netcdf4Coordinates"}
+        for variable in group.values():
+            for name, value in variable.attrs.items():
+                assert name in skipped or type(value) in plain, (variable.name, name, type(value))
+            assert variable.dtype.kind in "fiOS" and variable.dtype != bool
 
 
 def test_provenance(file: Path) -> None:

@@ -14,15 +14,14 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from gbeam.errors import InputError
 from gbeam.results import Comparison, Response, Study
+from gbeam.store_machine import machine_variables, variable
 
-BASE_AXES = "B: base axes at the root, x along the beam, y along its width, z through its thickness"
 _AXIS = ("axis", ["x", "y", "z"])
 
 
@@ -130,17 +129,9 @@ def as_tree(study: Study, provenance: Provenance = Provenance()) -> xr.DataTree:
     return xr.DataTree.from_dict(groups)
 
 
-def _variable(
-    dims: tuple[str, ...], values: Any, units: str, long_name: str, **more: Any
-) -> tuple[tuple[str, ...], Any, dict[str, Any]]:
-    # Numbers of vectors mean nothing without their axes: whatever has an axis has a frame.
-    frame = {"frame": BASE_AXES} if "axis" in dims else {}
-    return dims, values, {"units": units, "long_name": long_name} | frame | more
-
-
 def _response(it: Response) -> xr.Dataset:
     t, ta = ("time",), ("time", "axis")
-    v = _variable
+    v = variable
     # A rotation shape's coordinate is an angle and a strain shape's a strain: only projected fields' are lengths.
     length = "1" if it.model == "exact" else "m"
     rate = f"{length} s-1".removeprefix("1 ")
@@ -185,31 +176,8 @@ def _response(it: Response) -> xr.Dataset:
         }
         data |= {name: v(t, x, unit, f"{name.replace('_', ' ')} about z") for name, (unit, x) in turn.items()}
     if it.axes is not None:
-        tm = ("time", "machine_axis")
         coords["machine_axis"] = v(("machine_axis",), [1, 2, 3], "1", "axis of the centrifuge")
-        data |= {
-            "axis_angle": v(tm, it.axes.angle, "rad", "angle of the centrifuge's axes"),
-            "axis_rate": v(tm, it.axes.rate, "rad s-1", "rate of the centrifuge's axes"),
-            "axis_acceleration": v(tm, it.axes.acceleration, "rad s-2", "acceleration of the centrifuge's axes"),
-            "load_wanted": v(ta, it.axes.wanted, "m s-2", "load wanted at the control point"),
-            "load_achieved": v(ta, it.axes.achieved, "m s-2", "load that the axes make at the control point"),
-            "held": v(
-                t,
-                it.axes.held.astype(np.int8),
-                "1",
-                "whether the target is held instead of the flight's load",
-                flag_values=np.array([0, 1], dtype=np.int8),
-                flag_meanings="follows_flight held",
-            ),
-        }
-        if it.axes.episodes:  # netCDF takes a dimension of length zero for an unlimited one
-            first, last, reason = zip(*it.axes.episodes, strict=True)
-            e = ("episode",)
-            data |= {
-                "held_from": v(e, np.array(first), "s", "start of a stretch in which the target is held"),
-                "held_to": v(e, np.array(last), "s", "its end"),
-                "held_reason": (e, np.array(reason, dtype=object), {"long_name": "why it is held"}),
-            }
+        data |= machine_variables(it.axes)
     described = xr.Dataset(data, coords)
     described.attrs = {
         "environment": it.environment,
@@ -227,7 +195,7 @@ def _response(it: Response) -> xr.Dataset:
 
 
 def _comparison(it: Comparison) -> xr.Dataset:
-    v = _variable
+    v = variable
     across = "over the times at which the target was not held"
     data = {
         "difference": v(("time", "axis"), it.difference, "m", f"tip displacement, {it.centrifuge} less {it.flight}"),
@@ -255,6 +223,15 @@ def _comparison(it: Comparison) -> xr.Dataset:
             place = "flight" if where == it.flight else "centrifuge"
             data[f"trend_{place}"] = v(ta, trend, "m", f"tip displacement in {where} below the cut-off", method=how)
             data[f"vibration_{place}"] = v(ta, rest, "m", f"tip displacement in {where} above the cut-off", method=how)
+        coords["station"] = v(("station",), split.stations, "m", "position along the beam from the root")
+        for place, sizes in (
+            ("flight", split.flight),
+            ("centrifuge", split.centrifuge),
+            ("difference", split.difference),
+        ):
+            for name, told in (("peak", "largest"), ("rms", "root mean square"), ("residual", "residual vibration")):
+                values = getattr(sizes, name)
+                data[f"station_{name}_{place}"] = v(("station", "axis"), values, "m", f"{told} displacement, {place}")
     if it.mismatch is not None:
         data["mismatch_gradient"] = v(
             ("time", "axis"), it.mismatch.gradient, "s-2", "mismatch acceleration per distance from the control point"
