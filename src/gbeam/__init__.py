@@ -52,7 +52,8 @@ if TYPE_CHECKING:
         table,
         trapezoid,
     )
-    from gbeam.results import Comparison, Response, Study
+    from gbeam.results import Response, Study
+    from gbeam.results_comparison import Comparison
     from gbeam.scenario import build, load  # type: ignore[no-redef]  # modules there have the same names
 
 __version__ = "0.1.0"

@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.results_comparison import Mismatch, RootLoads, Shock, Statistics
+from gbeam.results_comparison import Comparison
 from gbeam.results_loads import Influence, Loads
 
 Floats = NDArray[np.float64]
@@ -317,83 +317,6 @@ class Response:
     def tip(self) -> Floats:
         """Displacement of the tip relative to the base axes, (t, 3) m."""
         return self.displacement[:, -1]
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """How a centrifuge's response differs from the flight's that it imitates, where its target is the flight's load.
-
-    Parameters
-    ----------
-    flight, centrifuge : str
-        Names of the motions.
-    time : (t,) s
-    difference : (t, 3)
-        Tip displacement on the centrifuge less in flight, m.
-    covered : (t,) bool
-        Times compared: those at which the target was not held.
-    max_difference, rms_difference : (3,)
-        Over the covered times, m.
-    peak_flight, peak_centrifuge : (3,)
-        Largest displacement over the covered times, m.
-    stations : Statistics or None
-        Displacement of every station, with trend and elastic vibration apart; None where the record is too short.
-    mismatch : Mismatch or None
-        Acceleration that the centrifuge gives the beam's points and the flight does not, and what it implies.
-    root : RootLoads or None
-        What the root carries in both environments.
-    shock : Shock or None
-        Shock response spectra of the tip's acceleration.
-    """
-
-    flight: str
-    centrifuge: str
-    time: Floats
-    difference: Floats
-    covered: NDArray[np.bool_]
-    max_difference: Floats
-    rms_difference: Floats
-    peak_flight: Floats
-    peak_centrifuge: Floats
-    stations: Statistics | None = None
-    mismatch: Mismatch | None = None
-    root: RootLoads | None = None
-    shock: Shock | None = None
-
-    @property
-    def relative(self) -> Floats:
-        """Largest difference over the flight's largest displacement, per axis, (3,); NaN without displacement."""
-        with np.errstate(invalid="ignore", divide="ignore"):
-            return np.where(self.peak_flight > 0, self.max_difference / self.peak_flight, np.nan)
-
-    @property
-    def verdict(self) -> str:
-        """One line that a person can quote."""
-        if not self.covered.any():
-            return f"{self.centrifuge} never carries {self.flight}'s load: the target was held all the time"
-        main = int(np.argmax(self.peak_flight))
-        axis = "xyz"[main]
-        root = "" if self.root is None else f", root moment within {_percent(self.root.moment_agreement)}"
-        return (
-            f"tip displacement along {axis} on {self.centrifuge} agrees with {self.flight} within "
-            f"{_percent(float(self.relative[main]))} of its peak ({1e3 * self.max_difference[main]:.4g} mm of "
-            f"{1e3 * self.peak_flight[main]:.4g} mm){root}, {self._when}"
-        )
-
-    @property
-    def _when(self) -> str:
-        """The times compared, in words."""
-        if self.covered.all():
-            return "throughout"
-        first = int(np.argmax(self.covered))
-        if self.covered[first:].all():
-            return f"from {self.time[first]:.4g} s on"
-        return f"over {self.covered.mean():.0%} of the time"
-
-
-def _percent(share: float) -> str:
-    # Rounded first: two digits without an exponent.
-    return f"{float(f'{100 * share:.2g}'):g} %" if math.isfinite(share) else "an unknown share"
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,8 @@
-"""The parts of a comparison of flight and centrifuge: frozen records of arrays."""
+"""A comparison of flight and centrifuge, and its parts: frozen records of arrays."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -95,6 +96,13 @@ class Mismatch:
     force_bound: Floats
     moment_bound: Floats
 
+    @property
+    def tip_envelope(self) -> Floats:
+        """Size of the tip's quasi-static displacement under the gradient of each time, (t, 3) m."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            share = np.where(self.max_gradient > 0, np.abs(self.gradient) / self.max_gradient, 0.0)
+        return np.asarray(self.tip_bound * share)
+
     def field(self, x: Floats) -> Floats:
         """Δa at positions `x` (s,) m from the root, (t, s, 3) m/s²."""
         return self.gradient[:, None, :] * (np.asarray(x)[:, None] - self.control_point)
@@ -153,3 +161,83 @@ class Shock:
     frequency: Floats
     flight: Floats
     centrifuge: Floats
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """How a centrifuge's response differs from the flight's that it imitates, where its target is the flight's load.
+
+    Parameters
+    ----------
+    flight, centrifuge : str
+        Names of the motions.
+    time : (t,) s
+    difference : (t, 3)
+        Tip displacement on the centrifuge less in flight, m.
+    covered : (t,) bool
+        Times compared: those at which the target was not held.
+    max_difference, rms_difference : (3,)
+        Over the covered times, m.
+    peak_flight, peak_centrifuge : (3,)
+        Largest displacement over the covered times, m.
+    stations : Statistics or None
+        Displacement of every station, with trend and elastic vibration apart; None where the record is too short.
+    mismatch : Mismatch or None
+        Acceleration that the centrifuge gives the beam's points and the flight does not, and what it implies.
+    root : RootLoads or None
+        What the root carries in both environments.
+    shock : Shock or None
+        Shock response spectra of the tip's acceleration.
+    """
+
+    flight: str
+    centrifuge: str
+    time: Floats
+    difference: Floats
+    covered: NDArray[np.bool_]
+    max_difference: Floats
+    rms_difference: Floats
+    peak_flight: Floats
+    peak_centrifuge: Floats
+    stations: Statistics | None = None
+    mismatch: Mismatch | None = None
+    root: RootLoads | None = None
+    shock: Shock | None = None
+
+    @property
+    def relative(self) -> Floats:
+        """Largest difference over the flight's largest displacement, per axis, (3,); NaN without displacement."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.where(self.peak_flight > 0, self.max_difference / self.peak_flight, np.nan)
+
+    @property
+    def verdict(self) -> str:
+        """One line that a person can quote."""
+        if not self.covered.any():
+            return f"{self.centrifuge} never carries {self.flight}'s load: the target was held all the time"
+        main = int(np.argmax(self.peak_flight))
+        axis = "xyz"[main]
+        root = "" if self.root is None else f", root moment within {_percent(self.root.moment_agreement)}"
+        return (
+            f"tip displacement along {axis} on {self.centrifuge} agrees with {self.flight} within "
+            f"{_percent(float(self.relative[main]))} of its peak ({1e3 * self.max_difference[main]:.4g} mm of "
+            f"{1e3 * self.peak_flight[main]:.4g} mm){root}, {self._when}"
+        )
+
+    @property
+    def _when(self) -> str:
+        """The times compared, in words."""
+        if self.covered.all():
+            return "throughout"
+        edges = np.flatnonzero(np.diff(self.covered, prepend=False, append=False))
+        if len(edges) > 2:
+            return f"over {100 * self.covered.mean():.0f} % of the time"
+        first, last = edges[0], edges[1] - 1
+        if last == len(self.time) - 1:
+            return f"from {self.time[first]:.4g} s on"
+        return f"from {self.time[first]:.4g} to {self.time[last]:.4g} s"
+
+
+def _percent(share: float) -> str:
+    # Rounded first: two digits without an exponent.
+    return f"{float(f'{100 * share:.2g}'):g} %" if math.isfinite(share) else "an unknown share"

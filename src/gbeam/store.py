@@ -19,7 +19,8 @@ import numpy as np
 import xarray as xr
 
 from gbeam.errors import InputError
-from gbeam.results import Comparison, Response, Study
+from gbeam.results import Response, Study
+from gbeam.results_comparison import Comparison
 from gbeam.store_machine import machine_variables, variable
 
 _AXIS = ("axis", ["x", "y", "z"])

@@ -38,6 +38,7 @@ def test_mismatch_bounds_are_those_of_a_uniform_cantilever(compared: Comparison)
     np.testing.assert_allclose(it.force_bound[2], 0, atol=1e-12)
     np.testing.assert_allclose(it.moment_bound[2], M * L**3 * abs(1 / 3 - 1 / 4) * it.max_gradient[2], rtol=1e-9)
     np.testing.assert_allclose(it.tip_bound[2], M * L**5 / EI * abs(11 / 120 - 1 / 16) * it.max_gradient[2], rtol=2e-3)
+    np.testing.assert_allclose(it.tip_envelope.max(axis=0), it.tip_bound)
     assert it.max_acceleration[2] == pytest.approx(0.15 * it.max_gradient[2])
     np.testing.assert_allclose(
         it.field(np.array([0.15, 0.3]))[:, :, 2].T, [0 * it.gradient[:, 2], 0.15 * it.gradient[:, 2]]
@@ -72,6 +73,8 @@ def test_statistics_root_and_verdict(compared: Comparison, pair: tuple[Any, Any]
     assert held.verdict.endswith("from 1.2 s on")
     gap = replace(compared, covered=(compared.time < 1) | (compared.time > 1.2))
     assert "of the time" in gap.verdict
+    between = replace(compared, covered=(compared.time >= 1.0) & (compared.time < 1.2001))
+    assert between.verdict.endswith("from 1 to 1.2 s")
 
 
 def test_comparison_needs_no_loads(pair: tuple[Any, Any]) -> None:

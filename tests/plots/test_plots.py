@@ -10,8 +10,9 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from gbeam.plots import plot_axes, plot_base, plot_hub, plot_tip, write_plots
+from gbeam.plots import plot_axes, plot_base, plot_comparison, plot_hub, plot_shock, plot_tip, write_plots
 from gbeam.results import Study
+from gbeam.results_comparison import Mismatch, Shock
 
 
 def _assert_labelled(figure: Figure) -> None:
@@ -79,3 +80,22 @@ def test_what_diverged_says_so(study: Study) -> None:
     diverged = replace(study.responses["slew"], outcome="diverged")
     for figure in (plot_tip(Study("t", {"slew": diverged}, ())), plot_hub(diverged, diverged.hub, "t")):
         assert figure.get_suptitle().startswith("DIVERGED – t\n")
+
+
+def test_comparison(study: Study) -> None:
+    compared, flight, spin = study.comparisons[0], study.responses["flight"], study.responses["spin"]
+    gradient = np.outer(np.linspace(0, -4, len(compared.time)), [1.0, 2.0, 3.0])
+    bounds = {name: np.array([1e-6, 2e-6, 3e-6]) for name in ("tip_bound", "force_bound", "moment_bound")}
+    most = np.abs(gradient).max(axis=0)
+    full = replace(compared, mismatch=Mismatch(0.1, gradient, most, 0.2 * most, **bounds))
+    (panel,) = plot_comparison(full, flight, spin, "t").axes
+    lines = {line.get_label(): line.get_ydata() for line in panel.get_lines()}
+    np.testing.assert_allclose(lines["at the root"], -0.1 * gradient[:, 2])
+    np.testing.assert_allclose(lines["at the tip"], 0.2 * gradient[:, 2])
+    assert len(panel.patches) == 1  # the time it was held
+
+    spectra = np.outer(np.arange(1.0, 6.0), [1, 1, 2])
+    shock = Shock(10.0, np.geomspace(1, 100, 5), spectra, 2 * spectra)
+    (panel,) = plot_shock(full, shock, "t").axes
+    assert panel.get_xscale() == panel.get_yscale() == "log"
+    np.testing.assert_array_equal(panel.get_lines()[0].get_ydata(), 2 * spectra[:, 2])

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.analysis.oscillator import riding_acceleration
-from gbeam.results import BaseHistory, Comparison, Floats, Response
+from gbeam.results import BaseHistory, Floats, Response
+from gbeam.results_comparison import Comparison
 from gbeam.results_comparison import Mismatch, RootLoads, Shock, Sizes, Statistics
 from gbeam.zero_phase import low_pass
 

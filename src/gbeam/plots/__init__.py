@@ -7,12 +7,13 @@ from pathlib import Path
 
 from gbeam.plots.axes import plot_axes
 from gbeam.plots.base import plot_base
+from gbeam.plots.comparison import plot_comparison, plot_shock
 from gbeam.plots.hub import plot_hub
 from gbeam.plots.style import save
 from gbeam.plots.tip import plot_tip
 from gbeam.results import Study
 
-__all__ = ["plot_axes", "plot_base", "plot_hub", "plot_tip", "write_plots"]
+__all__ = ["plot_axes", "plot_base", "plot_comparison", "plot_hub", "plot_shock", "plot_tip", "write_plots"]
 
 
 def write_plots(study: Study, folder: Path) -> list[Path]:
@@ -27,7 +28,8 @@ def write_plots(study: Study, folder: Path) -> list[Path]:
     Returns
     -------
     list of Path
-        The files: ``tip``, and per environment ``base_NAME``, ``axes_NAME`` (centrifuges), ``hub_NAME`` (hubs).
+        The files: ``tip``, and per environment ``base_NAME``, ``axes_NAME`` (centrifuges), ``hub_NAME`` (hubs);
+        per comparison ``comparison_NAME`` and ``shock_NAME``, NAME being the centrifuge's.
     """
     files = save(plot_tip(study), folder, "tip")
     for name, it in study.responses.items():
@@ -36,4 +38,11 @@ def write_plots(study: Study, folder: Path) -> list[Path]:
             files += save(plot_axes(it, it.axes, study.title), folder, f"axes_{name}")
         if it.hub is not None:
             files += save(plot_hub(it, it.hub, study.title), folder, f"hub_{name}")
+    for compared in study.comparisons:
+        name = compared.centrifuge
+        if compared.root or compared.stations or compared.mismatch:
+            both = study.responses[compared.flight], study.responses[name]
+            files += save(plot_comparison(compared, *both, study.title), folder, f"comparison_{name}")
+        if compared.shock:
+            files += save(plot_shock(compared, compared.shock, study.title), folder, f"shock_{name}")
     return files

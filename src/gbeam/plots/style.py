@@ -113,6 +113,17 @@ def shade(panel: Axes, time: Floats, flags: NDArray[np.bool_]) -> None:
             label = None
 
 
+def scale_to(panel: Axes, covered: NDArray[np.bool_], *values: Floats) -> bool:
+    """Scale a panel to zero and what happens while the target is not held; False where it never or always is."""
+    if covered.all() or not covered.any():
+        return False
+    low = min(0.0, *(float(each[covered].min()) for each in values))
+    high = max(0.0, *(float(each[covered].max()) for each in values))
+    margin = 0.05 * (high - low) or 1.0
+    panel.set_ylim(low - margin, high + margin)
+    return True
+
+
 def show_zero(panel: Axes) -> None:
     """Stretch a panel to zero, so that a constant is seen at its size and rounding at its own."""
     low, high = panel.get_ylim()

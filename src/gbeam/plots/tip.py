@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from gbeam.plots.style import REFERENCE, colour, heading, legend, panels, shade, show_zero, styled
+from gbeam.plots.style import REFERENCE, colour, heading, legend, panels, scale_to, shade, show_zero, styled
 from gbeam.results import Study
 
 
@@ -52,12 +52,8 @@ def plot_tip(study: Study) -> Figure:
             legend(panel)
         show_zero(panel)
         panel.set_ylabel("difference, mm")
-        scaled = ""
-        if covered.any() and not covered.all():
-            # What happens while the target is held is no difference from flight: it must not set the scale.
-            reach = 1.1 * np.abs(difference[covered]).max() or 1.0
-            panel.set_ylim(-reach, reach)
-            scaled = ", scaled to the times compared"
+        # What happens while the target is held is no difference from flight: it must not set the scale.
+        scaled = ", scaled to the times compared" if scale_to(panel, covered, difference) else ""
         panel.set_title(f"{compared.centrifuge} − {compared.flight}{scaled}", loc="left", fontsize=9)
     return figure
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.results import Comparison
+from gbeam.results_comparison import Comparison
 from gbeam.results_comparison import Mismatch, RootLoads, Sizes
 
 

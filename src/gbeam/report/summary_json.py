@@ -12,7 +12,8 @@ from typing import Any
 from gbeam.report.comparison import comparison_parts
 from gbeam.report.figures import peak, tracking
 from gbeam.report.limits import limits_json
-from gbeam.results import AxesResult, Comparison, HubResult, Response, Study
+from gbeam.results import AxesResult, HubResult, Response, Study
+from gbeam.results_comparison import Comparison
 
 
 def summary_json(study: Study, files: Iterable[Path] = ()) -> dict[str, Any]:
