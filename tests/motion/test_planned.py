@@ -49,8 +49,32 @@ def test_the_f16_record_is_followed_ten_times_better_than_flat_with_gentler_axes
 def test_limits_are_kept_where_flat_breaks_them(target: Target) -> None:
     flat, best = (Centrifuge(target, R, 0.15, inverse, True, 1, TIGHT) for inverse in ("flat", "planned"))
     assert any(use.exceeded for use in flat.usage()) and not any(use.exceeded for use in best.usage())
-    assert len(best.usage()) == 10 and max(use.share for use in best.usage()) > 0.97
+    assert len(best.usage()) == 10 and max(use.share for use in best.usage()) > 0.99
     assert tracked(best).max() < 0.2
+
+
+def test_limits_just_above_what_the_free_plan_uses_cost_nothing(target: Target) -> None:
+    free = Centrifuge(target, R, 0.15, "planned", True)
+    used = {(it.axis, it.quantity): it.used for it in free.usage()}
+
+    def times(arm: float, gimbals: float) -> MachineLimits:
+        quantities = ("rate", "acceleration", "jerk")
+        factors = ("axis 1", arm), ("axis 2", gimbals), ("axis 3", gimbals)
+        return MachineLimits(*(AxisLimit(*(by * used[axis, it] for it in quantities)) for axis, by in factors))
+
+    limits = times(1.02, 1.02), times(1.0, 1.0), times(1.02, 0.8)
+    near, at, below = (Centrifuge(target, R, 0.15, "planned", True, 1, each) for each in limits)
+    assert tracked(near).max() < 1.001 * tracked(free).max()
+    assert tracked(at).max() < 1.2 * tracked(free).max()
+    assert tracked(free).max() < tracked(below).max() < 0.2
+    assert not any(use.exceeded for each in (near, at, below) for use in each.usage())
+
+
+def test_limits_that_leave_nothing_of_the_load_are_kept_all_the_same(target: Target) -> None:
+    nearly_still = MachineLimits(AxisLimit(0.5, 0.01), AxisLimit(acceleration=0.1), AxisLimit(rate=0.01))
+    machine = Centrifuge(target, R, 0.15, "planned", True, 1, nearly_still)
+    assert not any(use.exceeded for use in machine.usage())
+    assert 8 * G - R * 0.5**2 - G < tracked(machine).max() < 9 * G
 
 
 def test_what_no_machine_of_this_speed_can_do_is_left_out_but_the_limit_is_kept() -> None:
@@ -62,6 +86,21 @@ def test_what_no_machine_of_this_speed_can_do_is_left_out_but_the_limit_is_kept(
     assert max(use.share for use in machine.usage()) <= 1
     # In the middle of the plateau nothing helps; at its ends the arm's tangential acceleration does.
     assert 8 * G - R * 4.5**2 <= float(np.linalg.norm(machine.tracking_error(3.0))) < 1.3 * (8 * G - R * 4.5**2)
+
+
+def test_a_hull_holds_the_derivative_and_is_near_it() -> None:
+    grid = Grid(0.0, 2.0, 0.1, np.linspace(0, 1, 50))
+    c = np.random.default_rng(1).normal(size=(grid.size, 2))
+    near = grid.windows(c).reshape(grid.pieces, 6, 2)
+    for order in range(4):
+        values = (near.swapaxes(1, 2)[:, None] @ grid.weights(order)[:50, :, None])[..., 0]
+        gap = []
+        for parts in (1, 2, 4):
+            hull = np.einsum("mi,kia->kma", grid.hull(order, parts), near)
+            assert (hull.min(axis=1) <= values.min(axis=1) + 1e-9).all()
+            assert (hull.max(axis=1) >= values.max(axis=1) - 1e-9).all()
+            gap.append(np.mean(hull.max(axis=1) - values.max(axis=1)))
+        assert gap[0] > 2 * gap[1] > 4 * gap[2] > 0
 
 
 def test_spline_reproduces_quintics_and_their_derivatives() -> None:

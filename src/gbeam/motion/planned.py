@@ -1,12 +1,14 @@
 """The planned inverse: axis motions with the least tracking error over the whole record, within the machine's limits.
 
-The three axes are quintic splines. Their coefficients minimise, by Levenberg and Marquardt's method,
+The three axes are quintic splines. Their coefficients minimise
 
-    ∫ w |a_C − wanted|²/g0² + μ Σ over(share of each limit)² + ease of the motion  dt,
+    ∫ w |a_C − wanted|²/g0² + ease of the motion  dt    within every limit,
 
-where w is small while the target is held anyway, over(s) = max(s − 0.98, 0) keeps a margin below every limit, and the
-last term, too small to be seen in the load, picks the gentlest of equally good motions. Every row acts on six
-neighbouring coefficients of the axes, so the normal equations are banded and a minute's record takes seconds.
+where w is small while the target is held anyway and the last term, too small to be seen in the load, picks the gentlest
+of equally good motions. Limits are kept between the knots too, by the hull of the splines. Every row acts on six
+neighbouring coefficients of the axes, so the normal equations are banded and a minute's record takes seconds. Standing
+still keeps every limit: a plan always exists, and how well it follows the load is told with it. The minimum is the one
+near the plan without limits; where limits leave little of that, a motion of another kind may be better.
 """
 
 from __future__ import annotations
@@ -19,6 +21,7 @@ from jaxtyping import Array, Float
 from numpy.typing import NDArray
 
 from gbeam.motion.blocks import in_blocks
+from gbeam.motion.interior import minimise
 from gbeam.motion.inverse import Flat, Geometry, Inverse, Pose, QuasiStatic
 from gbeam.motion.kinematics import Axes, forward
 from gbeam.motion.limits import Limits
@@ -28,15 +31,12 @@ from gbeam.motion.spline import PIECE, Grid, Normal, Spline
 from gbeam.motion.target import Target
 
 HELD = 0.01  # weight of the tracking error while the target is held, where it is 1 otherwise
-MARGIN = 0.98  # of a limit: where the penalty sets in
 _EASE = 1e-5, 1e-7  # weights of 1 rad/s² and of 1 rad/s³ beside a tracking error of 1 g0
-_PENALTIES = 0.1, 1.0, 10.0, 100.0  # sqrt(μ), one after the other until the limits are kept
-_ROUNDS = 11  # at most
 _COARSEST, _FINEST, _PER_WIDTH = 0.02, 0.005, 6  # s between knots; knots per width of the target's smoothing
-_STEPS, _ENOUGH = 60, 1e-4  # steps at most per penalty; relative gain of a step that ends them
 _POINTS = np.array([1, 3, 5]) / 6  # of each piece
-_DENSE = np.arange(16) / 16  # where limits are checked
-_ORDERS = 4  # value, rate and so on
+_PARTS = 2  # of each piece, whose hulls are kept within the limits
+_POWER = 0.995  # of the arm's power is used: it is looked at in the points only
+_ACROSS = 3 * PIECE  # coefficients that one piece depends on
 
 Floats = NDArray[np.float64]
 
@@ -52,14 +52,6 @@ class Planned(Inverse):
         return at[..., 0], at[..., 1], at[..., 2]
 
 
-class _Problem(eqx.Module):
-    """What the residuals know of the machine."""
-
-    geometry: Geometry
-    limits: Limits
-    penalty: Float[Array, ""]
-
-
 def planned(target: Target, geometry: Geometry, limits: Limits) -> Planned:
     """Plan the axes, starting from those of the flat inverse."""
     first, last = (float(end) for end in target.span)
@@ -68,31 +60,16 @@ def planned(target: Target, geometry: Geometry, limits: Limits) -> Planned:
     starts = Flat(geometry), QuasiStatic(geometry)
     poses, wanted, held = in_blocks(_start, (target, starts), grid.time)
     weight = np.sqrt(np.where(held, HELD, 1.0))
-    basis = np.stack([grid.weights(order) for order in range(_ORDERS)], axis=1)  # (times, orders, 6)
-    dense = Grid(first, last, step, _DENSE)
-    dense_basis = np.stack([dense.weights(order) for order in range(_ORDERS)], axis=1)
     # Without limits first, and of several starts the best: far from what the arm can do, flat's is a poor one.
-    free = _Problem(geometry, limits, jnp.asarray(0.0))
-    tried = [
-        _minimise(free, grid, basis, grid.fit(np.column_stack([rate, *np.unwrap(angles)])), wanted, weight)
-        for rate, *angles in poses
-    ]
+    free = _Tracking(grid, geometry, Limits(), wanted, weight)
+    tried = [minimise(free, grid.fit(np.column_stack([rate, *np.unwrap(angles)]))) for rate, *angles in poses]
     c, _ = min(tried, key=lambda each: each[1])
-    kept, penalties = limits, iter(_PENALTIES)
-    penalty = 0.0
-    for _ in range(_ROUNDS):
-        shares = in_blocks(_shares, limits, _states(dense, dense_basis, c)).max(axis=0)
-        if shares.max() <= 1.0:
-            break
-        if penalty == _PENALTIES[-1] or (penalty and in_blocks(_shares, kept, _states(grid, basis, c)).max() <= 1.0):
-            # What is above a limit lies between the points: aim lower by as much.
-            lower = np.where(shares > 1.0, 1.01 * shares, 1.0)
-            factors = (kept.axes / lower[:9].reshape(3, 3), kept.power / lower[9])
-            kept = eqx.tree_at(lambda it: (it.axes, it.power), kept, factors)
-        else:
-            penalty = next(penalties, penalty)
-        problem = _Problem(geometry, kept, jnp.asarray(penalty))
-        c, _ = _minimise(problem, grid, basis, c, wanted, weight)
+    within = _Tracking(grid, geometry, limits, wanted, weight)
+    if within.most(c) > 1:
+        c, _ = minimise(within, c)
+        # What a search that ended early still exceeds: the same motion about the same angles, smaller.
+        middle = np.mean(c, axis=0) * [0, 1, 1]
+        c = middle + (c - middle) / max(within.most(c), 1.0)
     return Planned(grid.spline(c))
 
 
@@ -102,64 +79,98 @@ def _start(it: tuple[Target, tuple[Inverse, ...]], t: Array) -> tuple[list[Pose]
     return [inverse(target.load, t) for inverse in starts], target.load(t), target.held(t)
 
 
-def _states(grid: Grid, basis: Floats, c: Floats) -> Floats:
-    """Axes and their rates, (times, orders, 3)."""
-    return np.asarray(np.einsum("toi,tia->toa", basis, c[grid.first[:, None] + np.arange(PIECE)], optimize=True))
+class _Tracking:
+    """The cost of a motion and the shares of the limits that it uses; a :class:`gbeam.motion.interior.Problem`.
+
+    The load depends on four states: the arm's rate and acceleration and the angles of the gimbals. Each is the product
+    of a row and the coefficients around it, the same rows in every piece.
+    """
+
+    def __init__(self, grid: Grid, geometry: Geometry, limits: Limits, wanted: Floats, weight: Floats) -> None:
+        self.grid, self.geometry, self.columns = grid, geometry, (wanted, weight)
+        orders = np.stack([grid.weights(order)[: _POINTS.size] for order in range(4)])
+        state = np.stack([_row(orders[k], axis) for k, axis in ((0, 0), (1, 0), (0, 1), (0, 2))], axis=1)
+        self.state = state.reshape(-1, _ACROSS)  # (points · states, 18)
+        self.products = np.einsum("psI,ptJ->pstIJ", state, state).reshape(-1, _ACROSS**2)
+        # The spline of axis 1 is that of its rate, those of axes 2 and 3 are those of their angles.
+        rates = [(q, axis, q + (axis > 0)) for q in range(3) for axis in range(3)]
+        ease = np.concatenate([_EASE[q - 1] * _row(orders[k], axis) for q, axis, k in rates if q > 0])
+        self.ease = ease.T @ ease
+        allowed = np.asarray(limits.axes)
+        hulls = [
+            _row(grid.hull(k, _PARTS), axis) / allowed[q, axis] for q, axis, k in rates if allowed[q, axis] < np.inf
+        ]
+        self.hull = np.concatenate([np.empty((0, _ACROSS)), *hulls])
+        self.hull_products = (self.hull[:, :, None] * self.hull[:, None, :]).reshape(-1, _ACROSS**2)
+        self.per_power = float(limits.inertia / limits.power) / _POWER  # zero where there is no such limit
+
+    def cost(self, c: Floats) -> float:
+        """Half the sum of squares."""
+        near = self.grid.windows(c)
+        residual = in_blocks(_residuals, self.geometry, self._states(near), *self.columns)
+        return float(np.sum(residual**2) + np.sum(near @ self.ease * near)) / 2
+
+    def shares(self, c: Floats) -> Floats:
+        """Those of the hulls, then those of the arm's power."""
+        near = self.grid.windows(c)
+        state, of_hull = self._states(near), (near @ self.hull.T).ravel()
+        return np.append(of_hull, self.per_power * state[:, 0] * state[:, 1]) if self.per_power else of_hull
+
+    def most(self, c: Floats) -> float:
+        """Largest share of a limit that a motion uses."""
+        return float(np.max(np.abs(self.shares(c)), initial=0.0))
+
+    def linearise(self, c: Floats) -> None:
+        """Take the derivatives of the residuals and of the power with respect to the states."""
+        self.near = self.grid.windows(c)
+        state = self._states(self.near)
+        residual, slope = in_blocks(_linearised, self.geometry, state, *self.columns)
+        across = slope.swapaxes(1, 2)
+        self.square, self.slope = across @ slope, (across @ residual[..., None])[..., 0]
+        self.power = self.per_power * np.stack([state[:, 1], state[:, 0], *np.zeros((2, len(state)))], axis=1)
+
+    def step(self, weight: Floats, pull: Floats, damping: float) -> Floats:
+        """One solution of the normal equations; the damping is relative to the largest curvature of the load."""
+        pieces, first = self.grid.pieces, pull.size - len(self.power) if self.per_power else pull.size
+        square, slope = self.square, self.slope
+        if self.per_power:
+            square = square + weight[first:, None, None] * self.power[:, :, None] * self.power[:, None, :]
+            slope = slope + pull[first:, None] * self.power
+        products = square.reshape(pieces, -1) @ self.products + self.ease.ravel()
+        products += weight[:first].reshape(pieces, -1) @ self.hull_products
+        side = (
+            slope.reshape(pieces, -1) @ self.state
+            + self.near @ self.ease
+            + pull[:first].reshape(pieces, -1) @ self.hull
+        )
+        normal = Normal(self.grid.size, 3)
+        normal.add_products(np.arange(pieces), products.reshape(-1, _ACROSS, _ACROSS), -side)
+        return normal.solve_shifted(damping * float(self.square.max())).reshape(-1, 3)
+
+    def change(self, move: Floats) -> Floats:
+        """Change of the shares, to first order."""
+        near = self.grid.windows(move)
+        of_hull = (near @ self.hull.T).ravel()
+        return np.append(of_hull, np.sum(self.power * self._states(near), axis=1)) if self.per_power else of_hull
+
+    def _states(self, near: Floats) -> Floats:
+        """States at the points, (times, 4)."""
+        return np.asarray((near @ self.state.T).reshape(-1, 4))
 
 
-def _minimise(
-    problem: _Problem, grid: Grid, basis: Floats, c: Floats, wanted: Floats, weight: Floats
-) -> tuple[Floats, float]:
-    """Levenberg and Marquardt's method with banded normal equations: coefficients and cost."""
-    damping, columns = 1e-8, (wanted, weight)
-    states = _states(grid, basis, c)
-    cost = float(np.sum(in_blocks(_residuals, problem, states, *columns) ** 2))
-    for _ in range(_STEPS):
-        residual, slopes = in_blocks(_linearised, problem, states, *columns)
-        # A state of order k is a sum over six coefficients: so is the row of each residual.
-        rows = np.einsum("tmoa,toi->tmia", slopes, basis, optimize=True).reshape(*residual.shape, 3 * PIECE)
-        normal = Normal(grid.size, 3)
-        normal.add(grid.first, rows, -residual)
-        gained = 0.0
-        for _ in range(8):
-            move = normal.solve(damping).reshape(-1, 3)
-            new = _states(grid, basis, c + move)
-            better = float(np.sum(in_blocks(_residuals, problem, new, *columns) ** 2))
-            if better < cost:
-                gained, c, states, cost = (cost - better) / cost, c + move, new, better
-                damping = max(damping / 10, 1e-13)
-                break
-            damping *= 10
-        if gained < _ENOUGH:
-            break
-    return c, cost
+def _row(weights: Floats, axis: int) -> Floats:
+    """Weights (m, 6) of one axis as rows (m, 18) that act on the coefficients of all three around a piece."""
+    rows = np.zeros((len(weights), PIECE, 3))
+    rows[:, :, axis] = weights
+    return rows.reshape(-1, _ACROSS)
 
 
-def _axes(state: Float[Array, "o 3"]) -> Axes:
-    (w1, th2, th3), (al1, w2, w3), (_, al2, al3) = state[0], state[1], state[2]
-    return Axes(w1, al1, th2, w2, al2, th3, w3, al3)
-
-
-def _machine(state: Float[Array, "o 3"]) -> Float[Array, "3 3"]:
-    """Rate, acceleration and jerk (rows) of the three axes; the spline of axis 1 is that of its rate."""
-    return jnp.stack([jnp.concatenate([state[k, :1], state[k + 1, 1:]]) for k in range(3)])
-
-
-def _share(limits: Limits, state: Float[Array, "o 3"]) -> Float[Array, " 10"]:
-    """Shares of all limits that are used, with their signs."""
-    moving = _machine(state)
-    power = limits.inertia * moving[0, 0] * moving[1, 0] / limits.power
-    return jnp.append((moving / limits.axes).ravel(), power)
-
-
-def _one(problem: _Problem, state: Float[Array, "o 3"], wanted: Array, weight: Array) -> Float[Array, " m"]:
-    load = forward(_axes(state), problem.geometry.arm, problem.geometry.gravity).a_WO_B
-    over = jnp.maximum(jnp.abs(_share(problem.limits, state)) - MARGIN, 0.0)
-    ease = _machine(state)[1:] * jnp.array(_EASE)[:, None]
-    return jnp.concatenate([weight * (load - wanted) / STANDARD_GRAVITY, problem.penalty * over, ease.ravel()])
+def _one(geometry: Geometry, state: Float[Array, " 4"], wanted: Array, weight: Array) -> Float[Array, " 3"]:
+    (rate1, acceleration1, angle2, angle3), none = state, jnp.zeros(())
+    axes = Axes(rate1, acceleration1, angle2, none, none, angle3, none, none)
+    return weight * (forward(axes, geometry.arm, geometry.gravity).a_WO_B - wanted) / STANDARD_GRAVITY
 
 
 _each = jax.vmap(_one, (None, 0, 0, 0))
 _residuals = eqx.filter_jit(_each)
 _linearised = eqx.filter_jit(lambda *it: (_each(*it), jax.vmap(jax.jacfwd(_one, 1), (None, 0, 0, 0))(*it)))
-_shares = eqx.filter_jit(lambda limits, state: jnp.abs(jax.vmap(_share, (None, 0))(limits, state)))

@@ -88,6 +88,27 @@ class Grid:
         rows = (factor * self.points[:, None] ** (k - order)) @ _BASIS[order:] / self.step**order
         return np.tile(rows, (self.pieces, 1))
 
+    def windows(self, c: Floats) -> Floats:
+        """Coefficients (size, k) piece by piece, (pieces, 6·k)."""
+        pieces = np.lib.stride_tricks.sliding_window_view(c, PIECE, axis=0)
+        return pieces.swapaxes(1, 2).reshape(self.pieces, -1)
+
+    def hull(self, order: int, parts: int) -> Floats:
+        """Weights (m, 6) of numbers between which the `order`-th time derivative lies on a piece.
+
+        They are its Bernstein coefficients on each of `parts` equal parts of a piece.
+        """
+        degree, rows = DEGREE - order, []
+        powers = np.array([factorial(k + order) / factorial(k) for k in range(degree + 1)])[:, None] * _BASIS[order:]
+        for part in range(parts):
+            # Powers of x = (part + u)/parts in powers of u, then in Bernstein polynomials of u.
+            shifted = [
+                sum(comb(n, j) * part ** (n - j) / parts**n * powers[n] for n in range(j, degree + 1))
+                for j in range(degree + 1)
+            ]
+            rows += [sum(comb(i, j) / comb(degree, j) * shifted[j] for j in range(i + 1)) for i in range(degree + 1)]
+        return np.stack(rows) / self.step**order
+
     def spline(self, coefficients: Floats) -> Spline:
         """The spline of these coefficients."""
         return Spline(jnp.asarray(self.start), jnp.asarray(self.step), jnp.asarray(coefficients))
@@ -122,7 +143,10 @@ class Normal:
     def add(self, first: NDArray[np.int64], rows: Floats, values: Floats) -> None:
         """Add rows (times, m, 6·functions) with right-hand sides (times, m), acting from coefficient `first` on."""
         across = rows.swapaxes(1, 2)
-        square, side = across @ rows, (across @ values[..., None])[..., 0]
+        self.add_products(first, across @ rows, (across @ values[..., None])[..., 0])
+
+    def add_products(self, first: NDArray[np.int64], square: Floats, side: Floats) -> None:
+        """Add products of rows already made: RᵀR (times, 6·functions, 6·functions), Rᵀv (times, 6·functions)."""
         at = first * self.functions
         n = self.right.size
         for i in range(self.block):
@@ -132,6 +156,10 @@ class Normal:
 
     def solve(self, damping: float) -> Floats:
         """Solve with `damping` times the largest diagonal entry added to the diagonal."""
+        return self.solve_shifted(damping * float(self.band[0].max()))
+
+    def solve_shifted(self, shift: float) -> Floats:
+        """Solve with `shift` added to the diagonal."""
         band = self.band.copy()
-        band[0] += damping * band[0].max()
+        band[0] += shift
         return np.asarray(scipy.linalg.solveh_banded(band, self.right, lower=True, check_finite=False))
