@@ -257,8 +257,11 @@ class ModelRow:
     model : str
     motion : str
     outcome : str
-        done, diverged or not converged.
+        done, diverged, not converged, or cannot: the model is not made for this.
     message : str
+        Why it is not done; what follows is then NaN.
+    warnings : tuple of str
+        Why the row may not be what it seems.
     peak, time_of_peak : float
         Of the tip in the direction in which the reference moves most, m, s.
     peak_error : float
@@ -273,6 +276,8 @@ class ModelRow:
         Largest distance between the two histories over the reference's peak.
     hub_angle : float
         At the end, of a free hub, rad; else NaN.
+    error_estimate : float
+        Of the steps, over the largest displacement.
     steps : int
     seconds : float
         To compute it, once compiled.
@@ -282,6 +287,7 @@ class ModelRow:
     motion: str
     outcome: str
     message: str
+    warnings: tuple[str, ...]
     peak: float
     time_of_peak: float
     peak_error: float
@@ -290,13 +296,14 @@ class ModelRow:
     phase: float
     difference: float
     hub_angle: float
+    error_estimate: float
     steps: int
     seconds: float
 
 
 @dataclass(frozen=True)
 class ModelStudy:
-    """The same scenario by every model that can; rows by motion, then model.
+    """The same scenario by every model; rows by motion, then model.
 
     Parameters
     ----------
@@ -305,12 +312,14 @@ class ModelStudy:
     direction : dict of str to str
         Per motion, the direction compared.
     rows : tuple of ModelRow
-    left_out : dict of str to str
-        Models that cannot answer, with the reason.
     """
 
     title: str
     reference: str
     direction: dict[str, str]
     rows: tuple[ModelRow, ...]
-    left_out: dict[str, str]
+
+    @property
+    def compared(self) -> bool:
+        """Whether there is a reference in every environment."""
+        return all(it.outcome == "done" for it in self.rows if it.model == self.reference)

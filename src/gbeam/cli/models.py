@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from gbeam.cli.asked import write
 from gbeam.cli.console import Watch, stdout
+from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import read
 from gbeam.cli.options import Json, Out, Overrides, ScenarioFile
 from gbeam.cli.outputs import refuse_unwritable
@@ -23,8 +24,9 @@ HEADINGS = ("motion", "model", "outcome", "peak, mm", "error", "residual, mm", "
 def models(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = None, json: Json = False) -> int:
     """The same scenario by every model, compared with the exact one.
 
-    Peak, residual vibration, its phase and the cost. A model that diverges has a row that says so. With --out also
-    writes models.json. Exit status: 0 done, 2 the input is wrong.
+    Peak, residual vibration, its phase and the cost. A model that diverges or cannot answer has a row that says why.
+    The exact model in three dimensions takes minutes. With --out also writes models.json. Exit status: 0 done, 1 exact
+    has no answer to compare with, 2 the input is wrong.
     """
     if out is not None:
         refuse_unwritable(out)
@@ -39,24 +41,38 @@ def models(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = N
     write(out, facts, "models", {})
     if json:
         print(as_json(facts))
-        return 0
-    console = stdout()
-    console.print(_table(study))
-    for kind, why in study.left_out.items():
-        console.print(f"{kind} left out: {why}", markup=False)
-    return 0
+    else:
+        console = stdout()
+        console.print(_table(study))
+        for remark in _remarks(study):
+            console.print(remark, markup=False)
+    for it in study.rows:
+        if it.model == study.reference and it.outcome != "done":
+            complain(f"motion.{it.motion}: nothing to compare with, {it.model} {it.outcome}: {it.message}")
+    return 0 if study.compared else FAILED
 
 
 def told(study: ModelStudy) -> dict[str, Any]:
     """Study as JSON; m, s, rad."""
     return {
         "title": study.title,
-        "outcome": "done",
+        "outcome": "done" if study.compared else "not compared",
         "reference": study.reference,
         "direction": study.direction,
         "rows": [asdict(row) for row in study.rows],
-        "left_out": study.left_out,
     }
+
+
+def _remarks(study: ModelStudy) -> list[str]:
+    """Why a model has no answer, and why one may not be what it seems."""
+    said = []
+    for it in study.rows:
+        here = f"{it.motion}, {it.model}"
+        if it.message:
+            said.append(f"{here} {it.outcome}: {it.message}")
+        # To check with exact is what this verb has just done.
+        said += [f"{here}: {why}" for why in it.warnings if "check with model.kind" not in why]
+    return said
 
 
 def _table(study: ModelStudy) -> Table:
