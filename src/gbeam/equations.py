@@ -11,7 +11,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 import gbeam._jax  # noqa: F401
-from gbeam.energy import Energy, mass_and_moment
+from gbeam.energy import Energy
 from gbeam.field import Coordinates
 from gbeam.work import Applied, Work
 
@@ -99,7 +99,7 @@ class Hub(eqx.Module):
         spring = 0.5 * self.stiffness * y[0] ** 2
         if self.gravity is None:
             return spring
-        mass, moment = mass_and_moment(energy, y[1:])
+        mass, moment = energy.mass_and_moment(y[1:])
         centre = self.R_HB @ moment + jnp.stack([mass * self.radius, 0 * mass, 0 * mass])
         c, s = jnp.cos(y[0]), jnp.sin(y[0])
         turned = jnp.stack([c * centre[0] - s * centre[1], s * centre[0] + c * centre[1], centre[2]])
