@@ -73,15 +73,21 @@ def test_unsound_records_are_refused_with_place_and_fix(tmp_path: Path, name: st
         assert word in str(caught.value)
 
 
-def test_rest_at_9_81_g_is_metres_per_second_squared(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("level", "declared", "right"), [(9.80665, "g", "m/s^2"), (6.0, "g", "m/s^2"), (1.0, "m/s^2", "g")]
+)
+def test_a_start_far_from_level_flight_is_the_wrong_unit(
+    tmp_path: Path, level: float, declared: str, right: str
+) -> None:
     calm = spoilt(
         tmp_path,
-        lambda rows: [[row[0], "0", "0", f"{-9.80665 - 1e-3 * i % 0.1:.5f}", *row[4:]] for i, row in enumerate(rows)],
+        lambda rows: [[row[0], "0", "0", f"{-level - 1e-5 * i % 0.001:.5f}", *row[4:]] for i, row in enumerate(rows)],
     )
-    with pytest.raises(InputError, match='unit = "m/s\\^2"'):
-        fly(calm)
-    assert fly(calm, "m/s^2").acceleration.times.size == 1600
-    assert fly(calm, trust=True).acceleration.times.size == 1600
+    with pytest.raises(InputError, match=f'begins at .*wants unit = "{right}"'.replace("^", r"\^")):
+        fly(calm, declared)
+    assert fly(calm, declared, trust=True).acceleration.times.size == 1600
+    if level != 6.0:
+        assert fly(calm, right).acceleration.times.size == 1600
 
 
 def test_plateaus_are_no_dropouts() -> None:

@@ -15,6 +15,7 @@ STANDARD_GRAVITY = 9.80665  # m/s²
 FEWEST = 6  # samples
 SLOWEST = 5.0  # Hz
 LARGEST = 50 * STANDARD_GRAVITY
+_BEGINS = 3.0  # g0: above that, no flight begins
 _TRUST = "if the record is right as it is, add trust = true"
 _WINDOW, _OUTLIER = 3, 6.0  # samples either side; deviations from the window's median
 _LEAST_JUMP = 0.5  # m/s²: a smaller step is nobody's dropout or spike
@@ -42,7 +43,6 @@ def refuse_unsound(time: Floats, load: Floats, names: tuple[str, str, str], unit
             f"export the record at 20 Hz or more; {_TRUST}",
         )
     size = np.linalg.norm(load, axis=1)
-    other = "m/s^2" if unit == "g" else "g"
     i = int(size.argmax())
     if size[i] > LARGEST:
         raise InputError(
@@ -50,12 +50,14 @@ def refuse_unsound(time: Floats, load: Floats, names: tuple[str, str, str], unit
             f"is {unit}, which makes {size[i] / STANDARD_GRAVITY:.3g} g of row {numbers[i]}, at {time[i]:g} s",
             f'a record in m/s^2 wants unit = "m/s^2"; {_TRUST}' if unit == "g" else _TRUST,
         )
-    calm = float(np.median(size[: max(int(1 / step), 4)]))
-    if unit == "g" and abs(calm / STANDARD_GRAVITY**2 - 1) < 0.015:
+    first_second = size[: max(int(1 / step), 4)] / _scale(unit)
+    at_start = float(np.median(first_second))
+    if (unit == "g" and at_start > _BEGINS) or (unit != "g" and np.abs(first_second - 1).max() < 0.03):
+        other = "m/s^2" if unit == "g" else "g"
         raise InputError(
             "record.unit",
-            f"is g, and the record begins at {calm / STANDARD_GRAVITY:.4g} g: level flight is 9.81 in m/s^2",
-            f'write unit = "{other}"; {_TRUST}',
+            f"is {unit}, and the record begins at {at_start:.4g} {unit}: level flight is 1 g, which is 9.81 m/s^2",
+            f'a record in {other} wants unit = "{other}"; {_TRUST}',
         )
     for axis, (values, name) in enumerate(zip(load.T, names, strict=True)):
         found = dropout(values, step)
