@@ -142,6 +142,8 @@ class AxesResult:
         Where the machine cannot make the flight's load, by how much, and what would help.
     control_point : float
         From the root along the beam, m.
+    warnings : tuple of str
+        Where the inverse does not keep what it promises, by how much and why.
     """
 
     angle: Floats
@@ -154,6 +156,7 @@ class AxesResult:
     limits: tuple[LimitUse, ...] = ()
     unreachable: tuple[Shortfall, ...] = ()
     control_point: float = math.nan
+    warnings: tuple[str, ...] = ()
 
     @property
     def within_limits(self) -> bool:

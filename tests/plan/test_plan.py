@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.io import loadmat
 
 from gbeam.cli import main
@@ -93,6 +94,36 @@ def test_exceeding_a_limit_is_status_1_unless_allowed(
     assert "LIMITS EXCEEDED" in (tmp_path / "low" / "commands_spin.csv").read_text(encoding="utf-8")
     assert main(["plan", str(scenario), *low, "--allow-limits", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["outcome"] == "limits exceeded"
+
+
+BEAM = """\
+[beam]
+length = "300 mm"
+section = { shape = "rectangle", width = "20 mm", thickness = "4 mm" }
+material = { density = "2700 kg/m^3", youngs_modulus = "70 GPa" }
+damping_ratio = 0.01
+[model]
+kind = "FOAM"
+modes = { axial = 1, y = 1, z = 1 }
+"""
+
+
+@pytest.mark.parametrize("verb", ["plan", "run"])
+def test_a_broken_promise_is_told_by_every_verb(
+    verb: str, scenario: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = PLAN.replace('"flat"', '"planned"').replace("60 rpm", "30 rpm") + BEAM
+    scenario.write_text(text, encoding="utf-8")
+    assert main([verb, str(scenario), "--json", "--out", str(tmp_path)]) == 0
+    spin = json.loads(capsys.readouterr().out)["motions"]["spin"]
+    (warning,) = spin["warnings"]
+    # 6 g, of which gravity is 1, against 3.3 m times (30 rpm)²; the arm's tangential acceleration helps a little.
+    steady = 9.80665 * np.sqrt(35) - 3.3 * np.pi**2
+    assert spin["tracking_error"]["max"] == pytest.approx(steady, rel=0.05)
+    assert f"{spin['tracking_error']['max']:.3g} m/s²" in warning and "limits used up: axis 1 rate" in warning
+    if verb == "run":
+        with xr.open_dataset(tmp_path / "result.nc", group="motions/spin") as stored:
+            assert warning in stored.attrs["warnings"]
 
 
 @pytest.mark.parametrize("start", ["rest", "pre-yawed"])

@@ -9,9 +9,10 @@ from jaxtyping import Array
 from gbeam.motion import Axes, Centrifuge, axis_history
 from gbeam.motion.blocks import in_blocks
 from gbeam.motion.limits import usage
-from gbeam.results import AxesResult, Commands, Floats, MachinePlan
+from gbeam.results import AxesResult, Commands, Floats, LimitUse, MachinePlan
 
 _GRID, _MOST = 2e-3, 50_000  # s between the times of the result; most of them
+_USED_UP = 0.99  # share of a limit
 _FINE = 1e-3  # s: the angle of axis 1 is integrated on times no further apart
 
 
@@ -30,6 +31,7 @@ def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
     """What a centrifuge does at given times (s, ascending), with its limits and where it cannot follow."""
     axes, jerk, wanted, achieved, held = in_blocks(_states, motion, time)
     angle, rate, acceleration = _columns(axes, time)
+    limits = usage(time, rate, acceleration, jerk, motion.limits)
     return AxesResult(
         angle=angle,
         rate=rate,
@@ -38,9 +40,27 @@ def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
         achieved=achieved,
         held=held,
         episodes=tuple((e.start, e.end, e.reason) for e in motion.episodes()),
-        limits=usage(time, rate, acceleration, jerk, motion.limits),
+        limits=limits,
         unreachable=motion.unreachable(),
         control_point=float(motion.control_point),
+        warnings=_broken_promise(motion, time, wanted, np.asarray(achieved - wanted), held, limits),
+    )
+
+
+def _broken_promise(
+    motion: Centrifuge, time: Floats, wanted: Floats, error: Floats, held: Floats, limits: tuple[LimitUse, ...]
+) -> tuple[str, ...]:
+    """Say where the load is followed worse than the inverse promises; nothing where it is not."""
+    size = np.linalg.norm(error, axis=1)
+    share = np.where(held, 0.0, size / np.maximum(np.linalg.norm(wanted, axis=1), 1e-12))
+    worst = int(np.argmax(share))
+    if not share[worst] > motion.inverse.within:
+        return ()
+    used = ", ".join(f"{use.axis} {use.quantity}" for use in limits if use.share > _USED_UP)
+    return (
+        f"the load is followed within {share[worst]:.2g} of it only ({size[worst]:.3g} m/s² at {time[worst]:.3f} s), "
+        f"where {type(motion.inverse).__name__.lower()} promises {motion.inverse.within:g}: {motion.inverse.unless}"
+        + (f" (limits used up: {used})" if used else ""),
     )
 
 

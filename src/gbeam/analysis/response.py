@@ -166,13 +166,14 @@ def _result(
         hub = _given_hub(motion, time) if isinstance(motion, HubRate) else None
         environment = type(motion).__name__.lower() if hub is None else "hub"
     outcome, message, warnings = _describe(structure, problem, settings, trajectory, base, peaks, time, error)
+    axes = axes_result(motion, time) if isinstance(motion, Centrifuge) else None
     return Response(
         name=name,
         environment=environment,
         model=structure.kind,
         outcome=outcome,
         message=message,
-        warnings=warnings,
+        warnings=warnings if axes is None else warnings + axes.warnings,
         time=time,
         stations=np.asarray(structure.stations),
         displacement=fine[keep],
@@ -186,7 +187,7 @@ def _result(
         error_estimate=error,
         residual_from=math.nan if settings.residual_from is None else settings.residual_from,
         hub=hub,
-        axes=axes_result(motion, time) if isinstance(motion, Centrifuge) else None,
+        axes=axes,
         qdd=qdd[:, beam],
         frequencies=rest_modes(*rest_matrices(structure.system.energy))[0],
     )

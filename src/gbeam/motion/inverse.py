@@ -6,7 +6,9 @@ gimbal angles; their rates follow by differentiation. Here are those in closed f
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
+from typing import ClassVar
 
 import equinox as eqx
 import jax
@@ -38,7 +40,14 @@ class Geometry(eqx.Module):
 
 
 class Inverse(eqx.Module):
-    """Axis motion for a target; elementwise in time and differentiable by nested `jax.jvp`."""
+    """Axis motion for a target; elementwise in time and differentiable by nested `jax.jvp`.
+
+    Each says what it promises: `within`, the largest tracking error as a fraction of the load where the target is not
+    held (infinite where it promises nothing), and `unless`, why it may be more and what helps.
+    """
+
+    within: ClassVar[float]
+    unless: ClassVar[str]
 
     @abstractmethod
     def __call__(self, target: Profile, t: Float[Array, "*t"]) -> Pose:
@@ -84,6 +93,7 @@ def gimbals(
 class QuasiStatic(Inverse):
     """The arm's tangential acceleration is ignored: an error of R dω1/dt square to the load."""
 
+    within, unless = math.inf, ""
     geometry: Geometry
 
     def __call__(self, target: Profile, t: Float[Array, "*t"]) -> Pose:
@@ -99,6 +109,7 @@ class Flat(Inverse):
     about δ²/2.
     """
 
+    within, unless = math.inf, ""
     geometry: Geometry
 
     def __call__(self, target: Profile, t: Float[Array, "*t"]) -> Pose:

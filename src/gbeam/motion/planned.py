@@ -44,6 +44,7 @@ Floats = NDArray[np.float64]
 class Planned(Inverse):
     """ω1, θ2 and θ3 as splines, found in advance for one target."""
 
+    within, unless = 0.01, "no motion near by does better"
     axes: Spline
 
     def __call__(self, target: Profile, t: Float[Array, "*t"]) -> Pose:

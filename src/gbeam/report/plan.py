@@ -28,6 +28,7 @@ def plan_table(title: str, plans: Iterable[MachinePlan]) -> RenderableType:
         lines += [
             Text(f"target held {start:.3f} to {end:.3f} s: {why}") for start, end, why in held_stretches(it.axes)[:8]
         ]
+        lines += [Text(f"warning: {each}", style="yellow") for each in it.axes.warnings]
         told = it.axes.unreachable[:_SHORTFALLS]
         lines += [Text(f"warning: {each}", style="yellow") for each in told]
         if len(it.axes.unreachable) > len(told):
@@ -56,6 +57,7 @@ def plan_json(title: str, plans: Iterable[MachinePlan], files: Iterable[Path] = 
                 "arm": it.arm,
                 "outcome": it.outcome,
                 "message": it.message,
+                "warnings": list(it.axes.warnings),
                 "limits": limits_json(it.axes),
                 "tracking_error": asdict(tracking(it.time, it.axes)),
                 "held": [{"start": start, "end": end, "reason": why} for start, end, why in it.axes.episodes],

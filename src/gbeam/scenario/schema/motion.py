@@ -175,8 +175,8 @@ class Centrifuge(Table):
     control_point: Position = Field(description="point of the beam that feels the flight's load, from the root")
     inverse: Literal["quasi-static", "flat", "exact", "planned"] = Field(
         description="how the axis motions are found. quasi-static: the arm's tangential acceleration is "
-        "ignored; flat: yaw makes up for it; exact: size and direction of the load both right; planned: the least "
-        "tracking error within the limits"
+        "ignored; flat: yaw makes up for it; exact: size and direction of the load both right, to 1e-7 of it or a "
+        "warning; planned: the least tracking error within the limits, to 1 % of the load or a warning"
     )
     gravity: StrictBool = Field(
         description="true if the target is specific force, of which gravity is a part on the machine; "
