@@ -101,7 +101,7 @@ def place(
     ComputationError
         If every option exceeds the machine's limits (outcome ``limits exceeded``); it names the nearest.
     """
-    _check(weights)
+    check_weights(weights)
     tried = _Tried(structure, flight, choice, settings, weights)
     for width in reversed(choice.widths):  # the widest first, see Answers
         for mounting in choice.mountings:
@@ -205,14 +205,15 @@ class _Tried:
         )
 
 
-def _check(weights: Mapping[str, float]) -> None:
+def check_weights(weights: Mapping[str, float], where: str = "measure") -> None:
+    """Raise InputError, naming `where` they were given, unless every measure is known and one has weight."""
     for name, weight in weights.items():
         if name not in MEASURES:
-            raise InputError("measure", f"is {name!r}", f"choose of {', '.join(MEASURES)}")
+            raise InputError(where, f"names {name!r}", f"choose of {', '.join(MEASURES)}")
         if not (np.isfinite(weight) and weight >= 0):
-            raise InputError("measure", f"gives {name} the weight {weight:g}", "give weights of 0 or more")
+            raise InputError(where, f"gives {name} the weight {weight:g}", "give weights of 0 or more")
     if not any(weights.values()):
-        raise InputError("measure", "has no weight", "give one measure a weight above 0")
+        raise InputError(where, "has no weight", "give one measure a weight above 0")
 
 
 class _Carried(eqx.Module):

@@ -66,11 +66,13 @@ def place(
     name = chosen(given, motion)
 
     from gbeam.analysis import structure_of
+    from gbeam.analysis.place import check_weights
     from gbeam.analysis.place import place as best_place
     from gbeam.motion import Centrifuge, Flight
     from gbeam.report import as_json
     from gbeam.report.place import place_json, place_text
 
+    check_weights(weights, "--measure")
     flight, present = given.case.motions[given.case.tracks[name]], given.case.motions[name]
     assert isinstance(flight, Flight) and isinstance(present, Centrifuge)  # the schema sees to it
     with given.placing():

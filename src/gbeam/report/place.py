@@ -36,7 +36,10 @@ def place_json(answer: Placement) -> dict[str, Any]:
 def place_text(answer: Placement) -> str:
     """Return what `place` prints."""
     best = answer.best
-    measure = " + ".join(f"{weight:g} {name}" for name, weight in answer.weights.items())
+    parts = {name: weight for name, weight in answer.weights.items() if weight}
+    measure = (
+        " + ".join(f"{weight:g} × {name}" for name, weight in parts.items()) if len(parts) > 1 else next(iter(parts))
+    )
     lines = [
         f"{answer.centrifuge}, tracking {answer.flight}: least {measure}",
         f"  control point  {1e3 * best.control_point:.2f} mm from the root, {answer.fraction:.4f} of the length "
@@ -44,7 +47,7 @@ def place_text(answer: Placement) -> str:
         f"  mounting       {best.mounting}",
         f"  smoothing      {1e3 * best.smoothing:.4g} ms{_range(answer)}",
         "",
-        "What the mismatch field does, of flight's peak" + " " * 10 + "best       present    middle",
+        "What the mismatch field does, of flight's peak".ljust(56) + "best       present    middle",
     ]
     for name in answer.values["best"]:
         row = "".join(f"{100 * answer.values[place][name]:<9.3g}% " for place in _PLACES)
@@ -59,7 +62,11 @@ def place_text(answer: Placement) -> str:
         lines.append(f"  {answer.vibration_gain:.3g} times less vibration than with the control point at mid-span")
     kept = [it for it in answer.options if not it.exceeded]
     broken = [it for it in answer.options if it.exceeded]
-    lines += ["", "Options, best first", *(_option(it) for it in (*kept[:_TOLD], *broken[:_TOLD]))]
+    lines += [
+        "",
+        f"Options by {measure} with what smoothing and tracking change of the load, best first",
+        *(_option(it) for it in (*kept[:_TOLD], *broken[:_TOLD])),
+    ]
     more = len(answer.options) - len(kept[:_TOLD]) - len(broken[:_TOLD])
     lines += [f"  and {more} more: see --json"] if more else []
     return "\n".join([*lines, *(f"  cannot: {it}" for it in answer.refused)])
