@@ -12,8 +12,8 @@ test: .venv/dev-installed
 	$(BIN)/pytest -n 2 --dist loadfile
 
 check: .venv/dev-installed
-	$(BIN)/ruff check src tests
-	$(BIN)/ruff format --check src tests
+	$(BIN)/ruff check src tests benchmarks
+	$(BIN)/ruff format --check src tests benchmarks
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
