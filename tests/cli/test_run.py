@@ -56,7 +56,7 @@ def test_files(fast: Path, gbeam: Call) -> None:
     assert answer.status == 0
     assert "agrees with flight" in " ".join(answer.out.split())
     folder = Path("out/fast")
-    pictures = ["tip", "base_flight", "base_spin", "axes_spin"]
+    pictures = ["tip", "base_flight", "base_spin", "axes_spin", "comparison_spin", "shock_spin"]
     expected = {"result.nc"} | {f"{name}.{kind}" for name in pictures for kind in ("png", "svg")}
     assert {it.name for it in folder.iterdir()} == expected
     assert str(folder) in answer.out
@@ -122,9 +122,12 @@ def test_an_interrupt_that_jax_swallows_still_ends_the_run(handled: None) -> Non
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
-def test_full_disk_behind_stdout(fast: Path) -> None:
-    command = [sys.executable, "-c", "from gbeam.cli import main; raise SystemExit(main())", "check", str(fast)]
+@pytest.mark.parametrize("wrong", [[], ["--set", "beam.length=short", "--json"]])
+def test_full_disk_behind_stdout(fast: Path, wrong: list[str]) -> None:
+    start = [sys.executable, "-c", "from gbeam.cli import main; raise SystemExit(main())"]
+    command = [*start, "check", str(fast), *wrong]
     with open("/dev/full", "w") as full:
         done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert done.returncode == 1
-    assert done.stderr == "gbeam: [Errno 28] No space left on device\n"
+    assert done.stderr.endswith("gbeam: [Errno 28] No space left on device\n")
+    assert "Traceback" not in done.stderr

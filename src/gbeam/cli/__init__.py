@@ -50,25 +50,32 @@ def main(argv: Sequence[str] | None = None) -> int:
         interrupted.
     """
     tokens = list(sys.argv[1:] if argv is None else argv)
-    as_json = "--json" in tokens
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without µ or ² is no reason to fail
     try:
-        status = _app()(tokens, exit_on_error=False, print_error=False, result_action="return_value")
+        status = _answered(tokens)
         sys.stdout.flush()
-    except CycloptsError as error:
-        return answer_syntax(str(error), as_json)
-    except GbeamError as error:
-        return answer(error, as_json)
-    except KeyboardInterrupt:
-        return _INTERRUPTED
     except OSError as error:
         # Stdout is closed (`gbeam run ... | head`, where nobody listens any more) or its disk is full.
         if not isinstance(error, BrokenPipeError):
             complain(str(error))
         _abandon_stdout()
         return FAILED
+    return status
+
+
+def _answered(tokens: list[str]) -> int:
+    """Run a verb; say what went wrong, if anything."""
+    as_json = "--json" in tokens
+    try:
+        status = _app()(tokens, exit_on_error=False, print_error=False, result_action="return_value")
+    except CycloptsError as error:
+        return answer_syntax(str(error), as_json)
+    except GbeamError as error:
+        return answer(error, as_json)
+    except KeyboardInterrupt:
+        return _INTERRUPTED
     return status if isinstance(status, int) else 0
 
 
