@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.results import Floats
+from gbeam.results_loads import Loads
 
 Complex = NDArray[np.complex128]
 
@@ -40,6 +41,8 @@ class Deflection:
         J.
     stable : bool
         Whether the stiffness about the equilibrium is positive definite.
+    loads : Loads or None
+        What the sections carry, of one time.
     """
 
     motion: str
@@ -51,6 +54,7 @@ class Deflection:
     q: Floats
     strain_energy: float
     stable: bool
+    loads: Loads | None = None
 
     @property
     def tip(self) -> Floats:

@@ -57,10 +57,18 @@ def test_modes(call):
 
 
 def test_static(call):
-    status, told, _ = call("static", "--motion", "flight")
+    status, told, _ = call("static", "--motion", "flight", "--out", "there")
     # w L⁴/8EI of a uniform load, down where the base accelerates up
     wanted = 2766.7 * 7.2968e-5 * 0.980665 * 8**4 / (8 * 6.8952e10 * 8.2189e-9)
     assert status == 0 and told["motions"]["flight"]["tip"]["y"] == pytest.approx(-wanted, rel=1e-3)
+    weight = 2766.7 * 7.2968e-5 * 8 * 0.980665
+    loads = told["motions"]["flight"]["loads"]
+    assert loads["root_force"]["y"] == pytest.approx(weight, rel=1e-9)
+    assert loads["section_moment"]["z"][0] == pytest.approx(-weight * 4, rel=5e-3)
+    assert loads["section_moment"]["z"][-1] == 0.0 and len(loads["stations"]) == len(loads["section_force"]["x"])
+    assert loads["stress"] == [None] * len(loads["stations"])  # of such a section no outer fibre is known
+    names = {f"{stem}.{kind}" for stem in ("static", "loads_flight") for kind in ("png", "svg")}
+    assert {it.name for it in Path("there").iterdir()} == {"static.json", *names}
 
 
 def test_critical_speed(call):

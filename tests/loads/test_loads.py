@@ -12,13 +12,17 @@ import pytest
 from gbeam import (
     Beam,
     Flight,
+    HubRate,
+    HubTorque,
     Material,
     Model,
     PointMass,
     ResponseSettings,
     Section,
+    Sine,
     assemble,
     constant,
+    deflect,
     equilibrium,
     respond,
     stack,
@@ -207,3 +211,31 @@ def test_static_influence_of_a_uniform_cantilever() -> None:
     np.testing.assert_allclose(found.tip_linear[1:], -M * L**5 * 11 / 120 / ei, rtol=1e-5)
     np.testing.assert_allclose(found.moment_linear[1:], -M * L**3 / 3, rtol=1e-12)
     np.testing.assert_allclose(found.force_linear, -M * L**2 / 2, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("pointing", "angle"), [("outward", 0.0), ("inward", 0.6)])
+def test_torque_for_the_beam_and_the_hub_is_what_drives_them(pointing: str, angle: float) -> None:
+    """Torque less what spring and damper take, however the beam is mounted; in gravity too."""
+    structure = assemble(TAPERED, Model("CFOAM", 1, 2, 2))
+    hub = HubTorque(0.5, 20.0, Sine(10.0, 0.4), pointing, angle, [1.0, 2.0, -9.8], stiffness=30.0, damping=2.0)
+    response = respond(structure, hub, ResponseSettings(duration=0.2, step=2e-3))
+    loads = internal_loads(structure, TAPERED, response, mount=hub.mount, hub_inertia=20.0)
+    assert response.hub is not None and loads.drive_torque is not None
+    left = response.hub.torque - 30.0 * response.hub.angle - 2.0 * response.hub.rate
+    np.testing.assert_allclose(loads.drive_torque, left, atol=1e-6 * np.abs(left).max())
+    slew = internal_loads(structure, TAPERED, response, mount=hub.mount)
+    assert slew.hub_torque is not None
+    np.testing.assert_allclose(slew.hub_torque, left - 20.0 * response.hub.acceleration, atol=1e-6)
+
+
+def test_static_loads_are_those_of_the_frozen_slew() -> None:
+    """At rest on a steadily turning hub: the centripetal force of the beam, and no torque for it."""
+    structure = assemble(SPECIMEN, Model("FOAM", 2, 2, 0), [0.0, 0.15])
+    found = deflect(structure, HubRate(0.4, constant(5.0)), 0.0, beam=SPECIMEN)
+    assert found.loads is not None and found.loads.hub_torque is not None
+    np.testing.assert_allclose(found.loads.root_force[0], [-M * 25 * (0.4 * L + L**2 / 2), 0, 0], rtol=1e-5)
+    np.testing.assert_allclose(
+        found.loads.section_force[0, -2, 0], M * 25 * (0.4 * 0.15 + (L**2 - 0.15**2) / 2), rtol=1e-5
+    )
+    assert abs(found.loads.hub_torque[0]) < 1e-12
+    assert found.loads.stress[0, 0] == pytest.approx(-found.loads.root_force[0, 0] / 8e-5)

@@ -70,9 +70,9 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
 
 def _with_loads(structure: Structure, case: Case, motion: Motion, response: Response) -> Response:
     """Add what the sections carry, and on a centrifuge what its mismatch can do."""
-    radius = float(motion.radius) if isinstance(motion, (HubRate, HubTorque)) else None
+    mount = motion.mount if isinstance(motion, (HubRate, HubTorque)) else None
     inertia = float(motion.inertia) if isinstance(motion, HubTorque) else None
-    loads = internal_loads(structure, case.beam, response, hub_radius=radius, hub_inertia=inertia)
+    loads = internal_loads(structure, case.beam, response, mount=mount, hub_inertia=inertia)
     notes = tuple(f"record: {note}" for note in motion.notes) if isinstance(motion, Flight) else ()
     response = replace(response, warnings=response.warnings + notes)
     return replace(response, loads=loads, influence=influence(structure) if isinstance(motion, Centrifuge) else None)

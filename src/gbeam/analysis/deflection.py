@@ -5,10 +5,15 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg
 
+from gbeam.analysis.loads import about_the_hub, section_loads
 from gbeam.analysis.modal import frozen
 from gbeam.analysis.operating import OperatingPoint, linear_matrices, operating_point
+from gbeam.beam import Beam
 from gbeam.case import Motion
 from gbeam.model import Structure
+from gbeam.motion import HubRate, HubTorque
+from gbeam.results import BaseHistory
+from gbeam.results_loads import Loads
 from gbeam.results_modal import Deflection
 
 
@@ -24,7 +29,9 @@ def beam_block(point: OperatingPoint) -> tuple[np.ndarray, np.ndarray]:
     return linear.mass[i:, i:], linear.stiffness[i:, i:]
 
 
-def deflect(structure: Structure, motion: Motion, time: float, *, name: str = "") -> Deflection:
+def deflect(
+    structure: Structure, motion: Motion, time: float, *, name: str = "", beam: Beam | None = None
+) -> Deflection:
     """Where the beam rests relative to a base whose motion is frozen at a time.
 
     Parameters
@@ -36,6 +43,8 @@ def deflect(structure: Structure, motion: Motion, time: float, *, name: str = ""
         s.
     name : str
         For the result.
+    beam : Beam, optional
+        The one that the structure was assembled from: with it the loads along the beam are told.
 
     Returns
     -------
@@ -58,4 +67,16 @@ def deflect(structure: Structure, motion: Motion, time: float, *, name: str = ""
         q=np.asarray(point.q),
         strain_energy=float(structure.system.energy.potential(point.q)),
         stable=lowest > 0,
+        loads=None if beam is None else _carried(structure, beam, motion, point, time),
     )
+
+
+def _carried(structure: Structure, beam: Beam, motion: Motion, point: OperatingPoint, time: float) -> Loads:
+    """Loads along the beam at rest, and about the hub's axis if there is one."""
+    base = BaseHistory(*(np.asarray(x)[None] for x in (point.base.a_WO_B, point.base.w_WB_B, point.base.al_WB_B)))
+    q = np.asarray(point.q)[None]
+    loads = section_loads(structure, beam, base, q, 0 * q, 0 * q, np.array([time]))
+    if not isinstance(motion, (HubRate, HubTorque)):
+        return loads
+    inertia = float(motion.inertia) if isinstance(motion, HubTorque) else None
+    return about_the_hub(loads, motion.mount, base.al_WB_B, inertia)

@@ -11,6 +11,7 @@ the complete energy: its loads differ from its own generalised forces by terms o
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import equinox as eqx
@@ -24,7 +25,7 @@ from gbeam.beam import Beam
 from gbeam.equations import coefficients
 from gbeam.field import ExactField, ProjectedField, RootedField
 from gbeam.model import Structure
-from gbeam.motion import Base
+from gbeam.motion import Base, Mount
 from gbeam.results import BaseHistory, Floats, Response
 from gbeam.results_loads import Influence, Loads
 
@@ -191,7 +192,7 @@ def internal_loads(
     beam: Beam,
     response: Response,
     *,
-    hub_radius: float | None = None,
+    mount: Mount | None = None,
     hub_inertia: float | None = None,
 ) -> Loads:
     """Return the internal loads of a response.
@@ -202,8 +203,8 @@ def internal_loads(
         Of the response's model; its stations may be others than the response's.
     beam : Beam
     response : Response
-    hub_radius : float, optional
-        From the hub's axis, z, to the root, m: with it the torque that a slew needs is told.
+    mount : Mount, optional
+        How the beam sits on a hub: with it the torque that a slew needs is told.
     hub_inertia : float, optional
         kg m².
 
@@ -212,13 +213,26 @@ def internal_loads(
     Loads
     """
     loads = section_loads(structure, beam, response.base, response.q, response.qd, response.qdd, response.time)
-    if hub_radius is None:
-        return loads
-    torque = loads.root_moment[:, 2] + hub_radius * loads.root_force[:, 1]
-    inertia = np.nan if hub_inertia is None else hub_inertia
-    return Loads(
-        **{**vars(loads), "hub_torque": torque, "drive_torque": torque + inertia * response.base.al_WB_B[:, 2]}
-    )
+    return loads if mount is None else about_the_hub(loads, mount, response.base.al_WB_B, hub_inertia)
+
+
+def about_the_hub(loads: Loads, mount: Mount, al_WB_B: Floats, inertia: float | None = None) -> Loads:
+    """The same loads with the torque about the hub's axis, however the beam is mounted on it.
+
+    Parameters
+    ----------
+    loads : Loads
+    mount : Mount
+    al_WB_B : (t, 3)
+        Angular acceleration of the base, rad/s².
+    inertia : float, optional
+        Of the hub, kg m².
+    """
+    turned = np.asarray(mount.R_HB).T
+    force_H, moment_H, al_H = (x @ turned for x in (loads.root_force, loads.root_moment, al_WB_B))
+    torque = moment_H[:, 2] + float(mount.radius) * force_H[:, 1]
+    driven = torque + (np.nan if inertia is None else inertia) * al_H[:, 2]
+    return replace(loads, hub_torque=torque, drive_torque=driven)
 
 
 @eqx.filter_jit

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from gbeam.cli.asked import At, MotionName, along_the_beam, base_json, motion_of, time_of, write
 from gbeam.cli.console import Watch, stdout
 from gbeam.cli.inputs import read
@@ -11,6 +13,7 @@ from gbeam.cli.options import Json, Out, Overrides, ScenarioFile
 from gbeam.cli.outputs import refuse_unwritable
 
 if TYPE_CHECKING:
+    from gbeam.results_loads import Loads
     from gbeam.results_modal import Deflection
 
 
@@ -24,10 +27,10 @@ def static(
     out: Out = None,
     json: Json = False,
 ) -> int:
-    """Where the beam rests relative to its base at one time of the motions.
+    """Where the beam rests relative to its base at one time of the motions, and what its sections carry.
 
-    Without --motion for all of them. With --out also writes static.json and a plot of the shapes. Exit status: 0 done,
-    1 there is no equilibrium, 2 the input is wrong.
+    Without --motion for all of them. With --out also writes static.json and plots of shapes and loads. Exit status:
+    0 done, 1 there is no equilibrium, 2 the input is wrong.
     """
     if out is not None:
         refuse_unwritable(out)
@@ -40,12 +43,15 @@ def static(
 
     with Watch(), given.placing():
         structure = along_the_beam(given)
-        found = [deflect(structure, it, time, name=name) for name, it in chosen.items()]
+        found = [deflect(structure, it, time, name=name, beam=given.case.beam) for name, it in chosen.items()]
     facts = {"title": given.case.title, "outcome": "done", "motions": {it.motion: told(it) for it in found}}
     if out is not None:
+        from gbeam.plots.loads import plot_loads_along
         from gbeam.plots.static import plot_static
 
-        write(out, facts, "static", {"static": plot_static(found, given.case.title)})
+        title = given.case.title
+        loads = {f"loads_{it.motion}": plot_loads_along(it, it.loads, title) for it in found if it.loads is not None}
+        write(out, facts, "static", {"static": plot_static(found, title), **loads})
     if json:
         print(as_json(facts))
     else:
@@ -54,7 +60,8 @@ def static(
 
 
 def told(found: Deflection) -> dict[str, Any]:
-    """Deflection as JSON; m, J."""
+    """Deflection as JSON; m, J, N, N m, Pa."""
+    assert found.loads is not None
     return {
         "outcome": "done",
         "time": found.time,
@@ -65,11 +72,42 @@ def told(found: Deflection) -> dict[str, Any]:
         "displacement": dict(zip("xyz", found.displacement.T.tolist(), strict=True)),
         "strain_energy": found.strain_energy,
         "stable": found.stable,
+        "loads": loads_told(found.loads),
     }
+
+
+def loads_told(it: Loads) -> dict[str, Any]:
+    """Loads of one time as JSON: of the base on the root, base axes; along the beam, section axes."""
+
+    def xyz(values: Any) -> dict[str, Any]:
+        return dict(zip("xyz", values.T.tolist(), strict=True))
+
+    told: dict[str, Any] = {
+        "root_force": xyz(it.root_force[0]),
+        "root_moment": xyz(it.root_moment[0]),
+        "stations": it.stations.tolist(),
+        "section_force": xyz(it.section_force[0]),
+        "section_moment": xyz(it.section_moment[0]),
+        "stress": it.stress[0].tolist(),
+    }
+    if it.hub_torque is not None:
+        told["beam_torque"] = float(it.hub_torque[0])
+    return told
 
 
 def _text(found: Deflection) -> str:
     x, y, z = (1e3 * found.tip).tolist()
     warning = "" if found.stable else "; UNSTABLE: the stiffness there is not positive definite"
     tip = f"tip x {x:.6g} mm, y {y:.6g} mm, z {z:.6g} mm"
-    return f"{found.motion} at {found.time:.4g} s: {tip} ({found.model}){warning}"
+    return f"{found.motion} at {found.time:.4g} s: {tip} ({found.model}){warning}\n  {_carried(found.loads)}"
+
+
+def _carried(it: Loads | None) -> str:
+    assert it is not None
+    force, moment = (", ".join(f"{value:.5g}" for value in each[0] + 0.0) for each in (it.root_force, it.root_moment))
+    told = f"base on root: force ({force}) N, moment ({moment}) N m"
+    if np.isfinite(it.stress).all():
+        told += f"; stress up to {1e-6 * it.stress.max():.5g} MPa at {it.stations[it.stress[0].argmax()]:.4g} m"
+    if it.hub_torque is not None:
+        told += f"; torque for the beam {it.hub_torque[0] + 0.0:.5g} N m"
+    return told

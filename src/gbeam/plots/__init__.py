@@ -9,11 +9,21 @@ from gbeam.plots.axes import plot_axes
 from gbeam.plots.base import plot_base
 from gbeam.plots.comparison import plot_comparison, plot_shock
 from gbeam.plots.hub import plot_hub
+from gbeam.plots.loads import plot_loads
 from gbeam.plots.style import save
 from gbeam.plots.tip import plot_tip
 from gbeam.results import Study
 
-__all__ = ["plot_axes", "plot_base", "plot_comparison", "plot_hub", "plot_shock", "plot_tip", "write_plots"]
+__all__ = [
+    "plot_axes",
+    "plot_base",
+    "plot_comparison",
+    "plot_hub",
+    "plot_loads",
+    "plot_shock",
+    "plot_tip",
+    "write_plots",
+]
 
 
 def write_plots(study: Study, folder: Path) -> list[Path]:
@@ -28,12 +38,14 @@ def write_plots(study: Study, folder: Path) -> list[Path]:
     Returns
     -------
     list of Path
-        The files: ``tip``, and per environment ``base_NAME``, ``axes_NAME`` (centrifuges), ``hub_NAME`` (hubs);
-        per comparison ``comparison_NAME`` and ``shock_NAME``, NAME being the centrifuge's.
+        The files: ``tip``, and per environment ``base_NAME``, ``loads_NAME``, ``axes_NAME`` (centrifuges),
+        ``hub_NAME`` (hubs); per comparison ``comparison_NAME`` and ``shock_NAME``, NAME being the centrifuge's.
     """
     files = save(plot_tip(study), folder, "tip")
     for name, it in study.responses.items():
         files += save(plot_base(it, study.title), folder, f"base_{name}")
+        if it.loads is not None:
+            files += save(plot_loads(it, it.loads, study.title), folder, f"loads_{name}")
         if it.axes is not None:
             files += save(plot_axes(it, it.axes, study.title), folder, f"axes_{name}")
         if it.hub is not None:

@@ -16,6 +16,7 @@ from gbeam.report.comparison import comparison_lines
 from gbeam.report.figures import held_stretches, tracking
 from gbeam.report.limits import limits_table
 from gbeam.results import AxesResult, HubResult, Response, Study
+from gbeam.results_loads import Loads
 
 ROUNDING = 1e-9  # of what it belongs to: a smaller number is none
 EPISODES = 8  # of holding listed; a rough record has hundreds
@@ -63,6 +64,8 @@ def _response(it: Response) -> Iterator[RenderableType]:
         yield _indented(Text(_sentence(it.message), style="red"))
     yield _indented(_tip(it))
     yield _indented(Text(_accuracy(it)))
+    if it.loads is not None:
+        yield _indented(Text(_loads(it.loads)))
     if it.hub is not None:
         yield _indented(Text(_hub(it.hub)))
     if it.axes is not None:
@@ -108,6 +111,18 @@ def _accuracy(it: Response) -> str:
 
 def _time(seconds: float) -> str:
     return f"{number(1e3 * seconds)} ms" if seconds < 1 else f"{number(seconds)} s"
+
+
+def _loads(it: Loads) -> str:
+    """Largest sizes over time: at the root, of the stress, and of the torque about a hub's axis."""
+    force, moment = (float(np.linalg.norm(each, axis=1).max()) for each in (it.root_force, it.root_moment))
+    told = f"root: largest force {number(force)} N, moment {number(moment)} N m"
+    if np.isfinite(it.stress).all():
+        where = it.stations[it.stress.max(axis=0).argmax()]
+        told += f"; stress {number(1e-6 * float(it.stress.max()))} MPa at {number(float(where))} m"
+    if it.hub_torque is not None:
+        told += f"; torque for the beam {number(float(np.abs(it.hub_torque).max()))} N m"
+    return told
 
 
 def _hub(it: HubResult) -> str:

@@ -9,11 +9,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from gbeam.report.comparison import comparison_parts
 from gbeam.report.figures import peak, tracking
 from gbeam.report.limits import limits_json
-from gbeam.results import AxesResult, HubResult, Response, Study
+from gbeam.results import AxesResult, Floats, HubResult, Response, Study
 from gbeam.results_comparison import Comparison
+from gbeam.results_loads import Loads
 
 
 def summary_json(study: Study, files: Iterable[Path] = ()) -> dict[str, Any]:
@@ -74,10 +77,27 @@ def _motion(it: Response) -> dict[str, Any]:
         "model": it.model,
         "warnings": list(it.warnings),
     }
+    if it.loads is not None:
+        told["loads"] = _loads(it.time, it.loads)
     if it.hub is not None:
         told["hub"] = _hub(it.hub)
     if it.axes is not None:
         told |= _centrifuge(it, it.axes)
+    return told
+
+
+def _loads(time: Floats, it: Loads) -> dict[str, Any]:
+    """Largest of what the base gives the root, of the stress anywhere, and of the torque for the beam on a hub."""
+
+    def largest(values: Floats) -> dict[str, Any]:
+        return {axis: asdict(peak(time, each)) for axis, each in zip("xyz", values.T, strict=True)}
+
+    told: dict[str, Any] = {"root_force": largest(it.root_force), "root_moment": largest(it.root_moment)}
+    if np.isfinite(it.stress).all():
+        when, where = np.unravel_index(it.stress.argmax(), it.stress.shape)
+        told["stress"] = {"max": it.stress.max(), "time_of_max": time[when], "station": it.stations[where]}
+    if it.hub_torque is not None:
+        told["beam_torque"] = asdict(peak(time, it.hub_torque))
     return told
 
 
