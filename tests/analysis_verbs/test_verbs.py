@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from gbeam.cli import main
+from gbeam.plots.campbell import plot_campbell
+from gbeam.results_modal import Campbell
 
 HUB = """\
 title = "hub"
@@ -54,6 +56,35 @@ def test_modes(call):
     assert frequencies == sorted(frequencies) and told["modes"][0]["direction"] == "y"
     assert frequencies[0] == pytest.approx(0.336597, rel=1e-3)  # sqrt(2.91074² − 2²)/2π
     assert {it.name for it in Path("there").iterdir()} == {"modes.json", "modes.png", "modes.svg"}
+    first = told["modes"][0]["shape"]["y"]
+    assert abs(first[0]) < 1e-15 and first[-1] == 1.0 and len(first) == len(told["stations"])
+
+
+def test_no_unit_is_torn_and_no_rounding_is_damping(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("hub.toml").write_text(HUB)
+    assert main(["linearize", "hub.toml", "--motion", "slew"]) == 0
+    assert "[N m]" in capsys.readouterr().out.replace("\N{NO-BREAK SPACE}", " ").splitlines()[-2]
+    assert main(["modes", "hub.toml", "--motion", "slew", "--at", "32 s"]) == 0
+    assert "e-1" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("verb", ["static", "modes", "campbell", "critical-speed", "linearize", "models", "run"])
+def test_help_tells_the_files_and_the_exit_status(verb, capsys):
+    assert main([verb, "--help"]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "--out" in told and ("Exit status" in told or "exit status 0" in told)
+
+
+def test_campbells_plot_shows_the_modes_that_the_multiples_meet():
+    speed = np.linspace(0, 1, 5)
+    frequency = np.outer(1 + 0.1 * speed, [0.2, 0.5, 80.0])
+    diagram = Campbell(
+        "slew", "FOAM", speed, frequency, 0 * frequency, 0 * frequency, ("y", "y", "x"), (1, 2), (), None
+    )
+    panel = plot_campbell(diagram, "title").axes[0]
+    assert panel.get_ylim()[1] < 1.0 and len(panel.lines) == 2 + 2
+    assert [it.get_text() for it in panel.get_legend().get_texts()] == ["mode 1, y", "mode 2, y"]
 
 
 def test_static(call):

@@ -69,7 +69,9 @@ def _answered(tokens: list[str]) -> int:
     """Run a verb; say what went wrong, if anything."""
     as_json = "--json" in tokens
     try:
-        status = _app()(tokens, exit_on_error=False, print_error=False, result_action="return_value")
+        status = _app(tokens[0] if tokens else "")(
+            tokens, exit_on_error=False, print_error=False, result_action="return_value"
+        )
     except CycloptsError as error:
         return answer_syntax(str(error), as_json)
     except GbeamError as error:
@@ -85,7 +87,7 @@ def _abandon_stdout() -> None:
         os.dup2(nowhere.fileno(), sys.stdout.fileno())
 
 
-def _app() -> App:
+def _app(asked: str) -> App:
     app = App(
         name="gbeam",
         help="How a flexible beam responds while its base moves a lot: in flight, on a centrifuge, on a hub.",
@@ -93,5 +95,7 @@ def _app() -> App:
         suppress_keyboard_interrupt=False,
     )
     for verb, told in VERBS.items():
-        app.command(f"gbeam.cli.{verb.replace('-', '_')}:{verb.replace('-', '_')}", name=verb, help=told)
+        # The help of the verb that is asked is its own docstring, which says more.
+        name = verb.replace("-", "_")
+        app.command(f"gbeam.cli.{name}:{name}", name=verb, help=None if verb == asked else told)
     return app

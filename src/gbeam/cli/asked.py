@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from gbeam.case import Motion
     from gbeam.model import Structure
 
-STATIONS = 41  # along the beam, at which shapes are told
+STATIONS = 81  # along the beam, at which shapes are told
 MotionName = Annotated[
     str | None, Parameter(name="--motion", help="Which [motion.NAME]; may be left out where only one can answer.")
 ]

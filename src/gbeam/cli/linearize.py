@@ -154,7 +154,7 @@ def _text(found: StateSpace, gauges: Iterable[Gauge], hankel: Iterable[float]) -
     lines = [f"{found.motion}: {found.model}, {len(found.a)} states"]
     for what in ("states", "inputs", "outputs"):
         # No line ends between a name and its unit.
-        signals = ", ".join(f"{it.name}\N{NO-BREAK SPACE}[{it.unit}]" for it in getattr(found, what))
+        signals = ", ".join(f"{it.name} [{it.unit}]".replace(" ", "\N{NO-BREAK SPACE}") for it in getattr(found, what))
         lines += wrap(
             signals, WIDTH, initial_indent=f"  {what:<8} ", subsequent_indent=11 * " ", break_on_hyphens=False
         )

@@ -15,6 +15,8 @@ from gbeam.cli.outputs import refuse_unwritable
 if TYPE_CHECKING:
     from gbeam.results_modal import Modes
 
+ROUNDING = 1e-10  # a damping ratio smaller than this is none
+
 
 def modes(
     scenario: ScenarioFile,
@@ -56,7 +58,7 @@ def modes(
 
 
 def told(found: Modes) -> dict[str, Any]:
-    """Modes as JSON: ascending; Hz, 1/s."""
+    """Modes as JSON: ascending; Hz, 1/s; the shapes are complex, with the largest component 1."""
     return {
         "outcome": "done",
         "motion": found.motion,
@@ -66,9 +68,10 @@ def told(found: Modes) -> dict[str, Any]:
         "base": base_json(found.base),
         "stable": found.stable,
         "modes": [
-            {"frequency": float(f), "damping_ratio": float(z), "direction": d}
-            for f, z, d in zip(found.frequency, found.damping_ratio, found.direction, strict=True)
+            {"frequency": float(f), "damping_ratio": float(z), "direction": d, **_shape(shape)}
+            for f, z, d, shape in zip(found.frequency, found.damping_ratio, found.direction, found.shape, strict=True)
         ],
+        "stations": found.stations.tolist(),
         "instabilities": [
             {"kind": it.kind, "growth_rate": it.growth_rate, "frequency": it.frequency, "direction": it.direction}
             for it in found.instabilities
@@ -78,11 +81,18 @@ def told(found: Modes) -> dict[str, Any]:
     }
 
 
+def _shape(shape: Any) -> dict[str, Any]:
+    return {
+        name: dict(zip("xyz", part.T.tolist(), strict=True))
+        for name, part in (("shape", shape.real), ("shape_imaginary", shape.imag))
+    }
+
+
 def _text(found: Modes) -> str:
     rate = float((found.base.w_WB_B**2).sum() ** 0.5)
     lines = [f"{found.motion} at {found.time:.4g} s: {found.model}, base turning at {rate:.4g} rad/s"]
     lines += [
-        f"  {i:>3}  {f:12.6g} Hz  damping {z:8.4g}  along {d}"
+        f"  {i:>3}  {f:12.6g} Hz  damping {z if abs(z) > ROUNDING else 0.0:8.4g}  along {d}"
         for i, (f, z, d) in enumerate(zip(found.frequency, found.damping_ratio, found.direction, strict=True), 1)
     ]
     if found.rigid:

@@ -9,6 +9,8 @@ from gbeam.plots.style import REFERENCE, colour, heading, legend, panels, styled
 from gbeam.results_modal import Campbell
 
 _LINES = {"x": ":", "y": "-", "z": "--"}
+FAR = 2.0  # times the highest multiple of the speed: a mode above would press the others to the ground
+FEW = 2  # modes drawn in any case
 
 
 @styled
@@ -24,17 +26,23 @@ def plot_campbell(diagram: Campbell, title: str) -> Figure:
     Returns
     -------
     Figure
-        One line per mode, dashed where it moves the beam along z; grey lines are multiples of the speed, circles the
-        crossings, a vertical line the critical speed.
+        One line per mode, dashed where it moves the beam along z, dotted along x; grey lines are multiples of the
+        speed, circles the crossings, a vertical line the critical speed. Modes far above all multiples are left out.
     """
+    highest = max(diagram.orders, default=0) * diagram.speed[-1] / (2 * np.pi)
+    shown = [k for k, low in enumerate(np.nanmin(diagram.frequency, axis=0)) if low <= FAR * highest or k < FEW]
+    left = len(diagram.direction) - len(shown)
     subject = f"{diagram.motion}: frequencies about the equilibrium, {diagram.model}"
+    if left:
+        subject += f"; {left} higher mode{'s' if left > 1 else ''} not drawn"
     figure, (panel,) = panels(heading(title, subject, []), 1, heights=[2.4])
     panel.set_xlabel("hub rate, rad/s")
     panel.set_ylabel("frequency, Hz")
-    for k, direction in enumerate(diagram.direction):
+    for k in shown:
+        direction = diagram.direction[k]
         label = f"mode {k + 1}, {direction}"
         panel.plot(diagram.speed, diagram.frequency[:, k], _LINES[direction], color=colour(k), label=label)
-    top = 1.05 * np.nanmax(diagram.frequency)
+    top = 1.05 * np.nanmax(diagram.frequency[:, shown])
     for order in diagram.orders:
         line = order * diagram.speed / (2 * np.pi)
         panel.plot(diagram.speed, line, color="0.6", lw=0.7, zorder=1)
