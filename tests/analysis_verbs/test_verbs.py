@@ -69,6 +69,22 @@ def test_no_unit_is_torn_and_no_rounding_is_damping(tmp_path, monkeypatch, capsy
     assert "e-1" not in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(
+    ("words", "option"),
+    [
+        (("campbell", "--modes", "0"), "--modes"),
+        (("campbell", "--orders", "-1"), "--orders"),
+        (("campbell", "--from", "3 rad/s", "--to", "1 rad/s"), "--to"),
+        (("critical-speed", "--to", "0 rad/s"), "--to"),
+        (("linearize", "--motion", "slew", "--modes", "-1"), "--modes"),
+        (("modes", "--motion", "nope"), "--motion"),
+    ],
+)
+def test_a_wrong_option_is_named_and_not_a_line_of_the_file(call, words, option):
+    status, told, said = call(*words)
+    assert status == 2 and told["error"][0]["path"] == option and said.startswith(f"gbeam: {option} is ")
+
+
 @pytest.mark.parametrize("verb", ["static", "modes", "campbell", "critical-speed", "linearize", "models", "run"])
 def test_help_tells_the_files_and_the_exit_status(verb, capsys):
     assert main([verb, "--help"]) == 0

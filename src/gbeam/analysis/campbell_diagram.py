@@ -96,11 +96,13 @@ def campbell(
     Raises
     ------
     InputError
-        If the motion has no hub, or the range is empty.
+        If the motion has no hub, the range is empty, or no mode is to be followed.
     """
     hub = hub_of(motion, "a Campbell diagram", "ask `gbeam modes` for its frequencies at a time", name)
     if not 0 <= start < end:
         raise InputError("to", f"is {end:g} rad/s, from {start:g} rad/s", "give a range of speeds that ascends from 0")
+    if modes < 1:
+        raise InputError("modes", f"is {modes}", "give 1 or more")
     lost = critical_speed(structure, motion, upper=end)
     # The last speed is short of the critical one, where a frequency is zero.
     last = end if lost.value is None or lost.value <= start else start + (lost.value - start) * (1 - 1e-6)

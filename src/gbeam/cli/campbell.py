@@ -49,6 +49,13 @@ def campbell(
     name, chosen = motion_of(given, motion, hubs_only=True)
     low = 0.0 if start is None else number("--from", start, "angular rate")
     high = _largest_rate(given, name) if end is None else number("--to", end, "angular rate")
+    if not 0 <= low < high:
+        raise InputError(
+            "--to", f"is {high:g} rad/s, --from {low:g} rad/s", "give a range of speeds that ascends from 0"
+        )
+    for option, count, least in (("--modes", modes, 1), ("--orders", orders, 0)):
+        if count < least:
+            raise InputError(option, f"is {count}", f"give {least} or more")
 
     from gbeam.analysis import campbell as find
     from gbeam.analysis import structure_of

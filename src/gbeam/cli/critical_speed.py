@@ -61,6 +61,8 @@ def critical_speed(
         refuse_unwritable(out)
     given = read("critical-speed", scenario, overrides)
     upper = None if to is None else number("--to", to, KINDS[raised])
+    if upper is not None and not upper > 0:
+        raise InputError("--to", f"is {to}", "give a value above zero, where the search ends")
     if masses is None and positions is not None:
         raise InputError("--positions", "stands without --masses", 'add --masses "0.1 kg, 0.5 kg"')
     if masses is not None:

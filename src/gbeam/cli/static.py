@@ -96,7 +96,7 @@ def loads_told(it: Loads) -> dict[str, Any]:
 
 
 def _text(found: Deflection) -> str:
-    x, y, z = (1e3 * found.tip).tolist()
+    x, y, z = _tidy(1e3 * found.tip, 1e3 * np.abs(found.displacement).max())
     warning = "" if found.stable else "; UNSTABLE: the stiffness there is not positive definite"
     tip = f"tip x {x:.6g} mm, y {y:.6g} mm, z {z:.6g} mm"
     return f"{found.motion} at {found.time:.4g} s: {tip} ({found.model}){warning}\n  {_carried(found.loads)}"
@@ -104,10 +104,20 @@ def _text(found: Deflection) -> str:
 
 def _carried(it: Loads | None) -> str:
     assert it is not None
-    force, moment = (", ".join(f"{value:.5g}" for value in each[0] + 0.0) for each in (it.root_force, it.root_moment))
+    pull = float(np.abs(it.force).max())
+    turn = max(float(np.abs(it.moment).max()), pull * it.stations[-1])
+    force, moment = (
+        ", ".join(f"{value:.5g}" for value in _tidy(each[0], size))
+        for each, size in ((it.root_force, pull), (it.root_moment, turn))
+    )
     told = f"base on root: force ({force}) N, moment ({moment}) N m"
     if np.isfinite(it.stress).all():
         told += f"; stress up to {1e-6 * it.stress.max():.5g} MPa at {it.stations[it.stress[0].argmax()]:.4g} m"
     if it.hub_torque is not None:
-        told += f"; torque for the beam {it.hub_torque[0] + 0.0:.5g} N m"
+        told += f"; torque for the beam {_tidy(it.hub_torque, turn)[0]:.5g} N m"
     return told
+
+
+def _tidy(values: Any, size: float) -> list[float]:
+    """Values without the rounding of what is `size` large."""
+    return [float(value) if abs(value) > 1e-10 * size else 0.0 for value in values]

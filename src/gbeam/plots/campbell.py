@@ -30,7 +30,8 @@ def plot_campbell(diagram: Campbell, title: str) -> Figure:
         speed, circles the crossings, a vertical line the critical speed. Modes far above all multiples are left out.
     """
     highest = max(diagram.orders, default=0) * diagram.speed[-1] / (2 * np.pi)
-    shown = [k for k, low in enumerate(np.nanmin(diagram.frequency, axis=0)) if low <= FAR * highest or k < FEW]
+    far = FAR * highest if diagram.orders else np.inf
+    shown = [k for k, low in enumerate(np.nanmin(diagram.frequency, axis=0)) if low <= far or k < FEW]
     left = len(diagram.direction) - len(shown)
     subject = f"{diagram.motion}: frequencies about the equilibrium, {diagram.model}"
     if left:
