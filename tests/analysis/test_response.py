@@ -8,14 +8,19 @@ import numpy as np
 import pytest
 
 from gbeam import (
+    Beam,
     Flight,
     HubRate,
     HubTorque,
     InputError,
+    Material,
+    Model,
     ResponseSettings,
+    Section,
     Sine,
     SmoothStep,
     Structure,
+    assemble,
     constant,
     respond,
     smoothed,
@@ -230,3 +235,15 @@ def test_result_carries_what_plots_need() -> None:
     assert (result.model, result.environment, result.integrator, result.step) == ("FOAM", "flight", "newmark", 1e-3)
     assert result.hub is None and result.axes is None
     assert made("x", result.time, result.tip).tip.shape == (n, 3)
+
+
+def test_a_start_that_no_beam_would_keep_is_warned_of() -> None:
+    """Compressed at ten times the load at which the column buckles (Greenhill), the straight beam is in equilibrium."""
+    column = Beam(10.0, Section.rectangle(0.02, 0.004), Material(2700.0, 70e9))
+    m, stiffness = 2700 * 0.02 * 0.004, 70e9 * 0.02 * 0.004**3 / 12
+    critical = 7.8373 * stiffness / (m * 10.0**3)
+    structure = assemble(column, Model("exact", 1, 0, 2))
+    for share, expected in ((0.5, False), (10.0, True)):
+        flight = Flight(stack(x=constant(share * critical)))
+        answer = respond(structure, flight, ResponseSettings(duration=0.1, step=0.01))
+        assert any("not stable" in it for it in answer.warnings) == expected

@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Array
 
 import gbeam._jax  # noqa: F401
-from gbeam.analysis.static import equilibrium
+from gbeam.analysis.static import settled
 from gbeam.case import Motion
 from gbeam.equations import Coefficients, Damped, Hub, coefficients, on_free_hub, on_prescribed_base
 from gbeam.integrate import LinearSystem, NonlinearSystem, State, evaluate
@@ -72,12 +72,16 @@ def free_hub(motion: HubTorque) -> Hub:
 
 @dataclass(frozen=True)
 class Problem:
-    """What the integrator runs: the system, its initial state, and where the beam's coordinates start in it."""
+    """What the integrator runs: the system, its initial state, and where the beam's coordinates start in it.
+
+    `stable` says whether the relative equilibrium that it starts from is.
+    """
 
     system: LinearSystem | NonlinearSystem
     state: State
     first: int
     coefficients: Coefficients | None
+    stable: bool
 
 
 def problem_of(structure: Structure, motion: Motion, start: float) -> Problem:
@@ -85,13 +89,14 @@ def problem_of(structure: Structure, motion: Motion, start: float) -> Problem:
     inputs = _Inputs(motion, structure.history)
     if isinstance(motion, HubTorque):
         residual = _OnHub(structure.system, free_hub(motion), structure.hub_force)
-        q = jnp.zeros(structure.size)
+        q, stable = jnp.zeros(structure.size), True
         if motion.mount.gravity is not None or structure.history is not None:
             o = jnp.zeros(())
-            q = equilibrium(structure, motion.mount.base(o, o, o), start)
-        return Problem(NonlinearSystem(residual, inputs), State.rest(jnp.append(0.0, q)), 1, None)
-    q = equilibrium(structure, jax.tree.map(lambda x: x[0], in_blocks(evaluate, inputs, np.array([start]))[0]), start)
+            q, stable = settled(structure, motion.mount.base(o, o, o), start)
+        return Problem(NonlinearSystem(residual, inputs), State.rest(jnp.append(0.0, q)), 1, None, stable)
+    base, _ = in_blocks(evaluate, inputs, np.array([start]))
+    q, stable = settled(structure, jax.tree.map(lambda x: x[0], base), start)
     if structure.linear:
         constants = coefficients(structure.system)
-        return Problem(LinearSystem(constants.mass, _Matrices(constants), inputs), State.rest(q), 0, constants)
-    return Problem(NonlinearSystem(_OnBase(structure.system), inputs), State.rest(q), 0, None)
+        return Problem(LinearSystem(constants.mass, _Matrices(constants), inputs), State.rest(q), 0, constants, stable)
+    return Problem(NonlinearSystem(_OnBase(structure.system), inputs), State.rest(q), 0, None, stable)

@@ -256,6 +256,11 @@ def _describe(
         )
     if lost:
         warnings.append(f"{lost}; the result beyond is not to be trusted")
+    elif not problem.stable:
+        warnings.append(
+            "the run starts from an equilibrium that is not stable, which no beam would keep: its stiffness is not "
+            "positive definite; `gbeam critical-speed` tells where that begins"
+        )
     share = float(peaks.max_abs[1:].max() / structure.length)
     if structure.kind != "exact" and share > 0.1:
         warnings.append(
