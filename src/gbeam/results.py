@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -323,15 +324,32 @@ class Response:
 
 
 @dataclass(frozen=True)
+class Failure:
+    """Why there is no whole response in an environment: the outcome, such as diverged, and what happened."""
+
+    outcome: str
+    message: str
+
+
+@dataclass(frozen=True)
 class Study:
-    """The responses of one beam in all environments of a scenario, and their comparisons."""
+    """The responses of one beam in all environments of a scenario, and their comparisons.
+
+    Where a response has no state to start from there is a failure in its place.
+    """
 
     title: str
     responses: dict[str, Response]
     comparisons: tuple[Comparison, ...]
+    failures: Mapping[str, Failure] = field(default_factory=dict)
+
+    @property
+    def unfinished(self) -> Mapping[str, Failure]:
+        """Why not every environment is done, by name."""
+        cut = {name: Failure(it.outcome, it.message) for name, it in self.responses.items() if it.outcome != "done"}
+        return {**cut, **self.failures}
 
     @property
     def outcome(self) -> str:
         """``done`` where every response is, else the first other outcome."""
-        others = [r.outcome for r in self.responses.values() if r.outcome != "done"]
-        return others[0] if others else "done"
+        return next((it.outcome for it in self.unfinished.values()), "done")

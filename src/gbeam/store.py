@@ -124,6 +124,8 @@ def as_tree(study: Study, provenance: Provenance = Provenance()) -> xr.DataTree:
         "command": provenance.command,
         "overrides": "\n".join(provenance.overrides),
     }
+    for name, failed in study.failures.items():
+        root.attrs[f"failure_{name}"] = f"{failed.outcome}: {failed.message}"
     groups = {"/": root}
     groups |= {f"/motions/{name}": _response(it) for name, it in study.responses.items()}
     groups |= {f"/comparisons/{it.centrifuge}": _comparison(it) for it in study.comparisons}

@@ -15,6 +15,7 @@ import pytest
 from gbeam import analysis, store
 from gbeam.cli.console import Watch
 from gbeam.errors import ComputationError
+from gbeam.results import Response
 
 Call = Callable[..., Any]
 
@@ -97,6 +98,26 @@ def test_no_result_leaves_no_files(fast: Path, gbeam: Call, monkeypatch: pytest.
     assert answer.json["outcome"] == "not converged"
     assert answer.json["message"].startswith("motion.flight: no relative equilibrium")
     assert answer.err == "gbeam: not converged: motion.flight: no relative equilibrium; use exact\n"
+
+
+def test_what_one_motion_lacks_the_others_keep(fast: Path, gbeam: Call, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*args: Any, name: str, **how: Any) -> Response:
+        if name == "spin":
+            raise ComputationError("not converged", "no relative equilibrium; use exact")
+        return analysis.respond(*args, name=name, **how)
+
+    monkeypatch.setattr("gbeam.analysis.case_study.respond", fail)
+    answer = gbeam("run", fast, "--json", "--out", "half")
+    assert answer.status == 1
+    assert answer.err == "gbeam: motion.spin not converged: no relative equilibrium; use exact\n"
+    assert answer.json["motions"]["flight"]["outcome"] == "done" and answer.json["comparisons"] == []
+    assert answer.json["motions"]["spin"] == {
+        "outcome": "not converged",
+        "message": "no relative equilibrium; use exact",
+    }
+    tree = store.read("half/result.nc")
+    assert tree.attrs["failure_spin"].startswith("not converged: no relative") and list(tree["motions"]) == ["flight"]
+    assert "spin: not converged\n  No relative equilibrium" in gbeam("run", fast).out
 
 
 def test_interrupted_quietly(fast: Path, gbeam: Call, monkeypatch: pytest.MonkeyPatch) -> None:

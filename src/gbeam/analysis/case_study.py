@@ -12,7 +12,7 @@ from gbeam.case import Case, Motion
 from gbeam.errors import ComputationError, InputError
 from gbeam.model import Structure, assemble
 from gbeam.motion import Centrifuge, Flight, HubRate, HubTorque
-from gbeam.results import Response, Study
+from gbeam.results import Failure, Response, Study
 
 
 def structure_of(case: Case) -> Structure:
@@ -42,7 +42,7 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
     InputError
         With its place in the scenario.
     ComputationError
-        If a motion has no relative equilibrium to start from; the message names the motion.
+        If no motion has a relative equilibrium to start from; the message names each.
     """
     structure = structure_of(case)
 
@@ -53,19 +53,25 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
             if progress is not None:
                 progress(f"{name}: {what}", share)
 
-        try:
-            response = respond(structure, motion, case.response, name=name, progress=report)
-        except ComputationError as error:
-            raise ComputationError(error.outcome, f"motion.{name}: {error}") from None
+        response = respond(structure, motion, case.response, name=name, progress=report)
         return _with_loads(structure, case, motion, response)
 
-    responses = {name: answer(name) for name in case.motions}
+    responses: dict[str, Response] = {}
+    failures: dict[str, Failure] = {}
+    for name in case.motions:
+        try:
+            responses[name] = answer(name)
+        except ComputationError as error:
+            failures[name] = Failure(error.outcome, str(error))
+    if not responses:
+        first = next(iter(failures.values()))
+        raise ComputationError(first.outcome, "; ".join(f"motion.{n}: {it.message}" for n, it in failures.items()))
     comparisons = tuple(
         compare(responses[flight], responses[name])
         for name, flight in case.tracks.items()
-        if responses[flight].outcome == responses[name].outcome == "done"
+        if {flight, name} <= responses.keys() and responses[flight].outcome == responses[name].outcome == "done"
     )
-    return Study(case.title, responses, comparisons)
+    return Study(case.title, responses, comparisons, failures)
 
 
 def _with_loads(structure: Structure, case: Case, motion: Motion, response: Response) -> Response:

@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 from gbeam.analysis.oscillator import riding_acceleration
 from gbeam.results import BaseHistory, Floats, Response
-from gbeam.results_comparison import Comparison
-from gbeam.results_comparison import Mismatch, RootLoads, Shock, Sizes, Statistics
+from gbeam.results_comparison import Comparison, Mismatch, RootLoads, Shock, Sizes, Statistics
 from gbeam.zero_phase import low_pass
 
 CUTOFF = 0.5  # of the lowest natural frequency: trend below, elastic vibration above

@@ -30,13 +30,13 @@ def _newton(system: Damped, base: Base, share: Array, q: Array) -> tuple[Array, 
             loaded, q, o, o, share * base.a_WO_B, jnp.sqrt(share) * base.w_WB_B, share * base.al_WB_B
         )
 
-    def iterate(carry: tuple[Array, ...]) -> tuple[Array, ...]:
+    def iterate(carry: tuple[Array, Array, Array, Array]) -> tuple[Array, Array, Array, Array]:
         q, _, count, _ = carry
         stiffness = jax.jacfwd(residual)(q)
         correction = jnp.linalg.solve(stiffness, residual(q))
         return q - correction, jnp.max(jnp.abs(correction)), count + 1, stiffness
 
-    def go_on(carry: tuple[Array, ...]) -> Array:
+    def go_on(carry: tuple[Array, Array, Array, Array]) -> Array:
         q, size, count, _ = carry
         return (size > 1e-13 + 1e-12 * jnp.max(jnp.abs(q))) & (count < 30)
 

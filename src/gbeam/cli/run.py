@@ -58,9 +58,8 @@ def run(
         console = stdout()
         console.print(summary(answer))
         console.print(f"\n{len(files)} files in {folder}: {', '.join(_names(files))}", soft_wrap=True, markup=False)
-    for name, it in answer.responses.items():
-        if it.outcome != "done":
-            complain(f"motion.{name} {it.outcome}: {it.message}")
+    for name, failure in answer.unfinished.items():
+        complain(f"motion.{name} {failure.outcome}: {failure.message}")
     broken = [name for name, it in answer.responses.items() if it.axes is not None and not it.axes.within_limits]
     for name in broken:
         complain(f"motion.{name} exceeds its machine's limits" + (" (allowed)" if allow_limits else ""))

@@ -39,6 +39,8 @@ def summary(study: Study) -> RenderableType:
     parts: list[RenderableType] = [Text(study.title, style="bold")] if study.title else []
     for it in study.responses.values():
         parts += ["", *_response(it)]
+    for name, failed in study.failures.items():
+        parts += ["", _heading(name, "", failed.outcome), _indented(Text(_sentence(failed.message), style="red"))]
     for comparison in study.comparisons:
         parts += ["", Text(_sentence(comparison.verdict), style="bold")]
         parts += [_indented(Text(line)) for line in comparison_lines(comparison)]
@@ -56,10 +58,13 @@ def _sentence(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
+def _heading(name: str, kind: str, outcome: str) -> Text:
+    colour = "green" if outcome == "done" else "bold red"
+    return Text.from_markup(f"[bold]{escape(name)}[/bold]{kind}: [{colour}]{outcome}[/{colour}]")
+
+
 def _response(it: Response) -> Iterator[RenderableType]:
-    colour = "green" if it.outcome == "done" else "bold red"
-    kind = "" if it.name == it.environment else f" ({it.environment})"
-    yield Text.from_markup(f"[bold]{escape(it.name)}[/bold]{kind}: [{colour}]{it.outcome}[/{colour}]")
+    yield _heading(it.name, "" if it.name == it.environment else f" ({it.environment})", it.outcome)
     if it.message:
         yield _indented(Text(_sentence(it.message), style="red"))
     yield _indented(_tip(it))

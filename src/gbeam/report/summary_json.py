@@ -36,7 +36,8 @@ def summary_json(study: Study, files: Iterable[Path] = ()) -> dict[str, Any]:
     return {
         "title": study.title,
         "outcome": study.outcome,
-        "motions": {name: _motion(it) for name, it in study.responses.items()},
+        "motions": {name: _motion(it) for name, it in study.responses.items()}
+        | {name: asdict(it) for name, it in study.failures.items()},
         "comparisons": [_comparison(it) for it in study.comparisons],
         "files": [str(file) for file in files],
     }
