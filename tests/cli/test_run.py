@@ -147,8 +147,7 @@ def test_an_interrupt_that_jax_swallows_still_ends_the_run(handled: None) -> Non
 
 @pytest.mark.parametrize("wrong", [[], ["--set", "beam.length=short", "--json"]])
 def test_full_disk_behind_stdout(fast: Path, wrong: list[str]) -> None:
-    start = [sys.executable, "-c", "from gbeam.cli import main; raise SystemExit(main())"]
-    command = [*start, "check", str(fast), *wrong]
+    command = [sys.executable, "-m", "gbeam", "check", str(fast), *wrong]
     with open("/dev/full", "w") as full:
         done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert done.returncode == 1
