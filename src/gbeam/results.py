@@ -117,9 +117,11 @@ class Shortfall:
     remedy: str
 
     def __str__(self) -> str:
+        # A turn too sharp may yet be made: axis 2 pays for it.
+        can = "is the most without a jerk of axis 2" if self.reason == "turns sharply" else "can be made"
         return (
             f"{self.start:.3f} to {self.end:.3f} s: {self.reason}, {self.wanted:.3g} {self.unit} at {self.time:.3f} s "
-            f"where {self.possible:.3g} {self.unit} can be made; {self.remedy}"
+            f"where {self.possible:.3g} {self.unit} {can}; {self.remedy}"
         )
 
 

@@ -94,6 +94,16 @@ def test_loads_gravity_exceeds_are_bridged_and_the_axial_one_is_kept() -> None:
     assert episode.reason == "out of reach of the gimbals" and 4.5 < episode.start < 5 < episode.end < 5.5
 
 
+def test_a_held_path_does_not_overshoot_through_zero() -> None:
+    """A dip of the load across the beam, so steep that the smoothest path would go through zero and back."""
+    raw = stack(
+        x=constant(3 * G), z=PiecewiseLinear([0.0, 2.0, 3.0, 5.0, 6.0, 8.0], np.array([6, 6, 0.5, 0.5, 6, 6]) * G)
+    )
+    made = build_target(raw, span=(0.0, 8.0), idle=1.4 * G, smoothing=0.06, gravity=True, arm=3.3)
+    assert np.asarray(made.load(T))[:, 2].min() > 1.01 * G
+    assert {it.reason for it in made.episodes()} == {"out of reach of the gimbals"}
+
+
 def test_every_derivative_is_finite_where_the_load_is_held() -> None:
     function = target(TRAPEZOID, idle=1.4 * G, gravity=True).load
     t = np.linspace(0, 12, 25)

@@ -16,6 +16,7 @@ Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 IDLE_BAND = 0.1  # of idle: how softly the hold sets in
+UNTOUCHED = 1 + IDLE_BAND / 2  # times idle: a larger load is not raised
 UNDIRECTED = 0.05  # of idle: a smaller load has no direction worth following
 REACH = 1.05 * STANDARD_GRAVITY  # least load across the beam to be asked of the gimbals where gravity acts
 OPPOSED = 0.1  # two unit vectors whose chord passes this near to zero count as opposite
@@ -102,8 +103,13 @@ def refuse_far(times: Floats, load: Floats, far: Flags) -> None:
         f"reach {REACH / STANDARD_GRAVITY:g} g or more (out of reach from {times[wrong[0]]:.3f} s, "
         f"last at {times[wrong[-1]]:.3f} s)",
         'set idle = "1.4 g", or clip = true to carry on with a held target there, '
-        f"or add {(REACH / STANDARD_GRAVITY - across[worst]):.2g} g across the beam",
+        f"or add {missing_across(across[worst] * STANDARD_GRAVITY)} across the beam",
     )
+
+
+def missing_across(load: float) -> str:
+    """What a load across the beam, m/s², lacks to be in reach; rounded up, so that adding it does."""
+    return f"{np.ceil(100 * (REACH - load) / STANDARD_GRAVITY - 1e-6) / 100:g} g"
 
 
 def refuse_reversal(times: Floats, points: Floats, least: float) -> None:

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from gbeam.motion.blocks import in_blocks
 from gbeam.motion.derivative import with_rate
-from gbeam.motion.hold import REACH
+from gbeam.motion.hold import REACH, UNTOUCHED, missing_across
 from gbeam.motion.profile import Profile, sampled
 from gbeam.motion.record import STANDARD_GRAVITY
 from gbeam.motion.target import LEAST_IDLE, Target
+from gbeam.motion.widths import widths_that_do
 from gbeam.results import Shortfall
 
 _GRID = 0.002  # s
@@ -30,7 +31,9 @@ def shortfalls(target: Target, arm: float) -> tuple[Shortfall, ...]:
     """Find where the flight's load is below idle, across the beam below gravity, or turns too sharply.
 
     The last is theory.md A1: at a maximum, and at the corner before a plateau, the horizontal load a can be followed
-    without a jump of the yaw rate only where −ä <= a²/R. A corner of slope change j rounded over T has −ä = 2j/T.
+    without a jump of the yaw rate only where −ä <= a²/R. A corner of slope change j rounded over T has −ä = 2j/T, and a
+    straight slope j of a load f that gravity is part of −ä = (jγ)²/a³, which no rounding changes. At a corner short of
+    a maximum somewhat more can be followed, and axis 2 pays: 2.3 times the acceleration for 1.3 times the turn.
 
     Parameters
     ----------
@@ -44,11 +47,14 @@ def shortfalls(target: Target, arm: float) -> tuple[Shortfall, ...]:
     idle, gravity, width = float(target.idle), float(target.gravity), 2 * float(target.reach)
     found: list[Shortfall] = []
     total, across = np.linalg.norm(flight, axis=-1), np.linalg.norm(flight[:, 1:], axis=-1)
-    found += _below(time, total, idle, "below idle", lambda least: _idle_remedy(least, gravity))
+    found += _below(time, total, idle, "below idle", lambda run: _idle_remedy(total[run], across[run], gravity))
     if gravity:
-        found += _below(time, across, REACH, "across below gravity", _across_remedy)
+        found += _below(time, across, REACH, "across below gravity", lambda run: _across_remedy(np.min(across[run])))
     allowed = size**2 / arm
-    found += _too_sharp(time, -turn, allowed, (-turn > allowed * (1 + _ROUNDING)) & ~held, width)
+    sharp = _runs((-turn > allowed * (1 + _ROUNDING)) & ~held, time)
+    enough = widths_that_do(target.corners, gravity, arm, time, held, sharp, width) if sharp else []
+    remedies = [_sharp_remedy(it, float(np.max(total[run]))) for it, run in zip(enough, sharp, strict=True)]
+    found += _too_sharp(time, -turn, allowed, sharp, remedies)
     return tuple(sorted(found, key=lambda it: it.start))
 
 
@@ -70,17 +76,30 @@ def size_and_rates(
     return value, rate, second
 
 
-def _idle_remedy(least: float, gravity: float) -> str:
-    floor = LEAST_IDLE * STANDARD_GRAVITY if gravity else 0.0
-    if least > max(floor, 0.02 * STANDARD_GRAVITY):
-        return f'idle = "{np.floor(100 * least / STANDARD_GRAVITY) / 100:.2f} g" would follow it'
-    lowest = f"below {LEAST_IDLE} g" if gravity else "so near to zero"
-    return f"no machine follows a load {lowest}: it is held"
+def _idle_remedy(total: Floats, across: Floats, gravity: float) -> str:
+    """What would let loads below idle, m/s², be followed."""
+    least = np.floor(100 * np.min(total) / UNTOUCHED / STANDARD_GRAVITY) / 100
+    if least >= (LEAST_IDLE if gravity else 0.02):
+        return f'idle = "{least:.2f} g" or less would follow it'
+    if not gravity:
+        return "no machine follows a load so near to zero: it is held"
+    if np.min(across) >= REACH:
+        return "without idle it would be followed"
+    return f"no machine follows a load below {REACH / STANDARD_GRAVITY:g} g across the beam: it is held"
+
+
+def _sharp_remedy(width: float | None, load: float) -> str:
+    """What would let a turn be followed, or held: the smoothing, s, that does, if any; the largest load then, m/s²."""
+    if width is not None:
+        return f'smoothing = "{np.ceil(1e3 * width):.0f} ms" or more would let it'
+    return (
+        f'no smoothing lets it; idle = "{np.ceil(100 * load / UNTOUCHED / STANDARD_GRAVITY) / 100:.2f} g" would hold it'
+    )
 
 
 def _across_remedy(least: float) -> str:
-    missing, reach = (REACH - least) / STANDARD_GRAVITY, REACH / STANDARD_GRAVITY
-    return f"add {missing:.2g} g across the beam, or track a part of the flight with {reach:.3g} g there"
+    reach = REACH / STANDARD_GRAVITY
+    return f"add {missing_across(least)} across the beam, or track a part of the flight with {reach:g} g there"
 
 
 def _runs(flags: Flags, time: Floats) -> list[slice]:
@@ -95,22 +114,20 @@ def _runs(flags: Flags, time: Floats) -> list[slice]:
     return runs
 
 
-def _below(time: Floats, load: Floats, least: float, reason: str, remedy: Callable[[float], str]) -> list[Shortfall]:
+def _below(time: Floats, load: Floats, least: float, reason: str, remedy: Callable[[slice], str]) -> list[Shortfall]:
     found = []
     for run in _runs(load < least * (1 - _ROUNDING), time):
         worst = run.start + int(np.argmin(load[run]))
         wanted, possible = load[worst] / STANDARD_GRAVITY, least / STANDARD_GRAVITY
         start, end, when = float(time[run.start]), float(time[run.stop - 1]), float(time[worst])
-        found.append(Shortfall(start, end, reason, when, float(wanted), float(possible), "g", remedy(load[worst])))
+        found.append(Shortfall(start, end, reason, when, float(wanted), float(possible), "g", remedy(run)))
     return found
 
 
-def _too_sharp(time: Floats, turn: Floats, allowed: Floats, flags: Flags, width: float) -> list[Shortfall]:
+def _too_sharp(time: Floats, turn: Floats, allowed: Floats, runs: list[slice], remedies: list[str]) -> list[Shortfall]:
     found = []
-    for run in _runs(flags, time):
+    for run, remedy in zip(runs, remedies, strict=True):
         worst = run.start + int(np.argmax(turn[run] / allowed[run]))
-        needed = width * turn[worst] / allowed[worst]
-        remedy = f'smoothing = "{np.ceil(1e3 * needed):.0f} ms" or more would let it' if width else "give smoothing"
         start, end, when = float(time[run.start]), float(time[run.stop - 1]), float(time[worst])
         wanted, possible = float(turn[worst]), float(allowed[worst])
         found.append(Shortfall(start, end, "turns sharply", when, wanted, possible, "m/s^4", remedy))

@@ -9,6 +9,7 @@ import scipy.sparse.linalg
 from numpy.typing import NDArray
 
 from gbeam.motion.hann import soft_floor
+from gbeam.motion.hold import OPPOSED, nearest_to_zero
 
 BAND = 0.1  # of a floor: how softly it sets in
 
@@ -58,7 +59,15 @@ def settle(times: Floats, load: Floats, held: Flags, period: float, idle: float,
         gentle[:, 1:] *= (np.asarray(soft_floor(jnp.asarray(across), reach, BAND * reach)) / np.maximum(across, 1e-9))[
             :, None
         ]
-    return np.where(held[:, None], gentle, load)
+    settled = np.where(held[:, None], gentle, load)
+    # Between steep slopes so smooth a path may overshoot through zero, where the load itself does not go.
+    part, least = (slice(1, 3), 2 * OPPOSED * reach) if reach > 0 else (slice(0, 3), 2 * OPPOSED * idle)
+    edges = np.diff(held.astype(int), prepend=0, append=0)
+    for start, stop in zip(np.flatnonzero(edges > 0), np.flatnonzero(edges < 0), strict=True):
+        around = slice(max(start - 1, 0), stop + 1)
+        if nearest_to_zero(times[around], settled[around, part])[1] < least:
+            settled[start:stop] = load[start:stop]
+    return settled
 
 
 def _smooth(times: Floats, values: Floats, free: Flags, period: float) -> Floats:

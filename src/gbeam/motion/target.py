@@ -50,6 +50,8 @@ class Target(eqx.Module):
         Vector, base axes, m/s²: specific force where gravity acts, else acceleration.
     flight : Profile
         What it was made from, likewise.
+    corners : Profile
+        The load before its corners were rounded, likewise.
     idle : array
         Least load, m/s²; zero if there is none.
     gravity : array
@@ -72,6 +74,7 @@ class Target(eqx.Module):
 
     load: Profile
     flight: Profile
+    corners: Profile
     idle: Float[Array, ""]
     gravity: Float[Array, ""]
     times: Float[Array, " k"]
@@ -194,6 +197,7 @@ def build_target(
     return Target(
         load=load,
         flight=raw,
+        corners=corners,
         idle=jnp.asarray(least or 0.0, dtype=float),
         gravity=jnp.asarray(STANDARD_GRAVITY if gravity else 0.0, dtype=float),
         times=jnp.asarray(times),
