@@ -13,6 +13,7 @@ from gbeam import (
     HubRate,
     HubTorque,
     InputError,
+    Load,
     Material,
     Model,
     ResponseSettings,
@@ -247,3 +248,13 @@ def test_a_start_that_no_beam_would_keep_is_warned_of() -> None:
         flight = Flight(stack(x=constant(share * critical)))
         answer = respond(structure, flight, ResponseSettings(duration=0.1, step=0.01))
         assert any("not stable" in it for it in answer.warnings) == expected
+
+
+@pytest.mark.parametrize(("across", "warned"), [(0.0, False), (0.02, True)])
+def test_a_tangent_turned_nearly_back_out_of_plane_is_warned_of(across: float, warned: bool) -> None:
+    section, material = Section.rectangle(0.02, 0.02), Material(2700.0, 7e8)
+    bent = 3.0 * 7e8 * 0.02**4 / 12  # N m: turns the tip of a metre by 3 rad, 172 degrees
+    tip = Load(1.0, force=(0.0, across, 0.0), moment=(0.0, bent, 0.0), follows=True)
+    structure = assemble(Beam(1.0, section, material, loads=[tip]), Model("exact", 1, 2, 2))
+    answer = respond(structure, Flight(stack(z=constant(0.0))), ResponseSettings(duration=0.02, step=0.01))
+    assert any("out of one plane" in it for it in answer.warnings) == warned

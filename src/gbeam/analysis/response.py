@@ -13,13 +13,12 @@ import numpy as np
 from jaxtyping import Array
 
 import gbeam._jax  # noqa: F401
-from gbeam.analysis.definiteness import first_loss
+from gbeam.analysis.outcome import describe
 from gbeam.analysis.plan import axes_result
 from gbeam.analysis.problem import Problem, problem_of
 from gbeam.analysis.stepping import difference, first_step, refine, scheme_of
 from gbeam.case import Motion, ResponseSettings
 from gbeam.energy import rest_matrices
-from gbeam.equations import coefficients
 from gbeam.integrate import (
     LinearSystem,
     Trajectory,
@@ -165,7 +164,8 @@ def _result(
         base = BaseHistory(*(np.asarray(x) for x in (there.a_WO_B, there.w_WB_B, there.al_WB_B)))
         hub = _given_hub(motion, time) if isinstance(motion, HubRate) else None
         environment = type(motion).__name__.lower() if hub is None else "hub"
-    outcome, message, warnings = _describe(structure, problem, settings, trajectory, base, peaks, time, error)
+    told = describe(structure, problem, settings, trajectory, base, peaks, time, q[:, beam], error)
+    outcome, message, warnings = told
     axes = axes_result(motion, time) if isinstance(motion, Centrifuge) else None
     return Response(
         name=name,
@@ -215,61 +215,3 @@ def _given_hub(motion: HubRate, time: Floats) -> HubResult:
     h = np.diff(time)
     turned = h * (rate[1:] + rate[:-1]) / 2 - h**2 * np.diff(acceleration) / 12
     return HubResult(np.append(0.0, np.cumsum(turned)), rate, acceleration, np.full_like(rate, np.nan))
-
-
-def _describe(
-    structure: Structure,
-    problem: Problem,
-    settings: ResponseSettings,
-    trajectory: Trajectory,
-    base: BaseHistory,
-    peaks: Peaks,
-    time: Floats,
-    error: float,
-) -> tuple[str, str, tuple[str, ...]]:
-    """Outcome, message and warnings of a run."""
-    constants = problem.coefficients
-    if constants is None and structure.linear:
-        constants = coefficients(structure.system)
-    loss = None if constants is None else first_loss(constants, time, base)
-    lost = (
-        ""
-        if loss is None
-        else f"{structure.kind}'s stiffness is not positive definite from t = {loss[0]:.4g} s, where the base turns at "
-        f"{loss[1]:.4g} rad/s"
-    )
-    warnings = []
-    end = trajectory.time[-1]
-    if trajectory.stopped:
-        why = f"{lost}: the model is not valid beyond that speed; use FOAM or exact" if lost else "use exact"
-        return (
-            "diverged",
-            f"the displacement exceeded the beam's length, {structure.length:.4g} m, at t = {end:.4g} s; {why}",
-            (),
-        )
-    if not trajectory.converged:
-        return (
-            "not converged",
-            f"no acceleration satisfies the equations in the step after t = {end:.4g} s; "
-            f'try a smaller response.step, or response.integrator = "generalized-alpha" with rho_inf = 0.8',
-            (),
-        )
-    if lost:
-        warnings.append(f"{lost}; the result beyond is not to be trusted")
-    elif not problem.stable:
-        warnings.append(
-            "the run starts from an equilibrium that is not stable, which no beam would keep: its stiffness is not "
-            "positive definite; `gbeam critical-speed` tells where that begins"
-        )
-    share = float(peaks.max_abs[1:].max() / structure.length)
-    if structure.kind != "exact" and share > 0.1:
-        warnings.append(
-            f"the tip moves by {share:.1%} of the length: second-order models are then wrong by about "
-            f'{0.35 * share**2:.1%} of the peak (TLAM and CFOAM by more); check with model.kind = "exact"'
-        )
-    if math.isfinite(error) and error > settings.tolerance:
-        warnings.append(
-            f"the estimated error, {error:.2g} of the largest displacement, is above the tolerance "
-            f'{settings.tolerance:g}; give a smaller step, or "auto"'
-        )
-    return "done", "", tuple(warnings)
