@@ -28,7 +28,7 @@ def write_commands(plan: MachinePlan, commands: Commands, folder: Path) -> list[
     Parameters
     ----------
     plan : MachinePlan
-        Which machine it is; a plan that exceeds limits says so in the files.
+        Which machine it is; a plan that exceeds limits or holds its target says so in the files.
     commands : Commands
     folder : Path
         Which exists.
@@ -72,6 +72,7 @@ def header(plan: MachinePlan, commands: Commands) -> list[str]:
         "Units: time s, angles rad, rates rad/s, accelerations rad/s^2.",
         *FRAME,
     ]
+    lines[1:1] = [f"TARGET HELD {start:.3f} to {end:.3f} s: {why}" for start, end, why in plan.axes.episodes]
     if plan.outcome != "done":
         lines.insert(1, f"{plan.outcome.upper()}: {plan.message}")
     return lines

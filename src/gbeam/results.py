@@ -167,6 +167,12 @@ class AxesResult:
         return not any(use.exceeded for use in self.limits)
 
     @property
+    def exceeding(self) -> str:
+        """The limits that are exceeded, by how much and when; empty where none is."""
+        broken = [str(use) for use in self.limits if use.exceeded]
+        return f"exceeds {'; '.join(broken)}" if broken else ""
+
+    @property
     def tracking_error(self) -> Floats:
         """Size of achieved − wanted, (t,) m/s²."""
         return np.asarray(np.linalg.norm(self.achieved - self.wanted, axis=1))

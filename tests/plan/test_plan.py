@@ -126,6 +126,49 @@ def test_a_broken_promise_is_told_by_every_verb(
             assert warning in stored.attrs["warnings"]
 
 
+def test_run_names_the_limits_too(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scenario.write_text(PLAN.replace("60 rpm", "20 rpm") + BEAM, encoding="utf-8")
+    for allow, status, mark in ((), 1, "%) at"), (("--allow-limits",), 0, "(allowed)"):
+        assert main(["run", str(scenario), "--json", *allow]) == status
+        told = capsys.readouterr()
+        assert "motion.spin limits exceeded: exceeds axis 1 rate" in told.err and mark in told.err
+        limits = json.loads(told.out)["motions"]["spin"]["limits"]
+        assert next((it["axis"], it["quantity"]) for it in limits if it["exceeded"]) == ("axis 1", "rate")
+
+
+DIP = ["--set", "motion.flight.acceleration.z={ profile = 'table', times = [0, 1, 1.4, 1.6, 2, 3], "
+       "values = ['4 g', '4 g', '0.9 g', '0.9 g', '4 g', '4 g'] }"]  # fmt: skip
+
+
+def test_a_clipped_target_is_asked_for_and_marked(
+    scenario: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    for verb in ("plan", "run"):
+        scenario.write_text(PLAN + BEAM, encoding="utf-8")
+        assert main([verb, str(scenario), *DIP, "--out", str(out)]) == 2
+        told = capsys.readouterr().err
+        assert "0.9 g only at 1.400 s" in told and "clip = true" in told and "add 0.15 g across" in told
+        assert not out.exists()
+    clip = ["--set", "motion.spin.clip=true", "--allow-limits"]
+    assert main(["plan", str(scenario), *DIP, *clip, "--out", str(out), "--json"]) == 0
+    spin = json.loads(capsys.readouterr().out)["motions"]["spin"]
+    (held,) = spin["held"]
+    (far,) = (it for it in spin["unreachable"] if it["reason"] == "across below gravity")
+    assert held["reason"] == "out of reach of the gimbals" and held["start"] < far["start"] < far["end"] < held["end"]
+    marked = f"TARGET HELD {held['start']:.3f} to {held['end']:.3f} s: out of reach of the gimbals"
+    assert marked in (out / "commands_spin.csv").read_text(encoding="utf-8")
+    assert marked in str(loadmat(out / "commands_spin.mat")["conventions"])
+
+
+def test_what_is_lacking_across_the_beam_is_enough_when_added(
+    scenario: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for level, status in ("1.05 g", 0), ("1.035 g", 2):  # 0.9 g and 0.15 g; and 0.9 of that
+        assert main(["plan", str(scenario), *(it.replace("0.9 g", level) for it in DIP), "--allow-limits"]) == status
+    assert "add 0.02 g across the beam" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("start", ["rest", "pre-yawed"])
 def test_a_spin_up_is_told_and_commanded(
     scenario: Path, tmp_path: Path, start: str, capsys: pytest.CaptureFixture[str]

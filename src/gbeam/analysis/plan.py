@@ -79,11 +79,8 @@ def plan(name: str, motion: Centrifuge, tracks: str = "") -> MachinePlan:
     count = min(int(np.ceil((last - first) / _GRID)), _MOST)
     time = np.linspace(first, last, count + 1)
     axes = axes_result(motion, time)
-    broken = [str(use) for use in axes.limits if use.exceeded]
-    message = f"exceeds {'; '.join(broken)}" if broken else ""
-    return MachinePlan(
-        name, tracks, float(motion.geometry.arm), "limits exceeded" if broken else "done", message, time, axes
-    )
+    outcome = "done" if axes.within_limits else "limits exceeded"
+    return MachinePlan(name, tracks, float(motion.geometry.arm), outcome, axes.exceeding, time, axes)
 
 
 def commands(motion: Centrifuge, sample: float) -> Commands:

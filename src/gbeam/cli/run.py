@@ -60,9 +60,9 @@ def run(
         console.print(f"\n{len(files)} files in {folder}: {', '.join(_names(files))}", soft_wrap=True, markup=False)
     for name, failure in answer.unfinished.items():
         complain(f"motion.{name} {failure.outcome}: {failure.message}")
-    broken = [name for name, it in answer.responses.items() if it.axes is not None and not it.axes.within_limits]
-    for name in broken:
-        complain(f"motion.{name} exceeds its machine's limits" + (" (allowed)" if allow_limits else ""))
+    broken = {name: it.axes.exceeding for name, it in answer.responses.items() if it.axes and it.axes.exceeding}
+    for name, which in broken.items():
+        complain(f"motion.{name} limits exceeded: {which}" + (" (allowed)" if allow_limits else ""))
     return 0 if answer.outcome == "done" and (allow_limits or not broken) else FAILED
 
 

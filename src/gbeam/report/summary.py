@@ -153,4 +153,4 @@ def _tracking(response: Response, it: AxesResult) -> Iterator[str]:
     for each in told[:SHORTFALLS]:
         yield f"warning: {each}"
     if len(told) > SHORTFALLS:
-        yield f"warning: {len(told) - SHORTFALLS} places more like these: see `gbeam plan`"
+        yield f"warning: and {len(told) - SHORTFALLS} more: see `gbeam plan`"
