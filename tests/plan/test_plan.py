@@ -3,6 +3,7 @@
 import csv
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -183,6 +184,29 @@ def test_a_spin_up_is_told_and_commanded(
     commands = loadmat(tmp_path / "commands_spin.mat")
     np.testing.assert_allclose(commands["rate"][0], 0, atol=1e-12)
     np.testing.assert_allclose(commands["acceleration"][0], 0, atol=1e-12)
+
+
+@pytest.mark.parametrize("limit", ['axis1 = { acceleration = "3 rad/s^2" }', 'axis1 = { jerk = "8 rad/s^3" }'])
+def test_the_spin_up_that_the_arm_needs_is_named(
+    scenario: Path, limit: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = PLAN.replace('inverse = "flat"', 'inverse = "quasi-static"\nstart = "rest"\nspin_up = "1 s"')
+    text = text.replace('axis1 = { rate = "60 rpm", acceleration = "5 rad/s^2" }', limit)
+    text = text.replace("0.5 s", "9 s").replace('duration = "3 s"', 'duration = "6 s"')  # a load of 2 g throughout
+    scenario.write_text(text, encoding="utf-8")
+
+    def told(*more: str) -> tuple[int, dict[str, Any]]:
+        status = main(["plan", str(scenario), "--json", *more])
+        return status, json.loads(capsys.readouterr().out)["motions"]["spin"]
+
+    status, spin = told()
+    (warning,) = spin["warnings"]
+    assert (
+        status == 1 and spin["outcome"] == "limits exceeded" and "the arm exceeds its limits in the spin-up" in warning
+    )
+    enough = float(warning.split('"')[1].split()[0])
+    assert told("--set", f"motion.spin.spin_up={enough} s")[0] == 0
+    assert told("--set", f"motion.spin.spin_up={0.9 * enough} s")[0] == 1
 
 
 def test_start_and_spin_up_belong_together(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -43,7 +43,10 @@ def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
         limits=limits,
         unreachable=motion.unreachable(),
         control_point=float(motion.control_point),
-        warnings=_broken_promise(motion, time, wanted, np.asarray(achieved - wanted), held, limits),
+        warnings=(
+            *_broken_promise(motion, time, wanted, np.asarray(achieved - wanted), held, limits),
+            *_short_spin_up(motion, limits),
+        ),
     )
 
 
@@ -62,6 +65,21 @@ def _broken_promise(
         f"where {type(motion.inverse).__name__.lower()} promises {motion.inverse.within:g}: {motion.inverse.unless}"
         + (f" (limits used up: {used})" if used else ""),
     )
+
+
+def _short_spin_up(motion: Centrifuge, limits: tuple[LimitUse, ...]) -> tuple[str, ...]:
+    """Say how long a spin-up the arm's limits need, which no inverse knows; nothing where it is long enough."""
+    first, ready, width = float(motion.target.span[0]), float(motion.target.ready), 2 * float(motion.target.reach)
+    # Over the spin-up's length T the arm's acceleration and power go with 1/T, its jerk with 1/T².
+    short = [
+        use.share if use.quantity != "jerk" else np.sqrt(use.share)
+        for use in limits
+        if use.exceeded and use.time < ready and use.axis in ("axis 1", "arm") and use.quantity != "rate"
+    ]
+    if not short:
+        return ()
+    enough = np.ceil(100 * (max(short) * (ready - first - width) + width)) / 100
+    return (f'the arm exceeds its limits in the spin-up: spin_up = "{enough:g} s" or more would keep them',)
 
 
 def plan(name: str, motion: Centrifuge, tracks: str = "") -> MachinePlan:

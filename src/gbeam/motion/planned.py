@@ -8,7 +8,8 @@ where w is small while the target is held anyway and the last term, too small to
 of equally good motions. Limits are kept between the knots too, by the hull of the splines. Every row acts on six
 neighbouring coefficients of the axes, so the normal equations are banded and a minute's record takes seconds. Standing
 still keeps every limit: a plan always exists, and how well it follows the load is told with it. The minimum is the one
-near the plan without limits; where limits leave little of that, a motion of another kind may be better.
+near the plan without limits; where limits leave little of that, a motion of another kind may be better. A spin-up has
+its own course, which is not planned.
 """
 
 from __future__ import annotations
