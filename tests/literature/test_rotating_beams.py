@@ -93,12 +93,12 @@ def test_uniform_blade_flap(speed: float) -> None:
     np.testing.assert_allclose(found, published, atol=ROUNDED)
     np.testing.assert_allclose(found, independent, rtol=6e-6)
     # The exact field to second order is the same theory, and its polynomials converge faster.
-    np.testing.assert_allclose(frequencies(polynomial_shapes(), spinning(speed, axis=1), 3), independent, atol=1.1e-6)
+    np.testing.assert_allclose(frequencies(polynomial_shapes(), spinning(speed, axis=1), 3), independent, atol=6e-7)
 
 
 @cache
 def polynomial_shapes() -> Coefficients:
-    exact = assemble(unit_beam(), Model("exact", 0, 10, 0)).system
+    exact = assemble(unit_beam(), Model("exact", 0, 12, 0)).system
     return coefficients(Damped(second_order(exact.energy), exact.damping))
 
 
@@ -238,6 +238,28 @@ def test_rotating_bar_on_a_hub() -> None:
     np.testing.assert_allclose(exact.displacement(equilibrium(exact, base))[-1, 0], tip, atol=1e-9)
 
 
+# --- straight blade of Epps and Chandra (1996) J. Am. Helicopter Soc. 41:29, as modelled by Hodges, Shang and Cesnik
+#     (1995), in byuflowlab/GXBeam.jl, test/examples/rotating.jl. Inch, pound force, s.
+
+# rpm: flap 1 to 3 measured on the blade without sweep; flap 1 to 4 of Euler and Bernoulli's beam (independent), Hz
+BLADE = {
+    0: ([1.4, 10.3, 27.7], [1.49, 9.32, 26.1, 51.14]),
+    500: ([10.2, 25.2, 47.0], [9.19, 23.84, 44.55, 72.61]),
+    750: ([14.8, 36.1, 62.9], [13.55, 34.0, 59.49, 91.81]),
+}
+
+
+@pytest.mark.parametrize("rpm", BLADE)
+def test_straight_blade_flap(rpm: float) -> None:
+    """Measured within 10 % (the scatter of the experiment), independent to the printed digit."""
+    measured, independent = BLADE[rpm]
+    blade = Beam(37.5, Section.rectangle(1.0, 0.063), Material(2.51e-4, 1.06e7))
+    c = coefficients(assemble(blade, Model("FOAM", 0, 0, 26)).system)
+    found = frequencies(c, spinning(rpm * np.pi / 30, axis=2, radius=2.5), 4) / (2 * np.pi)
+    np.testing.assert_allclose(found, independent, atol=6e-3)
+    np.testing.assert_allclose(found[:3], measured, rtol=0.1)
+
+
 # --- spin-up, Simo and Vu-Quoc (1988) CMAME 66:125-161, example 5.1; Kane, Ryan and Banerjee (1987)
 
 SPIN_UP = SmoothStep(6.0, 15.0)  # ψ' of ψ = 6/15 (t²/2 + (15/2π)² (cos(2πt/15) − 1)), 6 rad/s after
@@ -252,18 +274,18 @@ def robot_arm() -> Structure:
 
 @pytest.mark.slow
 def test_spin_up_of_the_robot_arm() -> None:
-    """Peaks: published within 2 %, independent (exact beam, finite elements) within 0.3 %."""
+    """Peaks: published within 2 %, independent (exact beam, finite elements) within 0.05 %."""
     settings = ResponseSettings(duration=20.0, step=5e-3, residual_from=15.5)
     result = respond(robot_arm(), HubRate(0.0, SPIN_UP), settings)
     time, (axial, across) = result.time, result.tip[:, :2].T
-    assert across.min() == pytest.approx(-0.57384, rel=3e-3)
+    assert across.min() == pytest.approx(-0.57384, rel=5e-4)
     assert across.min() == pytest.approx(-0.5723, rel=2e-2)
     assert time[across.argmin()] == pytest.approx(6.76, abs=0.03)
-    assert axial.min() == pytest.approx(-0.018823, rel=3e-3)
+    assert axial.min() == pytest.approx(-0.018823, rel=5e-4)
     assert axial.min() == pytest.approx(-0.01869, rel=2e-2)
-    assert result.peaks.residual_amplitude[1] == pytest.approx(0.00365, rel=5e-3)
+    assert result.peaks.residual_amplitude[1] == pytest.approx(0.00365, rel=2e-3)  # printed to three digits
     turned = np.abs(np.rad2deg(np.arctan2(*across_slope(result.q))))  # of the tip's section against the root's
-    assert turned.max() == pytest.approx(4.4288, rel=3e-3)
+    assert turned.max() == pytest.approx(4.4288, rel=5e-4)
     assert turned.max() == pytest.approx(4.37, rel=2e-2)
     assert time[turned.argmax()] == pytest.approx(6.72, abs=0.03)
 
