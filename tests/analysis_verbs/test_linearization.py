@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 import scipy.io
 
-from gbeam import InputError, Model, assemble
+from gbeam import Beam, InputError, Model, Root, assemble
 from gbeam.analysis import Gauge, balance, linearize, modes, nonlinear_system, truncate
 from gbeam.analysis.operating import linear_matrices, on_base, on_hub, operating_point
 from gbeam.motion import Base, HubRate, HubTorque, constant
 
-from .beams import FREE_2009, HUB_2009, beam_2009, structure_2009
+from .beams import ALUMINIUM, BOX, FREE_2009, HUB_2009, beam_2009, structure_2009
 
 SOFT = structure_2009("SFOAM", 0, 3, mass=0.1, damping=0.01)
 BASE = Base(*(jnp.array(v) for v in ([-2.0, 0.5, 0.3], [0.1, 0.2, 1.5], [0.3, -0.1, 0.2])))
@@ -64,6 +64,19 @@ def test_state_space_of_a_free_hub():
     assert strain == pytest.approx(moment * 0.01 / (6.8952e10 * 8.2189e-9), rel=0.05)
     with pytest.raises(InputError, match="choose from"):
         system.select(outputs=("nose",))
+
+
+def test_springs_at_the_root_are_states_with_their_own_units():
+    beam = Beam(8.0, BOX, ALUMINIUM, root=Root(rotation_y=500.0, translation_z=2e4))
+    system = linearize(assemble(beam, Model("FOAM", 0, 0, 1)), HUB_2009, rate=1.0)
+    assert [(it.name, it.unit) for it in system.states[:6]] == [
+        ("q_z_1", "m"),
+        ("q_root_translation_z", "m"),
+        ("q_root_rotation_y", "rad"),
+        ("rate_q_z_1", "m/s"),
+        ("rate_q_root_translation_z", "m/s"),
+        ("rate_q_root_rotation_y", "rad/s"),
+    ]
 
 
 def test_state_space_of_a_turning_base_has_its_rate():

@@ -26,6 +26,7 @@ from gbeam.analysis.stability import hub_of
 from gbeam.analysis.state_space import Signal, StateSpace
 from gbeam.case import Motion
 from gbeam.errors import InputError
+from gbeam.field import RootedField
 from gbeam.model import Structure
 from gbeam.motion import Centrifuge, HubRate, HubTorque
 
@@ -98,7 +99,11 @@ def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
     names = [("hub_angle", "rad")] if first else []
     for group, unit, count in zip(("axial", "y", "z"), units, structure.counts, strict=True):
         names += [(f"q_{group}_{k + 1}", unit) for k in range(count)]
-    names += [(f"q_root_{k + 1}", "m or rad") for k in range(structure.size - sum(structure.counts))]
+    if isinstance(structure.field, RootedField):
+        springs = np.concatenate([structure.field.move, structure.field.turn])  # one direction in each column
+        ways = [("translation", "m", axis) for axis in "xyz"] + [("rotation", "rad", axis) for axis in "xyz"]
+        for way, unit, axis in (ways[i] for i in np.abs(springs).argmax(axis=0)):
+            names.append((f"q_root_{way}_{axis}", unit))
     rates = [Signal("hub_rate" if name == "hub_angle" else f"rate_{name}", f"{unit}/s") for name, unit in names]
     return tuple([Signal(*it) for it in names] + rates)
 
