@@ -87,3 +87,7 @@ def test_a_maximum_can_be_followed_where_it_is_flat_enough(frequency: float, arm
     with pytest.raises(InputError, match="the arm allows a²/R") as caught:
         machine(raw, (0.6, 3.4), smoothing=0.1, arm=arm)
     assert caught.value.where == "smoothing" and "planned" in caught.value.fix
+    enough = 1e-3 * float(caught.value.fix.split('"')[1].split()[0])
+    machine(raw, (0.6, 3.4), smoothing=enough, arm=arm)
+    with pytest.raises(InputError, match="the arm allows a²/R"):
+        machine(raw, (0.6, 3.4), smoothing=0.6 * enough, arm=arm)

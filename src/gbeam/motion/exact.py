@@ -19,7 +19,7 @@ from gbeam.errors import InputError
 from gbeam.motion.blocks import in_blocks
 from gbeam.motion.inverse import Geometry, Inverse, Pose, gimbals
 from gbeam.motion.profile import Profile
-from gbeam.motion.reach import size_and_rates
+from gbeam.motion.reach import sharp_turns, size_and_rates
 from gbeam.motion.spline import Grid, Normal, Spline
 from gbeam.motion.target import Target
 
@@ -125,16 +125,18 @@ _size = eqx.filter_jit(lambda it, t: size_and_rates(it[0], it[1].gravity, t))
 
 
 def _refusal(target: Target, geometry: Geometry, grid: Grid, errors: Floats) -> InputError:
-    """Name the place and the smoothing."""
-    worst = int(np.argmax(np.where(np.isfinite(errors), errors, 0.0)))
-    around = np.abs(grid.time - grid.time[worst]) <= 0.5
-    size, _, turn = in_blocks(_size, (target.load, geometry), grid.time)
-    need = np.where(around, -turn * float(geometry.arm) / size**2, 0.0)
-    at, width = int(np.argmax(need)), 2 * float(target.reach)
-    enough = f'"{np.ceil(1e3 * width * max(need[at], 1.2)):.0f} ms" or more'
+    """Name the place and the smoothing that would do."""
+    turns = sharp_turns(target, float(geometry.arm))
+    if not turns:
+        at = grid.time[int(np.argmax(np.where(np.isfinite(errors), errors, 0.0)))]
+        problem = f"is too small for the exact inverse: no smooth motion follows the load about {at:.3f} s"
+        return InputError("smoothing", problem, 'give more, or inverse = "planned" or "flat"')
+    worst = max((it for it, _ in turns), key=lambda it: it.wanted / it.possible)
+    widths = [width for _, width in turns if width is not None]
+    wider = f'give "{np.ceil(1e3 * max(widths)):.0f} ms" or more, or ' if len(widths) == len(turns) else "give "
     return InputError(
         "smoothing",
-        f"is too small for the exact inverse: about {grid.time[at]:.3f} s the load turns by −ä = {-turn[at]:.3g} m/s^4 "
-        f"and the arm allows a²/R = {size[at] ** 2 / float(geometry.arm):.3g} m/s^4",
-        f'give {enough}, or inverse = "planned" or "flat"',
+        f"is too small for the exact inverse: about {worst.time:.3f} s the load turns by −ä = {worst.wanted:.3g} m/s^4 "
+        f"and the arm allows a²/R = {worst.possible:.3g} m/s^4",
+        f'{wider}inverse = "planned" or "flat"',
     )

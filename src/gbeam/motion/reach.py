@@ -30,32 +30,44 @@ Flags = NDArray[np.bool_]
 def shortfalls(target: Target, arm: float) -> tuple[Shortfall, ...]:
     """Find where the flight's load is below idle, across the beam below gravity, or turns too sharply.
 
-    The last is theory.md A1: at a maximum, and at the corner before a plateau, the horizontal load a can be followed
-    without a jump of the yaw rate only where −ä <= a²/R. A corner of slope change j rounded over T has −ä = 2j/T, and a
-    straight slope j of a load f that gravity is part of −ä = (jγ)²/a³, which no rounding changes. At a corner short of
-    a maximum somewhat more can be followed, and axis 2 pays: 2.3 times the acceleration for 1.3 times the turn.
-
     Parameters
     ----------
     target : Target
     arm : float
         R, m.
     """
-    first, last = float(target.ready), float(target.span[1])
-    time = sampled(first, last, _GRID)
-    flight, (size, _, turn), held = in_blocks(_seen, target, time)
-    idle, gravity, width = float(target.idle), float(target.gravity), 2 * float(target.reach)
-    found: list[Shortfall] = []
+    time = _times(target)
+    flight, _, _ = in_blocks(_seen, target, time)
+    idle, gravity = float(target.idle), float(target.gravity)
+    found = [it for it, _ in sharp_turns(target, arm)]
     total, across = np.linalg.norm(flight, axis=-1), np.linalg.norm(flight[:, 1:], axis=-1)
     found += _below(time, total, idle, "below idle", lambda run: _idle_remedy(total[run], across[run], gravity))
     if gravity:
         found += _below(time, across, REACH, "across below gravity", lambda run: _across_remedy(np.min(across[run])))
-    allowed = size**2 / arm
-    sharp = _runs((-turn > allowed * (1 + _ROUNDING)) & ~held, time)
-    enough = widths_that_do(target.corners, gravity, arm, time, held, sharp, width) if sharp else []
-    remedies = [_sharp_remedy(it, float(np.max(total[run]))) for it, run in zip(enough, sharp, strict=True)]
-    found += _too_sharp(time, -turn, allowed, sharp, remedies)
     return tuple(sorted(found, key=lambda it: it.start))
+
+
+def sharp_turns(target: Target, arm: float) -> list[tuple[Shortfall, float | None]]:
+    """Find where the load turns too sharply, and the smoothing, s, that would do; None where none does.
+
+    theory.md A1: at a maximum, and at the corner before a plateau, the horizontal load a can be followed without a jump
+    of the yaw rate only where −ä <= a²/R. A corner of slope change j rounded over T has −ä = 2j/T, and a straight
+    slope j of a load f that gravity is part of −ä = (jγ)²/a³, which no rounding changes. At a corner short of a maximum
+    somewhat more can be followed, and axis 2 pays: 2.3 times the acceleration for 1.3 times the turn.
+    """
+    time = _times(target)
+    flight, (size, _, turn), held = in_blocks(_seen, target, time)
+    allowed, total = size**2 / arm, np.linalg.norm(flight, axis=-1)
+    runs = _runs((-turn > allowed * (1 + _ROUNDING)) & ~held, time)
+    if not runs:
+        return []
+    widths = widths_that_do(target.corners, float(target.gravity), arm, time, held, runs, 2 * float(target.reach))
+    remedies = [_sharp_remedy(it, float(np.max(total[run]))) for it, run in zip(widths, runs, strict=True)]
+    return list(zip(_too_sharp(time, -turn, allowed, runs, remedies), widths, strict=True))
+
+
+def _times(target: Target) -> Floats:
+    return sampled(float(target.ready), float(target.span[1]), _GRID)
 
 
 @eqx.filter_jit
