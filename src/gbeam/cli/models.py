@@ -79,7 +79,8 @@ def _table(study: ModelStudy) -> Table:
     from rich.table import Table
 
     def say(value: float, form: str, scale: float = 1.0) -> str:
-        return format(scale * value, form) if math.isfinite(value) else "–"
+        told = format(scale * value, form) if math.isfinite(value) else "–"
+        return told if any(digit in told for digit in "123456789") else told.replace("-", "+")
 
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim", title=study.title or None, title_justify="left")
     for i, heading in enumerate(HEADINGS):
