@@ -106,9 +106,12 @@ def test_one_step_schemes_are_of_second_order(name: str) -> None:
         assert order == pytest.approx((2, 2), abs=0.1)
 
 
-def test_gauss_is_of_fourth_order_with_varying_matrices_and_load() -> None:
+@pytest.mark.parametrize(
+    ("system", "q", "qd"), [(VARYING, [0.5, -0.3], [0.0, 1.0]), (PENDULUM, 2.0, 0.5), (BEAD, 1.0, 0.5)]
+)
+def test_gauss_is_of_fourth_order(system: Any, q: Any, qd: Any) -> None:
     assert Gauss4().order == 4
-    assert observed_order(VARYING, Gauss4(), 40, 4.0, [0.5, -0.3], [0.0, 1.0]) == pytest.approx((4, 4), abs=0.1)
+    assert observed_order(system, Gauss4(), 40, 4.0, q, qd) == pytest.approx((4, 4), abs=0.1)
 
 
 def test_known_members_of_the_family() -> None:

@@ -73,7 +73,6 @@ def compare_models(
     for kind in kinds:
         if kind not in KINDS:
             raise InputError("kinds", f"has {kind!r}", f"choose from {', '.join(KINDS)}")
-    settings = case.response if case.response.integrator != "gauss" else replace(case.response, integrator="newmark")
     chosen = [REFERENCE, *(k for k in kinds if k != REFERENCE)]
     answers = {}
     for i, kind in enumerate(chosen):
@@ -84,7 +83,7 @@ def compare_models(
                 if progress is not None:
                     progress(f"{doing}: {what}", (done + share) / len(chosen))
 
-            run = partial(_answer, structure, motion, settings, name, report)
+            run = partial(_answer, structure, motion, case.response, name, report)
             answers[kind, name] = _timed(run)
     rows, direction = [], {}
     for name in case.motions:

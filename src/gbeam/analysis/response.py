@@ -20,7 +20,6 @@ from gbeam.analysis.stepping import difference, first_step, refine, scheme_of
 from gbeam.case import Motion, ResponseSettings
 from gbeam.energy import rest_matrices
 from gbeam.integrate import (
-    LinearSystem,
     Trajectory,
     evaluate,
     integrate,
@@ -84,7 +83,6 @@ def respond(
     """
     problem = problem_of(structure, motion, settings.start)
     coarse = first_step(structure, settings)
-    linear = isinstance(problem.system, LinearSystem)
 
     def too_far(y: Floats) -> int | None:
         """A projected field means nothing once it moves by the beam's length."""
@@ -124,7 +122,7 @@ def respond(
         loose, trajectory = adapt(settings.tolerance * 1e-2), adapt(settings.tolerance * 1e-3)
         step, error = math.nan, difference(tip(loose), tip(trajectory), 1)
     else:
-        scheme = scheme_of(settings, linear)
+        scheme = scheme_of(settings)
         if settings.step is not None:
             step = settings.duration / max(1, round(settings.duration / settings.step))
             trajectory, check = run(step, "integrating"), run(step / 2, "checking with half the step")

@@ -50,7 +50,7 @@ def evaluate(drive: Callable[[Any], Any], t: Any) -> Any:
 
 @eqx.filter_jit
 def _begin(system: System, scheme: OneStep | Gauss4, state: State, inputs: Any) -> Any:
-    return scheme.start(system, state, inputs)  # type: ignore[arg-type]
+    return scheme.start(system, state, inputs)
 
 
 @eqx.filter_jit
@@ -59,7 +59,7 @@ def _chunk(system: System, scheme: OneStep | Gauss4, state: State, inputs: tuple
 
     def step(carry: tuple[State, Any], at: tuple[Any, ...]) -> Any:
         state, fine = carry
-        new, ok = scheme.step(system, state, h, at)  # type: ignore[arg-type]
+        new, ok = scheme.step(system, state, h, at)
         return (new, fine & ok), (new.q, new.qd, new.qdd, fine & ok)
 
     (state, _), history = jax.lax.scan(step, (state, jnp.array(True)), inputs)

@@ -1,4 +1,4 @@
-"""Fourth-order Gauss collocation for linear systems: two stages, no damping, unconditionally stable."""
+"""Fourth-order Gauss collocation: two stages, no damping, unconditionally stable."""
 
 from __future__ import annotations
 
@@ -6,40 +6,33 @@ from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Bool
 
-from gbeam.integrate.system import LinearSystem, State
+from gbeam.integrate.system import State, System
 
 _ROOT = 3**0.5 / 6
-_A = ((0.25, 0.25 - _ROOT), (0.25 + _ROOT, 0.25))
-_C = (0.5 - _ROOT, 0.5 + _ROOT)
-_A2 = tuple(tuple(sum(_A[i][k] * _A[k][j] for k in range(2)) for j in range(2)) for i in range(2))
+_A = np.array([[0.25, 0.25 - _ROOT], [0.25 + _ROOT, 0.25]])
+_C = np.array([0.5 - _ROOT, 0.5 + _ROOT])
 
 
 class Gauss4(eqx.Module):
-    """The two-stage Gauss method on M q̈ + C q̇ + K q = F: order 4 (Hairer, Nørsett and Wanner, II.7)."""
+    """The two-stage Gauss method on second-order equations: order 4 (Hairer, Nørsett and Wanner, II.7)."""
 
     order: int = eqx.field(static=True, default=4)
-    offsets: tuple[float, ...] = eqx.field(static=True, default=(*_C, 1.0))
+    offsets: tuple[float, ...] = eqx.field(static=True, default=(float(_C[0]), float(_C[1]), 1.0))
 
-    def start(self, system: LinearSystem, state: State, inputs: Any) -> tuple[State, Bool[Array, ""]]:
+    def start(self, system: System, state: State, inputs: Any) -> tuple[State, Bool[Array, ""]]:
         """Give the initial state the acceleration that its equations demand."""
         qdd, ok = system.acceleration(state.q, state.qd, 0.0, 0.0, inputs, state.qdd)
         return State(state.q, state.qd, qdd, qdd), ok
 
-    def step(
-        self, system: LinearSystem, state: State, h: Array, inputs: tuple[Any, ...]
-    ) -> tuple[State, Bool[Array, ""]]:
+    def step(self, system: System, state: State, h: Array, inputs: tuple[Any, ...]) -> tuple[State, Bool[Array, ""]]:
         """One step of length h, with the inputs at its two stages and its end."""
         q, qd = state.q, state.qd
-        n = q.shape[0]
-        rows, right = [], []
-        for i in range(2):
-            c, k, f = system.matrices(inputs[i])
-            rows.append([(i == j) * system.mass + h * _A[i][j] * c + h**2 * _A2[i][j] * k for j in range(2)])
-            right.append(f - k @ (q + _C[i] * h * qd) - c @ qd)
-        stages = jnp.linalg.solve(jnp.block(rows), jnp.concatenate(right)).reshape(2, n)
-        weights = jnp.array([0.5 * (1 - _C[0]), 0.5 * (1 - _C[1])])
-        q_new, qd_new = q + h * qd + h**2 * weights @ stages, qd + 0.5 * h * jnp.sum(stages, axis=0)
+        at, moving = q + h * _C[:, None] * qd, jnp.stack([qd, qd])
+        guess = jnp.stack([state.qdd, state.qdd])
+        stages, found = system.stages(at, moving, h**2 * (_A @ _A), h * _A, inputs[:2], guess)
+        q_new, qd_new = q + h * qd + h**2 * 0.5 * (1 - _C) @ stages, qd + 0.5 * h * jnp.sum(stages, axis=0)
         qdd, ok = system.acceleration(q_new, qd_new, 0.0, 0.0, inputs[2], state.qdd)
-        return State(q_new, qd_new, qdd, qdd), ok
+        return State(q_new, qd_new, qdd, qdd), found & ok

@@ -13,6 +13,8 @@ from jaxtyping import Array, Bool, Float
 import gbeam._jax  # noqa: F401
 
 Vector = Float[Array, " n"]
+Stages = Float[Array, "stages n"]
+Weights = Float[Array, "stages stages"]
 
 
 class State(NamedTuple):
@@ -40,6 +42,12 @@ class System(Protocol):
         self, q: Vector, qd: Vector, cq: Array | float, cv: Array | float, inputs: Any, guess: Vector
     ) -> tuple[Vector, Bool[Array, ""]]:
         """Solve r(q + cq q̈, q̇ + cv q̈, q̈; inputs) = 0 for q̈ from a guess; the flag says whether that succeeded."""
+        ...
+
+    def stages(
+        self, q: Stages, qd: Stages, cq: Weights, cv: Weights, inputs: tuple[Any, ...], guess: Stages
+    ) -> tuple[Stages, Bool[Array, ""]]:
+        """Solve r(qᵢ + Σ cqᵢⱼ q̈ⱼ, q̇ᵢ + Σ cvᵢⱼ q̈ⱼ, q̈ᵢ; inputsᵢ) = 0 for the accelerations of coupled stages."""
         ...
 
 
@@ -71,6 +79,17 @@ class LinearSystem(eqx.Module):
         qdd = jnp.linalg.solve(self.mass + cv * c + cq * k, f - k @ q - c @ qd)
         return qdd, jnp.array(True)
 
+    def stages(
+        self, q: Stages, qd: Stages, cq: Weights, cv: Weights, inputs: tuple[Any, ...], guess: Stages
+    ) -> tuple[Stages, Bool[Array, ""]]:
+        """One linear solve for all stages."""
+        rows, right, every = [], [], range(len(inputs))
+        for i in every:
+            c, k, f = self.matrices(inputs[i])
+            rows.append([(i == j) * self.mass + cv[i, j] * c + cq[i, j] * k for j in every])
+            right.append(f - k @ q[i] - c @ qd[i])
+        return jnp.linalg.solve(jnp.block(rows), jnp.concatenate(right)).reshape(q.shape), jnp.array(True)
+
 
 class NonlinearSystem(eqx.Module):
     """r(q, q̇, q̈; inputs) = 0, solved by Newton's method.
@@ -99,13 +118,27 @@ class NonlinearSystem(eqx.Module):
     def acceleration(
         self, q: Vector, qd: Vector, cq: Array | float, cv: Array | float, inputs: Any, guess: Vector
     ) -> tuple[Vector, Bool[Array, ""]]:
-        """Newton's method; the Jacobian is renewed every fifth iteration."""
+        """Newton's method."""
+        return self._newton(lambda qdd: self.residual(q + cq * qdd, qd + cv * qdd, qdd, inputs), guess)
 
-        def r(qdd: Vector) -> Vector:
-            return self.residual(q + cq * qdd, qd + cv * qdd, qdd, inputs)
+    def stages(
+        self, q: Stages, qd: Stages, cq: Weights, cv: Weights, inputs: tuple[Any, ...], guess: Stages
+    ) -> tuple[Stages, Bool[Array, ""]]:
+        """Newton's method for all stages at once."""
+        together = jax.tree.map(lambda *x: jnp.stack(x), *inputs)
 
-        def factor(qdd: Vector) -> tuple[Array, Array]:
-            return jax.scipy.linalg.lu_factor(jax.jacfwd(r)(qdd))
+        def residual(flat: Array) -> Array:
+            qdd = flat.reshape(guess.shape)
+            return jax.vmap(self.residual)(q + cq @ qdd, qd + cv @ qdd, qdd, together).ravel()
+
+        flat, ok = self._newton(residual, guess.ravel())
+        return flat.reshape(guess.shape), ok
+
+    def _newton(self, residual: Callable[[Array], Array], guess: Array) -> tuple[Array, Bool[Array, ""]]:
+        """Solve for accelerations; the Jacobian is renewed every fifth iteration."""
+
+        def factor(qdd: Array) -> tuple[Array, Array]:
+            return jax.scipy.linalg.lu_factor(jax.jacfwd(residual)(qdd))
 
         def go_on(carry: tuple[Any, ...]) -> Array:
             _, _, size, scale, count = carry
@@ -114,7 +147,7 @@ class NonlinearSystem(eqx.Module):
         def iterate(carry: tuple[Any, ...]) -> tuple[Any, ...]:
             qdd, lu, _, _, count = carry
             lu = jax.lax.cond(count % 5 == 0, factor, lambda _: lu, qdd)
-            correction = jax.scipy.linalg.lu_solve(lu, r(qdd))
+            correction = jax.scipy.linalg.lu_solve(lu, residual(qdd))
             qdd = qdd - correction
             # An error in q̈ matters as it moves q: measure against what the step itself can move.
             return qdd, lu, jnp.max(jnp.abs(correction)), 1.0 + jnp.max(jnp.abs(qdd)), count + 1
