@@ -17,7 +17,7 @@ from gbeam.integrate.system import State, System
 def _rates(t: Any, y: tuple[Any, Any], system: System) -> tuple[Any, Any]:
     q, qd = y
     inputs = jax.tree.map(lambda x: x[0], system.inputs(jnp.atleast_1d(t)))
-    qdd, _ = system.acceleration(q, qd, 0.0, 0.0, inputs, jnp.zeros_like(q))
+    qdd, _, _ = system.acceleration(q, qd, 0.0, 0.0, inputs, jnp.zeros_like(q), system.blank(q.shape[0]))
     return qd, qdd
 
 

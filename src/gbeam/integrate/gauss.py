@@ -24,15 +24,17 @@ class Gauss4(eqx.Module):
 
     def start(self, system: System, state: State, inputs: Any) -> tuple[State, Bool[Array, ""]]:
         """Give the initial state the acceleration that its equations demand."""
-        qdd, ok = system.acceleration(state.q, state.qd, 0.0, 0.0, inputs, state.qdd)
-        return State(state.q, state.qd, qdd, qdd), ok
+        n = state.q.shape[0]
+        qdd, ok, last = system.acceleration(state.q, state.qd, 0.0, 0.0, inputs, state.qdd, system.blank(n))
+        return State(state.q, state.qd, qdd, qdd, (system.blank(2 * n), last)), ok
 
     def step(self, system: System, state: State, h: Array, inputs: tuple[Any, ...]) -> tuple[State, Bool[Array, ""]]:
         """One step of length h, with the inputs at its two stages and its end."""
-        q, qd = state.q, state.qd
+        q, qd, (of_stages, of_end) = state.q, state.qd, state.memory
         at, moving = q + h * _C[:, None] * qd, jnp.stack([qd, qd])
         guess = jnp.stack([state.qdd, state.qdd])
-        stages, found = system.stages(at, moving, h**2 * (_A @ _A), h * _A, inputs[:2], guess)
+        cq, cv = h**2 * (_A @ _A), h * _A
+        stages, found, of_stages = system.stages(at, moving, cq, cv, inputs[:2], guess, of_stages)
         q_new, qd_new = q + h * qd + h**2 * 0.5 * (1 - _C) @ stages, qd + 0.5 * h * jnp.sum(stages, axis=0)
-        qdd, ok = system.acceleration(q_new, qd_new, 0.0, 0.0, inputs[2], state.qdd)
-        return State(q_new, qd_new, qdd, qdd), found & ok
+        qdd, ok, of_end = system.acceleration(q_new, qd_new, 0.0, 0.0, inputs[2], state.qdd, of_end)
+        return State(q_new, qd_new, qdd, qdd, (of_stages, of_end)), found & ok

@@ -36,19 +36,20 @@ class OneStep(eqx.Module):
 
     def start(self, system: System, state: State, inputs: Any) -> tuple[State, Bool[Array, ""]]:
         """Give the initial state the acceleration that its equations demand."""
-        qdd, ok = system.acceleration(state.q, state.qd, 0.0, 0.0, inputs, state.qdd)
-        return State(state.q, state.qd, qdd, qdd), ok
+        blank = system.blank(state.q.shape[0])
+        qdd, ok, _ = system.acceleration(state.q, state.qd, 0.0, 0.0, inputs, state.qdd, blank)
+        return State(state.q, state.qd, qdd, qdd, blank), ok
 
     def step(self, system: System, state: State, h: Array, inputs: tuple[Any, ...]) -> tuple[State, Bool[Array, ""]]:
         """One step of length h, with the inputs at its end."""
-        q, qd, qdd, a = state
+        q, qd, qdd, a, memory = state
         carried = (self.alpha_f * qdd - self.alpha_m * a) / (1 - self.alpha_m)
         share = (1 - self.alpha_f) / (1 - self.alpha_m)
         q_star = q + h * qd + h**2 * ((0.5 - self.beta) * a + self.beta * carried)
         qd_star = qd + h * ((1 - self.gamma) * a + self.gamma * carried)
         cq, cv = h**2 * self.beta * share, h * self.gamma * share
-        new, ok = system.acceleration(q_star, qd_star, cq, cv, inputs[0], qdd)
-        return State(q_star + cq * new, qd_star + cv * new, new, carried + share * new), ok
+        new, ok, memory = system.acceleration(q_star, qd_star, cq, cv, inputs[0], qdd, memory)
+        return State(q_star + cq * new, qd_star + cv * new, new, carried + share * new, memory), ok
 
 
 def newmark(beta: float = 0.25, gamma: float = 0.5) -> OneStep:

@@ -18,12 +18,16 @@ Weights = Float[Array, "stages stages"]
 
 
 class State(NamedTuple):
-    """Coordinates, velocities, accelerations, and the scheme's own acceleration (equal to them in Newmark's)."""
+    """Coordinates, velocities, accelerations, and the scheme's own acceleration (equal to them in Newmark's).
+
+    `memory` is what the system wants to be given again in the next step.
+    """
 
     q: Vector
     qd: Vector
     qdd: Vector
     a: Vector
+    memory: Any = ()
 
     @classmethod
     def rest(cls, q: Vector) -> State:
@@ -38,15 +42,22 @@ class System(Protocol):
         """What drives the system at times t, s: a pytree with leading axis `times`."""
         ...
 
+    def blank(self, size: int) -> Any:
+        """Memory of a solution for `size` accelerations that has not been asked for yet."""
+        ...
+
     def acceleration(
-        self, q: Vector, qd: Vector, cq: Array | float, cv: Array | float, inputs: Any, guess: Vector
-    ) -> tuple[Vector, Bool[Array, ""]]:
-        """Solve r(q + cq q̈, q̇ + cv q̈, q̈; inputs) = 0 for q̈ from a guess; the flag says whether that succeeded."""
+        self, q: Vector, qd: Vector, cq: Array | float, cv: Array | float, inputs: Any, guess: Vector, memory: Any
+    ) -> tuple[Vector, Bool[Array, ""], Any]:
+        """Solve r(q + cq q̈, q̇ + cv q̈, q̈; inputs) = 0 for q̈ from a guess.
+
+        The flag says whether that succeeded; the memory is that of the last such solution with like cq and cv.
+        """
         ...
 
     def stages(
-        self, q: Stages, qd: Stages, cq: Weights, cv: Weights, inputs: tuple[Any, ...], guess: Stages
-    ) -> tuple[Stages, Bool[Array, ""]]:
+        self, q: Stages, qd: Stages, cq: Weights, cv: Weights, inputs: tuple[Any, ...], guess: Stages, memory: Any
+    ) -> tuple[Stages, Bool[Array, ""], Any]:
         """Solve r(qᵢ + Σ cqᵢⱼ q̈ⱼ, q̇ᵢ + Σ cvᵢⱼ q̈ⱼ, q̈ᵢ; inputsᵢ) = 0 for the accelerations of coupled stages."""
         ...
 
@@ -71,24 +82,37 @@ class LinearSystem(eqx.Module):
         """What drives the system."""
         return self.drive(t)
 
+    def blank(self, size: int) -> tuple[()]:
+        """Nothing to remember."""
+        return ()
+
     def acceleration(
-        self, q: Vector, qd: Vector, cq: Array | float, cv: Array | float, inputs: Any, guess: Vector
-    ) -> tuple[Vector, Bool[Array, ""]]:
+        self, q: Vector, qd: Vector, cq: Array | float, cv: Array | float, inputs: Any, guess: Vector, memory: tuple[()]
+    ) -> tuple[Vector, Bool[Array, ""], tuple[()]]:
         """One linear solve."""
         c, k, f = self.matrices(inputs)
         qdd = jnp.linalg.solve(self.mass + cv * c + cq * k, f - k @ q - c @ qd)
-        return qdd, jnp.array(True)
+        return qdd, jnp.array(True), ()
 
     def stages(
-        self, q: Stages, qd: Stages, cq: Weights, cv: Weights, inputs: tuple[Any, ...], guess: Stages
-    ) -> tuple[Stages, Bool[Array, ""]]:
+        self, q: Stages, qd: Stages, cq: Weights, cv: Weights, inputs: tuple[Any, ...], guess: Stages, memory: tuple[()]
+    ) -> tuple[Stages, Bool[Array, ""], tuple[()]]:
         """One linear solve for all stages."""
         rows, right, every = [], [], range(len(inputs))
         for i in every:
             c, k, f = self.matrices(inputs[i])
             rows.append([(i == j) * self.mass + cv[i, j] * c + cq[i, j] * k for j in every])
             right.append(f - k @ q[i] - c @ qd[i])
-        return jnp.linalg.solve(jnp.block(rows), jnp.concatenate(right)).reshape(q.shape), jnp.array(True)
+        qdd = jnp.linalg.solve(jnp.block(rows), jnp.concatenate(right)).reshape(q.shape)
+        return qdd, jnp.array(True), ()
+
+
+class Factored(NamedTuple):
+    """A Jacobian as its LU factors, and whether there is one yet."""
+
+    lu: Array
+    pivots: Array
+    known: Bool[Array, ""]
 
 
 class NonlinearSystem(eqx.Module):
@@ -115,15 +139,19 @@ class NonlinearSystem(eqx.Module):
         """What drives the system."""
         return self.drive(t)
 
+    def blank(self, size: int) -> Factored:
+        """No Jacobian yet."""
+        return Factored(jnp.eye(size), jnp.arange(size, dtype=jnp.int32), jnp.array(False))
+
     def acceleration(
-        self, q: Vector, qd: Vector, cq: Array | float, cv: Array | float, inputs: Any, guess: Vector
-    ) -> tuple[Vector, Bool[Array, ""]]:
+        self, q: Vector, qd: Vector, cq: Array | float, cv: Array | float, inputs: Any, guess: Vector, memory: Factored
+    ) -> tuple[Vector, Bool[Array, ""], Factored]:
         """Newton's method."""
-        return self._newton(lambda qdd: self.residual(q + cq * qdd, qd + cv * qdd, qdd, inputs), guess)
+        return self._newton(lambda qdd: self.residual(q + cq * qdd, qd + cv * qdd, qdd, inputs), guess, memory)
 
     def stages(
-        self, q: Stages, qd: Stages, cq: Weights, cv: Weights, inputs: tuple[Any, ...], guess: Stages
-    ) -> tuple[Stages, Bool[Array, ""]]:
+        self, q: Stages, qd: Stages, cq: Weights, cv: Weights, inputs: tuple[Any, ...], guess: Stages, memory: Factored
+    ) -> tuple[Stages, Bool[Array, ""], Factored]:
         """Newton's method for all stages at once."""
         together = jax.tree.map(lambda *x: jnp.stack(x), *inputs)
 
@@ -131,29 +159,30 @@ class NonlinearSystem(eqx.Module):
             qdd = flat.reshape(guess.shape)
             return jax.vmap(self.residual)(q + cq @ qdd, qd + cv @ qdd, qdd, together).ravel()
 
-        flat, ok = self._newton(residual, guess.ravel())
-        return flat.reshape(guess.shape), ok
+        flat, ok, memory = self._newton(residual, guess.ravel(), memory)
+        return flat.reshape(guess.shape), ok, memory
 
-    def _newton(self, residual: Callable[[Array], Array], guess: Array) -> tuple[Array, Bool[Array, ""]]:
-        """Solve for accelerations; the Jacobian is renewed every fifth iteration."""
+    def _newton(
+        self, residual: Callable[[Array], Array], guess: Array, memory: Factored
+    ) -> tuple[Array, Bool[Array, ""], Factored]:
+        """Solve for accelerations with the last Jacobian, renewed where three iterations do not suffice."""
 
-        def factor(qdd: Array) -> tuple[Array, Array]:
-            return jax.scipy.linalg.lu_factor(jax.jacfwd(residual)(qdd))
+        def factor(qdd: Array) -> Factored:
+            lu, pivots = jax.scipy.linalg.lu_factor(jax.jacfwd(residual)(qdd))
+            return Factored(lu, pivots, jnp.array(True))
 
         def go_on(carry: tuple[Any, ...]) -> Array:
             _, _, size, scale, count = carry
             return (size > self.tolerance * scale) & (count < self.iterations)
 
         def iterate(carry: tuple[Any, ...]) -> tuple[Any, ...]:
-            qdd, lu, _, _, count = carry
-            lu = jax.lax.cond(count % 5 == 0, factor, lambda _: lu, qdd)
-            correction = jax.scipy.linalg.lu_solve(lu, residual(qdd))
+            qdd, last, _, _, count = carry
+            last = jax.lax.cond(~last.known | (count % 4 == 3), factor, lambda _: last, qdd)
+            correction = jax.scipy.linalg.lu_solve((last.lu, last.pivots), residual(qdd))
             qdd = qdd - correction
             # An error in q̈ matters as it moves q: measure against what the step itself can move.
-            return qdd, lu, jnp.max(jnp.abs(correction)), 1.0 + jnp.max(jnp.abs(qdd)), count + 1
+            return qdd, last, jnp.max(jnp.abs(correction)), 1.0 + jnp.max(jnp.abs(qdd)), count + 1
 
-        n = guess.shape[0]
-        unset = (jnp.eye(n), jnp.arange(n, dtype=jnp.int32))
-        start = (guess, unset, jnp.array(jnp.inf), jnp.array(1.0), jnp.array(0))
-        qdd, _, size, scale, _ = jax.lax.while_loop(go_on, iterate, start)
-        return qdd, size <= self.tolerance * scale
+        start = (guess, memory, jnp.array(jnp.inf), jnp.array(1.0), jnp.array(0))
+        qdd, last, size, scale, _ = jax.lax.while_loop(go_on, iterate, start)
+        return qdd, size <= self.tolerance * scale, last
