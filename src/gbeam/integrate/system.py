@@ -15,6 +15,7 @@ import gbeam._jax  # noqa: F401
 Vector = Float[Array, " n"]
 Stages = Float[Array, "stages n"]
 Weights = Float[Array, "stages stages"]
+_ROUNDING = 1e3
 
 
 class State(NamedTuple):
@@ -125,7 +126,8 @@ class NonlinearSystem(eqx.Module):
     drive : callable
         Times (k,) -> inputs, a pytree with leading axis k.
     tolerance : float
-        Newton stops when its correction is below this fraction of the accelerations.
+        Newton stops when its correction is below this fraction of the accelerations, or no longer falls and below a
+        thousand times that: the rounding of stiff modes.
     iterations : int
         Newton gives up after so many.
     """
@@ -172,17 +174,18 @@ class NonlinearSystem(eqx.Module):
             return Factored(lu, pivots, jnp.array(True))
 
         def go_on(carry: tuple[Any, ...]) -> Array:
-            _, _, size, scale, count = carry
-            return (size > self.tolerance * scale) & (count < self.iterations)
+            _, _, size, before, scale, count = carry
+            stalled = (size > before / 2) & (size <= _ROUNDING * self.tolerance * scale)
+            return (size > self.tolerance * scale) & ~stalled & (count < self.iterations)
 
         def iterate(carry: tuple[Any, ...]) -> tuple[Any, ...]:
-            qdd, last, _, _, count = carry
+            qdd, last, before, _, _, count = carry
             last = jax.lax.cond(~last.known | (count % 4 == 3), factor, lambda _: last, qdd)
             correction = jax.scipy.linalg.lu_solve((last.lu, last.pivots), residual(qdd))
             qdd = qdd - correction
             # An error in q̈ matters as it moves q: measure against what the step itself can move.
-            return qdd, last, jnp.max(jnp.abs(correction)), 1.0 + jnp.max(jnp.abs(qdd)), count + 1
+            return qdd, last, jnp.max(jnp.abs(correction)), before, 1.0 + jnp.max(jnp.abs(qdd)), count + 1
 
-        start = (guess, memory, jnp.array(jnp.inf), jnp.array(1.0), jnp.array(0))
-        qdd, last, size, scale, _ = jax.lax.while_loop(go_on, iterate, start)
-        return qdd, size <= self.tolerance * scale, last
+        start = (guess, memory, jnp.array(jnp.inf), jnp.array(jnp.inf), jnp.array(1.0), jnp.array(0))
+        qdd, last, size, _, scale, _ = jax.lax.while_loop(go_on, iterate, start)
+        return qdd, size <= _ROUNDING * self.tolerance * scale, last
