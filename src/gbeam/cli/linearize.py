@@ -86,15 +86,16 @@ def linearize(
     gauges = gauges_at(given.case.beam, strain_at)
     with Watch(), given.placing():
         found = find(structure_of(given.case), chosen, time, rate=turning, gauges=gauges, name=name)
-    found = found.select(inputs=_names(inputs), outputs=_names(outputs))
     hankel: Iterable[float] = ()
     try:
+        found = found.select(inputs=_names(inputs), outputs=_names(outputs))
         if modes is not None:
             found = truncate(found, modes)
         elif balanced is not None:
             found, hankel = balance(found, balanced)
     except InputError as error:
-        raise InputError("--modes" if balanced is None else "--balanced", error.problem, error.fix) from None
+        option = "--balanced" if error.where == "order" else f"--{error.where}"
+        raise InputError(option, error.problem, error.fix) from None
     extra = {"gauges": [asdict(it) for it in gauges], "hankel_singular_values": [float(it) for it in hankel]}
     text = as_json({**told(found), **extra})
     if out is not None:
