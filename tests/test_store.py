@@ -25,6 +25,7 @@ from gbeam.results import (
     Study,
 )
 from gbeam.results_comparison import Sizes, Statistics
+from gbeam.results_loads import Loads
 
 T, N = 11, 4
 RANDOM = np.random.default_rng(0)
@@ -80,10 +81,13 @@ def study() -> Study:
     held = TIME > 0.5
     axes = AxesResult(*(_random(T, 3) for _ in range(5)), held, ((0.55, 1.0, "below idle"),), LIMITS, SHORTFALLS, 0.15)
     hub = HubResult(_random(T), _random(T), _random(T), np.full(T, np.nan))
+    loads = Loads(
+        np.array([0.0, 0.3]), *(_random(T, 2, 3) for _ in range(4)), _random(T, 2), _random(T, 2, 3), *_random(2, T)
+    )
     responses = {
         "flight": _response("flight", "flight"),
         "spin": replace(_response("spin", "centrifuge"), axes=axes),
-        "slew": replace(_response("slew", "hub"), hub=hub, model="exact"),
+        "slew": replace(_response("slew", "hub"), hub=hub, model="exact", loads=loads),
     }
     sizes = (Sizes(*(abs(_random(2, 3)) for _ in range(3))) for _ in range(3))
     split = Statistics(np.array([0.1, 0.3]), 18.0, *sizes, *(_random(T, 3) for _ in range(4)))
@@ -108,6 +112,9 @@ def test_xarray_reads_what_was_written(study: Study, file: Path) -> None:
     np.testing.assert_array_equal(spin["load_wanted"], study.responses["spin"].axes.wanted)
     assert list(spin["held_reason"].values) == ["below idle"]
     np.testing.assert_array_equal(slew["hub_angle"], study.responses["slew"].hub.angle)
+    for name in ("section_force", "section_moment", "stress", "acceleration", "drive_torque"):
+        np.testing.assert_array_equal(slew[name], getattr(study.responses["slew"].loads, name))
+    np.testing.assert_array_equal(slew["beam_torque"], study.responses["slew"].loads.hub_torque)
     assert "hub_angle" not in flight and "held_reason" not in flight
     np.testing.assert_array_equal(tree["comparisons/spin/difference"], study.comparisons[0].difference)
     assert flight.attrs["warnings"] == "one\ntwo"
@@ -159,7 +166,8 @@ def test_every_number_says_what_it_is(file: Path) -> None:
             if variable.dtype.kind == "f":
                 assert variable.attrs["units"] and variable.attrs["long_name"], name
             if "axis" in variable.dims and name != "axis":
-                assert variable.attrs["frame"].startswith("B: base axes"), name
+                frame = "S: axes of the deformed section" if name.startswith("section_") else "B: base axes"
+                assert variable.attrs["frame"].startswith(frame), name
     # The exact model's coordinates are angles and strains.
     assert store.read(file)["motions/slew/coordinates"].attrs["units"] == "1"
     assert store.read(file)["motions/slew/coordinate_rates"].attrs["units"] == "s-1"

@@ -167,9 +167,14 @@ def _response(it: Response) -> xr.Dataset:
             "section_force": v(tsa, it.loads.section_force, "N", "axial force and shear", frame=axes),
             "section_moment": v(tsa, it.loads.section_moment, "N m", "torque and bending moments", frame=axes),
             "stress": v(("time", "section"), it.loads.stress, "Pa", "largest normal stress at the outer fibre"),
+            "acceleration": v(
+                tsa, it.loads.acceleration, "m s-2", "acceleration in the world, base axes; specific force with gravity"
+            ),
         }
         if it.loads.hub_torque is not None:
             data["beam_torque"] = v(t, it.loads.hub_torque, "N m", "torque about the hub's axis that the beam asks for")
+        if it.loads.drive_torque is not None:
+            data["drive_torque"] = v(t, it.loads.drive_torque, "N m", "the same with the hub's own inertia")
     if it.hub is not None:
         turn = {
             "hub_angle": ("rad", it.hub.angle),
