@@ -82,7 +82,7 @@ def describe(
             f"the estimated error, {error:.2g} of the largest displacement, is above the tolerance "
             f'{settings.tolerance:g}; give a smaller step, or "auto"'
         )
-    if (turned := _turned_out_of_plane(structure, q)) > _NEAR:
+    if (turned := turned_out_of_plane(structure, q)) > _NEAR:
         warnings.append(
             f"the beam's tangent turns by {np.degrees(turned):.0f}° out of one plane: straight back, at 180°, its "
             "rotation vector has a pole, and near it the shapes converge slowly; check with more of them"
@@ -90,7 +90,7 @@ def describe(
     return "done", "", tuple(warnings)
 
 
-def _turned_out_of_plane(structure: Structure, q: Floats) -> float:
+def turned_out_of_plane(structure: Structure, q: Floats) -> float:
     """Largest angle by which the exact field's tangent turns, rad; zero where the beam stays in one plane."""
     field = structure.field.inner if isinstance(structure.field, RootedField) else structure.field
     if not isinstance(field, ExactField) or field.planar:
