@@ -73,7 +73,7 @@ def test_tabs_and_wide_characters_before_the_caret(text: str, errors: Errors) ->
         ('title = "a"\nbeam = \n', 2, 8, "invalid value"),
         ('title = "a"\nx', 2, 2, "expected '=' after a key in a key/value pair"),
         ("a = 1\na = 2\n", 2, 6, "cannot overwrite a value"),
-        ('{"a": 1,\n  }', 2, 3, "expecting property name enclosed in double quotes"),
+        ('{"a": 1,\n  2}', 2, 3, "expecting property name enclosed in double quotes"),
     ],
 )
 def test_syntax(text: str, line: int, column: int, message: str, errors: Errors) -> None:
