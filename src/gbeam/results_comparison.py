@@ -211,11 +211,16 @@ class Comparison:
             return np.where(self.peak_flight > 0, self.max_difference / self.peak_flight, np.nan)
 
     @property
+    def main_axis(self) -> int:
+        """Axis (0, 1, 2) along which the tip moves most in flight; z where no time is compared."""
+        return int(np.argmax(self.peak_flight)) if self.covered.any() else 2
+
+    @property
     def verdict(self) -> str:
         """One line that a person can quote."""
         if not self.covered.any():
             return f"{self.centrifuge} never carries {self.flight}'s load: the target was held all the time"
-        main = int(np.argmax(self.peak_flight))
+        main = self.main_axis
         axis = "xyz"[main]
         root = "" if self.root is None else f", root moment within {_percent(self.root.moment_agreement)}"
         return (

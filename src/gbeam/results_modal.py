@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -292,17 +293,17 @@ class ModelRow:
     outcome: str
     message: str
     warnings: tuple[str, ...]
-    peak: float
-    time_of_peak: float
-    peak_error: float
-    residual: float
-    residual_error: float
-    phase: float
-    difference: float
-    hub_angle: float
-    error_estimate: float
-    steps: int
-    seconds: float
+    peak: float = math.nan
+    time_of_peak: float = math.nan
+    peak_error: float = math.nan
+    residual: float = math.nan
+    residual_error: float = math.nan
+    phase: float = math.nan
+    difference: float = math.nan
+    hub_angle: float = math.nan
+    error_estimate: float = math.nan
+    steps: int = 0
+    seconds: float = math.nan
 
 
 @dataclass(frozen=True)

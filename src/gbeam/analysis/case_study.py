@@ -11,7 +11,7 @@ from gbeam.analysis.response import respond
 from gbeam.case import Case, Motion
 from gbeam.errors import ComputationError, InputError
 from gbeam.model import Structure, assemble
-from gbeam.motion import Centrifuge, Flight, HubRate, HubTorque
+from gbeam.motion import Centrifuge, Flight
 from gbeam.results import Failure, Response, Study
 
 
@@ -76,9 +76,7 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
 
 def _with_loads(structure: Structure, case: Case, motion: Motion, response: Response) -> Response:
     """Add what the sections carry, and on a centrifuge what its mismatch can do."""
-    mount = motion.mount if isinstance(motion, (HubRate, HubTorque)) else None
-    inertia = float(motion.inertia) if isinstance(motion, HubTorque) else None
-    loads = internal_loads(structure, case.beam, response, mount=mount, hub_inertia=inertia)
+    loads = internal_loads(structure, case.beam, response, motion)
     notes = tuple(f"record: {note}" for note in motion.notes) if isinstance(motion, Flight) else ()
     response = replace(response, warnings=response.warnings + notes)
     return replace(response, loads=loads, influence=influence(structure) if isinstance(motion, Centrifuge) else None)

@@ -8,11 +8,10 @@ import scipy.linalg
 from gbeam.analysis.loads import about_the_hub, section_loads
 from gbeam.analysis.modal import frozen
 from gbeam.analysis.operating import OperatingPoint, linear_matrices, operating_point
+from gbeam.analysis.problem import history_of
 from gbeam.beam import Beam
 from gbeam.case import Motion
 from gbeam.model import Structure
-from gbeam.motion import HubRate, HubTorque
-from gbeam.results import BaseHistory
 from gbeam.results_loads import Loads
 from gbeam.results_modal import Deflection
 
@@ -73,10 +72,7 @@ def deflect(
 
 def _carried(structure: Structure, beam: Beam, motion: Motion, point: OperatingPoint, time: float) -> Loads:
     """Loads along the beam at rest, and about the hub's axis if there is one."""
-    base = BaseHistory(*(np.asarray(x)[None] for x in (point.base.a_WO_B, point.base.w_WB_B, point.base.al_WB_B)))
+    base = history_of(point.base)
     q = np.asarray(point.q)[None]
     loads = section_loads(structure, beam, base, q, 0 * q, 0 * q, np.array([time]))
-    if not isinstance(motion, (HubRate, HubTorque)):
-        return loads
-    inertia = float(motion.inertia) if isinstance(motion, HubTorque) else None
-    return about_the_hub(loads, motion.mount, base.al_WB_B, inertia)
+    return about_the_hub(loads, motion, base.al_WB_B)

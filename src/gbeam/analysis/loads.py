@@ -22,10 +22,11 @@ from jaxtyping import Array
 
 import gbeam._jax  # noqa: F401
 from gbeam.beam import Beam
+from gbeam.case import Motion
 from gbeam.equations import coefficients
 from gbeam.field import ExactField, ProjectedField, RootedField
 from gbeam.model import Structure
-from gbeam.motion import Base, Mount
+from gbeam.motion import Base, HubRate, HubTorque
 from gbeam.results import BaseHistory, Floats, Response
 from gbeam.results_loads import Influence, Loads
 
@@ -191,9 +192,7 @@ def internal_loads(
     structure: Structure,
     beam: Beam,
     response: Response,
-    *,
-    mount: Mount | None = None,
-    hub_inertia: float | None = None,
+    motion: Motion | None = None,
 ) -> Loads:
     """Return the internal loads of a response.
 
@@ -203,36 +202,35 @@ def internal_loads(
         Of the response's model; its stations may be others than the response's.
     beam : Beam
     response : Response
-    mount : Mount, optional
-        How the beam sits on a hub: with it the torque that a slew needs is told.
-    hub_inertia : float, optional
-        kg m².
+    motion : Flight, Centrifuge, HubRate or HubTorque, optional
+        Of the response: with a hub's the torque that a slew needs is told.
 
     Returns
     -------
     Loads
     """
     loads = section_loads(structure, beam, response.base, response.q, response.qd, response.qdd, response.time)
-    return loads if mount is None else about_the_hub(loads, mount, response.base.al_WB_B, hub_inertia)
+    return about_the_hub(loads, motion, response.base.al_WB_B)
 
 
-def about_the_hub(loads: Loads, mount: Mount, al_WB_B: Floats, inertia: float | None = None) -> Loads:
-    """The same loads with the torque about the hub's axis, however the beam is mounted on it.
+def about_the_hub(loads: Loads, motion: Motion | None, al_WB_B: Floats) -> Loads:
+    """The same loads, on a hub with the torque about its axis, however the beam is mounted on it.
 
     Parameters
     ----------
     loads : Loads
-    mount : Mount
+    motion : Flight, Centrifuge, HubRate, HubTorque or None
+        Of the base. A free hub's inertia is known, and so is the torque of its drive.
     al_WB_B : (t, 3)
         Angular acceleration of the base, rad/s².
-    inertia : float, optional
-        Of the hub, kg m².
     """
+    if not isinstance(motion, (HubRate, HubTorque)):
+        return loads
+    mount, inertia = motion.mount, float(motion.inertia) if isinstance(motion, HubTorque) else np.nan
     turned = np.asarray(mount.R_HB).T
     force_H, moment_H, al_H = (x @ turned for x in (loads.root_force, loads.root_moment, al_WB_B))
     torque = moment_H[:, 2] + float(mount.radius) * force_H[:, 1]
-    driven = torque + (np.nan if inertia is None else inertia) * al_H[:, 2]
-    return replace(loads, hub_torque=torque, drive_torque=driven)
+    return replace(loads, hub_torque=torque, drive_torque=torque + inertia * al_H[:, 2])
 
 
 @eqx.filter_jit

@@ -6,7 +6,6 @@ import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -17,7 +16,7 @@ from gbeam.analysis.response import displacement, respond
 from gbeam.case import Case, Motion, ResponseSettings
 from gbeam.errors import ComputationError, InputError
 from gbeam.model import KINDS, Model, Structure
-from gbeam.results import Floats, Response
+from gbeam.results import Failure, Floats, Response
 from gbeam.results_modal import ModelRow, ModelStudy
 
 REFERENCE = "exact"
@@ -25,13 +24,6 @@ CONVERGED = (3, 6)  # strain and rotation shapes at least of the reference five 
 # Share of the peak by which its last shapes may move the tip: the error has been up to 12 times that.
 SHAPES_FINE = 1e-5
 PATIENCE = 5.0  # s: what took longer is not run again to time it without compilation
-
-
-class ModelFailure(NamedTuple):
-    """Why a model has no answer."""
-
-    outcome: str
-    message: str
 
 
 def counterpart(model: Model, kind: str) -> Model:
@@ -88,35 +80,35 @@ def compare_models(
     rows, direction = [], {}
     for name in case.motions:
         reference = answers[REFERENCE, name][0]
-        axis = _most_moved(answers, name) if isinstance(reference, ModelFailure) else _axis(reference.peaks.max_abs)
+        axis = _most_moved(answers, name) if isinstance(reference, Failure) else _axis(reference.peaks.max_abs)
         direction[name] = "xyz"[axis]
         rows += [_row(kind, name, *answers[kind, name], reference, axis) for kind in KINDS if kind in chosen]
     return ModelStudy(case.title, REFERENCE, direction, tuple(rows))
 
 
-def _structure(case: Case, kind: str) -> Structure | ModelFailure:
+def _structure(case: Case, kind: str) -> Structure | Failure:
     try:
         return structure_of(replace(case, model=counterpart(case.model, kind)))
     except InputError as error:
-        return ModelFailure("cannot", str(error))
+        return Failure("cannot", str(error))
 
 
 def _answer(
-    structure: Structure | ModelFailure,
+    structure: Structure | Failure,
     motion: Motion,
     settings: ResponseSettings,
     name: str,
     progress: Callable[[str, float], None],
-) -> Response | ModelFailure:
+) -> Response | Failure:
     """Response of one model, or why there is none."""
-    if isinstance(structure, ModelFailure):
+    if isinstance(structure, Failure):
         return structure
     try:
         response = respond(structure, motion, settings, name=name, progress=progress)
     except InputError as error:
-        return ModelFailure("cannot", str(error))
+        return Failure("cannot", str(error))
     except ComputationError as error:
-        return ModelFailure(error.outcome, str(error))
+        return Failure(error.outcome, str(error))
     if structure.kind != REFERENCE or response.outcome != "done":
         return response
     tail = shape_tail(structure, response)
@@ -141,7 +133,7 @@ def shape_tail(structure: Structure, response: Response) -> float:
     return float(np.abs(displacement(structure, without)[:, -1] - response.tip).max() / size)
 
 
-def _timed(run: Callable[[], Response | ModelFailure]) -> tuple[Response | ModelFailure, float]:
+def _timed(run: Callable[[], Response | Failure]) -> tuple[Response | Failure, float]:
     """Run, and run again if that is quick: the first time includes compilation."""
     start = clock.perf_counter()
     answer = run()
@@ -157,20 +149,19 @@ def _axis(moved: Floats) -> int:
     return int(np.argmax(moved))
 
 
-def _most_moved(answers: dict[tuple[str, str], tuple[Response | ModelFailure, float]], name: str) -> int:
+def _most_moved(answers: dict[tuple[str, str], tuple[Response | Failure, float]], name: str) -> int:
     """Axis along which the models that have an answer move the tip most."""
     found = [it.peaks.max_abs for (_, where), (it, _) in answers.items() if where == name and isinstance(it, Response)]
     return _axis(np.sum(found, axis=0)) if found else 0
 
 
 def _row(
-    kind: str, name: str, it: Response | ModelFailure, seconds: float, reference: Response | ModelFailure, axis: int
+    kind: str, name: str, it: Response | Failure, seconds: float, reference: Response | Failure, axis: int
 ) -> ModelRow:
     nan = float("nan")
     if not isinstance(it, Response) or it.outcome != "done":
         warnings = it.warnings if isinstance(it, Response) else ()
-        nine = nan, nan, nan, nan, nan, nan, nan, nan, nan
-        return ModelRow(kind, name, it.outcome, it.message, warnings, *nine, 0, seconds)
+        return ModelRow(kind, name, it.outcome, it.message, warnings, seconds=seconds)
     peak, residual = float(it.peaks.max_abs[axis]), float(it.peaks.residual_amplitude[axis])
     angle = nan if it.hub is None or not np.isfinite(it.hub.torque).all() else float(it.hub.angle[-1])
     against = (nan, nan, nan, nan)

@@ -18,6 +18,7 @@ from gbeam.integrate import LinearSystem, NonlinearSystem, State, evaluate
 from gbeam.model import Structure
 from gbeam.motion import Base, HubTorque
 from gbeam.motion.blocks import in_blocks
+from gbeam.results import BaseHistory
 from gbeam.work import Applied, LoadHistory
 
 
@@ -62,6 +63,11 @@ class _Inputs(eqx.Module):
     def __call__(self, t: Array) -> tuple[Base | Array, Applied | None]:
         base = self.drive.torque(t) if isinstance(self.drive, HubTorque) else self.drive.base(t)
         return base, None if self.history is None else self.history(t)
+
+
+def history_of(base: Base) -> BaseHistory:
+    """Base motion, (t, 3) or of one time (3,), as a record."""
+    return BaseHistory(*(np.atleast_2d(np.asarray(x)) for x in (base.a_WO_B, base.w_WB_B, base.al_WB_B)))
 
 
 def free_hub(motion: HubTorque) -> Hub:

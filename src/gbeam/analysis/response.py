@@ -15,7 +15,7 @@ from jaxtyping import Array
 import gbeam._jax  # noqa: F401
 from gbeam.analysis.outcome import describe
 from gbeam.analysis.plan import axes_result
-from gbeam.analysis.problem import Problem, problem_of
+from gbeam.analysis.problem import Problem, history_of, problem_of
 from gbeam.analysis.stepping import difference, first_step, refine, scheme_of
 from gbeam.case import Motion, ResponseSettings
 from gbeam.energy import rest_matrices
@@ -159,7 +159,7 @@ def _result(
         environment = "hub"
     else:
         there, _ = in_blocks(evaluate, problem.system.drive, time)
-        base = BaseHistory(*(np.asarray(x) for x in (there.a_WO_B, there.w_WB_B, there.al_WB_B)))
+        base = history_of(there)
         hub = _given_hub(motion, time) if isinstance(motion, HubRate) else None
         environment = type(motion).__name__.lower() if hub is None else "hub"
     told = describe(structure, problem, settings, trajectory, base, peaks, time, q[:, beam], error)
@@ -204,7 +204,7 @@ def _free_hub(motion: HubTorque, time: Floats, y: Floats, yd: Floats, ydd: Float
     rate, acceleration = yd[:, 0], ydd[:, 0]
     hub = HubResult(y[:, 0], rate, acceleration, np.asarray(motion.torque(jnp.asarray(time))))
     there = motion.mount.base(*(jnp.asarray(x) for x in (y[:, 0], rate, acceleration)))
-    return BaseHistory(*(np.asarray(x) for x in (there.a_WO_B, there.w_WB_B, there.al_WB_B))), hub
+    return history_of(there), hub
 
 
 def _given_hub(motion: HubRate, time: Floats) -> HubResult:

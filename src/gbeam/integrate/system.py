@@ -15,7 +15,7 @@ import gbeam._jax  # noqa: F401
 Vector = Float[Array, " n"]
 Stages = Float[Array, "stages n"]
 Weights = Float[Array, "stages stages"]
-_ROUNDING = 1e3
+_ROUNDING = 1e3  # times the tolerance: what the rounding of stiff modes may leave of a correction
 
 
 class State(NamedTuple):

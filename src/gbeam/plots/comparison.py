@@ -32,7 +32,7 @@ def plot_comparison(it: Comparison, flight: Response, centrifuge: Response, titl
         Force and moment at the root; the difference of the tip's trends, beside what the mismatch implies if it acts
         slowly; the tip's elastic vibration; the mismatch at both ends of the beam.
     """
-    axis = main_axis(it)
+    axis = it.main_axis
     shown = [*_root(it, flight, centrifuge, axis), *_tip(it, axis), *_mismatch(it, centrifuge, axis)]
     about = f"{it.centrifuge} and {it.flight}: root loads, tip and mismatch along {'xyz'[axis]}"
     figure, axes = panels(heading(title, about, (flight, centrifuge)), len(shown), heights=[0.85] * len(shown))
@@ -47,11 +47,6 @@ def plot_comparison(it: Comparison, flight: Response, centrifuge: Response, titl
         panel.set_ylabel(label)
         legend(panel)
     return figure
-
-
-def main_axis(it: Comparison) -> int:
-    """Axis (0, 1, 2) along which the tip moves most in flight, while it is compared."""
-    return int(np.argmax(it.peak_flight)) if it.covered.any() else 2
 
 
 def _root(it: Comparison, flight: Response, centrifuge: Response, axis: int) -> Iterator[_Lines]:
@@ -102,7 +97,7 @@ def plot_shock(it: Comparison, shock: Shock, title: str) -> Figure:
     title : str
         Of the scenario.
     """
-    axis = main_axis(it)
+    axis = it.main_axis
     about = f"shock response of the tip's acceleration along {'xyz'[axis]}, Q = {shock.quality:g}"
     figure, (panel,) = panels(heading(title, about, ()), 1, heights=[1.6])
     panel.loglog(shock.frequency, shock.centrifuge[:, axis], color=colour(0), label=it.centrifuge)

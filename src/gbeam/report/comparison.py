@@ -58,7 +58,7 @@ def _root(it: RootLoads) -> dict[str, Any]:
 
 def comparison_lines(it: Comparison) -> Iterator[str]:
     """What a person wants to know beside the verdict: root loads, vibration, and what the mismatch can do."""
-    main = int(np.argmax(it.peak_flight)) if it.covered.any() else 2
+    main = it.main_axis
     if it.root is not None:
         r, bent = it.root, int(np.argmax(it.root.moment_flight))
         yield (
