@@ -17,7 +17,8 @@ import numpy as np
 import scipy.linalg
 
 from gbeam import Beam, HubTorque, Material, Model, PointMass, Section, assemble, constant
-from gbeam.analysis import linearize, modes
+from gbeam.analysis.control.linearization import linearize
+from gbeam.analysis.vibration.modal import modes
 from gbeam.integrate import NonlinearSystem, State, integrate, newmark
 
 ANGLE = 1.0  # rad
@@ -43,7 +44,7 @@ def tip(beam, q):
 
 def simulate(beam, torque):
     """Motion of hub and beam (t, 1 + n) under torque(t, y, ẏ)."""
-    from gbeam.equations import Hub, on_free_hub
+    from gbeam.mechanics.equations import Hub, on_free_hub
 
     def residual(y, yd, ydd, t):
         hub = Hub(HUB.radius, HUB.inertia)

@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from gbeam import store
 from gbeam.errors import InputError
-from gbeam.results import (
+from gbeam.io import netcdf as store
+from gbeam.results.comparison import Sizes, Statistics
+from gbeam.results.response import (
     AxesResult,
     BaseHistory,
     Comparison,
@@ -24,8 +25,7 @@ from gbeam.results import (
     Shortfall,
     Study,
 )
-from gbeam.results_comparison import Sizes, Statistics
-from gbeam.results_loads import Loads
+from gbeam.results.section_forces import Loads
 
 T, N = 11, 4
 RANDOM = np.random.default_rng(0)

@@ -9,34 +9,28 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from gbeam.beam import Beam, Material, PointMass
 from gbeam.errors import ComputationError, GbeamError, InputError
-from gbeam.loads import Load
-from gbeam.root import Root
-from gbeam.section import Section
+from gbeam.structure.beam import Beam, Material, PointMass
+from gbeam.structure.loads import Load
+from gbeam.structure.section import Section
+from gbeam.structure.support import Root
 
 if TYPE_CHECKING:
-    from gbeam.analysis import (
-        Gauge,
-        StateSpace,
-        balance,
-        buckling_acceleration,
-        campbell,
-        compare,
-        compare_models,
-        critical_speed,
-        critical_speed_map,
-        deflect,
-        equilibrium,
-        linearize,
-        modes,
-        nonlinear_system,
-        respond,
-        study,
-        truncate,
-    )
-    from gbeam.case import Case, ResponseSettings
-    from gbeam.model import Model, Structure, assemble
+    from gbeam.analysis.control.linearization import Gauge, linearize
+    from gbeam.analysis.control.nonlinear import nonlinear_system
+    from gbeam.analysis.control.reduction import balance, truncate
+    from gbeam.analysis.control.state_space import StateSpace
+    from gbeam.analysis.equilibrium.equilibrium import equilibrium
+    from gbeam.analysis.equilibrium.static import deflect
+    from gbeam.analysis.imitation.comparison import compare
+    from gbeam.analysis.response.simulation import respond
+    from gbeam.analysis.study.case import Case, ResponseSettings
+    from gbeam.analysis.study.model_study import compare_models
+    from gbeam.analysis.study.study import study
+    from gbeam.analysis.vibration.campbell import campbell
+    from gbeam.analysis.vibration.modal import modes
+    from gbeam.analysis.vibration.stability import buckling_acceleration, critical_speed, critical_speed_map
+    from gbeam.mechanics.assembly import Model, Structure, assemble
     from gbeam.motion import (
         Centrifuge,
         Flight,
@@ -52,35 +46,39 @@ if TYPE_CHECKING:
         table,
         trapezoid,
     )
-    from gbeam.results import Response, Study
-    from gbeam.results_comparison import Comparison
+    from gbeam.results.comparison import Comparison
+    from gbeam.results.response import Response, Study
     from gbeam.scenario import build, load  # type: ignore[no-redef]  # modules there have the same names
 
 __version__ = "0.1.0"
 
 _HOMES = {
-    "gbeam.analysis": (
+    "gbeam.analysis.control.linearization": (
         "Gauge",
-        "StateSpace",
+        "linearize",
+    ),
+    "gbeam.analysis.control.nonlinear": ("nonlinear_system",),
+    "gbeam.analysis.control.reduction": (
         "balance",
+        "truncate",
+    ),
+    "gbeam.analysis.control.state_space": ("StateSpace",),
+    "gbeam.analysis.equilibrium.equilibrium": ("equilibrium",),
+    "gbeam.analysis.equilibrium.static": ("deflect",),
+    "gbeam.analysis.imitation.comparison": ("compare",),
+    "gbeam.analysis.response.simulation": ("respond",),
+    "gbeam.analysis.study.model_study": ("compare_models",),
+    "gbeam.analysis.study.study": ("study",),
+    "gbeam.analysis.vibration.campbell": ("campbell",),
+    "gbeam.analysis.vibration.modal": ("modes",),
+    "gbeam.analysis.vibration.stability": (
         "buckling_acceleration",
-        "campbell",
-        "compare",
-        "compare_models",
         "critical_load",
         "critical_speed",
         "critical_speed_map",
-        "deflect",
-        "equilibrium",
-        "linearize",
-        "modes",
-        "nonlinear_system",
-        "respond",
-        "study",
-        "truncate",
     ),
-    "gbeam.case": ("Case", "ResponseSettings"),
-    "gbeam.model": ("Model", "Structure", "assemble"),
+    "gbeam.analysis.study.case": ("Case", "ResponseSettings"),
+    "gbeam.mechanics.assembly": ("Model", "Structure", "assemble"),
     "gbeam.motion": (
         "Centrifuge",
         "Flight",
@@ -96,7 +94,7 @@ _HOMES = {
         "table",
         "trapezoid",
     ),
-    "gbeam.results": ("Comparison", "Response", "Study"),
+    "gbeam.results.response": ("Comparison", "Response", "Study"),
     "gbeam.scenario": ("build", "load"),
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names}

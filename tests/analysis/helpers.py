@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from gbeam import Beam, Material, Model, Response, Section, Structure, assemble
-from gbeam.results import AxesResult, BaseHistory, Peaks
+from gbeam.results.response import AxesResult, BaseHistory, Peaks
 
 LENGTH = 0.3
 SECTION = Section.rectangle(0.02, 0.004)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gbeam.analysis.definiteness import first_loss, lowest_stiffness
-from gbeam.equations import coefficients
-from gbeam.results import BaseHistory
+from gbeam.analysis.equilibrium.definiteness import first_loss, lowest_stiffness
+from gbeam.mechanics.equations import coefficients
+from gbeam.results.response import BaseHistory
 
 from .helpers import LENGTH, OMEGA, strip
 

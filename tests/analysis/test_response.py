@@ -28,7 +28,7 @@ from gbeam import (
     table,
     trapezoid,
 )
-from gbeam.analysis.outcome import turned_out_of_plane
+from gbeam.analysis.response.outcome import turned_out_of_plane
 
 from .helpers import EI, LENGTH, LINE, OMEGA, made, strip
 

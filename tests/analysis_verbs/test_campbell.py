@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from gbeam import InputError, Model, assemble
-from gbeam.analysis import campbell, critical_speed_map, modes
+from gbeam.analysis.vibration.campbell import campbell
+from gbeam.analysis.vibration.modal import modes
+from gbeam.analysis.vibration.stability import critical_speed_map
 from gbeam.motion import Flight, HubRate, constant, stack
 
 from .beams import HUB, HUB_2009, beam_2009, slender

@@ -12,7 +12,8 @@ from scipy.optimize import brentq
 from scipy.special import jv
 
 from gbeam import Beam, InputError, Load, Material, Model, Section, assemble, critical_load
-from gbeam.analysis import buckling_acceleration, critical_speed, modes
+from gbeam.analysis.vibration.modal import modes
+from gbeam.analysis.vibration.stability import buckling_acceleration, critical_speed
 from gbeam.motion import Flight, HubRate, SmoothStep, constant, stack
 
 from .beams import slender

@@ -9,8 +9,11 @@ import pytest
 import scipy.io
 
 from gbeam import Beam, InputError, Model, Root, assemble
-from gbeam.analysis import Gauge, balance, linearize, modes, nonlinear_system, truncate
-from gbeam.analysis.operating import linear_matrices, on_base, on_hub, operating_point
+from gbeam.analysis.control.linearization import Gauge, linearize
+from gbeam.analysis.control.nonlinear import nonlinear_system
+from gbeam.analysis.control.reduction import balance, truncate
+from gbeam.analysis.equilibrium.operating_point import linear_matrices, on_base, on_hub, operating_point
+from gbeam.analysis.vibration.modal import modes
 from gbeam.motion import Base, HubRate, HubTorque, constant
 
 from .beams import ALUMINIUM, BOX, FREE_2009, HUB_2009, beam_2009, structure_2009

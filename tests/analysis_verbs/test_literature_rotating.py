@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from gbeam import Model, PointMass, assemble
-from gbeam.analysis import critical_speed, modes
+from gbeam.analysis.vibration.modal import modes
+from gbeam.analysis.vibration.stability import critical_speed
 from gbeam.motion import HubRate, constant
 
 from .beams import FREE_2009, HUB, HUB_2009, slender, structure_2009

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from gbeam import HubRate, ResponseSettings, SmoothStep, respond
-from gbeam.analysis.model_study import SHAPES_FINE, shape_tail
+from gbeam.analysis.study.model_study import SHAPES_FINE, shape_tail
 from gbeam.cli import main
 
 from .beams import structure_2009

@@ -7,7 +7,9 @@ import pytest
 import scipy.linalg
 
 from gbeam import Beam, Material, Model, PointMass, Section, assemble
-from gbeam.analysis import buckling_acceleration, critical_speed, deflect, modes
+from gbeam.analysis.equilibrium.static import deflect
+from gbeam.analysis.vibration.modal import modes
+from gbeam.analysis.vibration.stability import buckling_acceleration, critical_speed
 from gbeam.motion import HubRate, constant
 
 from .beams import slender, structure_2009

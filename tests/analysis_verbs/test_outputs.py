@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from gbeam import Beam, InputError, Load, Material, Model, PointMass, Root, Section, assemble
-from gbeam.analysis import Gauge, linearize, nonlinear_system
-from gbeam.analysis.loads import section_loads
+from gbeam.analysis.control.linearization import Gauge, linearize
+from gbeam.analysis.control.nonlinear import nonlinear_system
+from gbeam.analysis.response.section_forces import section_loads
 from gbeam.motion import Flight, HubRate, HubTorque, constant, stack
-from gbeam.results import BaseHistory
+from gbeam.results.response import BaseHistory
 
 MODELS = {
     "TLAM": Model("TLAM", 1, 1, 1),

@@ -10,7 +10,7 @@ import pytest
 
 from gbeam.cli import main
 from gbeam.plots.campbell import plot_campbell
-from gbeam.results_modal import Campbell
+from gbeam.results.modal import Campbell
 
 HUB = """\
 title = "hub"

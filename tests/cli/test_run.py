@@ -12,10 +12,11 @@ from typing import Any
 
 import pytest
 
-from gbeam import analysis, store
+from gbeam.analysis.response import simulation
 from gbeam.cli.console import Watch
 from gbeam.errors import ComputationError
-from gbeam.results import Response
+from gbeam.io import netcdf as store
+from gbeam.results.response import Response
 
 Call = Callable[..., Any]
 
@@ -92,7 +93,7 @@ def test_no_result_leaves_no_files(fast: Path, gbeam: Call, monkeypatch: pytest.
     def fail(*_: object) -> None:
         raise ComputationError("not converged", "motion.flight: no relative equilibrium; use exact")
 
-    monkeypatch.setattr(analysis, "study", fail)
+    monkeypatch.setattr("gbeam.analysis.study.study.study", fail)
     answer = gbeam("run", fast, "--json", "--out", "there")
     assert answer.status == 1 and not Path("there").exists()
     assert answer.json["outcome"] == "not converged"
@@ -104,9 +105,9 @@ def test_what_one_motion_lacks_the_others_keep(fast: Path, gbeam: Call, monkeypa
     def fail(*args: Any, name: str, **how: Any) -> Response:
         if name == "spin":
             raise ComputationError("not converged", "no relative equilibrium; use exact")
-        return analysis.respond(*args, name=name, **how)
+        return simulation.respond(*args, name=name, **how)
 
-    monkeypatch.setattr("gbeam.analysis.case_study.respond", fail)
+    monkeypatch.setattr("gbeam.analysis.study.study.respond", fail)
     answer = gbeam("run", fast, "--json", "--out", "half")
     assert answer.status == 1
     assert answer.err == "gbeam: motion.spin not converged: no relative equilibrium; use exact\n"
@@ -124,7 +125,7 @@ def test_interrupted_quietly(fast: Path, gbeam: Call, monkeypatch: pytest.Monkey
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(analysis, "study", interrupt)
+    monkeypatch.setattr("gbeam.analysis.study.study.study", interrupt)
     answer = gbeam("run", fast)
     assert (answer.status, answer.out, answer.err) == (130, "", "")
 

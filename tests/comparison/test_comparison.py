@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from gbeam import Beam, Comparison, Material, Section, compare, respond
-from gbeam.analysis.loads import influence, internal_loads
-from gbeam.analysis.oscillator import displacement, riding_acceleration
-from gbeam.zero_phase import low_pass
+from gbeam.analysis.response.section_forces import influence, internal_loads
+from gbeam.numerics.low_pass import low_pass
+from gbeam.numerics.oscillators import displacement, riding_acceleration
 
 SPECIMEN = Beam(0.3, Section.rectangle(0.02, 0.004), Material(2700.0, 70e9))
 M, L, EI = 2700 * 0.02 * 0.004, 0.3, 70e9 * 0.02 * 0.004**3 / 12

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam import Beam, Material, Model, PointMass, Section, Structure, assemble
-from gbeam.equations import Hub, hub_kinetic, on_free_hub
+from gbeam.mechanics.equations import Hub, hub_kinetic, on_free_hub
 
 Array = NDArray[np.float64]
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from gbeam import Model, PointMass, assemble
-from gbeam.basis import bending_shapes, quadrature
-from gbeam.energy import rest_matrices, second_order
-from gbeam.field import exact_field
+from gbeam.mechanics.basis import bending_shapes, quadrature
+from gbeam.mechanics.energy import rest_matrices, second_order
+from gbeam.mechanics.field import exact_field
 
 from .helpers import BODY, BOX, COMPLETE, MATERIAL, SPATIAL, TIP, beam, planar, spatial, states
 

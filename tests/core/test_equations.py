@@ -18,8 +18,8 @@ import numpy as np
 import pytest
 
 from gbeam import assemble
-from gbeam.energy import second_order
-from gbeam.equations import Damped, Hub, coefficients, on_free_hub, on_prescribed_base
+from gbeam.mechanics.energy import second_order
+from gbeam.mechanics.equations import Damped, Hub, coefficients, on_free_hub, on_prescribed_base
 
 from .helpers import (
     BODY,

@@ -9,9 +9,9 @@ import pytest
 from scipy.integrate import quad
 
 from gbeam import Beam, InputError, Material, Model, PointMass, Section, assemble
-from gbeam.basis import bar_shapes, bending_shapes
-from gbeam.energy import rest_matrices
-from gbeam.model import KINDS, rest_modes
+from gbeam.mechanics.assembly import KINDS, rest_modes
+from gbeam.mechanics.basis import bar_shapes, bending_shapes
+from gbeam.mechanics.energy import rest_matrices
 
 from .helpers import TIP, beam
 

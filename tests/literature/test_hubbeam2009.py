@@ -35,7 +35,7 @@ from gbeam import (
     critical_speed,
     respond,
 )
-from gbeam.equations import Coefficients, Hub, coefficients, on_free_hub
+from gbeam.mechanics.equations import Coefficients, Hub, coefficients, on_free_hub
 
 from .hubbeam2009 import AREA, DENSITY, HUB_INERTIA, HUB_RADIUS, INERTIA, LENGTH, YOUNG, Paper
 

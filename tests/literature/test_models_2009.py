@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from gbeam import HubRate, HubTorque, Sine, SmoothStep
-from gbeam.analysis.problem import problem_of
-from gbeam.analysis.response import displacement
+from gbeam.analysis.response.problem import problem_of
+from gbeam.analysis.response.simulation import displacement
 from gbeam.integrate import integrate, newmark
 
 from .hubbeam2009 import HUB_INERTIA, HUB_RADIUS

@@ -29,8 +29,8 @@ from gbeam import (
     equilibrium,
     respond,
 )
-from gbeam.energy import second_order
-from gbeam.equations import Coefficients, Damped, coefficients, on_prescribed_base
+from gbeam.mechanics.energy import second_order
+from gbeam.mechanics.equations import Coefficients, Damped, coefficients, on_prescribed_base
 from gbeam.motion import Base
 
 # A beam of unit length, unit mass per length and unit EI: nondimensional, with EA = α², α the slenderness.

@@ -30,8 +30,8 @@ from gbeam import (
     stack,
     table,
 )
-from gbeam.equations import Coefficients, coefficients
 from gbeam.integrate import Gauss4, LinearSystem, State, Trajectory, integrate
+from gbeam.mechanics.equations import Coefficients, coefficients
 from gbeam.motion import Base, moved
 
 from .zhang2020 import COUNTS, DENSITY, G0, LENGTH, LINE, THICKNESS, WIDTH, YOUNG, matrices

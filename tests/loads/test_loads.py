@@ -27,13 +27,13 @@ from gbeam import (
     respond,
     stack,
 )
-from gbeam.analysis.loads import influence, internal_loads, section_loads
-from gbeam.energy import FieldEnergy
-from gbeam.equations import Hub, on_prescribed_base
-from gbeam.loads import Load
+from gbeam.analysis.response.section_forces import influence, internal_loads, section_loads
+from gbeam.mechanics.energy import FieldEnergy
+from gbeam.mechanics.equations import Hub, on_prescribed_base
 from gbeam.motion import Base
-from gbeam.results import BaseHistory
-from gbeam.root import Root
+from gbeam.results.response import BaseHistory
+from gbeam.structure.loads import Load
+from gbeam.structure.support import Root
 
 MATERIAL = Material(2700.0, 70e9)
 SPECIMEN = Beam(0.3, Section.rectangle(0.02, 0.004), MATERIAL)

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from gbeam import Flight, InputError
-from gbeam.motion.conditioning import dropout
-from gbeam.motion.flight import body_rates
-from gbeam.motion.record import Conditioning, FlightRecord, Rates, read_flight
+from gbeam.motion.bases.conditioning import dropout
+from gbeam.motion.bases.flight import body_rates
+from gbeam.motion.bases.record import Conditioning, FlightRecord, Rates, read_flight
 
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 NAMES = ("time_s", "n_x_g", "-n_y_g", "-n_z_g")

@@ -19,7 +19,7 @@ from gbeam.motion import (
     trapezoid,
     usage,
 )  # fmt: skip
-from gbeam.results import Shortfall
+from gbeam.results.response import Shortfall
 
 G, R = STANDARD_GRAVITY, 3.3
 

@@ -11,7 +11,7 @@ from scipy.integrate import quad
 
 from gbeam.errors import InputError
 from gbeam.motion import PiecewiseLinear, constant, smoothed, table, trapezoid
-from gbeam.motion.derivative import with_rate
+from gbeam.numerics.time_derivative import with_rate
 
 TRAPEZOID = trapezoid(level=10.0, jerk=4.0, start=1.0, hold=4.0)
 WIDTH = 0.06

@@ -17,7 +17,7 @@ from gbeam.motion import (
     stack,
     trapezoid,
 )  # fmt: skip
-from gbeam.motion.spline import Grid
+from gbeam.numerics.bspline import Grid
 
 G, R = STANDARD_GRAVITY, 3.3
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"

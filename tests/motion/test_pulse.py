@@ -8,7 +8,7 @@ from scipy.integrate import quad
 
 from gbeam.errors import InputError
 from gbeam.motion import Profile, Sine, SmoothStep, smoothed
-from gbeam.motion.derivative import with_rate
+from gbeam.numerics.time_derivative import with_rate
 
 WIDTH = 0.3
 STEP, SINE = SmoothStep(level=3.0, duration=2.0, start=0.5), Sine(amplitude=5.0, duration=1.5)

@@ -21,7 +21,7 @@ from gbeam.motion import (
     table,
     trapezoid,
 )
-from gbeam.motion.start import LEAST_TURNED
+from gbeam.motion.centrifuge.spin_up import LEAST_TURNED
 
 G, R = STANDARD_GRAVITY, 3.3
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"

@@ -19,8 +19,8 @@ from gbeam.motion import (
     stack,
     trapezoid,
 )
-from gbeam.motion.derivative import with_rate
-from gbeam.motion.hold import REACH, nearest_to_zero
+from gbeam.motion.centrifuge.target.load_limits import REACH, nearest_to_zero
+from gbeam.numerics.time_derivative import with_rate
 
 G = STANDARD_GRAVITY
 TRAPEZOID = stack(z=trapezoid(10 * G, 4 * G, 1.0, 4.0))

@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 from gbeam import Beam, ComputationError, InputError, Material, Section
-from gbeam.analysis.bounded_search import coarse, refine
-from gbeam.analysis.place import Choice, place
+from gbeam.analysis.imitation.place import Choice, place
 from gbeam.cli import main
-from gbeam.cli.place import parse
+from gbeam.cli.verbs.place import parse
 from gbeam.motion import AxisLimit, MachineLimits
+from gbeam.numerics.bounded_search import coarse, refine
 
 SPECIMEN = Beam(0.3, Section.rectangle(0.02, 0.004), Material(2700.0, 70e9))
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gbeam.results import AxesResult, BaseHistory, HubResult, Peaks, Response, Study
-from gbeam.results_comparison import Comparison
+from gbeam.results.comparison import Comparison
+from gbeam.results.response import AxesResult, BaseHistory, HubResult, Peaks, Response, Study
 
 TIME = np.linspace(0, 2, 201)
 

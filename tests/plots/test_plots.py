@@ -11,8 +11,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from gbeam.plots import plot_axes, plot_base, plot_comparison, plot_hub, plot_shock, plot_tip, write_plots
-from gbeam.results import Study
-from gbeam.results_comparison import Mismatch, Shock
+from gbeam.results.comparison import Mismatch, Shock
+from gbeam.results.response import Study
 
 
 def _assert_labelled(figure: Figure) -> None:

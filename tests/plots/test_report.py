@@ -11,7 +11,7 @@ import pytest
 from rich.console import Console
 
 from gbeam.report import as_json, summary, summary_json
-from gbeam.results import Study
+from gbeam.results.response import Study
 
 
 def _text(study: Study) -> str:

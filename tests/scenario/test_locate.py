@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 
-from gbeam.scenario.locate_json import locate_json
-from gbeam.scenario.locate_toml import locate_toml
-from gbeam.scenario.place import Path
+from gbeam.scenario.text.locate_json import locate_json
+from gbeam.scenario.text.locate_toml import locate_toml
+from gbeam.scenario.text.place import Path
 
 TOML = """\
 title = "é" # comment

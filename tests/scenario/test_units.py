@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gbeam.scenario.units import KINDS, UnitError, argument, quantity
+from gbeam.scenario.text.units import KINDS, UnitError, argument, quantity
 
 G0 = 9.80665
 

@@ -7,9 +7,9 @@ import pytest
 from exact_beams import AREA, DENSITY, INERTIA, LENGTH, MODULUS, truncated_wedge, with_bodies
 
 from gbeam import Beam, InputError, Material, Model, PointMass, Section, assemble
-from gbeam.energy import rest_matrices
-from gbeam.model import rest_modes
-from gbeam.root import Root
+from gbeam.mechanics.assembly import rest_modes
+from gbeam.mechanics.energy import rest_matrices
+from gbeam.structure.support import Root
 
 BOX, METAL = Section.general(AREA, INERTIA, INERTIA), Material(DENSITY, MODULUS)
 CLOSE = 1e-7  # relative; what is asked for is 1e-4

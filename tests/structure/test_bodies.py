@@ -9,9 +9,9 @@ import pytest
 from exact_beams import AREA, DENSITY, INERTIA, LENGTH, MODULUS, with_bodies
 
 from gbeam import Beam, Material, Model, PointMass, Section, assemble
-from gbeam.energy import rest_matrices
-from gbeam.equations import Hub, hub_kinetic
-from gbeam.model import rest_modes
+from gbeam.mechanics.assembly import rest_modes
+from gbeam.mechanics.energy import rest_matrices
+from gbeam.mechanics.equations import Hub, hub_kinetic
 
 BOX, METAL = Section.general(AREA, INERTIA, INERTIA), Material(DENSITY, MODULUS)
 ALONG = PointMass(LENGTH, 0.5, inertia=(0.0, 0.2, 0.2), offset=(0.3, 0.0, 0.0))

@@ -24,9 +24,9 @@ from gbeam import (
     assemble,
     constant,
 )
-from gbeam.analysis.problem import free_hub
-from gbeam.equations import coefficients, hub_kinetic, on_free_hub, on_prescribed_base
-from gbeam.loads import Load
+from gbeam.analysis.response.problem import free_hub
+from gbeam.mechanics.equations import coefficients, hub_kinetic, on_free_hub, on_prescribed_base
+from gbeam.structure.loads import Load
 
 BOX, METAL = Section.general(AREA, INERTIA, INERTIA), Material(DENSITY, MODULUS)
 BEAM = Beam(LENGTH, BOX, METAL, [PointMass(LENGTH, 0.1)], 0.01)

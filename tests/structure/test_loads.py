@@ -27,11 +27,11 @@ from gbeam import (
     stack,
     trapezoid,
 )
-from gbeam.equations import coefficients
-from gbeam.loads import Load
+from gbeam.mechanics.equations import coefficients
+from gbeam.mechanics.virtual_work import first_order
 from gbeam.motion import Base
-from gbeam.root import Root
-from gbeam.work import first_order
+from gbeam.structure.loads import Load
+from gbeam.structure.support import Root
 
 STILL = Base(*[jnp.zeros(3)] * 3)
 # Elastica under a dead tip force F L²/EI: 1 − x/L, y/L, angle of the tip (elliptic integrals).

@@ -9,11 +9,11 @@ from exact_beams import AREA, DENSITY, EI, INERTIA, LENGTH, MODULUS, with_bodies
 from scipy.optimize import brentq
 
 from gbeam import Beam, InputError, Material, Model, PointMass, Section, assemble, equilibrium
-from gbeam.energy import rest_matrices
-from gbeam.loads import Load
-from gbeam.model import rest_modes
+from gbeam.mechanics.assembly import rest_modes
+from gbeam.mechanics.energy import rest_matrices
 from gbeam.motion import Base
-from gbeam.root import Root
+from gbeam.structure.loads import Load
+from gbeam.structure.support import Root
 
 BOX, METAL = Section.general(AREA, INERTIA, INERTIA), Material(DENSITY, MODULUS)
 STILL = Base(*[jnp.zeros(3)] * 3)

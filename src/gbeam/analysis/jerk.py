@@ -33,16 +33,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gbeam._jax  # noqa: F401
-from gbeam.analysis.response import respond
-from gbeam.case import ResponseSettings
+from gbeam.analysis.response.simulation import respond
+from gbeam.analysis.study.case import ResponseSettings
 from gbeam.checks import positive
-from gbeam.energy import rest_matrices
-from gbeam.equations import coefficients
 from gbeam.errors import InputError
-from gbeam.model import Structure, rest_modes
+from gbeam.mechanics.assembly import Structure, rest_modes
+from gbeam.mechanics.energy import rest_matrices
+from gbeam.mechanics.equations import coefficients
 from gbeam.motion import Base, Centrifuge, Profile, build_target, smoothed, stack, table
-from gbeam.motion.derivative import with_rate
-from gbeam.results import Floats
+from gbeam.numerics.time_derivative import with_rate
+from gbeam.results.response import Floats
 
 Complexes = NDArray[np.complex128]
 

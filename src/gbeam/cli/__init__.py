@@ -97,5 +97,5 @@ def _app(asked: str) -> App:
     for verb, told in VERBS.items():
         # The help of the verb that is asked is its own docstring, which says more.
         name = verb.replace("-", "_")
-        app.command(f"gbeam.cli.{name}:{name}", name=verb, help=None if verb == asked else told)
+        app.command(f"gbeam.cli.verbs.{name}:{name}", name=verb, help=None if verb == asked else told)
     return app

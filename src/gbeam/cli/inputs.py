@@ -13,8 +13,8 @@ from gbeam.errors import InputError
 from gbeam.scenario import Scenario, build, load, placed
 
 if TYPE_CHECKING:
-    from gbeam.case import Case
-    from gbeam.store import Provenance
+    from gbeam.analysis.study.case import Case
+    from gbeam.io.netcdf import Provenance
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Input:
 
     def provenance(self) -> Provenance:
         """What a result file says about where it came from."""
-        from gbeam.store import Provenance
+        from gbeam.io.netcdf import Provenance
 
         source = self.scenario.source
         if source is None:

@@ -3,20 +3,20 @@
 Every motion has ``base(t)`` (:class:`Base`) and ``breaks``; a free hub has a torque in its place.
 """
 
-from gbeam.motion.base import Base
-from gbeam.motion.centrifuge import AxisHistory, Centrifuge, axis_history
-from gbeam.motion.flight import Flight, stack
-from gbeam.motion.hub import HubRate, HubTorque
-from gbeam.motion.kinematics import Axes, forward, moved
-from gbeam.motion.limits import AxisLimit, Limits, MachineLimits, usage
-from gbeam.motion.machines import MACHINES, Machine
-from gbeam.motion.methods import INVERSES
-from gbeam.motion.mount import Mount
-from gbeam.motion.piecewise import PiecewiseLinear, constant, table, trapezoid
-from gbeam.motion.profile import Profile, Stack, Sum, smoothed
-from gbeam.motion.pulse import Sine, SmoothStep
-from gbeam.motion.record import STANDARD_GRAVITY, read_record
-from gbeam.motion.target import Episode, Target, build_target
+from gbeam.motion.bases.base import Base
+from gbeam.motion.bases.flight import Flight, stack
+from gbeam.motion.bases.hub import HubRate, HubTorque
+from gbeam.motion.bases.mount import Mount
+from gbeam.motion.bases.record import STANDARD_GRAVITY, read_record
+from gbeam.motion.centrifuge.centrifuge import AxisHistory, Centrifuge, axis_history
+from gbeam.motion.centrifuge.inverses.registry import INVERSES
+from gbeam.motion.centrifuge.kinematics import Axes, forward, moved
+from gbeam.motion.centrifuge.limits import AxisLimit, Limits, MachineLimits, usage
+from gbeam.motion.centrifuge.machines import MACHINES, Machine
+from gbeam.motion.centrifuge.target.target import Episode, Target, build_target
+from gbeam.motion.profiles.piecewise import PiecewiseLinear, constant, table, trapezoid
+from gbeam.motion.profiles.profile import Profile, Stack, Sum, smoothed
+from gbeam.motion.profiles.pulse import Sine, SmoothStep
 
 __all__ = [
     "INVERSES",

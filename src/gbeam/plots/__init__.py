@@ -12,7 +12,7 @@ from gbeam.plots.hub import plot_hub
 from gbeam.plots.loads import plot_loads
 from gbeam.plots.style import save
 from gbeam.plots.tip import plot_tip
-from gbeam.results import Study
+from gbeam.results.response import Study
 
 __all__ = [
     "plot_axes",

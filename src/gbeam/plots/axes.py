@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from gbeam.plots.base import G0
 from gbeam.plots.style import REFERENCE, colour, heading, legend, panels, shade, styled
-from gbeam.results import AxesResult, Told
+from gbeam.results.response import AxesResult, Told
 
 
 @styled

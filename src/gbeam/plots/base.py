@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from gbeam.plots.style import colour, heading, legend, panels, styled
-from gbeam.results import Floats, Response
+from gbeam.results.response import Floats, Response
 
 G0 = 9.80665  # m/s²
 

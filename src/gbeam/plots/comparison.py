@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from gbeam.plots.style import REFERENCE, colour, heading, legend, panels, scale_to, shade, styled
-from gbeam.results import Floats, Response
-from gbeam.results_comparison import Comparison, Shock
+from gbeam.results.comparison import Comparison, Shock
+from gbeam.results.response import Floats, Response
 
 _Lines = tuple[str, dict[str, tuple[Floats, Floats]]]  # what is drawn, with its unit; times and values by name
 

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from gbeam.plots.style import colour, heading, legend, panels, show_zero, styled
-from gbeam.results_modal import CriticalMap
+from gbeam.results.modal import CriticalMap
 
 
 @styled

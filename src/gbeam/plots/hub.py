@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from gbeam.plots.style import colour, heading, panels, styled
-from gbeam.results import Floats, HubResult, Response
+from gbeam.results.response import Floats, HubResult, Response
 
 
 @styled

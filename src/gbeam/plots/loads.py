@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gbeam.plots.style import colour, heading, legend, panels, show_zero, styled
-from gbeam.results import Floats, Response
-from gbeam.results_loads import Loads
-from gbeam.results_modal import Deflection
+from gbeam.results.modal import Deflection
+from gbeam.results.response import Floats, Response
+from gbeam.results.section_forces import Loads
 
 NOTHING = 1e-9  # of the largest force or moment: a component smaller than that is rounding
 

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from gbeam.plots.style import colour, heading, legend, panels, styled
-from gbeam.results_modal import Modes
+from gbeam.results.modal import Modes
 
 SHOWN = 6  # modes drawn
 

@@ -17,7 +17,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from gbeam.results import Floats, Told
+from gbeam.results.response import Floats, Told
 
 P = ParamSpec("P")
 

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from gbeam.plots.style import REFERENCE, colour, heading, legend, panels, scale_to, shade, show_zero, styled
-from gbeam.results import Study
+from gbeam.results.response import Study
 
 
 @styled

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.results_comparison import Comparison, Mismatch, RootLoads, Sizes
+from gbeam.results.comparison import Comparison, Mismatch, RootLoads, Sizes
 
 
 def _xyz(values: Iterable[float]) -> dict[str, float]:

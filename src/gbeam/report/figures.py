@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gbeam.results import AxesResult, Floats
+from gbeam.results.response import AxesResult, Floats
 
 
 @dataclass(frozen=True)

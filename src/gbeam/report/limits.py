@@ -9,7 +9,7 @@ from typing import Any
 
 from rich.table import Table
 
-from gbeam.results import AxesResult, LimitUse
+from gbeam.results.response import AxesResult, LimitUse
 
 
 def limits_table(uses: Iterable[LimitUse]) -> Table:

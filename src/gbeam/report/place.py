@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from gbeam.results_place import Option, Placement
+from gbeam.results.placement import Option, Placement
 
 _PLACES = ("best", "present", "middle")
 _TOLD = 6  # options of either kind

@@ -14,7 +14,7 @@ from rich.text import Text
 
 from gbeam.report.figures import held_stretches, tracking
 from gbeam.report.limits import limits_json, limits_table
-from gbeam.results import MachinePlan
+from gbeam.results.response import MachinePlan
 
 _SHORTFALLS = 8  # told at most; a rough record has hundreds
 

@@ -15,8 +15,8 @@ from rich.text import Text
 from gbeam.report.comparison import comparison_lines
 from gbeam.report.figures import held_stretches, tracking
 from gbeam.report.limits import limits_table
-from gbeam.results import AxesResult, HubResult, Response, Study
-from gbeam.results_loads import Loads
+from gbeam.results.response import AxesResult, HubResult, Response, Study
+from gbeam.results.section_forces import Loads
 
 ROUNDING = 1e-9  # of what it belongs to: a smaller number is none
 EPISODES = 8  # of holding listed; a rough record has hundreds

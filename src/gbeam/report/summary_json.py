@@ -14,9 +14,9 @@ import numpy as np
 from gbeam.report.comparison import comparison_parts
 from gbeam.report.figures import peak, tracking
 from gbeam.report.limits import limits_json
-from gbeam.results import AxesResult, Floats, HubResult, Response, Study
-from gbeam.results_comparison import Comparison
-from gbeam.results_loads import Loads
+from gbeam.results.comparison import Comparison
+from gbeam.results.response import AxesResult, Floats, HubResult, Response, Study
+from gbeam.results.section_forces import Loads
 
 
 def summary_json(study: Study, files: Iterable[Path] = ()) -> dict[str, Any]:

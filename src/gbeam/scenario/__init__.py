@@ -6,12 +6,12 @@ who write scenarios.
 """
 
 from gbeam.scenario.build import build, build_machines
-from gbeam.scenario.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.explain import placed
 from gbeam.scenario.load import load, load_environments, loads
 from gbeam.scenario.schema import Environments, Scenario
 from gbeam.scenario.template import json_schema, template
-from gbeam.scenario.units import UnitError, argument, quantity
+from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
+from gbeam.scenario.text.units import UnitError, argument, quantity
 
 __all__ = [
     "Diagnostic",

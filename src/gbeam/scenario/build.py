@@ -11,11 +11,11 @@ from gbeam.scenario.collect import Collector
 from gbeam.scenario.explain import placed
 
 if TYPE_CHECKING:
-    from gbeam.beam import Beam
-    from gbeam.case import Case, ResponseSettings
-    from gbeam.loads import Load
-    from gbeam.model import Model
+    from gbeam.analysis.study.case import Case, ResponseSettings
+    from gbeam.mechanics.assembly import Model
     from gbeam.motion import Centrifuge, PiecewiseLinear
+    from gbeam.structure.beam import Beam
+    from gbeam.structure.loads import Load
 
 
 def build(scenario: schema.Scenario) -> Case:
@@ -34,7 +34,7 @@ def build(scenario: schema.Scenario) -> Case:
     ScenarioError
         With every InputError of the objects, each at its place in the file.
     """
-    from gbeam.case import Case
+    from gbeam.analysis.study.case import Case
     from gbeam.scenario.build_motion import centrifuges, flights_and_hubs
 
     parts = Collector()
@@ -90,9 +90,9 @@ def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
 
 
 def _beam(parts: Collector, it: schema.Beam) -> Beam | None:
-    from gbeam.beam import Beam, Material, PointMass
-    from gbeam.root import Root
-    from gbeam.section import Section
+    from gbeam.structure.beam import Beam, Material, PointMass
+    from gbeam.structure.section import Section
+    from gbeam.structure.support import Root
 
     dimensions = it.section.model_dump(exclude={"shape", "stations"}, exclude_none=True)
     section = parts.attempt("beam.section", Section.of, it.section.shape, it.section.stations, **dimensions)
@@ -109,8 +109,8 @@ def _beam(parts: Collector, it: schema.Beam) -> Beam | None:
 
 
 def _load(parts: Collector, where: str, it: schema.Load) -> Load | None:
-    from gbeam.loads import Load
     from gbeam.scenario.build_motion import components
+    from gbeam.structure.loads import Load
 
     tables = {"force": it.force, "distributed": it.distributed, "moment": it.moment}
     built = {
@@ -122,7 +122,7 @@ def _load(parts: Collector, where: str, it: schema.Load) -> Load | None:
 
 
 def _model(parts: Collector, it: schema.Model) -> Model | None:
-    from gbeam.model import Model
+    from gbeam.mechanics.assembly import Model
 
     return parts.attempt("model", Model, it.kind, it.modes.axial, it.modes.y, it.modes.z, it.shapes)
 
@@ -140,7 +140,7 @@ def _response(
 ) -> ResponseSettings | None:
     """Settings; `records` are what they cover, and without a duration the time that all do."""
     from gbeam import integrate
-    from gbeam.case import ResponseSettings
+    from gbeam.analysis.study.case import ResponseSettings
 
     schemes: dict[str, Callable[..., object]] = {
         "newmark": integrate.newmark,

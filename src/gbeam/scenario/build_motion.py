@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from gbeam import motion
-from gbeam.case import Motion
+from gbeam.analysis.study.case import Motion
 from gbeam.motion import Profile
-from gbeam.motion.flight import body_rates
-from gbeam.motion.record import Conditioning, FlightRecord, Rates, read_flight
+from gbeam.motion.bases.flight import body_rates
+from gbeam.motion.bases.record import Conditioning, FlightRecord, Rates, read_flight
 from gbeam.scenario import schema
 from gbeam.scenario.collect import Collector
 from gbeam.scenario.schema.motion import Record

@@ -7,14 +7,14 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
 from gbeam.errors import InputError
-from gbeam.scenario.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.fields import Quantity, Table
-from gbeam.scenario.paths import parse_path
-from gbeam.scenario.place import Path
 from gbeam.scenario.schema import Environments, Scenario
-from gbeam.scenario.source import Mark, Source
-from gbeam.scenario.suggest import advise
-from gbeam.scenario.units import KINDS, spoken
+from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
+from gbeam.scenario.text.paths import parse_path
+from gbeam.scenario.text.place import Path
+from gbeam.scenario.text.source import Mark, Source
+from gbeam.scenario.text.suggest import advise
+from gbeam.scenario.text.units import KINDS, spoken
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo

@@ -19,7 +19,7 @@ from pydantic import ValidationError as PydanticError
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
 
-from gbeam.scenario.units import KINDS, UnitError, quantity
+from gbeam.scenario.text.units import KINDS, UnitError, quantity
 
 Sign = Literal["any", "positive", "zero or more"]
 Loc = tuple[int | str, ...]

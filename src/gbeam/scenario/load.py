@@ -9,11 +9,11 @@ from typing import TypeVar
 
 from pydantic import ValidationError
 
-from gbeam.scenario.diagnostics import ScenarioError
 from gbeam.scenario.explain import explain
-from gbeam.scenario.overrides import override
 from gbeam.scenario.schema import Environments, Scenario
-from gbeam.scenario.source import Source, parse, read_text
+from gbeam.scenario.text.diagnostics import ScenarioError
+from gbeam.scenario.text.overrides import override
+from gbeam.scenario.text.source import Source, parse, read_text
 
 T = TypeVar("T", bound=Environments)
 

@@ -6,7 +6,7 @@ import json
 
 from gbeam.errors import InputError
 from gbeam.scenario.schema import Scenario
-from gbeam.scenario.suggest import advise
+from gbeam.scenario.text.suggest import advise
 
 _HEAD = """\
 # A scenario for gbeam. Quantities are text with a unit ("300 mm", "6 g", "60 rpm"); bare numbers are SI.

@@ -22,7 +22,7 @@ from gbeam.scenario.fields import (
     wrong,
 )
 from gbeam.scenario.schema.profile import AccelerationProfile, RateProfile, TorqueProfile
-from gbeam.scenario.suggest import closest
+from gbeam.scenario.text.suggest import closest
 
 
 def _exactly_one(table: Table, first: str, second: str) -> Iterator[tuple[Loc, PydanticCustomError]]:

@@ -14,10 +14,10 @@ from gbeam.scenario.schema.beam import Beam, beyond_the_tip
 from gbeam.scenario.schema.model import Model
 from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub, Motion
 from gbeam.scenario.schema.response import Response
-from gbeam.scenario.suggest import advise
+from gbeam.scenario.text.suggest import advise
 
 if TYPE_CHECKING:
-    from gbeam.scenario.source import Source
+    from gbeam.scenario.text.source import Source
 
 
 def _word(name: str) -> str:

@@ -1,0 +1,1 @@
+"""State-space models: linearisation, reduction, the nonlinear plant."""

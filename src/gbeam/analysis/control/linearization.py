@@ -1,0 +1,255 @@
+"""State-space models about an operating point: A, B, C, D with names and units."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import scipy.linalg
+from jaxtyping import Array
+
+import gbeam._jax  # noqa: F401
+from gbeam.analysis.control.state_space import Signal, StateSpace
+from gbeam.analysis.equilibrium.operating_point import (
+    OperatingPoint,
+    linear_matrices,
+    on_base,
+    on_hub,
+    operating_point,
+    steady_base,
+)
+from gbeam.analysis.response.section_forces import Outboard, cumulative_of, outboard_of, sections
+from gbeam.analysis.study.case import Motion
+from gbeam.analysis.vibration.stability import hub_of
+from gbeam.errors import InputError
+from gbeam.mechanics.assembly import Structure
+from gbeam.mechanics.field import RootedField
+from gbeam.motion import Centrifuge, HubRate, HubTorque
+
+BASE_RATES = tuple(Signal(f"base_rate_{i}", "rad/s") for i in "xyz")
+_NEAREST = 12  # quadrature nodes that a strain is interpolated from
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """A strain gauge along the beam.
+
+    Parameters
+    ----------
+    at : float
+        Position from the root, m.
+    y, z : float
+        Where it sits in the section, m from the axis.
+    """
+
+    at: float
+    y: float = 0.0
+    z: float = 0.0
+
+
+class Outputs(eqx.Module):
+    """What is measured, as a function of (y, ẏ, ÿ, u).
+
+    Tip displacement relative to the base axes; tip acceleration, absolute, or specific force where gravity acts; moment
+    of the base on the root, which is what the section there carries; strains; on a free hub its angle and rate. Vectors
+    in base axes; acceleration and moment as in :mod:`gbeam.analysis.response.section_forces`.
+    """
+
+    structure: Structure
+    point: OperatingPoint
+    outboard: Outboard
+    weights: Array
+    places: Array
+
+    def __call__(self, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
+        """Outputs (p,)."""
+        i, residual = self.point.first, self.point.residual
+        q, qd, qdd = y[i:], yd[i:], ydd[i:]
+        base, applied = residual.base(y, yd, ydd, u), residual.loaded(u).applied
+        _, moment, _, _, acceleration = sections(self.structure, self.outboard, base, q, qd, qdd, applied)
+        strains = self.structure.field.strains(q)
+        axial, about_y, about_z = (self.weights @ e for e in strains[:3])
+        strain = axial - self.places[:, 0] * about_z + self.places[:, 1] * about_y
+        hub = jnp.stack([y[0], yd[0]]) if i else jnp.zeros(0)
+        return jnp.concatenate([self.structure.displacement(q)[-1], acceleration[-1], -moment[0], strain, hub])
+
+
+def _interpolation(structure: Structure, gauges: Sequence[Gauge]) -> Array:
+    """Weights (gauges, nodes) that take nodal strains to the gauges."""
+    until = cumulative_of(structure)
+    nodes = until.sum(axis=1)[: until.shape[1]]
+    weights = np.zeros((len(gauges), len(nodes)))
+    for row, gauge in zip(weights, gauges, strict=True):
+        if not 0 <= gauge.at <= structure.length:
+            raise InputError("gauge.at", f"is {gauge.at:g} m, off the beam", f"give 0 to {structure.length:g} m")
+        near = np.sort(np.argsort(np.abs(nodes - gauge.at))[:_NEAREST])
+        for k in near:
+            others = near[near != k]
+            row[k] = np.prod((gauge.at - nodes[others]) / (nodes[k] - nodes[others]))
+    return jnp.asarray(weights)
+
+
+def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
+    """Names and units of (y, ẏ)."""
+    units = ("1", "rad", "rad") if structure.kind == "exact" else ("m", "m", "m")
+    names = [("hub_angle", "rad")] if first else []
+    for group, unit, count in zip(("axial", "y", "z"), units, structure.counts, strict=True):
+        names += [(f"q_{group}_{k + 1}", unit) for k in range(count)]
+    if isinstance(structure.field, RootedField):
+        springs = np.concatenate([structure.field.move, structure.field.turn])  # one direction in each column
+        ways = [("translation", "m", axis) for axis in "xyz"] + [("rotation", "rad", axis) for axis in "xyz"]
+        for way, unit, axis in (ways[i] for i in np.abs(springs).argmax(axis=0)):
+            names.append((f"q_root_{way}_{axis}", unit))
+    rates = [Signal("hub_rate" if name == "hub_angle" else f"rate_{name}", f"{unit}/s") for name, unit in names]
+    return tuple([Signal(*it) for it in names] + rates)
+
+
+def _acceleration(motion: Motion) -> str:
+    """What accelerations are where a motion goes: with gravity they are what accelerometers measure."""
+    if isinstance(motion, Centrifuge):
+        weighs = float(motion.geometry.gravity) > 0
+    else:
+        weighs = isinstance(motion, (HubRate, HubTorque)) and motion.mount.gravity is not None
+    return "specific_force" if weighs else "acceleration"
+
+
+def input_signals(structure: Structure, motion: Motion) -> tuple[Signal, ...]:
+    """Names and units of the inputs: torque or base, then the components of each load on the beam."""
+    if isinstance(motion, HubTorque):
+        signals = [Signal("torque", "N m")]
+    else:
+        signals = [Signal(f"base_{_acceleration(motion)}_{i}", "m/s^2") for i in "xyz"]
+        signals += [Signal(f"base_angular_acceleration_{i}", "rad/s^2") for i in "xyz"]
+    if structure.applied is not None:
+        counts = np.bincount(np.asarray(structure.applied.load))
+        for k, per in enumerate("/m" if points > 1 else "" for points in counts):
+            signals += [Signal(f"load_{k + 1}_force_{i}", f"N{per}") for i in "xyz"]
+            signals += [Signal(f"load_{k + 1}_moment_{i}", f"N m{per}") for i in "xyz"]
+    return tuple(signals)
+
+
+def output_signals(gauges: Sequence[Gauge], motion: Motion) -> tuple[Signal, ...]:
+    """Names and units of the outputs."""
+    kinds = (("tip", "m"), (f"tip_{_acceleration(motion)}", "m/s^2"), ("root_moment", "N m"))
+    signals = [Signal(f"{name}_{i}", unit) for name, unit in kinds for i in "xyz"]
+    signals += [Signal(f"strain_{k + 1}", "1") for k in range(len(gauges))]
+    free = isinstance(motion, HubTorque)
+    return tuple(signals + ([Signal("hub_angle", "rad"), Signal("hub_rate", "rad/s")] if free else []))
+
+
+def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gauge]) -> Outputs:
+    """What is measured at an operating point."""
+    places = jnp.asarray([[it.y, it.z] for it in gauges]).reshape(-1, 2)
+    every = outboard_of(structure)
+    ends = jnp.array([0, -1])  # root and tip
+    outboard = Outboard(every.points[-1:], every.mass[ends], every.loaded[ends])
+    return Outputs(structure, point, outboard, _interpolation(structure, gauges), places)
+
+
+@eqx.filter_jit
+def _output_matrices(outputs: Outputs) -> tuple[Array, ...]:
+    p = outputs.point
+    n, z = len(p.y), jnp.concatenate([p.y, p.yd, p.ydd, p.u])
+
+    def stacked(z: Array) -> Array:
+        return outputs(z[:n], z[n : 2 * n], z[2 * n : 3 * n], z[3 * n :])
+
+    d = jax.jacfwd(stacked)(z)
+    return stacked(z), d[:, :n], d[:, n : 2 * n], d[:, 2 * n : 3 * n], d[:, 3 * n :]
+
+
+def linearize(
+    structure: Structure,
+    motion: Motion,
+    time: float = 0.0,
+    *,
+    rate: float | None = None,
+    q: Array | None = None,
+    qd: Array | None = None,
+    gauges: Sequence[Gauge] = (),
+    name: str = "",
+) -> StateSpace:
+    """State-space model of small departures from an operating point.
+
+    Parameters
+    ----------
+    structure : Structure
+    motion : Flight, Centrifuge, HubRate or HubTorque
+        A free hub has the torque as input; on any other base the root's acceleration (specific force where gravity
+        acts, and then called so) and the angular acceleration are, in base axes. The components of each load on the
+        beam are inputs too.
+    time : float
+        At which the motion is frozen, s.
+    rate : float, optional
+        A hub's steady rate in its place, rad/s.
+    q, qd : (n,), optional
+        Coordinates and rates to linearise at; by default the relative equilibrium. Elsewhere the beam accelerates, and
+        the model is one of small departures from the motion that goes through this state.
+    gauges : sequence of Gauge
+        Where strain is measured.
+    name : str
+        Of the motion.
+
+    Returns
+    -------
+    StateSpace
+        States are the coordinates and their rates. Where the base's angular velocity acts to first order, that is
+        about a turning base, its components are states too: the integrals of the angular acceleration.
+
+    Raises
+    ------
+    InputError
+        If a gauge lies off the beam, a rate is asked of a motion without a hub, or a time of a hub that swings.
+    ComputationError
+        If there is no relative equilibrium.
+    """
+    if rate is None:
+        point = operating_point(structure, motion, time, q, qd)
+    else:
+        hub = hub_of(motion, "a rate", "leave it out and give a time", name)
+        if isinstance(hub, HubTorque):
+            point = on_hub(structure, hub, rate, q=q, qd=qd)
+        else:
+            point = on_base(structure, steady_base(hub, rate), q, qd)
+    linear = linear_matrices(point)
+    value, c_y, c_yd, c_ydd, c_u = (np.asarray(x) for x in _output_matrices(outputs_of(structure, point, gauges)))
+    n = len(linear.mass)
+    factor = scipy.linalg.lu_factor(linear.mass)
+    k, c, b = (scipy.linalg.lu_solve(factor, x) for x in (linear.stiffness, linear.velocity, linear.inputs))
+    zero = np.zeros((n, n))
+    a = np.block([[zero, np.eye(n)], [-k, -c]])
+    drive = np.concatenate([np.zeros_like(b), b])
+    out = np.concatenate([c_y - c_ydd @ k, c_yd - c_ydd @ c], axis=1)
+    through = c_ydd @ b + c_u
+    states = coordinate_signals(structure, point.first)
+    at, given = np.concatenate([point.y, point.yd]), np.asarray(point.u)
+    if not point.first:
+        # u = (a, ω, α, loads): ω becomes a state where it acts, fed by α.
+        acts = [i for i in range(3, 6) if np.abs(drive[:, i]).max() > 1e-12 or np.abs(through[:, i]).max() > 1e-12]
+        kept = [i for i in range(len(given)) if not 3 <= i < 6]
+        fed = np.array([[float(j == i + 3) for j in kept] for i in acts]).reshape(-1, len(kept))
+        m = len(acts)
+        a = np.block([[a, drive[:, acts]], [np.zeros((m, 2 * n + m))]])
+        out = np.concatenate([out, through[:, acts]], axis=1)
+        drive, through = np.concatenate([drive[:, kept], fed]), through[:, kept]
+        states += tuple(BASE_RATES[i - 3] for i in acts)
+        at, given = np.concatenate([at, given[acts]]), given[kept]
+    return StateSpace(
+        a=a,
+        b=drive,
+        c=out,
+        d=through,
+        states=states,
+        inputs=input_signals(structure, motion),
+        outputs=output_signals(gauges, motion),
+        state=at,
+        input=given,
+        output=value,
+        model=structure.kind,
+        motion=name,
+        time=time,
+    )

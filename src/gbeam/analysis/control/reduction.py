@@ -1,0 +1,109 @@
+"""Smaller state-space models: truncation by modes, and balanced truncation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import scipy.linalg
+
+from gbeam.analysis.control.state_space import Signal, StateSpace
+from gbeam.errors import InputError
+from gbeam.results.response import Floats
+
+Parts = tuple[StateSpace, StateSpace]
+RIGID = 1e-7  # of the largest eigenvalue: what is slower has none, as a free hub's angle
+DECAYS = 1e-9  # of the largest eigenvalue: what decays more slowly counts as undamped
+
+
+def _named(system: StateSpace, a: Floats, b: Floats, c: Floats, d: Floats, stem: str) -> StateSpace:
+    states = tuple(Signal(f"{stem}_{k + 1}", "1") for k in range(len(a)))
+    return replace(system, a=a, b=b, c=c, d=d, states=states, state=np.zeros(len(a)))
+
+
+def _split(system: StateSpace, chosen: Callable[[complex], bool]) -> Parts:
+    """Split a system into two that act side by side: the chosen eigenvalues, and the rest (which has no D).
+
+    By an ordered Schur form and a Sylvester equation, which take also a double integrator, where eigenvectors fail.
+    """
+    schur, basis, count = scipy.linalg.schur(system.a, output="real", sort=lambda re, im=0.0: chosen(complex(re, im)))
+    first, second = schur[:count, :count], schur[count:, count:]
+    coupling = scipy.linalg.solve_sylvester(first, -second, -schur[:count, count:])
+    b, c = basis.T @ system.b, system.c @ basis
+    return (
+        _named(system, first, b[:count] - coupling @ b[count:], c[:, :count], system.d, "slow"),
+        _named(system, second, b[count:], c[:, :count] @ coupling + c[:, count:], 0 * system.d, "fast"),
+    )
+
+
+def truncate(system: StateSpace, modes: int) -> StateSpace:
+    """Keep the slowest modes; what the others add in statics goes into D.
+
+    Parameters
+    ----------
+    system : StateSpace
+    modes : int
+        Number of distinct |λ| that are kept, the lowest: two states for an oscillation. What has none, the turning of a
+        free hub and the rates of a base, is kept besides.
+
+    Raises
+    ------
+    InputError
+        If there are not so many modes.
+    """
+    size = np.abs(scipy.linalg.eigvals(system.a))
+    levels = [RIGID * size.max()]
+    for value in np.sort(size):
+        if value > levels[-1] * (1 + 1e-6):
+            levels.append(float(value))
+    last = len(levels) - 1
+    if not 1 <= modes <= last:
+        raise InputError("modes", f"is {modes}", f"give 1 to {last}")
+    if modes == last:
+        return system
+    limit = (levels[modes] + levels[modes + 1]) / 2
+    slow, fast = _split(system, lambda value: abs(value) < limit)
+    return replace(slow, d=slow.d - fast.c @ np.linalg.solve(fast.a, fast.b))
+
+
+def balance(system: StateSpace, order: int) -> tuple[StateSpace, Floats]:
+    """Balanced truncation (Moore 1981): keep what inputs reach and outputs see most.
+
+    Parameters
+    ----------
+    system : StateSpace
+    order : int
+        Number of states kept of the part that decays; what does not decay, such as a free hub's turning or an
+        undamped mode, is kept whole.
+
+    Returns
+    -------
+    StateSpace, (k,) Hankel singular values of the decaying part
+        The error's largest gain is at most twice the sum of those left out.
+
+    Raises
+    ------
+    InputError
+        If nothing decays, or not so much.
+    """
+    tolerance = DECAYS * np.abs(scipy.linalg.eigvals(system.a)).max()
+    kept, decaying = _split(system, lambda value: value.real > -tolerance)
+    k = len(decaying.a)
+    if not 1 <= order <= k:
+        reason = "undamped modes cannot be balanced; give the beam a damping_ratio" if k == 0 else f"give 1 to {k}"
+        raise InputError("order", f"is {order}, and {k} states decay", reason)
+    reach = scipy.linalg.solve_continuous_lyapunov(decaying.a, -decaying.b @ decaying.b.T)
+    see = scipy.linalg.solve_continuous_lyapunov(decaying.a.T, -decaying.c.T @ decaying.c)
+
+    def root(gramian: Floats) -> Floats:
+        value, vector = np.linalg.eigh((gramian + gramian.T) / 2)
+        return vector * np.sqrt(np.maximum(value, 0))
+
+    left, hankel, right = np.linalg.svd(root(see).T @ root(reach))
+    scale = 1 / np.sqrt(hankel[:order])
+    into = scale[:, None] * (root(see) @ left[:, :order]).T
+    out = root(reach) @ right[:order].T * scale
+    a = scipy.linalg.block_diag(kept.a, into @ decaying.a @ out)
+    b, c = np.concatenate([kept.b, into @ decaying.b]), np.concatenate([kept.c, decaying.c @ out], axis=1)
+    return _named(system, a, b, c, system.d, "balanced"), hankel

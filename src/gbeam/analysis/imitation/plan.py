@@ -1,0 +1,128 @@
+"""The machine's side alone: what its axes must do, what that uses of its limits, and where it cannot follow."""
+
+from __future__ import annotations
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array
+
+from gbeam.motion import Axes, Centrifuge, axis_history
+from gbeam.motion.centrifuge.limits import usage
+from gbeam.numerics.batching import in_blocks
+from gbeam.results.response import AxesResult, Commands, Floats, LimitUse, MachinePlan
+
+_GRID, _MOST = 2e-3, 50_000  # s between the times of the result; most of them
+_USED_UP = 0.99  # share of a limit
+_FINE = 1e-3  # s: the angle of axis 1 is integrated on times no further apart
+
+
+@eqx.filter_jit
+def _states(motion: Centrifuge, time: Array) -> tuple[Axes, Array, Array, Array, Array]:
+    axes, jerk = motion.axes_and_jerks(time)
+    return axes, jerk, motion.wanted(time), motion.achieved_by(axes), motion.held(time)
+
+
+@eqx.filter_jit
+def _only_axes(motion: Centrifuge, time: Array) -> Axes:
+    return motion.axes(time)
+
+
+def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
+    """What a centrifuge does at given times (s, ascending), with its limits and where it cannot follow."""
+    axes, jerk, wanted, achieved, held = in_blocks(_states, motion, time)
+    angle, rate, acceleration = _columns(axes, time)
+    limits = usage(time, rate, acceleration, jerk, motion.limits)
+    return AxesResult(
+        angle=angle,
+        rate=rate,
+        acceleration=acceleration,
+        wanted=wanted,
+        achieved=achieved,
+        held=held,
+        episodes=tuple((e.start, e.end, e.reason) for e in motion.episodes()),
+        limits=limits,
+        unreachable=motion.unreachable(),
+        control_point=float(motion.control_point),
+        warnings=(
+            *_broken_promise(motion, time, wanted, np.asarray(achieved - wanted), held, limits),
+            *_short_spin_up(motion, limits),
+        ),
+    )
+
+
+def _broken_promise(
+    motion: Centrifuge, time: Floats, wanted: Floats, error: Floats, held: Floats, limits: tuple[LimitUse, ...]
+) -> tuple[str, ...]:
+    """Say where the load is followed worse than the inverse promises; nothing where it is not."""
+    size = np.linalg.norm(error, axis=1)
+    share = np.where(held, 0.0, size / np.maximum(np.linalg.norm(wanted, axis=1), 1e-12))
+    worst = int(np.argmax(share))
+    if not share[worst] > motion.inverse.within:
+        return ()
+    used = ", ".join(f"{use.axis} {use.quantity}" for use in limits if use.share > _USED_UP)
+    return (
+        f"the load is followed within {share[worst]:.2g} of it only ({size[worst]:.3g} m/s² at {time[worst]:.3f} s), "
+        f"where {type(motion.inverse).__name__.lower()} promises {motion.inverse.within:g}: {motion.inverse.unless}"
+        + (f" (limits used up: {used})" if used else ""),
+    )
+
+
+def _short_spin_up(motion: Centrifuge, limits: tuple[LimitUse, ...]) -> tuple[str, ...]:
+    """Say how long a spin-up the arm's limits need, which no inverse knows; nothing where it is long enough."""
+    first, ready, width = float(motion.target.span[0]), float(motion.target.ready), 2 * float(motion.target.reach)
+    # Over the spin-up's length T the arm's acceleration and power go with 1/T, its jerk with 1/T².
+    short = [
+        use.share if use.quantity != "jerk" else np.sqrt(use.share)
+        for use in limits
+        if use.exceeded and use.time < ready and use.axis in ("axis 1", "arm") and use.quantity != "rate"
+    ]
+    if not short:
+        return ()
+    enough = np.ceil(100 * (max(short) * (ready - first - width) + width)) / 100
+    return (f'the arm exceeds its limits in the spin-up: spin_up = "{enough:g} s" or more would keep them',)
+
+
+def plan(name: str, motion: Centrifuge, tracks: str = "") -> MachinePlan:
+    """Plan one centrifuge over its target's span.
+
+    Parameters
+    ----------
+    name : str
+        Of the motion.
+    motion : Centrifuge
+    tracks : str
+        Name of the flight.
+    """
+    first, last = (float(end) for end in motion.target.span)
+    count = min(int(np.ceil((last - first) / _GRID)), _MOST)
+    time = np.linspace(first, last, count + 1)
+    axes = axes_result(motion, time)
+    outcome = "done" if axes.within_limits else "limits exceeded"
+    return MachinePlan(name, tracks, float(motion.geometry.arm), outcome, axes.exceeding, time, axes)
+
+
+def commands(motion: Centrifuge, sample: float) -> Commands:
+    """Return the axis motions at a controller's sample time, from their closed forms and not by interpolation.
+
+    Parameters
+    ----------
+    motion : Centrifuge
+    sample : float
+        s; the last sample is the last that lies within the target's span.
+    """
+    first, last = (float(end) for end in motion.target.span)
+    between = int(np.ceil(sample / _FINE))  # axis 1's angle is an integral: finer than the samples
+    count = int(np.floor((last - first) / sample * (1 + 1e-12)))
+    time = np.asarray(first + sample / between * np.arange(count * between + 1), dtype=np.float64)
+    columns = _columns(in_blocks(_only_axes, motion, time), time)
+    return Commands(sample, time[::between], *(column[::between] for column in columns))
+
+
+def _columns(axes: Axes, time: Floats) -> tuple[Floats, Floats, Floats]:
+    history = axis_history(axes, time)
+    a = history.axes
+    return (
+        np.stack([history.angle1, a.angle2, a.angle3], axis=1),
+        np.stack([a.rate1, a.rate2, a.rate3], axis=1),
+        np.stack([a.acceleration1, a.acceleration2, a.acceleration3], axis=1),
+    )

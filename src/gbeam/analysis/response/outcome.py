@@ -1,0 +1,102 @@
+"""How a run ended, and what to beware of in its result, in words."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from gbeam.analysis.equilibrium.definiteness import first_loss
+from gbeam.analysis.response.problem import Problem
+from gbeam.analysis.study.case import ResponseSettings
+from gbeam.integrate import Trajectory
+from gbeam.mechanics.assembly import Structure
+from gbeam.mechanics.equations import coefficients
+from gbeam.mechanics.field import ExactField, RootedField
+from gbeam.results.response import BaseHistory, Floats, Peaks
+
+_NEAR = np.radians(160.0)  # of the pole at 180 degrees
+
+
+def describe(
+    structure: Structure,
+    problem: Problem,
+    settings: ResponseSettings,
+    trajectory: Trajectory,
+    base: BaseHistory,
+    peaks: Peaks,
+    time: Floats,
+    q: Floats,
+    error: float,
+) -> tuple[str, str, tuple[str, ...]]:
+    """Outcome, message and warnings of a run.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        Every step computed; `base`, at times `time` (t,) s, and the beam's coordinates `q` (t, n) are at those kept.
+    error : float
+        Estimated, as a fraction of the tip's largest displacement.
+    """
+    constants = problem.coefficients
+    if constants is None and structure.linear:
+        constants = coefficients(structure.system)
+    loss = None if constants is None else first_loss(constants, time, base)
+    lost = (
+        ""
+        if loss is None
+        else f"{structure.kind}'s stiffness is not positive definite from t = {loss[0]:.4g} s, where the base turns at "
+        f"{loss[1]:.4g} rad/s"
+    )
+    warnings = []
+    end = trajectory.time[-1]
+    if trajectory.stopped:
+        why = f"{lost}: the model is not valid beyond that speed; use FOAM or exact" if lost else "use exact"
+        return (
+            "diverged",
+            f"the displacement exceeded the beam's length, {structure.length:.4g} m, at t = {end:.4g} s; {why}",
+            (),
+        )
+    if not trajectory.converged:
+        return (
+            "not converged",
+            f"no acceleration satisfies the equations in the step after t = {end:.4g} s; "
+            f'try a smaller response.step, or response.integrator = "generalized-alpha" with rho_inf = 0.8',
+            (),
+        )
+    if lost:
+        warnings.append(f"{lost}; the result beyond is not to be trusted")
+    elif not problem.stable:
+        warnings.append(
+            "the run starts from an equilibrium that is not stable, which no beam would keep: its stiffness is not "
+            "positive definite; `gbeam critical-speed` tells where that begins"
+        )
+    share = float(peaks.max_abs[1:].max() / structure.length)
+    if structure.kind != "exact" and share > 0.1:
+        warnings.append(
+            f"the tip moves by {share:.1%} of the length: second-order models are then wrong by about "
+            f'{0.35 * share**2:.1%} of the peak (TLAM and CFOAM by more); check with model.kind = "exact"'
+        )
+    if math.isfinite(error) and error > settings.tolerance:
+        warnings.append(
+            f"the estimated error, {error:.2g} of the largest displacement, is above the tolerance "
+            f'{settings.tolerance:g}; give a smaller step, or "auto"'
+        )
+    if (turned := turned_out_of_plane(structure, q)) > _NEAR:
+        warnings.append(
+            f"the beam's tangent turns by {np.degrees(turned):.0f}° out of one plane: straight back, at 180°, its "
+            "rotation vector has a pole, and near it the shapes converge slowly; check with more of them"
+        )
+    return "done", "", tuple(warnings)
+
+
+def turned_out_of_plane(structure: Structure, q: Floats) -> float:
+    """Largest angle by which the exact field's tangent turns, rad; zero where the beam stays in one plane."""
+    field = structure.field.inner if isinstance(structure.field, RootedField) else structure.field
+    if not isinstance(field, ExactField) or field.planar:
+        return 0.0
+    beam = q[:, : field.angle_y.shape[1]]
+    vector = np.stack([(beam @ np.asarray(angle).T).ravel() for angle in (field.angle_y, field.angle_z)])
+    across, _ = np.linalg.eigvalsh(vector @ vector.T)
+    in_plane = across <= (1e-6 * np.pi) ** 2 * vector.shape[1]
+    return 0.0 if in_plane else float(np.linalg.norm(vector, axis=0).max())

@@ -1,0 +1,78 @@
+"""Which scheme, and which step: halved until the error that two runs tell is within the tolerance."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from gbeam.analysis.study.case import ResponseSettings
+from gbeam.errors import InputError
+from gbeam.integrate import Gauss4, OneStep, Trajectory, generalized_alpha, hht, newmark
+from gbeam.mechanics.assembly import Structure, rest_modes
+from gbeam.mechanics.energy import rest_matrices
+from gbeam.results.response import Floats
+
+MAX_STEPS = 4_000_000
+
+
+def scheme_of(settings: ResponseSettings) -> OneStep | Gauss4:
+    """The integration scheme that the settings name."""
+    match settings.integrator:
+        case "newmark":
+            return newmark(**settings.parameters)
+        case "hht":
+            return hht(**{"alpha": -0.1, **settings.parameters})
+        case "generalized-alpha":
+            return generalized_alpha(**{"rho_inf": 0.9, **settings.parameters})
+        case "gauss":
+            return Gauss4()
+    raise InputError(
+        "response.integrator",
+        f"is {settings.integrator!r}",
+        "choose newmark, hht, generalized-alpha, gauss or adaptive",
+    )
+
+
+def first_step(structure: Structure, settings: ResponseSettings) -> float:
+    """Step of the results, s: an even number over the duration, at least 500 and 40 to the lowest period."""
+    frequency, _ = rest_modes(*rest_matrices(structure.system.energy))
+    wanted = min(2 * math.pi / frequency[0] / 40, settings.duration / 500)
+    return settings.duration / (2 * math.ceil(settings.duration / wanted / 2))
+
+
+def difference(coarse: Floats, fine: Floats, ratio: int) -> float:
+    """Largest difference of two tip histories at the coarse one's times, over the largest displacement."""
+    n = min(len(coarse), (len(fine) - 1) // ratio + 1)
+    size = np.abs(fine).max()
+    return float(np.abs(coarse[:n] - fine[: (n - 1) * ratio + 1 : ratio]).max() / size) if size > 0 else 0.0
+
+
+def refine(
+    run: Callable[[float, str], Trajectory],
+    tip: Callable[[Trajectory], Floats],
+    coarse: float,
+    order: int,
+    settings: ResponseSettings,
+) -> tuple[Trajectory, float, float]:
+    """Halve the step, from twice the results', until the error estimated from two runs is within the tolerance.
+
+    The estimate is Richardson's: with steps h and h/r the finer run's error is their difference over rᵖ − 1.
+    """
+    old, level = run(2 * coarse, "integrating"), -1
+    ratio = 2
+    while True:
+        step = coarse / 2**level / ratio
+        new = run(step, f"refining the step to {1e3 * step:.3g} ms")
+        error = difference(tip(old), tip(new), ratio) / (ratio**order - 1)
+        level += round(math.log2(ratio))
+        whole = new.converged and not new.stopped
+        if (error <= settings.tolerance and whole) or (not whole and not (old.converged and not old.stopped)):
+            return new, step, error
+        # Jump to the step that the order promises, at most 16 times finer.
+        wanted = math.ceil(math.log2(max(error / settings.tolerance, 2.0)) / order) if math.isfinite(error) else 1
+        ratio = 2 ** min(max(wanted, 1), 4)
+        if settings.duration / step * ratio > MAX_STEPS:
+            return new, step, error
+        old = new

@@ -1,0 +1,1 @@
+"""A whole scenario: every environment, and every model of it."""

@@ -1,0 +1,82 @@
+"""A whole case answered: the response in every environment, and the comparisons of those that track one another."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from gbeam.analysis.imitation.comparison import compare
+from gbeam.analysis.response.section_forces import influence, internal_loads
+from gbeam.analysis.response.simulation import respond
+from gbeam.analysis.study.case import Case, Motion
+from gbeam.errors import ComputationError, InputError
+from gbeam.mechanics.assembly import Structure, assemble
+from gbeam.motion import Centrifuge, Flight
+from gbeam.results.response import Failure, Response, Study
+
+
+def structure_of(case: Case) -> Structure:
+    """Put a case's beam into its model; an InputError names its place in the scenario."""
+    try:
+        return assemble(case.beam, case.model, case.stations)
+    except InputError as error:
+        raise error.within("response" if error.where.startswith("stations") else "beam") from None
+
+
+def study(case: Case, progress: Callable[[str, float], None] | None = None) -> Study:
+    """Compute the response in every environment of a case and compare each centrifuge with its flight.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`gbeam.build`, or made by hand.
+    progress : callable, optional
+        Called with what is being done and the fraction of it done.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    InputError
+        With its place in the scenario.
+    ComputationError
+        If no motion has a relative equilibrium to start from; the message names each.
+    """
+    structure = structure_of(case)
+
+    def answer(name: str) -> Response:
+        motion = case.motions[name]
+
+        def report(what: str, share: float) -> None:
+            if progress is not None:
+                progress(f"{name}: {what}", share)
+
+        response = respond(structure, motion, case.response, name=name, progress=report)
+        return _with_loads(structure, case, motion, response)
+
+    responses: dict[str, Response] = {}
+    failures: dict[str, Failure] = {}
+    for name in case.motions:
+        try:
+            responses[name] = answer(name)
+        except ComputationError as error:
+            failures[name] = Failure(error.outcome, str(error))
+    if not responses:
+        first = next(iter(failures.values()))
+        raise ComputationError(first.outcome, "; ".join(f"motion.{n}: {it.message}" for n, it in failures.items()))
+    comparisons = tuple(
+        compare(responses[flight], responses[name])
+        for name, flight in case.tracks.items()
+        if {flight, name} <= responses.keys() and responses[flight].outcome == responses[name].outcome == "done"
+    )
+    return Study(case.title, responses, comparisons, failures)
+
+
+def _with_loads(structure: Structure, case: Case, motion: Motion, response: Response) -> Response:
+    """Add what the sections carry, and on a centrifuge what its mismatch can do."""
+    loads = internal_loads(structure, case.beam, response, motion)
+    notes = tuple(f"record: {note}" for note in motion.notes) if isinstance(motion, Flight) else ()
+    response = replace(response, warnings=response.warnings + notes)
+    return replace(response, loads=loads, influence=influence(structure) if isinstance(motion, Centrifuge) else None)

@@ -1,0 +1,1 @@
+"""Small vibrations about an equilibrium: modes, Campbell diagrams, loss of stability."""

@@ -1,0 +1,188 @@
+"""Campbell diagram: frequencies against hub speed, each mode followed through crossings and veering."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq, linear_sum_assignment
+
+from gbeam.analysis.equilibrium.operating_point import linear_matrices, on_base, on_hub, steady_base
+from gbeam.analysis.study.case import Motion
+from gbeam.analysis.vibration.modal import modes_at
+from gbeam.analysis.vibration.stability import critical_speed, hub_of
+from gbeam.errors import InputError
+from gbeam.mechanics.assembly import Structure
+from gbeam.motion import HubTorque
+from gbeam.results.modal import Campbell, Complex, Crossing
+from gbeam.results.response import Floats
+
+CONFIDENT = 0.9  # a mode that resembles itself less from one speed to the next is looked at in between
+DEPTH = 8  # halvings of a step at most: what veers faster is a crossing to every eye
+
+
+class _Speed(NamedTuple):
+    """Modes at one speed, and the measure of the coordinates."""
+
+    rate: float
+    frequency: Floats
+    damping_ratio: Floats
+    coordinates: Complex
+    mass: Floats
+    direction: tuple[str, ...]
+
+
+def mac(first: Complex, second: Complex, mass: Floats) -> Floats:
+    """Modal assurance criteria |φᴴMψ|²/(φᴴMφ ψᴴMψ) of modes in rows, (k, l)."""
+    left, right = (np.einsum("ki,ij,kj->k", x.conj(), mass, x).real for x in (first, second))
+    return np.abs(first.conj() @ mass @ second.T) ** 2 / np.outer(left, right)
+
+
+def _paired(before: _Speed, after: _Speed) -> tuple[np.ndarray, Floats]:
+    """For each mode of `before` the one of `after` that resembles it most, −1 for none, and their MAC."""
+    alike = mac(before.coordinates, after.coordinates, after.mass)
+    rows, columns = linear_sum_assignment(-alike)
+    match, value = np.full(len(before.frequency), -1), np.full(len(before.frequency), np.nan)
+    match[rows], value[rows] = columns, alike[rows, columns]
+    return match, value
+
+
+def _fill(at: Callable[[float], _Speed], low: _Speed, high: _Speed, count: int, depth: int) -> list[_Speed]:
+    """Speeds between two at which the first `count` modes can be recognised from one to the next."""
+    _, alike = _paired(low, high)
+    if depth == 0 or np.nanmin(alike[:count], initial=1.0) > CONFIDENT:
+        return []
+    middle = at((low.rate + high.rate) / 2)
+    return [*_fill(at, low, middle, count, depth - 1), middle, *_fill(at, middle, high, count, depth - 1)]
+
+
+def campbell(
+    structure: Structure,
+    motion: Motion,
+    *,
+    start: float = 0.0,
+    end: float,
+    count: int = 60,
+    modes: int = 8,
+    orders: Sequence[int] = (1, 2, 3, 4),
+    name: str = "",
+) -> Campbell:
+    """Frequencies about the relative equilibrium against the speed of a hub.
+
+    Parameters
+    ----------
+    structure : Structure
+    motion : HubRate or HubTorque
+        Its own rate or torque is not used; a free hub turns with the beam.
+    start, end : float
+        Range of the hub's rate, rad/s.
+    count : int
+        Number of intervals; the steps are halved where a mode is hard to recognise.
+    modes : int
+        How many to follow, the lowest at the start.
+    orders : sequence of int
+        Engine orders: a crossing is where frequency = order × speed.
+    name : str
+        For the result.
+
+    Returns
+    -------
+    Campbell
+        Up to the critical speed, if there is one in the range.
+
+    Raises
+    ------
+    InputError
+        If the motion has no hub, the range is empty, or no mode is to be followed.
+    """
+    hub = hub_of(motion, "a Campbell diagram", "ask `gbeam modes` for its frequencies at a time", name)
+    if not 0 <= start < end:
+        raise InputError("to", f"is {end:g} rad/s, from {start:g} rad/s", "give a range of speeds that ascends from 0")
+    if modes < 1:
+        raise InputError("modes", f"is {modes}", "give 1 or more")
+    lost = critical_speed(structure, motion, upper=end)
+    # The last speed is short of the critical one, where a frequency is zero.
+    last = end if lost.value is None or lost.value <= start else start + (lost.value - start) * (1 - 1e-6)
+
+    def at(rate: float) -> _Speed:
+        if isinstance(hub, HubTorque):
+            point = on_hub(structure, hub, rate)
+        else:
+            point = on_base(structure, steady_base(hub, rate))
+        linear = linear_matrices(point)
+        found = modes_at(structure, point, linear)
+        beam = linear.mass[point.first :, point.first :]
+        return _Speed(rate, found.frequency, found.damping_ratio, found.coordinates, beam, found.direction)
+
+    coarse = [at(float(rate)) for rate in np.linspace(start, last, count + 1)]
+    kept = min(modes, len(coarse[0].frequency))
+    speeds = coarse[:1]
+    for low, high in pairwise(coarse):
+        speeds += [*_fill(at, low, high, kept, DEPTH), high]
+    frequency, damping, alike = np.full((3, len(speeds), kept), np.nan)
+    track = np.arange(kept)
+    index = [track]
+    for i, here in enumerate(speeds):
+        if i == 0:
+            value = np.ones(kept)
+        else:
+            match, likeness = _paired(speeds[i - 1], here)
+            value = np.where(track >= 0, likeness[track], np.nan)
+            track = np.where(track >= 0, match[track], -1)
+            index.append(track)
+        there = track >= 0
+        frequency[i, there], damping[i, there] = here.frequency[track[there]], here.damping_ratio[track[there]]
+        alike[i] = value
+    rates = np.array([it.rate for it in speeds])
+    crossings = [
+        crossing
+        for k in range(kept)
+        for order in orders
+        for crossing in _crossings(at, speeds, index, rates, frequency[:, k], k, order)
+    ]
+    return Campbell(
+        motion=name,
+        model=structure.kind,
+        speed=rates,
+        frequency=frequency,
+        damping_ratio=damping,
+        mac=alike,
+        direction=coarse[0].direction[:kept],
+        orders=tuple(orders),
+        crossings=tuple(sorted(crossings, key=lambda it: it.speed)),
+        critical=lost if lost.value is not None else None,
+    )
+
+
+def _crossings(
+    at: Callable[[float], _Speed],
+    speeds: list[_Speed],
+    index: list[np.ndarray],
+    rates: Floats,
+    frequency: Floats,
+    track: int,
+    order: int,
+) -> list[Crossing]:
+    """Speeds at which a followed mode meets an engine order: roots on the modes themselves."""
+    gap = frequency - order * rates / (2 * np.pi)
+    found = []
+    for i in np.flatnonzero((gap[:-1] > 0) & (gap[1:] <= 0) | (gap[:-1] < 0) & (gap[1:] >= 0)):
+        mode = speeds[i].coordinates[index[i][track]][None]
+
+        def difference(rate: float, mode: Complex = mode) -> float:
+            here = at(rate)
+            like = int(mac(mode, here.coordinates, here.mass)[0].argmax())
+            return float(here.frequency[like] - order * rate / (2 * np.pi))
+
+        ends = difference(rates[i]), difference(rates[i + 1])
+        if ends[0] * ends[1] <= 0:
+            rate = brentq(difference, rates[i], rates[i + 1], xtol=1e-10)
+        else:  # the mode veers within the step: keep what the curve says
+            rate = brentq(PchipInterpolator(rates[i : i + 2], gap[i : i + 2]), rates[i], rates[i + 1])
+        here = at(rate)
+        like = int(mac(mode, here.coordinates, here.mass)[0].argmax())
+        found.append(Crossing(track, order, float(rate), order * float(rate) / (2 * np.pi), here.direction[like]))
+    return found

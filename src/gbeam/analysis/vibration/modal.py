@@ -1,0 +1,162 @@
+"""Modes: small vibrations about a relative equilibrium, with or without gyroscopic coupling."""
+
+from __future__ import annotations
+
+import equinox as eqx
+import jax
+import numpy as np
+import scipy.linalg
+from jaxtyping import Array
+
+import gbeam._jax  # noqa: F401
+from gbeam.analysis.equilibrium.operating_point import Linear, OperatingPoint, linear_matrices, operating_point
+from gbeam.analysis.study.case import Motion
+from gbeam.mechanics.assembly import Structure
+from gbeam.motion import Base
+from gbeam.results.modal import Complex, FrozenBase, Instability, Modes
+from gbeam.results.response import Floats
+
+ZERO = 1e-11  # of the largest eigenvalue: a smaller one is rounding about zero
+# Of a mode's frequency: a base that speeds up, once frozen, feeds or drains a mode by 1e-7, and means nothing by it.
+FLUTTER = 1e-6
+
+
+def growth_limit(value: Complex, largest: float) -> Floats:
+    """Real part above which each of some eigenvalues counts as one that grows, 1/s; `largest` is that of all."""
+    return np.maximum(np.where(value.imag != 0, FLUTTER * np.abs(value), 0.0), ZERO * largest)
+
+
+def eigenvalues(linear: Linear, *, gyroscopic: bool = True) -> tuple[Complex, Complex]:
+    """Eigenvalues λ and modes of M ÿ + C ẏ + K y = 0.
+
+    Parameters
+    ----------
+    linear : Linear
+        NumPy arrays.
+    gyroscopic : bool
+        False leaves out the skew part of C.
+
+    Returns
+    -------
+    eigenvalue : (2n − r,), 1/s
+        Without the r zeros of coordinates on which nothing depends, such as a free hub's angle.
+    mode : (n, 2n − r)
+        In columns, of unit length in M.
+    """
+    mass, velocity, stiffness, _ = linear
+    damping = velocity if gyroscopic else (velocity + velocity.T) / 2
+    # In modes of the symmetric part, each scaled by its own frequency, all blocks are of the size of the frequencies:
+    # the raw companion matrix loses half the digits of the low ones.
+    square, basis = scipy.linalg.eigh((stiffness + stiffness.T) / 2, (mass + mass.T) / 2)
+    reference = np.sqrt(np.abs(square).max())
+    scale = np.maximum(np.sqrt(np.abs(square)), 1e-6 * reference)
+    k, c = basis.T @ stiffness @ basis, basis.T @ damping @ basis
+    n = len(square)
+    moving = np.abs(k).max(axis=0) > 1e-13 * reference**2
+    a = np.block([[np.zeros((n, n)), np.diag(scale)], [-k / scale, -c]])
+    keep = np.concatenate([moving, np.ones(n, dtype=bool)])
+    value, vector = scipy.linalg.eig(a[np.ix_(keep, keep)])
+    # The velocities hold a mode also where its coordinate was dropped.
+    mode = basis @ vector[-n:]
+    weight = np.sqrt(np.einsum("ik,ij,jk->k", mode.conj(), mass, mode).real)
+    return value, mode / weight
+
+
+@eqx.filter_jit
+def _sensitivity(structure: Structure, q: Array) -> tuple[Array, Array, Array]:
+    """How all points of the axis move with q, (points, 3, n); how the stations do; where the stations are."""
+    points = jax.jacfwd(structure.field.position)(q)
+    return points, points[structure.first_station :], structure.displacement(q)
+
+
+def directions(structure: Structure, point: OperatingPoint, coordinates: Complex | Floats) -> tuple[str, ...]:
+    """Axis along which each mode (n, k) moves the beam's axis most."""
+    moved = np.asarray(_sensitivity(structure, point.q)[0]) @ coordinates
+    return tuple("xyz"[i] for i in np.abs(moved).max(axis=0).argmax(axis=0))
+
+
+def frozen(base: Base) -> FrozenBase:
+    """Base motion as a record."""
+    return FrozenBase(np.asarray(base.a_WO_B), np.asarray(base.w_WB_B), np.asarray(base.al_WB_B))
+
+
+def modes_at(
+    structure: Structure,
+    point: OperatingPoint,
+    linear: Linear | None = None,
+    *,
+    gyroscopic: bool = True,
+    name: str = "",
+    time: float = float("nan"),
+) -> Modes:
+    """Modes about an operating point; `linear` is its :func:`linear_matrices`, if known."""
+    linear = linear_matrices(point) if linear is None else linear
+    value, mode = eigenvalues(linear, gyroscopic=gyroscopic)
+    _, stations, equilibrium = (np.asarray(x) for x in _sensitivity(structure, point.q))
+    size = np.abs(value).max()
+    zero, real = np.abs(value) <= ZERO * size, np.abs(value.imag) <= ZERO * size
+    beam = mode[point.first :]
+
+    def pick(chosen: np.ndarray) -> tuple[Complex, Complex, tuple[str, ...]]:
+        order = np.flatnonzero(chosen)[np.argsort(np.abs(value[chosen]), kind="stable")]
+        return value[order], beam[:, order], directions(structure, point, beam[:, order])
+
+    oscillating, coordinates, direction = pick(~zero & ~real & (value.imag > 0))
+    growing, _, grows = pick(~zero & real & (value.real > 0))
+    shape = np.moveaxis(stations @ coordinates, -1, 0)
+    # Turn each shape so that its largest component is 1.
+    flat = shape.reshape(len(shape), -1)
+    largest = flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)]
+    flutter = oscillating.real > growth_limit(oscillating, size)
+    return Modes(
+        motion=name,
+        model=structure.kind,
+        time=time,
+        base=frozen(point.base),
+        gyroscopic=gyroscopic,
+        eigenvalue=oscillating,
+        direction=direction,
+        coordinates=coordinates.T,
+        stations=np.asarray(structure.stations),
+        shape=shape / np.where(largest == 0, 1, largest)[:, None, None],
+        equilibrium=equilibrium,
+        instabilities=tuple(
+            [Instability("divergence", float(v.real), 0.0, d) for v, d in zip(growing, grows, strict=True)]
+            + [
+                Instability("flutter", float(v.real), float(abs(v) / (2 * np.pi)), d)
+                for v, d, bad in zip(oscillating, direction, flutter, strict=True)
+                if bad
+            ]
+        ),
+        rigid=int(point.first and not np.abs(linear.stiffness[:, 0]).any()),
+        overdamped=np.sort(value[~zero & real & (value.real < 0)].real),
+    )
+
+
+def modes(structure: Structure, motion: Motion, time: float, *, gyroscopic: bool = True, name: str = "") -> Modes:
+    """Small vibrations of the beam about its relative equilibrium on a base frozen at a time.
+
+    Parameters
+    ----------
+    structure : Structure
+        From :func:`gbeam.assemble`; the shapes are told at its stations.
+    motion : Flight, Centrifuge, HubRate or HubTorque
+        A free hub turns with the beam: its angle is a coordinate, and its mode of zero frequency is left out.
+    time : float
+        s.
+    gyroscopic : bool
+        Whether to keep Coriolis coupling.
+    name : str
+        For the result.
+
+    Returns
+    -------
+    Modes
+
+    Raises
+    ------
+    ComputationError
+        If there is no relative equilibrium.
+    """
+    point = operating_point(structure, motion, time)
+    return modes_at(structure, point, gyroscopic=gyroscopic, name=name, time=time)

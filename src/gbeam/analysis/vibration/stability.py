@@ -1,0 +1,270 @@
+"""Where the relative equilibrium is lost: critical hub rates, divergence of a beam pointing inward, buckling.
+
+About a relative equilibrium on a steadily turning base the energy that counts is the amended potential, whose second
+derivative is K. While K is positive definite the equilibrium is stable, with any damping inside the beam too; once it
+is not, such damping destroys whatever gyroscopic coupling might have saved (Kelvin, Tait, Chetayev). So the
+definiteness of K decides, for every model; only loads that follow the beam make K unsymmetric, and then the
+eigenvalues decide. There damping matters: the least of it lowers the flutter load of Beck's column (Ziegler's paradox).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array
+from scipy.optimize import brentq
+
+from gbeam.analysis.equilibrium.operating_point import Linear, OperatingPoint, linear_matrices, on_base, steady_base
+from gbeam.analysis.equilibrium.static import lowest_stiffness_at
+from gbeam.analysis.study.case import Motion
+from gbeam.analysis.vibration.modal import directions, eigenvalues, growth_limit, modes_at
+from gbeam.checks import positive
+from gbeam.errors import ComputationError, InputError
+from gbeam.mechanics.assembly import Model, Structure, assemble, rest_modes
+from gbeam.mechanics.energy import rest_matrices
+from gbeam.mechanics.equations import coefficients
+from gbeam.motion import Base, HubRate, HubTorque
+from gbeam.results.modal import Critical, CriticalMap
+from gbeam.structure.beam import Beam, PointMass
+
+SCAN = 64  # points at which a loss is looked for before its root is closed in on
+REACH = 10.0  # of the lowest natural frequency: how far a search goes unless told
+NOTHING = 1e-12  # of the beam's stiffness: loads that bring less are rounding about none
+UNSYMMETRIC = 1e-9  # of K: above it the loads follow the beam
+
+
+def hub_of(motion: Motion, what: str, instead: str, name: str = "") -> HubRate | HubTorque:
+    """Return `motion` if it is a hub's; else raise InputError with the verb that can answer."""
+    if isinstance(motion, (HubRate, HubTorque)):
+        return motion
+    kind = type(motion).__name__.lower()
+    raise InputError(
+        f"motion.{name}" if name else "motion",
+        f"is a {kind}, which has no hub to turn faster: {what} needs one",
+        instead,
+    )
+
+
+def lowest_frequency(structure: Structure) -> float:
+    """Lowest natural frequency of the beam on a base at rest, rad/s."""
+    return float(rest_modes(*rest_matrices(structure.system.energy))[0][0])
+
+
+def _margin(linear: Linear) -> float:
+    """Positive while the equilibrium is stable, rad²/s²; its root is where it stops."""
+    stiffness = linear.stiffness
+    if np.abs(stiffness - stiffness.T).max() <= UNSYMMETRIC * np.abs(stiffness).max():
+        return lowest_stiffness_at(linear.mass, stiffness)[0]
+    value, _ = eigenvalues(linear)
+    return float((growth_limit(value, np.abs(value).max()) - value.real).min())
+
+
+def _point(structure: Structure, base: Base) -> OperatingPoint | None:
+    try:
+        return on_base(structure, base)
+    except ComputationError:
+        return None
+
+
+def first_loss_along(
+    path: Callable[[float], tuple[Structure, Base]], upper: float, quantity: str, unit: str
+) -> Critical:
+    """Raise a quantity from zero until the relative equilibrium is lost.
+
+    Parameters
+    ----------
+    path : callable
+        Of the quantity that is raised: the structure, with its loads, and the base motion.
+    upper : float
+        End of the search.
+    quantity, unit : str
+        For the result.
+
+    Returns
+    -------
+    Critical
+        The first loss on a grid of 64 points, closed in to 1e-11 by Brent's method.
+    """
+
+    def margin(value: float) -> float:
+        point = _point(*path(value))
+        return -1.0 if point is None else _margin(linear_matrices(point))
+
+    def answer(value: float | None, kind: str, direction: str, reason: str) -> Critical:
+        return Critical(quantity, unit, value, upper, kind, direction, reason, structure.kind)
+
+    structure, _ = path(0.0)
+    grid = np.linspace(0.0, upper, SCAN + 1)
+    margins = np.array([margin(float(value)) for value in grid])
+    lost = np.flatnonzero(margins < 0)
+    if not lost.size:
+        why = f"{structure.kind} keeps its equilibrium at every {quantity} up to {upper:.4g} {unit}"
+        return answer(None, "none", "", why)
+    first = int(lost[0])
+    if first == 0:
+        return answer(0.0, "divergence", "", "the beam is unstable before anything moves")
+    found = brentq(margin, grid[first - 1], grid[first], xtol=1e-11, rtol=4 * np.finfo(float).eps)
+    point = _point(*path(found)) or on_base(*path(float(grid[first - 1])))
+    beyond = _point(*path(found * (1 + 1e-5)))
+    if beyond is None:
+        kind, direction = "no equilibrium", ""
+    else:
+        grown = modes_at(structure, beyond).instabilities
+        kind, direction = (grown[0].kind, grown[0].direction) if grown else ("divergence", "")
+    if kind == "divergence":
+        linear = linear_matrices(point)
+        _, mode = lowest_stiffness_at(linear.mass, linear.stiffness)
+        direction = directions(structure, point, mode[:, None])[0]
+    told = f" along {direction}" if direction else ""
+    return answer(found, kind, direction, f"{structure.kind}: {kind}{told} at {found:.6g} {unit}")
+
+
+def critical_speed(structure: Structure, motion: Motion, *, upper: float | None = None, name: str = "") -> Critical:
+    """Lowest hub rate at which the beam's relative equilibrium is lost, the hub's rate being held.
+
+    Parameters
+    ----------
+    structure : Structure
+    motion : HubRate or HubTorque
+        Its own rate or torque is not used.
+    upper : float, optional
+        End of the search, rad/s; by default ten times the lowest natural frequency.
+    name : str
+        Of the motion, for what is said of it.
+
+    Returns
+    -------
+    Critical
+        ``value`` is None where there is none: TLAM has one (2009 section 4), the models with foreshortening have
+        none below the speeds at which the beam would be torn apart.
+
+    Raises
+    ------
+    InputError
+        If the motion has no hub.
+    """
+    instead = "ask `gbeam modes` for its frequencies at a time, or `gbeam static` for its shape"
+    hub = hub_of(motion, "a critical speed", instead, name)
+    limit = REACH * lowest_frequency(structure) if upper is None else positive("to", upper, "rad/s")
+    return first_loss_along(lambda rate: (structure, steady_base(hub, rate)), limit, "hub rate", "rad/s")
+
+
+def critical_speed_map(
+    beam: Beam,
+    model: Model,
+    motion: Motion,
+    masses: Sequence[float],
+    positions: Sequence[float],
+    upper: float | None = None,
+    *,
+    name: str = "",
+) -> CriticalMap:
+    """Critical hub rates with one more mass on the beam, against its size and position (2009 Fig. 9).
+
+    Parameters
+    ----------
+    beam : Beam
+    model : Model
+    motion : HubRate or HubTorque
+    masses : (m,) kg
+    positions : (p,) m from the root
+    upper : float, optional
+        End of the search, rad/s; by default ten times the lowest natural frequency without the mass.
+    name : str
+        Of the motion.
+
+    Returns
+    -------
+    CriticalMap
+
+    Raises
+    ------
+    InputError
+        If the motion has no hub, or a mass or a position is impossible.
+    """
+    limit = REACH * lowest_frequency(assemble(beam, model)) if upper is None else upper
+    speed = np.full((len(masses), len(positions)), np.nan)
+    for i, mass in enumerate(masses):
+        for j, at in enumerate(positions):
+            loaded = replace(beam, masses=(*beam.masses, PointMass(at, mass)))
+            value = critical_speed(assemble(loaded, model), motion, upper=limit, name=name).value
+            speed[i, j] = np.nan if value is None else value
+    heavy, where = np.asarray(masses, dtype=float), np.asarray(positions, dtype=float)
+    return CriticalMap(name, model.kind, heavy, where, speed, limit)
+
+
+def buckling_acceleration(structure: Structure, *, upper: float | None = None) -> Critical:
+    """Acceleration of the root along +x at which the beam, pushed by it, buckles under its own inertia.
+
+    The heavy column of Greenhill (1881): 7.8373 EI/(m L³) for a uniform beam without masses.
+
+    Parameters
+    ----------
+    structure : Structure
+    upper : float, optional
+        End of the search, m/s²; by default ten times the length times the square of the lowest natural frequency.
+
+    Returns
+    -------
+    Critical
+    """
+    o = jnp.zeros(3)
+    limit = REACH * lowest_frequency(structure) ** 2 * structure.length if upper is None else upper
+
+    def pushed(acceleration: float) -> tuple[Structure, Base]:
+        return structure, Base(jnp.array([acceleration, 0.0, 0.0]), o, o)
+
+    return first_loss_along(pushed, limit, "acceleration along x", "m/s²")
+
+
+def critical_load(structure: Structure, base: Base | None = None, *, upper: float | None = None) -> Critical:
+    """Factor on all loads on the beam at which its relative equilibrium is lost.
+
+    Euler's column under a dead load (π²/4 EI/L²), Beck's under one that follows the tip (20.05 EI/L², flutter).
+
+    Parameters
+    ----------
+    structure : Structure
+        With loads, of time zero or of its :meth:`~gbeam.model.Structure.at_time`.
+    base : Base, optional
+        Frozen motion of the base, arrays (3,); by default at rest.
+    upper : float, optional
+        End of the search; by default ten times the factor that makes the loads' stiffness as large as the beam's.
+
+    Returns
+    -------
+    Critical
+
+    Raises
+    ------
+    InputError
+        If there is no load, or none acts at the time, or they change no stiffness.
+    """
+    system, still = structure.system, Base(*[jnp.zeros(3)] * 3)
+    applied = system.applied
+    share = 0.0 if applied is None else _share(structure, applied)
+    if applied is None or share < NOTHING:
+        fix = "add one, or give a time at which one acts; `gbeam critical-speed` can raise a hub's rate instead"
+        raise InputError("beam.loads", "has none that acts", fix)
+    limit = REACH / share if upper is None else positive("to", upper, "times the loads")
+
+    def loaded(factor: float) -> tuple[Structure, Base]:
+        under = eqx.tree_at(lambda s: s.system, structure, system.under(factor * applied))
+        return under, still if base is None else base
+
+    return first_loss_along(loaded, limit, "load factor", "times the loads")
+
+
+def _share(structure: Structure, applied: Array) -> float:
+    """Stiffness that the loads bring, over the beam's own."""
+    c = coefficients(structure.system)
+    assert c.k_p is not None and c.f_p is not None
+    scale = np.linalg.inv(np.linalg.cholesky(np.asarray(c.stiffness)))
+    size = np.linalg.norm(scale @ np.einsum("li,linm->nm", applied, c.k_p) @ scale.T, 2)
+    # Loads across the straight beam bring no stiffness to compare with: then what bends it by its own length.
+    bend = np.linalg.norm(np.linalg.solve(c.stiffness, np.einsum("li,lin->n", applied, c.f_p)))
+    return float(max(size, bend / structure.length))

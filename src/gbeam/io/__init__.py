@@ -1,0 +1,1 @@
+"""Files of results: netCDF for studies, CSV and MAT for commands."""

@@ -1,0 +1,78 @@
+"""Axis motions as files for a machine's controller: CSV and MATLAB's MAT, with what the numbers mean beside them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from scipy.io import savemat
+
+from gbeam.results.response import Commands, MachinePlan
+
+_UNITS = {"angle": "rad", "rate": "rad_per_s", "acceleration": "rad_per_s2"}
+COLUMNS = ("time_s", *(f"{quantity}{i}_{unit}" for quantity, unit in _UNITS.items() for i in (1, 2, 3)))
+FRAME = (
+    "Frame: a1 points outward along the arm, a2 along its motion for a positive rate1, Z up.",
+    "Axis 1 turns the arm about Z, counterclockwise seen from above; its angle is zero at the first sample.",
+    "Axis 2 (yaw, parallel to axis 1) turns the gimbal at the arm's end, positive about Z; it is zero where the beam's",
+    "x axis, from the root to the tip, points outward along a1.",
+    "Axis 3 (roll) turns the specimen about its x axis, positive by the right-hand rule; it is zero where the beam's y",
+    "axis is horizontal and its z axis points up.",
+    "Angles are continuous: they are not folded into one turn. Rates and accelerations are their derivatives.",
+)
+
+
+def write_commands(plan: MachinePlan, commands: Commands, folder: Path) -> list[Path]:
+    """Write the commands of one machine as CSV and MAT.
+
+    Parameters
+    ----------
+    plan : MachinePlan
+        Which machine it is; a plan that exceeds limits or holds its target says so in the files.
+    commands : Commands
+    folder : Path
+        Which exists.
+
+    Returns
+    -------
+    list of Path
+        ``commands_NAME.csv``, whose first lines begin with # and the first without names the columns, and
+        ``commands_NAME.mat``: time (t, 1); angle, rate, acceleration (t, 3), columns for axes 1, 2, 3; sample, arm;
+        conventions.
+    """
+    told = header(plan, commands)
+    csv, mat = folder / f"commands_{plan.name}.csv", folder / f"commands_{plan.name}.mat"
+    table = np.column_stack([commands.time, commands.angle, commands.rate, commands.acceleration])
+    lines = [*(f"# {line}" for line in told), ",".join(COLUMNS)]
+    with csv.open("w", encoding="utf-8", newline="\n") as file:
+        file.write("\n".join(lines) + "\n")
+        # %.12g keeps the angle of axis 1 to a microradian over a thousand turns.
+        np.savetxt(file, table, fmt="%.12g", delimiter=",")
+    savemat(
+        mat,
+        {
+            "time": commands.time[:, None],
+            "angle": commands.angle,
+            "rate": commands.rate,
+            "acceleration": commands.acceleration,
+            "sample": commands.sample,
+            "arm": plan.arm,
+            "conventions": "\n".join(told),
+        },
+        do_compression=True,
+    )
+    return [csv, mat]
+
+
+def header(plan: MachinePlan, commands: Commands) -> list[str]:
+    """What frame, units, zeros and signs the numbers have."""
+    lines = [
+        f"gbeam: axis motions of {plan.name}" + (f", which imitates {plan.tracks}" if plan.tracks else ""),
+        f"Arm {plan.arm:g} m; sample time {commands.sample:g} s; {len(commands.time)} samples.",
+        "Units: time s, angles rad, rates rad/s, accelerations rad/s^2.",
+        *FRAME,
+    ]
+    lines[1:1] = [f"TARGET HELD {start:.3f} to {end:.3f} s: {why}" for start, end, why in plan.axes.episodes]
+    if plan.outcome != "done":
+        lines.insert(1, f"{plan.outcome.upper()}: {plan.message}")
+    return lines

@@ -1,0 +1,160 @@
+"""What a record goes through before it is flown: does it look sound, are there spikes, filter, resampling."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.checks import positive
+from gbeam.errors import InputError
+from gbeam.numerics.low_pass import low_pass
+
+Floats = NDArray[np.float64]
+
+STANDARD_GRAVITY = 9.80665  # m/s²
+FEWEST = 6  # samples
+SLOWEST = 5.0  # Hz
+LARGEST = 50 * STANDARD_GRAVITY
+_BEGINS = 3.0  # g0: above that, no flight begins
+_TRUST = "if the record is right as it is, add trust = true"
+_WINDOW, _OUTLIER = 3, 6.0  # samples either side; deviations from the window's median
+_LEAST_JUMP = 0.5  # m/s²: a smaller step is nobody's dropout or spike
+
+
+def refuse_unsound(time: Floats, load: Floats, names: tuple[str, str, str], unit: str, numbers: list[int]) -> None:
+    """Raise InputError if a record is too coarse, too large for its unit, or holds a sensor's dropout.
+
+    Parameters
+    ----------
+    time : (t,) s
+    load : (t, 3) m/s²
+    names : tuple of str
+        Columns of x, y and z.
+    unit : str
+        As declared.
+    numbers : list of int
+        Row in the file of every sample.
+    """
+    step = float(np.median(np.diff(time)))
+    if step > 1 / SLOWEST:
+        raise InputError(
+            "record.time",
+            f"has a sample every {step:g} s ({1 / step:g} Hz), too coarse for the corners of a manoeuvre",
+            f"export the record at 20 Hz or more; {_TRUST}",
+        )
+    size = np.linalg.norm(load, axis=1)
+    i = int(size.argmax())
+    if size[i] > LARGEST:
+        raise InputError(
+            "record.unit",
+            f"is {unit}, which makes {size[i] / STANDARD_GRAVITY:.3g} g of row {numbers[i]}, at {time[i]:g} s",
+            f'a record in m/s^2 wants unit = "m/s^2"; {_TRUST}' if unit == "g" else _TRUST,
+        )
+    first_second = size[: max(int(1 / step), 4)] / _scale(unit)
+    at_start = float(np.median(first_second))
+    if (unit == "g" and at_start > _BEGINS) or (unit != "g" and np.abs(first_second - 1).max() < 0.03):
+        other = "m/s^2" if unit == "g" else "g"
+        raise InputError(
+            "record.unit",
+            f"is {unit}, and the record begins at {at_start:.4g} {unit}: level flight is 1 g, which is 9.81 m/s^2",
+            f'a record in {other} wants unit = "{other}"; {_TRUST}',
+        )
+    for axis, (values, name) in enumerate(zip(load.T, names, strict=True)):
+        found = dropout(values, step)
+        if found is not None:
+            first, last = found
+            raise InputError(
+                f"record.{'xyz'[axis]}",
+                f"column {name.lstrip('-')!r} stands still at {values[first] / _scale(unit):g} {unit} "
+                f"from {time[first]:g} s to {time[last]:g} s "
+                f"(rows {numbers[first]} to {numbers[last]}): the sensor dropped out",
+                f"mend or cut the record there; {_TRUST}",
+            )
+
+
+def _scale(unit: str) -> float:
+    return STANDARD_GRAVITY if unit == "g" else 1.0
+
+
+def dropout(values: Floats, step: float) -> tuple[int, int] | None:
+    """First and last sample of a stretch in which a channel stands still and ends, or began, with a jump.
+
+    A true plateau is entered and left by a corner: the first change beside it is like the next. After a dropout the
+    channel has gone on in the meantime, and jumps by much more than in the samples beside the jump. A channel that is
+    rough everywhere else and then the same number to its end has died.
+    """
+    change = np.diff(values)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], change == 0, [False]]).astype(int)))
+    runs = edges.reshape(-1, 2)  # samples first … last are equal
+    repeats = int(np.sum(runs[:, 1] - runs[:, 0]))
+    for first, last in runs[np.argsort(runs[:, 1] - runs[:, 0], kind="stable")]:  # beside a gap the plateau jumps too
+        fewest = 3 if values[first] == 0 else 5
+        if last - first + 1 < fewest:
+            continue
+        for jump, beside in (
+            (change[last : last + 1], change[last + 1 : last + 4]),
+            (change[max(first - 1, 0) : first], change[max(first - 4, 0) : max(first - 1, 0)]),
+        ):
+            if jump.size and beside.size and abs(jump[0]) > max(_LEAST_JUMP, 3 * float(np.abs(beside).max())):
+                return int(first), int(last)
+        if last < len(values) - 1 or (last - first) * step < 0.5 or first < 3:
+            continue
+        bends = np.median(np.abs(np.diff(values[:first], 2)))
+        if bends > 1e-7 * np.ptp(values) and repeats - (last - first) < 0.01 * len(values):
+            return int(first), int(last)
+    return None
+
+
+def spikes(load: Floats) -> NDArray[np.bool_]:
+    """Single samples far off the median of their seven neighbours, per channel, (t, 3): Hampel's test."""
+    padded = np.pad(load, ((_WINDOW, _WINDOW), (0, 0)), mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * _WINDOW + 1, axis=0)
+    middle = np.median(windows, axis=-1)
+    spread = 1.4826 * np.median(np.abs(windows - middle[..., None]), axis=-1)
+    return np.asarray(np.abs(load - middle) > np.maximum(_OUTLIER * spread, _LEAST_JUMP))
+
+
+def without_spikes(time: Floats, load: Floats, at: NDArray[np.bool_]) -> Floats:
+    """The record with its spikes replaced by straight lines between their neighbours."""
+    columns = (np.interp(time, time[~bad], values[~bad]) for values, bad in zip(load.T, at.T, strict=True))
+    return np.stack(list(columns), axis=1)
+
+
+def filtered(time: Floats, values: Floats, cutoff: float | None, resample: float | None) -> tuple[Floats, Floats]:
+    """Times and values after the low-pass and at the new rate.
+
+    Parameters
+    ----------
+    time : (t,) s, even
+    values : (t, ...)
+    cutoff : float or None
+        Hz, −6 dB; see :func:`gbeam.zero_phase.low_pass`.
+    resample : float or None
+        New sampling rate, Hz; between samples by a cubic spline.
+
+    Raises
+    ------
+    InputError
+        If the cut-off is at or above half of either sampling rate, or fewer samples are asked for without a cut-off.
+    """
+    import scipy.interpolate  # not needed by those who do not ask for it
+
+    step = float(time[-1] - time[0]) / (len(time) - 1)
+    if cutoff is not None:
+        try:
+            values = low_pass(values, step, positive("cutoff", cutoff, "Hz"))
+        except InputError as error:
+            raise error.within("record") from None
+    if resample is None:
+        return time, values
+    rate = positive("record.resample", resample, "Hz")
+    if rate * step < 1 - 1e-9 and (cutoff is None or cutoff > 0.4 * rate):
+        raise InputError(
+            "record.resample",
+            f"is {rate:g} Hz, below the record's {1 / step:g} Hz, with "
+            + ("no cut-off" if cutoff is None else f"a cut-off of {cutoff:g} Hz"),
+            f'add cutoff = "{0.4 * rate:g} Hz" or less: what is faster would come back as slow vibration',
+        )
+    fresh = time[0] + np.arange(int(np.floor((time[-1] - time[0]) * rate * (1 + 1e-12))) + 1) / rate
+    fresh = np.minimum(fresh, time[-1])
+    return fresh, np.asarray(scipy.interpolate.CubicSpline(time, values, axis=0)(fresh))

@@ -1,0 +1,1 @@
+"""The three-axis centrifuge: kinematics, limits, example machines, targets, inverses, spin-up."""

@@ -1,0 +1,1 @@
+"""Which axis motions make a load: closed forms, the exact inverse, the planned one."""

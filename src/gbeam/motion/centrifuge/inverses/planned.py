@@ -1,0 +1,178 @@
+"""The planned inverse: axis motions with the least tracking error over the whole record, within the machine's limits.
+
+The three axes are quintic splines. Their coefficients minimise
+
+    ∫ w |a_C − wanted|²/g0² + ease of the motion  dt    within every limit,
+
+where w is small while the target is held anyway and the last term, too small to be seen in the load, picks the gentlest
+of equally good motions. Limits are kept between the knots too, by the hull of the splines. Every row acts on six
+neighbouring coefficients of the axes, so the normal equations are banded and a minute's record takes seconds. Standing
+still keeps every limit: a plan always exists, and how well it follows the load is told with it. The minimum is the one
+near the plan without limits; where limits leave little of that, a motion of another kind may be better. A spin-up has
+its own course, which is not planned.
+"""
+
+from __future__ import annotations
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+from numpy.typing import NDArray
+
+from gbeam.motion.bases.record import STANDARD_GRAVITY
+from gbeam.motion.centrifuge.inverses.closed_form import Flat, Geometry, Inverse, Pose, QuasiStatic
+from gbeam.motion.centrifuge.kinematics import Axes, forward
+from gbeam.motion.centrifuge.limits import Limits
+from gbeam.motion.centrifuge.target.target import Target
+from gbeam.motion.profiles.profile import Profile
+from gbeam.numerics.batching import in_blocks
+from gbeam.numerics.bspline import PIECE, Grid, Normal, Spline
+from gbeam.numerics.interior_point import minimise
+
+HELD = 0.01  # weight of the tracking error while the target is held, where it is 1 otherwise
+_EASE = 1e-5, 1e-7  # weights of 1 rad/s² and of 1 rad/s³ beside a tracking error of 1 g0
+_COARSEST, _FINEST, _PER_WIDTH = 0.02, 0.005, 6  # s between knots; knots per width of the target's smoothing
+_POINTS = np.array([1, 3, 5]) / 6  # of each piece
+_PARTS = 2  # of each piece, whose hulls are kept within the limits
+_POWER = 0.995  # of the arm's power is used: it is looked at in the points only
+_ACROSS = 3 * PIECE  # coefficients that one piece depends on
+
+Floats = NDArray[np.float64]
+
+
+class Planned(Inverse):
+    """ω1, θ2 and θ3 as splines, found in advance for one target."""
+
+    within, unless = 0.01, "no motion near by does better"
+    axes: Spline
+
+    def __call__(self, target: Profile, t: Float[Array, "*t"]) -> Pose:
+        """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s)."""
+        at = self.axes(t)
+        return at[..., 0], at[..., 1], at[..., 2]
+
+
+def planned(target: Target, geometry: Geometry, limits: Limits) -> Planned:
+    """Plan the axes, starting from those of the flat inverse."""
+    first, last = (float(end) for end in target.span)
+    step = float(np.clip(2 * float(target.reach) / _PER_WIDTH, _FINEST, _COARSEST))
+    grid = Grid(first, last, step, _POINTS)
+    starts = Flat(geometry), QuasiStatic(geometry)
+    poses, wanted, held = in_blocks(_start, (target, starts), grid.time)
+    weight = np.sqrt(np.where(held, HELD, 1.0))
+    # Without limits first, and of several starts the best: far from what the arm can do, flat's is a poor one.
+    free = _Tracking(grid, geometry, Limits(), wanted, weight)
+    tried = [minimise(free, grid.fit(np.column_stack([rate, *np.unwrap(angles)]))) for rate, *angles in poses]
+    c, _ = min(tried, key=lambda each: each[1])
+    within = _Tracking(grid, geometry, limits, wanted, weight)
+    if within.most(c) > 1:
+        c, _ = minimise(within, c)
+        # What a search that ended early still exceeds: the same motion about the same angles, smaller.
+        middle = np.mean(c, axis=0) * [0, 1, 1]
+        c = middle + (c - middle) / max(within.most(c), 1.0)
+    return Planned(grid.spline(c))
+
+
+@eqx.filter_jit
+def _start(it: tuple[Target, tuple[Inverse, ...]], t: Array) -> tuple[list[Pose], Array, Array]:
+    target, starts = it
+    return [inverse(target.load, t) for inverse in starts], target.load(t), target.held(t)
+
+
+class _Tracking:
+    """The cost of a motion and the shares of the limits that it uses; a :class:`gbeam.motion.interior.Problem`.
+
+    The load depends on four states: the arm's rate and acceleration and the angles of the gimbals. Each is the product
+    of a row and the coefficients around it, the same rows in every piece.
+    """
+
+    def __init__(self, grid: Grid, geometry: Geometry, limits: Limits, wanted: Floats, weight: Floats) -> None:
+        self.grid, self.geometry, self.columns = grid, geometry, (wanted, weight)
+        orders = np.stack([grid.weights(order)[: _POINTS.size] for order in range(4)])
+        state = np.stack([_row(orders[k], axis) for k, axis in ((0, 0), (1, 0), (0, 1), (0, 2))], axis=1)
+        self.state = state.reshape(-1, _ACROSS)  # (points · states, 18)
+        self.products = np.einsum("psI,ptJ->pstIJ", state, state).reshape(-1, _ACROSS**2)
+        # The spline of axis 1 is that of its rate, those of axes 2 and 3 are those of their angles.
+        rates = [(q, axis, q + (axis > 0)) for q in range(3) for axis in range(3)]
+        ease = np.concatenate([_EASE[q - 1] * _row(orders[k], axis) for q, axis, k in rates if q > 0])
+        self.ease = ease.T @ ease
+        allowed = np.asarray(limits.axes)
+        hulls = [
+            _row(grid.hull(k, _PARTS), axis) / allowed[q, axis] for q, axis, k in rates if allowed[q, axis] < np.inf
+        ]
+        self.hull = np.concatenate([np.empty((0, _ACROSS)), *hulls])
+        self.hull_products = (self.hull[:, :, None] * self.hull[:, None, :]).reshape(-1, _ACROSS**2)
+        self.per_power = float(limits.inertia / limits.power) / _POWER  # zero where there is no such limit
+
+    def cost(self, c: Floats) -> float:
+        """Half the sum of squares."""
+        near = self.grid.windows(c)
+        residual = in_blocks(_residuals, self.geometry, self._states(near), *self.columns)
+        return float(np.sum(residual**2) + np.sum(near @ self.ease * near)) / 2
+
+    def shares(self, c: Floats) -> Floats:
+        """Those of the hulls, then those of the arm's power."""
+        near = self.grid.windows(c)
+        state, of_hull = self._states(near), (near @ self.hull.T).ravel()
+        return np.append(of_hull, self.per_power * state[:, 0] * state[:, 1]) if self.per_power else of_hull
+
+    def most(self, c: Floats) -> float:
+        """Largest share of a limit that a motion uses."""
+        return float(np.max(np.abs(self.shares(c)), initial=0.0))
+
+    def linearise(self, c: Floats) -> None:
+        """Take the derivatives of the residuals and of the power with respect to the states."""
+        self.near = self.grid.windows(c)
+        state = self._states(self.near)
+        residual, slope = in_blocks(_linearised, self.geometry, state, *self.columns)
+        across = slope.swapaxes(1, 2)
+        self.square, self.slope = across @ slope, (across @ residual[..., None])[..., 0]
+        self.power = self.per_power * np.stack([state[:, 1], state[:, 0], *np.zeros((2, len(state)))], axis=1)
+
+    def step(self, weight: Floats, pull: Floats, damping: float) -> Floats:
+        """One solution of the normal equations; the damping is relative to the largest curvature of the load."""
+        pieces, first = self.grid.pieces, pull.size - len(self.power) if self.per_power else pull.size
+        square, slope = self.square, self.slope
+        if self.per_power:
+            square = square + weight[first:, None, None] * self.power[:, :, None] * self.power[:, None, :]
+            slope = slope + pull[first:, None] * self.power
+        products = square.reshape(pieces, -1) @ self.products + self.ease.ravel()
+        products += weight[:first].reshape(pieces, -1) @ self.hull_products
+        side = (
+            slope.reshape(pieces, -1) @ self.state
+            + self.near @ self.ease
+            + pull[:first].reshape(pieces, -1) @ self.hull
+        )
+        normal = Normal(self.grid.size, 3)
+        normal.add_products(np.arange(pieces), products.reshape(-1, _ACROSS, _ACROSS), -side)
+        return normal.solve_shifted(damping * float(self.square.max())).reshape(-1, 3)
+
+    def change(self, move: Floats) -> Floats:
+        """Change of the shares, to first order."""
+        near = self.grid.windows(move)
+        of_hull = (near @ self.hull.T).ravel()
+        return np.append(of_hull, np.sum(self.power * self._states(near), axis=1)) if self.per_power else of_hull
+
+    def _states(self, near: Floats) -> Floats:
+        """States at the points, (times, 4)."""
+        return np.asarray((near @ self.state.T).reshape(-1, 4))
+
+
+def _row(weights: Floats, axis: int) -> Floats:
+    """Weights (m, 6) of one axis as rows (m, 18) that act on the coefficients of all three around a piece."""
+    rows = np.zeros((len(weights), PIECE, 3))
+    rows[:, :, axis] = weights
+    return rows.reshape(-1, _ACROSS)
+
+
+def _one(geometry: Geometry, state: Float[Array, " 4"], wanted: Array, weight: Array) -> Float[Array, " 3"]:
+    (rate1, acceleration1, angle2, angle3), none = state, jnp.zeros(())
+    axes = Axes(rate1, acceleration1, angle2, none, none, angle3, none, none)
+    return weight * (forward(axes, geometry.arm, geometry.gravity).a_WO_B - wanted) / STANDARD_GRAVITY
+
+
+_each = jax.vmap(_one, (None, 0, 0, 0))
+_residuals = eqx.filter_jit(_each)
+_linearised = eqx.filter_jit(lambda *it: (_each(*it), jax.vmap(jax.jacfwd(_one, 1), (None, 0, 0, 0))(*it)))

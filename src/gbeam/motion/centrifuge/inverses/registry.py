@@ -1,0 +1,27 @@
+"""The inverses by name, and how each is built; one that must solve or plan ahead does so in its builder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from gbeam.motion.centrifuge.inverses.closed_form import Flat, Geometry, Inverse, QuasiStatic
+from gbeam.motion.centrifuge.inverses.exact import exact
+from gbeam.motion.centrifuge.inverses.planned import planned
+from gbeam.motion.centrifuge.limits import Limits
+from gbeam.motion.centrifuge.target.target import Target
+
+
+class Method(NamedTuple):
+    """How to build an inverse, and whether it can follow corners of a load that does not turn."""
+
+    build: Callable[[Target, Geometry, Limits], Inverse]
+    follows_corners: bool
+
+
+INVERSES: dict[str, Method] = {
+    "quasi-static": Method(lambda target, geometry, limits: QuasiStatic(geometry), True),
+    "flat": Method(lambda target, geometry, limits: Flat(geometry), False),
+    "exact": Method(lambda target, geometry, limits: exact(target, geometry), False),
+    "planned": Method(planned, False),
+}

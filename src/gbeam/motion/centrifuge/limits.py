@@ -1,0 +1,140 @@
+"""What a centrifuge can do, and how much of it a motion uses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+from numpy.typing import NDArray
+
+import gbeam._jax  # noqa: F401
+from gbeam.checks import positive
+from gbeam.errors import InputError
+from gbeam.results.response import LimitUse
+
+QUANTITIES = {"rate": "rad/s", "acceleration": "rad/s^2", "jerk": "rad/s^3"}
+
+
+@dataclass(frozen=True)
+class AxisLimit:
+    """Largest rate rad/s, acceleration rad/s² and jerk rad/s³ of one axis, without sign; None where not known."""
+
+    rate: float | None = None
+    acceleration: float | None = None
+    jerk: float | None = None
+
+
+@dataclass(frozen=True)
+class MachineLimits:
+    """Limits of a three-axis centrifuge as a person gives them.
+
+    Parameters
+    ----------
+    axis1, axis2, axis3 : AxisLimit
+    inertia : float or None
+        Of all that turns about axis 1, kg m².
+    power : float or None
+        Largest power that speeds the arm up or brakes it, J ω1 dω1/dt without friction and drag, W; needs `inertia`.
+    """
+
+    axis1: AxisLimit = field(default_factory=AxisLimit)
+    axis2: AxisLimit = field(default_factory=AxisLimit)
+    axis3: AxisLimit = field(default_factory=AxisLimit)
+    inertia: float | None = None
+    power: float | None = None
+
+    @property
+    def axes(self) -> tuple[AxisLimit, AxisLimit, AxisLimit]:
+        """Those of the three axes."""
+        return self.axis1, self.axis2, self.axis3
+
+
+class Limits(eqx.Module):
+    """The same as arrays: infinite where nothing is given.
+
+    Parameters
+    ----------
+    axes : array, shape (3, 3)
+        Of rate, acceleration, jerk (rows) of axes 1, 2, 3 (columns).
+    inertia : float
+        kg m²; zero if not given.
+    power : float
+        W.
+
+    Raises
+    ------
+    InputError
+        If a limit is not positive, or a power is given without an inertia.
+    """
+
+    axes: Float[Array, "3 3"]
+    inertia: Float[Array, ""]
+    power: Float[Array, ""]
+
+    def __init__(self, given: MachineLimits | None = None) -> None:
+        it = MachineLimits() if given is None else given
+        if it.power is not None and it.inertia is None:
+            raise InputError("limits.power", "is given without the inertia", 'add inertia = "2000 kg m^2" of the arm')
+
+        def limit(where: str, value: float | None, unit: str) -> float:
+            return np.inf if value is None else positive(f"limits.{where}", value, unit)
+
+        rows = [
+            [limit(f"axis{i + 1}.{name}", getattr(axis, name), unit) for i, axis in enumerate(it.axes)]
+            for name, unit in QUANTITIES.items()
+        ]
+        inertia = 0.0 if it.inertia is None else positive("limits.inertia", it.inertia, "kg m²")
+        self.axes = jnp.asarray(rows)
+        self.inertia = jnp.asarray(inertia, dtype=float)
+        self.power = jnp.asarray(limit("power", it.power, "W"), dtype=float)
+
+
+def usage(
+    time: NDArray[np.float64],
+    rate: NDArray[np.float64],
+    acceleration: NDArray[np.float64],
+    jerk: NDArray[np.float64],
+    limits: Limits,
+) -> tuple[LimitUse, ...]:
+    """How much of its limits a motion uses.
+
+    Parameters
+    ----------
+    time : array, shape (n,)
+        s, fine enough to meet the peaks.
+    rate, acceleration, jerk : array, shape (n, 3)
+        Of axes 1, 2, 3: rad/s, rad/s², rad/s³.
+    limits : Limits
+
+    Returns
+    -------
+    tuple of LimitUse
+        Rate, acceleration and jerk of each axis, whether limited or not; then the arm's power if its inertia is known.
+    """
+    allowed = np.asarray(limits.axes)
+    found = [
+        _use(f"axis {axis + 1}", name, unit, time, values[:, axis], float(allowed[row, axis]))
+        for axis in range(3)
+        for row, ((name, unit), values) in enumerate(zip(QUANTITIES.items(), (rate, acceleration, jerk), strict=True))
+    ]
+    if limits.inertia > 0:
+        power = float(limits.inertia) * rate[:, 0] * acceleration[:, 0]
+        found.append(_use("arm", "power", "W", time, power, float(limits.power)))
+    return tuple(found)
+
+
+def _use(
+    axis: str, quantity: str, unit: str, time: NDArray[np.float64], values: NDArray[np.float64], allowed: float
+) -> LimitUse:
+    size = np.abs(values)
+    peak = int(np.argmax(size))
+    return LimitUse(axis, quantity, unit, float(size[peak]), allowed, float(time[peak]))
+
+
+def exceeded(uses: Sequence[LimitUse]) -> tuple[LimitUse, ...]:
+    """Those that are above what is allowed."""
+    return tuple(use for use in uses if use.exceeded)

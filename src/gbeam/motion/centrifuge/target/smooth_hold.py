@@ -1,0 +1,89 @@
+"""A gentle path for the times at which a target is held anyway: what the arm could follow, not every flick."""
+
+from __future__ import annotations
+
+import jax.numpy as jnp
+import numpy as np
+import scipy.sparse
+import scipy.sparse.linalg
+from numpy.typing import NDArray
+
+from gbeam.motion.centrifuge.target.load_limits import OPPOSED, nearest_to_zero
+from gbeam.motion.profiles.hann import soft_floor
+
+BAND = 0.1  # of a floor: how softly it sets in
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+def without_gaps(times: Floats, held: Flags, shortest: float) -> Flags:
+    """Join held runs of knots that less than `shortest` seconds part: so short a visit to the flight's load is none."""
+    joined = held.copy()
+    edges = np.diff(held.astype(int))
+    ends, starts = np.flatnonzero(edges < 0) + 1, np.flatnonzero(edges > 0) + 1
+    for end in ends:
+        following = starts[starts > end]
+        if following.size and times[following[0]] - times[end] < shortest:
+            joined[end : following[0]] = True
+    return joined
+
+
+def settle(times: Floats, load: Floats, held: Flags, period: float, idle: float, reach: float) -> Floats:
+    """Replace held knots by a path whose direction and size change no faster than the arm can follow.
+
+    Direction and size z each minimise ∫ |z − load's|² + (P/2π)⁶ |z'''|² dt with the knots that are not held fixed:
+    changes that take less than the period P are left out, and the path leaves and meets the flight's load without a
+    corner. The size stays above `idle`, and the load across the beam above `reach`.
+
+    Parameters
+    ----------
+    times : array, shape (k,)
+        s.
+    load : array, shape (k, 3)
+        Already held, m/s².
+    held : array of bool, shape (k,)
+    period : float
+        P, s.
+    idle, reach : float
+        m/s².
+    """
+    if held.all() or times.size < 5:
+        return load
+    size = np.linalg.norm(load, axis=1)
+    path = _smooth(times, np.column_stack([load / size[:, None], size]), held, period)
+    direction = path[:, :3] / np.linalg.norm(path[:, :3], axis=1)[:, None]
+    gentle = direction * np.asarray(soft_floor(jnp.asarray(path[:, 3]), idle, BAND * idle))[:, None]
+    if reach > 0:
+        across = np.linalg.norm(gentle[:, 1:], axis=1)
+        gentle[:, 1:] *= (np.asarray(soft_floor(jnp.asarray(across), reach, BAND * reach)) / np.maximum(across, 1e-9))[
+            :, None
+        ]
+    settled = np.where(held[:, None], gentle, load)
+    # Between steep slopes so smooth a path may overshoot through zero, where the load itself does not go.
+    part, least = (slice(1, 3), 2 * OPPOSED * reach) if reach > 0 else (slice(0, 3), 2 * OPPOSED * idle)
+    edges = np.diff(held.astype(int), prepend=0, append=0)
+    for start, stop in zip(np.flatnonzero(edges > 0), np.flatnonzero(edges < 0), strict=True):
+        around = slice(max(start - 1, 0), stop + 1)
+        if nearest_to_zero(times[around], settled[around, part])[1] < least:
+            settled[start:stop] = load[start:stop]
+    return settled
+
+
+def _smooth(times: Floats, values: Floats, free: Flags, period: float) -> Floats:
+    """Minimise the penalised distance over the free knots, columns at once."""
+    # Third divided differences on four knots each: 6 f[t0, t1, t2, t3] is the third derivative.
+    rows = times.size - 3
+    node = np.stack([times[i : rows + i] for i in range(4)], axis=1)
+    factors = np.stack(
+        [6 / np.prod([node[:, i] - node[:, j] for j in range(4) if j != i], axis=0) for i in range(4)], axis=1
+    )
+    third = scipy.sparse.diags_array(list(factors.T), offsets=list(range(4)), shape=(rows, times.size))
+    penalty = (period / (2 * np.pi)) ** 6 * third.T @ scipy.sparse.diags_array(node[:, 2] - node[:, 1]) @ third
+    width = np.gradient(times)
+    system = (scipy.sparse.diags_array(width) + penalty).tocsr()
+    inside, outside = np.flatnonzero(free), np.flatnonzero(~free)
+    right = width[inside, None] * values[inside] - system[inside][:, outside] @ values[outside]
+    path = values.copy()
+    path[inside] = scipy.sparse.linalg.spsolve(system[inside][:, inside].tocsc(), right)
+    return path

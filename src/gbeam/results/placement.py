@@ -1,0 +1,124 @@
+"""Where to put a specimen on a centrifuge: frozen records."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from gbeam.results.response import LimitUse
+
+MEASURES = ("root-shear", "root-moment", "vibration", "tip")
+
+
+@dataclass(frozen=True)
+class Option:
+    """One way of mounting and smoothing, with the control point that is best for it.
+
+    Parameters
+    ----------
+    mounting : str
+        upright or inverted.
+    smoothing : float
+        Width of the target's kernel, s.
+    control_point : float
+        Best for this option, from the root, m.
+    mismatch : float
+        Weighted measure of what the mismatch field alone does there, as a fraction of flight's peak.
+    whole : float
+        The same with what smoothing and tracking change of the load: what options are chosen by.
+    accelerations : tuple of float
+        Largest accelerations of axes 1, 2, 3, rad/s².
+    share : float
+        Largest share of a limit of the machine that is used; zero where it has none.
+    exceeded : tuple of LimitUse
+        The limits that it breaks.
+    """
+
+    mounting: str
+    smoothing: float
+    control_point: float
+    mismatch: float
+    whole: float
+    accelerations: tuple[float, float, float]
+    share: float = 0.0
+    exceeded: tuple[LimitUse, ...] = ()
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What the full model says of a control point, over the times at which the target was not held.
+
+    Parameters
+    ----------
+    name : str
+        best, present or middle.
+    control_point : float
+        m.
+    tip_difference : float
+        Largest difference of the tip from flight across the beam, m.
+    vibration : float
+        Largest elastic vibration of the tip that the mismatch field causes, m: across the beam, against a base that
+        carries the same load at the control point without turning.
+    moment_difference : float
+        Largest difference of the bending moment at the root, N m.
+    """
+
+    name: str
+    control_point: float
+    tip_difference: float
+    vibration: float
+    moment_difference: float
+
+
+@dataclass(frozen=True)
+class Placement:
+    """The best control point, mounting and smoothing for a measure.
+
+    Parameters
+    ----------
+    flight, centrifuge : str
+        Names of the motions.
+    weights : mapping of str to float
+        Of the measures.
+    length : float
+        Of the beam, m.
+    best : Option
+    options : tuple of Option
+        All that were tried, the best first, those that break limits last.
+    present : float
+        The scenario's control point, m.
+    values : mapping of str to (mapping of str to float)
+        For ``best``, ``present`` and ``middle`` of the beam: each measure of the mismatch field, as a fraction of
+        flight's peak.
+    proofs : tuple of Proof
+        Empty where none was asked for.
+    refused : tuple of str
+        Options that could not be built, and why.
+    widths : tuple of float
+        First and last width of smoothing that was tried, s.
+    """
+
+    flight: str
+    centrifuge: str
+    weights: Mapping[str, float]
+    length: float
+    best: Option
+    options: tuple[Option, ...]
+    present: float
+    values: Mapping[str, Mapping[str, float]]
+    proofs: tuple[Proof, ...] = field(default=())
+    refused: tuple[str, ...] = ()
+    widths: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def fraction(self) -> float:
+        """Best control point over the length."""
+        return self.best.control_point / self.length
+
+    @property
+    def vibration_gain(self) -> float:
+        """How much less the specimen vibrates than with the control point at mid-span, as proven; NaN without proof."""
+        found = {proof.name: proof.vibration for proof in self.proofs}
+        if not {"best", "middle"} <= found.keys() or found["best"] <= 0:
+            return float("nan")
+        return found["middle"] / found["best"]

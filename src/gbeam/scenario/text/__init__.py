@@ -1,0 +1,1 @@
+"""The text of a scenario: units, positions of its entries, overrides, diagnostics."""

@@ -1,0 +1,108 @@
+"""Where each key and value stands in a TOML text."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from gbeam.scenario.text.place import Path, Place, Span
+
+if TYPE_CHECKING:
+    from tree_sitter import Node
+
+
+def locate_toml(text: str) -> dict[Path, Place]:
+    """Map every path, such as ``("beam", "masses", 0, "at")``, to its place.
+
+    Parameters
+    ----------
+    text : str
+        A TOML document that parses. What tree-sitter's grammar does not know is left out.
+    """
+    import tree_sitter
+    import tree_sitter_toml
+
+    language = tree_sitter.Language(tree_sitter_toml.language())
+    finder = _Finder(text)
+    finder.document(tree_sitter.Parser(language).parse(text.encode()).root_node)
+    return finder.places
+
+
+class _Finder:
+    """Walks one syntax tree and notes the places it passes."""
+
+    def __init__(self, text: str) -> None:
+        # tree-sitter breaks lines at \n only, and counts columns in bytes.
+        self.lines = [line.encode() for line in text.split("\n")]
+        self.places: dict[Path, Place] = {}
+
+    def span(self, node: Node) -> Span:
+        """Place of a node, cut at the end of its first line."""
+        (row, start), (last, stop) = node.start_point, node.end_point
+        line = self.lines[row]
+        end = stop if last == row else len(line.rstrip())
+        return Span(row + 1, len(line[:start].decode()) + 1, len(line[:end].decode()) + 1)
+
+    def note(self, path: Path, key: Node, value: Node) -> None:
+        """Keep the first place of `path`: a table may be opened again by a later header or dotted key."""
+        self.places.setdefault(path, Place(self.span(key), self.span(value)))
+
+    def document(self, root: Node) -> None:
+        """Pairs before the first header, then the tables."""
+        counts: dict[Path, int] = {}
+        for node in root.named_children:
+            if node.type == "pair":
+                self.pair((), node)
+            elif node.type in ("table", "table_array_element"):
+                path: Path = ()
+                keys = list(_keys(node.named_children[0]))
+                for i, (name, key) in enumerate(keys):
+                    path += (name,)
+                    self.note(path, key, key)
+                    opens = node.type == "table_array_element" and i == len(keys) - 1
+                    if opens:
+                        counts[path] = counts.get(path, -1) + 1
+                    if path in counts:  # a header below an array of tables belongs to its latest element
+                        path += (counts[path],)
+                        self.note(path, key, key)
+                for pair in node.named_children[1:]:
+                    if pair.type == "pair":
+                        self.pair(path, pair)
+
+    def pair(self, path: Path, node: Node) -> None:
+        """``key = value``."""
+        inside = _inside(node)
+        if len(inside) != 2:
+            return
+        key_node, value = inside
+        for name, key in _keys(key_node):
+            path += (name,)
+            self.note(path, key, value)
+        self.value(path, value)
+
+    def value(self, path: Path, node: Node) -> None:
+        """Descend into tables and lists."""
+        if node.type == "inline_table":
+            for pair in _inside(node):
+                self.pair(path, pair)
+        elif node.type == "array":
+            for i, child in enumerate(_inside(node)):
+                self.note((*path, i), child, child)
+                self.value((*path, i), child)
+
+
+def _inside(node: Node) -> list[Node]:
+    return [child for child in node.named_children if child.type not in ("comment", "ERROR")]
+
+
+def _keys(node: Node) -> Iterator[tuple[str, Node]]:
+    """Names in a key, with their nodes; several in a dotted one."""
+    text = (node.text or b"").decode()
+    if node.type == "dotted_key":
+        for child in node.named_children:
+            yield from _keys(child)
+    elif node.type == "bare_key":
+        yield text, node
+    elif node.type == "quoted_key":
+        yield tomllib.loads(f"key = {text}")["key"], node

@@ -1,0 +1,125 @@
+"""The text of a scenario: parsed, overridden, and able to say where a path stands in it."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path as File
+from typing import Any, Literal
+
+from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
+from gbeam.scenario.text.locate_json import locate_json
+from gbeam.scenario.text.locate_toml import locate_toml
+from gbeam.scenario.text.overrides import Override
+from gbeam.scenario.text.paths import path_text
+from gbeam.scenario.text.place import Path, Place, Span
+from gbeam.scenario.text.suggest import closest
+
+Mark = Literal["value", "key"]
+
+
+@dataclass(frozen=True)
+class Source:
+    """A scenario as it was written.
+
+    Parameters
+    ----------
+    name : str
+        Of the file, as it was named.
+    text : str
+    folder : Path
+        That relative file names in the scenario start from.
+    data : dict
+        The parsed text, with the overrides in it.
+    overrides : tuple of Override
+    """
+
+    name: str
+    text: str
+    folder: File
+    data: dict[str, Any]
+    overrides: tuple[Override, ...] = ()
+
+    @cached_property
+    def _places(self) -> dict[Path, Place]:
+        return locate_json(self.text) if _is_json(self.text) else locate_toml(self.text)
+
+    def raw(self, path: Path) -> Any:
+        """Return what is written at `path`, None if nothing is."""
+        here: Any = self.data
+        for step in path:
+            try:
+                here = here[step]
+            except (KeyError, IndexError, TypeError):
+                return None
+        return here
+
+    def diagnostic(self, path: Path, message: str, hint: str = "", mark: Mark = "value") -> Diagnostic:
+        """Put a message at the place of `path`: in the file, or in the override that wrote it."""
+        override = self._override_of(path)
+        if override is not None:
+            return Diagnostic(self.name, path_text(path), message, hint, override=override.text)
+        known = path
+        while known and known not in self._places:
+            known = known[:-1]
+        place = self._places.get(known)
+        span = Span(1, 1, 2) if place is None else place.key if mark == "key" or known != path else place.value
+        return at_span(self.name, self.text, span, path_text(path), message, hint)
+
+    def _override_of(self, path: Path) -> Override | None:
+        above = [it for it in self.overrides if path[: len(it.path)] == it.path]
+        if above:
+            return above[-1]
+        below = [it for it in self.overrides if path and it.path[: len(path)] == path]
+        return below[-1] if below and path not in self._places else None
+
+
+def at_span(name: str, text: str, span: Span, path: str, message: str, hint: str) -> Diagnostic:
+    """Make the diagnostic of a stretch of the text."""
+    line = text.split("\n")[span.line - 1].rstrip("\r")
+    return Diagnostic(name, path, message, hint, span.line, span.column, span.end, line)
+
+
+def read_text(path: File) -> str:
+    """Read a scenario file, or raise the ScenarioError that says why not."""
+    try:
+        return path.read_bytes().decode("utf-8-sig")
+    except FileNotFoundError:
+        folder = path.parent
+        neighbours = sorted(p.name for p in folder.glob("*") if p.suffix in (".toml", ".json"))
+        near = closest(path.name, neighbours)
+        hint = f"did you mean {str(path.with_name(near))!r}?" if near else "`gbeam new` writes one to start from"
+        problem = "there is no such file"
+    except OSError as error:
+        problem, hint = f"cannot be read ({error.strerror})", "give the path of a scenario file"
+    except UnicodeDecodeError:
+        problem, hint = "is not UTF-8 text", "give the path of a scenario file, TOML or JSON"
+    raise ScenarioError([Diagnostic(str(path), "", problem, hint)])
+
+
+def parse(name: str, text: str) -> dict[str, Any]:
+    """Parse TOML, or JSON if the text begins with a brace; a ScenarioError says where the syntax is wrong."""
+    try:
+        return json.loads(text) if _is_json(text) else tomllib.loads(text)
+    except json.JSONDecodeError as error:
+        line, column, message = error.lineno, error.colno, error.msg
+    except tomllib.TOMLDecodeError as error:
+        # Its place is in its text only: "... (at line 3, column 5)" or "... (at end of document)".
+        told = re.fullmatch(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", str(error), re.DOTALL)
+        message = told[1] if told else str(error)
+        if told and told[2]:
+            line, column = int(told[2]), int(told[3])
+        else:
+            lines = text.rstrip("\n").split("\n")
+            line, column = len(lines), len(lines[-1]) + 1
+    language = "JSON" if _is_json(text) else "TOML"
+    problem = message[:1].lower() + message[1:]
+    span = Span(line, column, column + 1)
+    raise ScenarioError([at_span(name, text, span, "", f"{problem}", f"this is not valid {language}")])
+
+
+def _is_json(text: str) -> bool:
+    return text.lstrip().startswith("{")  # no TOML document begins with a brace
