@@ -109,13 +109,13 @@ def test_xarray_reads_what_was_written(study: Study, file: Path) -> None:
     tree = store.read(file)
     flight, spin, slew = (tree[f"motions/{name}"] for name in study.responses)
     np.testing.assert_array_equal(flight["displacement"].sel(axis="y"), study.responses["flight"].displacement[:, :, 1])
-    np.testing.assert_array_equal(spin["load_wanted"], study.responses["spin"].axes.wanted)
-    assert list(spin["held_reason"].values) == ["below idle"]
+    np.testing.assert_array_equal(spin["load_reference"], study.responses["spin"].axes.reference)
+    assert list(spin["not_followed_reason"].values) == ["below idle"]
     np.testing.assert_array_equal(slew["hub_angle"], study.responses["slew"].hub.angle)
     for name in ("section_force", "section_moment", "stress", "acceleration", "drive_torque"):
         np.testing.assert_array_equal(slew[name], getattr(study.responses["slew"].loads, name))
-    np.testing.assert_array_equal(slew["beam_torque"], study.responses["slew"].loads.hub_torque)
-    assert "hub_angle" not in flight and "held_reason" not in flight
+    np.testing.assert_array_equal(slew["beam_torque"], study.responses["slew"].loads.beam_torque)
+    assert "hub_angle" not in flight and "not_followed_reason" not in flight
     np.testing.assert_array_equal(tree["comparisons/spin/difference"], study.comparisons[0].difference)
     assert flight.attrs["warnings"] == "one\ntwo"
     assert np.isnan(flight.attrs["error_estimate"])
@@ -141,8 +141,8 @@ def test_limits_and_what_cannot_be_followed(study: Study, file: Path) -> None:
         group = it["motions/spin"]
         np.testing.assert_array_equal(group["rate_used"][:], [10, 20, 30])
         assert [each.decode() for each in group["shortfall_unit"]] == ["g", "m/s^4"]
-        assert [each.decode() for each in group["held_reason"]] == ["below idle"]
-        np.testing.assert_array_equal(group["held_to"][:], [1.0])
+        assert [each.decode() for each in group["not_followed_reason"]] == ["below idle"]
+        np.testing.assert_array_equal(group["not_followed_to"][:], [1.0])
         plain = {str, np.float64, np.int64, np.ndarray, bytes, np.bytes_}
         skipped = {"DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME", "_Netcdf4Dimid", "_Netcdf4Coordinates"}
         for variable in group.values():
@@ -179,7 +179,7 @@ def test_h5py_reads_it(study: Study, file: Path) -> None:
         group = it["motions/spin"]
         np.testing.assert_array_equal(group["displacement"][:], study.responses["spin"].displacement)
         assert [each.decode() for each in group["axis"]] == ["x", "y", "z"]
-        np.testing.assert_array_equal(group["held"][:], study.responses["spin"].axes.held)
+        np.testing.assert_array_equal(group["not_followed"][:], study.responses["spin"].axes.not_followed)
         # Attributes that MATLAB reads: text and numbers, nothing else.
         kinds = {type(value) for node in (it, group) for value in node.attrs.values()}
         assert kinds <= {str, np.float64, np.int64, np.ndarray, bytes, np.bytes_}

@@ -18,12 +18,12 @@ from gbeam.structure.support import Root
 if TYPE_CHECKING:
     from gbeam.analysis.control.linearization import Gauge, linearize
     from gbeam.analysis.control.nonlinear import nonlinear_system
-    from gbeam.analysis.control.reduction import balance, truncate
+    from gbeam.analysis.control.reduction import balanced_truncation, modal_truncation
     from gbeam.analysis.control.state_space import StateSpace
     from gbeam.analysis.equilibrium.equilibrium import equilibrium
-    from gbeam.analysis.equilibrium.static import deflect
+    from gbeam.analysis.equilibrium.static import static
     from gbeam.analysis.imitation.comparison import compare
-    from gbeam.analysis.response.simulation import respond
+    from gbeam.analysis.response.simulation import simulate
     from gbeam.analysis.study.case import Case, ResponseSettings
     from gbeam.analysis.study.model_study import compare_models
     from gbeam.analysis.study.study import study
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
         read_record,
         smoothed,
         stack,
-        table,
+        tabulated,
         trapezoid,
     )
     from gbeam.results.comparison import Comparison
@@ -59,14 +59,14 @@ _HOMES = {
     ),
     "gbeam.analysis.control.nonlinear": ("nonlinear_system",),
     "gbeam.analysis.control.reduction": (
-        "balance",
-        "truncate",
+        "balanced_truncation",
+        "modal_truncation",
     ),
     "gbeam.analysis.control.state_space": ("StateSpace",),
     "gbeam.analysis.equilibrium.equilibrium": ("equilibrium",),
-    "gbeam.analysis.equilibrium.static": ("deflect",),
+    "gbeam.analysis.equilibrium.static": ("static",),
     "gbeam.analysis.imitation.comparison": ("compare",),
-    "gbeam.analysis.response.simulation": ("respond",),
+    "gbeam.analysis.response.simulation": ("simulate",),
     "gbeam.analysis.study.model_study": ("compare_models",),
     "gbeam.analysis.study.study": ("study",),
     "gbeam.analysis.vibration.campbell": ("campbell",),
@@ -91,7 +91,7 @@ _HOMES = {
         "read_record",
         "smoothed",
         "stack",
-        "table",
+        "tabulated",
         "trapezoid",
     ),
     "gbeam.results.response": ("Comparison", "Response", "Study"),
@@ -125,7 +125,7 @@ __all__ = [
     "Structure",
     "Study",
     "assemble",
-    "balance",
+    "balanced_truncation",
     "buckling_acceleration",
     "build",
     "build_target",
@@ -136,20 +136,20 @@ __all__ = [
     "critical_load",
     "critical_speed",
     "critical_speed_map",
-    "deflect",
     "equilibrium",
     "linearize",
     "load",
+    "modal_truncation",
     "modes",
     "nonlinear_system",
     "read_record",
-    "respond",
+    "simulate",
     "smoothed",
     "stack",
+    "static",
     "study",
-    "table",
+    "tabulated",
     "trapezoid",
-    "truncate",
 ]
 
 

@@ -1,20 +1,41 @@
-"""Checks of single values, shared by all who build objects."""
+"""Checks of single values, shared by all who build objects.
+
+What JAX traces has no value to check: it passes, so that objects can be built under ``grad`` and ``vmap``.
+"""
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
+from gbeam.arrays.namespace import is_jax
 from gbeam.errors import InputError
 
 
-def positive(where: str, value: float, unit: str, *, zero: bool = False) -> float:
+def positive(where: str, value: Any, unit: str, *, zero: bool = False) -> Any:
     """Return `value` as a float if it is finite and positive (or zero, where `zero` allows it)."""
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise InputError(where, f"is {value!r}", f"give a number in {unit}") from None
+    if is_jax(value):
+        return value
+    number = _number(where, value, f"give a number in {unit}")
     if not math.isfinite(number) or number < 0 or (number == 0 and not zero):
         raise InputError(
             where, f"is {number:g} {unit}", f"give a {'non-negative' if zero else 'positive'}, finite value"
         )
     return number
+
+
+def finite(where: str, value: Any) -> Any:
+    """Return `value` as a float if it is a finite number."""
+    if is_jax(value):
+        return value
+    number = _number(where, value, "give a number")
+    if not math.isfinite(number):
+        raise InputError(where, f"is {number}", "give a finite value")
+    return number
+
+
+def _number(where: str, value: Any, fix: str) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise InputError(where, f"is {value!r}", fix) from None

@@ -24,7 +24,7 @@ def test_tlam_softens_by_the_square_of_the_rate() -> None:
     """TLAM without foreshortening has K − Ω²M in the plane of rotation: lost at Ω = ω₁."""
     rate = np.array([0.0, 0.5, 1.0]) * OMEGA
     base = spin(rate)
-    found = lowest_stiffness(TLAM, base.a_WO_B, base.w_WB_B, base.al_WB_B)
+    found = lowest_stiffness(TLAM, base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
     np.testing.assert_allclose(found, OMEGA**2 - rate**2, atol=1e-8 * OMEGA**2)
 
 
@@ -49,5 +49,5 @@ def test_foam_does_not_lose_it_on_a_hub() -> None:
     foam = coefficients(strip().system)
     rate = np.linspace(0, 5 * OMEGA, 20)
     base = spin(rate)
-    on_rim = BaseHistory(np.outer(rate**2, [-LENGTH, 0, 0]), base.w_WB_B, base.al_WB_B)
+    on_rim = BaseHistory(np.outer(rate**2, [-LENGTH, 0, 0]), base.w_WB_B, base.alpha_WB_B)
     assert first_loss(foam, np.linspace(0, 1, 20), on_rim) is None

@@ -22,10 +22,10 @@ from gbeam import (
     Structure,
     assemble,
     constant,
-    respond,
+    simulate,
     smoothed,
     stack,
-    table,
+    tabulated,
     trapezoid,
 )
 from gbeam.analysis.response.outcome import turned_out_of_plane
@@ -34,7 +34,7 @@ from .helpers import EI, LENGTH, LINE, OMEGA, made, strip
 
 HONEST = 3.0  # factor within which an error estimate brackets the error
 PERIOD = 2 * np.pi / OMEGA
-RAMP = table([0.0, 0.002, 1.0], [0.0, 50.0, 50.0])  # m/s², a kick of 0.07 periods
+RAMP = tabulated([0.0, 0.002, 1.0], [0.0, 50.0, 50.0])  # m/s², a kick of 0.07 periods
 
 
 def flight(acceleration: Any) -> Flight:
@@ -42,7 +42,7 @@ def flight(acceleration: Any) -> Flight:
 
 
 def run(structure: Structure, motion: Any, duration: float, **how: Any) -> Any:
-    return respond(structure, motion, ResponseSettings(duration=duration, **how))
+    return simulate(structure, motion, ResponseSettings(duration=duration, **how))
 
 
 # --- physics
@@ -79,7 +79,7 @@ def test_undamped_ramp_response_is_the_oscillators() -> None:
     """q = q_s (t − sin ωt/ω)/T on the ramp: one mode, against the closed form."""
     structure = strip("FOAM", (0, 0, 1))
     steady = steady_first_mode(structure)
-    result = run(structure, flight(table([0.0, 1.0], [0.0, 50.0])), 0.3, integrator="gauss")
+    result = run(structure, flight(tabulated([0.0, 1.0], [0.0, 50.0])), 0.3, integrator="gauss")
     wanted = steady * (result.time - np.sin(OMEGA * result.time) / OMEGA)
     np.testing.assert_allclose(result.q[:, 0], wanted, atol=1e-4 * np.abs(wanted).max())
 
@@ -175,7 +175,7 @@ def test_adaptive_needs_no_corners_in_the_load() -> None:
 def test_progress_is_told() -> None:
     told: list[tuple[str, float]] = []
     settings = ResponseSettings(duration=0.1, step=1e-3)
-    respond(strip(), flight(RAMP), settings, progress=lambda what, share: told.append((what, share)))
+    simulate(strip(), flight(RAMP), settings, progress=lambda what, share: told.append((what, share)))
     assert {what for what, _ in told} == {"integrating", "checking with half the step"}
     assert told[-1][1] == 1.0
 
@@ -244,7 +244,7 @@ def test_a_start_that_no_beam_would_keep_is_warned_of() -> None:
     structure = assemble(column, Model("exact", 1, 0, 2))
     for share, expected in ((0.5, False), (10.0, True)):
         flight = Flight(stack(x=constant(share * critical)))
-        answer = respond(structure, flight, ResponseSettings(duration=0.1, step=0.01))
+        answer = simulate(structure, flight, ResponseSettings(duration=0.1, step=0.01))
         assert any("not stable" in it for it in answer.warnings) == expected
 
 

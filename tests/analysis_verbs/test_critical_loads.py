@@ -44,7 +44,7 @@ def test_euler(kind):
 
 @pytest.mark.parametrize("kind", MODELS)
 def test_beck(kind):
-    structure = column(MODELS[kind], Load(1.0, force=(-1.0, 0.0, 0.0), follows=True))
+    structure = column(MODELS[kind], Load(1.0, force=(-1.0, 0.0, 0.0), follower=True))
     found = critical_load(structure)
     assert found.value == pytest.approx(BECK, rel=3e-5 if kind == "exact" else 4e-4)
     assert (found.kind, found.direction) == ("flutter", "z")
@@ -54,7 +54,7 @@ def test_becks_two_modes_meet():
     """Just below the critical load two frequencies are nearly one; above it `modes` says flutter."""
     close, beyond = (
         modes(
-            column(MODELS["exact"], Load(1.0, force=(-share * BECK, 0.0, 0.0), follows=True)),
+            column(MODELS["exact"], Load(1.0, force=(-share * BECK, 0.0, 0.0), follower=True)),
             Flight(stack(z=constant(0.0))),
             0.0,
         )
@@ -65,7 +65,7 @@ def test_becks_two_modes_meet():
 
 
 def test_leipholz():
-    structure = column(MODELS["exact"], Load(None, force=(-1.0, 0.0, 0.0), follows=True))
+    structure = column(MODELS["exact"], Load(None, force=(-1.0, 0.0, 0.0), follower=True))
     found = critical_load(structure)
     assert found.value == pytest.approx(LEIPHOLZ, rel=1e-4) and found.kind == "flutter"
 

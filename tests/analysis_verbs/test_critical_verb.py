@@ -19,7 +19,7 @@ damping_ratio = 0
 [[beam.loads]]
 at = "8 m"
 force = { x = { profile = "smooth-step", level = "-1 N", duration = "1 s" } }
-follows = true
+follower = true
 [model]
 kind = "TLAM"
 modes = { axial = 1, y = 5, z = 0 }
@@ -52,18 +52,18 @@ def call(tmp_path, monkeypatch, capsys):
 
 
 def test_loads(call):
-    foam = ("--set", "model.kind=FOAM", "--raise", "loads", "--at", "1 s", "--motion", "flight")
+    foam = ("--set", "model.kind=FOAM", "--vary", "loads", "--at", "1 s", "--motion", "flight")
     status, told, _ = call(*foam)
     assert status == 0 and told["critical_load_factor"] == pytest.approx(20.0510 * BENDING, rel=1e-3)
     assert told["kind"] == "flutter"
-    _, told, _ = call(*foam, "--set", "beam.loads[0].follows=false")
+    _, told, _ = call(*foam, "--set", "beam.loads[0].follower=false")
     assert told["critical_load_factor"] == pytest.approx(np.pi**2 / 4 * BENDING, rel=1e-3)
-    status, told, said = call("--raise", "loads", "--motion", "flight")
+    status, told, said = call("--vary", "loads", "--motion", "flight")
     assert status == 2 and "none that acts" in said and told["error"][0]["path"] == "beam.loads"
 
 
 def test_acceleration(call):
-    status, told, _ = call("--set", "model.kind=FOAM", "--raise", "acceleration")
+    status, told, _ = call("--set", "model.kind=FOAM", "--vary", "acceleration")
     wanted = 7.8373 * BENDING / (2766.7 * 7.2968e-5 * 8.0)
     assert status == 0 and told["critical_acceleration"] == pytest.approx(wanted, rel=1e-3)
 
@@ -88,7 +88,7 @@ def test_map(call):
         (("--masses", "0.1 m"), "--masses"),
         (("--masses", "1 kg, -1 kg"), "negative"),
         (("--masses", "1 kg", "--positions", "9 m"), "off the beam"),
-        (("--masses", "1 kg", "--raise", "loads"), "a map is of hub rates"),
+        (("--masses", "1 kg", "--vary", "loads"), "a map is of hub rates"),
         (("--positions", "1 m"), "stands without --masses"),
         (("--to", "3 kg"), "--to"),
         (("--to", "-3 rad/s"), "to"),

@@ -11,7 +11,7 @@ import scipy.io
 from gbeam import Beam, InputError, Model, Root, assemble
 from gbeam.analysis.control.linearization import Gauge, linearize
 from gbeam.analysis.control.nonlinear import nonlinear_system
-from gbeam.analysis.control.reduction import balance, truncate
+from gbeam.analysis.control.reduction import balanced_truncation, modal_truncation
 from gbeam.analysis.equilibrium.operating_point import linear_matrices, on_base, on_hub, operating_point
 from gbeam.analysis.vibration.modal import modes
 from gbeam.motion import Base, HubRate, HubTorque, constant
@@ -98,19 +98,19 @@ def test_state_space_of_a_turning_base_has_its_rate():
 
 def test_reductions():
     system = linearize(SOFT, FREE_2009).select(outputs=("tip_y", "hub_angle"))
-    small = truncate(system, 1)
+    small = modal_truncation(system, 1)
     assert len(small.a) == 4  # turning, and one vibration
     assert transfer(small, 1.0) == pytest.approx(transfer(system, 1.0), rel=2e-3)
-    assert truncate(system, 3) is system
+    assert modal_truncation(system, 3) is system
     with pytest.raises(InputError, match="1 to 3"):
-        truncate(system, 4)
-    balanced, hankel = balance(system, 4)
+        modal_truncation(system, 4)
+    balanced, hankel = balanced_truncation(system, 4)
     assert len(balanced.a) == 6 and (np.diff(hankel) <= 1e-12).all()
     for frequency in (0.5, 2.0, 3.5):
         error = np.linalg.norm(transfer(balanced, frequency) - transfer(system, frequency), 2)
         assert error <= 2 * hankel[4:].sum() + 1e-9
     with pytest.raises(InputError, match="damping_ratio"):
-        balance(linearize(structure_2009("SFOAM", 0, 3), FREE_2009), 2)
+        balanced_truncation(linearize(structure_2009("SFOAM", 0, 3), FREE_2009), 2)
 
 
 def test_exports(tmp_path):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from gbeam import HubRate, ResponseSettings, SmoothStep, respond
+from gbeam import HubRate, ResponseSettings, SmoothStep, simulate
 from gbeam.analysis.study.model_study import SHAPES_FINE, shape_tail
 from gbeam.cli import main
 
@@ -78,5 +78,5 @@ def test_models_that_do_not_fit_the_scenario_do_not_end_the_study(call):
 def test_too_few_shapes_show_in_the_last(rotations, fine):
     structure = structure_2009("exact", 3, rotations)
     hub = HubRate(0.5, SmoothStep(6.0, 4.0))
-    response = respond(structure, hub, ResponseSettings(duration=8.0, step=0.04))
+    response = simulate(structure, hub, ResponseSettings(duration=8.0, step=0.04))
     assert (shape_tail(structure, response) < SHAPES_FINE) == fine

@@ -30,7 +30,7 @@ BEAM = Beam(
     damping_ratio=0.02,
     root=Root(rotation_y=200.0),
     loads=[
-        Load(1.5, force=(0.3, 0.1, -0.2), moment=(0.0, 0.05, 0.02), follows=True),
+        Load(1.5, force=(0.3, 0.1, -0.2), moment=(0.0, 0.05, 0.02), follower=True),
         Load(None, force=(0.0, 0.1, 0.3)),
     ],
 )
@@ -97,7 +97,7 @@ def carried(kind, base, system, rates):
     at = mount.base(*map(jnp.asarray, turned))
     q, qd, qdd = system.state[first:half], system.state[half + first : 2 * half], rates[half + first : 2 * half]
     assert ("hub_angle" in states) == bool(first)
-    history = BaseHistory(*(np.asarray(x)[None] for x in (at.a_WO_B, at.w_WB_B, at.al_WB_B)))
+    history = BaseHistory(*(np.asarray(x)[None] for x in (at.a_WO_B, at.w_WB_B, at.alpha_WB_B)))
     loads = section_loads(beam, BEAM, history, q[None], qd[None], qdd[None], np.zeros(1))
     told = dict(zip([it.name for it in system.outputs], system.output, strict=True))
     for i, axis in enumerate("xyz"):

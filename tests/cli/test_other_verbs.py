@@ -65,7 +65,9 @@ def test_every_verb_has_help(verb: str, gbeam: Call) -> None:
     answer = gbeam(verb, "--help")
     assert answer.status == 0
     name = verb.replace("-", "_")
-    told = " ".join(getattr(import_module(f"gbeam.cli.verbs.{name}"), name).__doc__.partition("Parameters\n")[0].split())
+    told = " ".join(
+        getattr(import_module(f"gbeam.cli.verbs.{name}"), name).__doc__.partition("Parameters\n")[0].split()
+    )
     assert told in " ".join(answer.out.split())
 
 

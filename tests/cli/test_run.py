@@ -37,7 +37,7 @@ def test_json_contract(fast: Path, gbeam: Call) -> None:
     assert told["motions"]["flight"]["tip"]["z"]["max_abs"] == pytest.approx(1.72e-3, rel=0.02)
     spin = told["motions"]["spin"]
     assert spin["axes"]["1"]["rate"]["max_abs"] == pytest.approx((6 * 9.80665 / 3.3) ** 0.5)
-    assert spin["tracking_error"]["max"] < 1e-9 and spin["held"] == []
+    assert spin["tracking_error"]["max"] < 1e-9 and spin["not_followed"] == []
     (comparison,) = told["comparisons"]
     assert (comparison["flight"], comparison["centrifuge"]) == ("flight", "spin")
     assert comparison["relative"]["z"] < 1e-3 and comparison["covered"] == 1
@@ -105,9 +105,9 @@ def test_what_one_motion_lacks_the_others_keep(fast: Path, gbeam: Call, monkeypa
     def fail(*args: Any, name: str, **how: Any) -> Response:
         if name == "spin":
             raise ComputationError("not converged", "no relative equilibrium; use exact")
-        return simulation.respond(*args, name=name, **how)
+        return simulation.simulate(*args, name=name, **how)
 
-    monkeypatch.setattr("gbeam.analysis.study.study.respond", fail)
+    monkeypatch.setattr("gbeam.analysis.study.study.simulate", fail)
     answer = gbeam("run", fast, "--json", "--out", "half")
     assert answer.status == 1
     assert answer.err == "gbeam: motion.spin not converged: no relative equilibrium; use exact\n"

@@ -18,7 +18,7 @@ from gbeam import (
     assemble,
     build_target,
     stack,
-    table,
+    tabulated,
 )
 from gbeam.motion import Profile
 
@@ -28,7 +28,7 @@ SPECIMEN = Beam(0.3, Section.rectangle(0.02, 0.004), Material(2700.0, 70e9))
 
 @pytest.fixture(scope="session")
 def load() -> Profile:
-    return stack(z=table([0.0, 1.25], [5 * G, 10 * G]))  # 4 g/s
+    return stack(z=tabulated([0.0, 1.25], [5 * G, 10 * G]))  # 4 g/s
 
 
 @pytest.fixture(scope="session")

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gbeam import Beam, Comparison, Material, Section, compare, respond
+from gbeam import Beam, Comparison, Material, Section, compare, simulate
 from gbeam.analysis.response.section_forces import influence, internal_loads
 from gbeam.numerics.low_pass import low_pass
 from gbeam.numerics.oscillators import displacement, riding_acceleration
@@ -20,7 +20,7 @@ M, L, EI = 2700 * 0.02 * 0.004, 0.3, 70e9 * 0.02 * 0.004**3 / 12
 @pytest.fixture(scope="module")
 def pair(structure: Any, flight: Any, spin: Any, settings: Any) -> tuple[Any, Any]:
     def full(motion: Any, name: str) -> Any:
-        response = respond(structure, motion, settings, name=name)
+        response = simulate(structure, motion, settings, name=name)
         loads = internal_loads(structure, SPECIMEN, response)
         return replace(response, loads=loads, influence=influence(structure))
 

@@ -36,7 +36,7 @@ REFUSED: list[tuple[str, str, Callable[[], object]]] = [
     ("width", "is -0.02 m", lambda: Section.rectangle(-0.02, 0.004)),
     ("area", "is 0 m²", lambda: Section.general(0.0, 1e-8, 1e-8)),
     ("inertia_y", "is nan m⁴", lambda: Section.general(1e-4, np.nan, 1e-8)),
-    ("fibre_z", "is -0.1 m", lambda: Section.general(1e-4, 1e-8, 1e-8, fibre_z=-0.1)),
+    ("extreme_fibre_z", "is -0.1 m", lambda: Section.general(1e-4, 1e-8, 1e-8, extreme_fibre_z=-0.1)),
     ("thickness[1]", "is 0 m", lambda: tapered([0.0, 1.0], thickness=[0.004, 0.0])),
     ("thickness", "has 3 value(s) for 2 station(s)", lambda: tapered([0.0, 1.0], thickness=[1.0, 1.0, 1.0])),
     ("width", "has 2 value(s) for 1 station(s)", lambda: Section.rectangle([0.1, 0.2], 0.004)),
@@ -114,7 +114,7 @@ def test_section_against_counted_cells(
 ) -> None:
     at = section.at(0.3)
     np.testing.assert_allclose((at.area, at.inertia_y, at.inertia_z), moments(inside, 0.036), rtol=CELLS)
-    assert (at.fibre_y, at.fibre_z) == fibres
+    assert (at.extreme_fibre_y, at.extreme_fibre_z) == fibres
 
 
 def test_closed_forms() -> None:
@@ -127,12 +127,12 @@ def test_closed_forms() -> None:
 
 
 def test_general_section_knows_only_what_it_was_given() -> None:
-    given_ = Section.general(1e-4, 2e-8, 3e-8, fibre_z=0.01).at([0.0, 0.5])
+    given_ = Section.general(1e-4, 2e-8, 3e-8, extreme_fibre_z=0.01).at([0.0, 0.5])
     np.testing.assert_array_equal(given_.area, [1e-4, 1e-4])
     np.testing.assert_array_equal(given_.inertia_y, [2e-8, 2e-8])
     np.testing.assert_array_equal(given_.inertia_z, [3e-8, 3e-8])
-    np.testing.assert_array_equal(given_.fibre_z, [0.01, 0.01])
-    assert np.isnan(given_.fibre_y).all()
+    np.testing.assert_array_equal(given_.extreme_fibre_z, [0.01, 0.01])
+    assert np.isnan(given_.extreme_fibre_y).all()
 
 
 def test_taper_interpolates_dimensions_not_properties() -> None:
@@ -141,7 +141,7 @@ def test_taper_interpolates_dimensions_not_properties() -> None:
     width, thickness = np.array([0.04, 0.03, 0.02, 0.02, 0.02]), np.array([0.004, 0.003, 0.002, 0.0015, 0.001])
     np.testing.assert_allclose(at.area, width * thickness, rtol=EXACT)
     np.testing.assert_allclose(at.inertia_y, width * thickness**3 / 12, rtol=EXACT)
-    np.testing.assert_allclose(at.fibre_y, width / 2, rtol=EXACT)
+    np.testing.assert_allclose(at.extreme_fibre_y, width / 2, rtol=EXACT)
 
 
 def test_scalar_dimension_holds_at_every_station() -> None:

@@ -33,7 +33,7 @@ from gbeam import (
     assemble,
     constant,
     critical_speed,
-    respond,
+    simulate,
 )
 from gbeam.mechanics.equations import Coefficients, Hub, coefficients, on_free_hub
 
@@ -217,7 +217,7 @@ SLEW = dict(duration=50.0, residual_from=30.0)
 
 
 def slew(kind: str, counts: tuple[int, int], rate: float, mt: float = 0.0, **how: Any) -> Response:
-    return respond(
+    return simulate(
         structure(kind, *counts, mt), HubRate(HUB_RADIUS, SmoothStep(rate, 30.0)), ResponseSettings(**SLEW, **how)
     )
 
@@ -256,7 +256,7 @@ def test_slew_of_3_rad_per_s_with_newmark_in_automatic_steps() -> None:
 @pytest.mark.parametrize(("mt", "rate", "critical"), [(0.0, 3.0, 2.911), (0.5, 2.0, 1.936)])
 def test_tlam_diverges_and_says_at_which_speed(mt: float, rate: float, critical: float) -> None:
     """The paper: "diverges above 3 rad/s" (erratum 14), and at 2 rad/s with 0.5 kg."""
-    result = respond(
+    result = simulate(
         structure("TLAM", 5, 5, mt), HubRate(HUB_RADIUS, SmoothStep(rate, 30.0)), ResponseSettings(duration=60.0)
     )
     assert result.outcome == "diverged"
@@ -286,7 +286,7 @@ def test_exact_slew_of_5_rad_per_s() -> None:
 def pulse(kind: str, counts: tuple[int, int], torque: float, mt: float, **how: Any) -> Response:
     drive = HubTorque(HUB_RADIUS, HUB_INERTIA, Sine(torque, 10.0))
     settings = ResponseSettings(duration=20.0, residual_from=10.0, **{"step": 5e-3, **how})
-    return respond(structure(kind, *counts, mt), drive, settings)
+    return simulate(structure(kind, *counts, mt), drive, settings)
 
 
 @pytest.mark.slow

@@ -27,7 +27,7 @@ from gbeam import (
     Structure,
     assemble,
     equilibrium,
-    respond,
+    simulate,
 )
 from gbeam.mechanics.energy import second_order
 from gbeam.mechanics.equations import Coefficients, Damped, coefficients, on_prescribed_base
@@ -57,7 +57,7 @@ def constants(counts: tuple[int, int, int], slenderness: float = 1000.0, tip: fl
 
 def frequencies(c: Coefficients, base: Base, count: int) -> np.ndarray:
     """Lowest circular frequencies of M q̈ + G q̇ + K q = 0."""
-    G, K, _ = (np.asarray(x) for x in c.at(base.a_WO_B, base.w_WB_B, base.al_WB_B))
+    G, K, _ = (np.asarray(x) for x in c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B))
     return gyroscopic_frequencies(np.asarray(c.mass), G, K, count)
 
 
@@ -192,7 +192,7 @@ def linearised(s: Structure, base: Base, q: jax.Array) -> tuple[jax.Array, ...]:
     none = jnp.zeros_like(q)
 
     def residual(q: jax.Array, qd: jax.Array, qdd: jax.Array) -> jax.Array:
-        return on_prescribed_base(s.system, q, qd, qdd, base.a_WO_B, base.w_WB_B, base.al_WB_B)
+        return on_prescribed_base(s.system, q, qd, qdd, base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
 
     return tuple(jax.jacfwd(residual, i)(q, none, none) for i in (2, 1, 0))
 
@@ -276,7 +276,7 @@ def robot_arm() -> Structure:
 def test_spin_up_of_the_robot_arm() -> None:
     """Peaks: published within 2 %, independent (exact beam, finite elements) within 0.05 %."""
     settings = ResponseSettings(duration=20.0, step=5e-3, residual_from=15.5)
-    result = respond(robot_arm(), HubRate(0.0, SPIN_UP), settings)
+    result = simulate(robot_arm(), HubRate(0.0, SPIN_UP), settings)
     time, (axial, across) = result.time, result.tip[:, :2].T
     assert across.min() == pytest.approx(-0.57384, rel=5e-4)
     assert across.min() == pytest.approx(-0.5723, rel=2e-2)

@@ -28,7 +28,7 @@ from gbeam import (
     constant,
     equilibrium,
     stack,
-    table,
+    tabulated,
 )
 from gbeam.integrate import Gauss4, LinearSystem, State, Trajectory, integrate
 from gbeam.mechanics.equations import Coefficients, coefficients
@@ -149,7 +149,7 @@ class _Matrices(eqx.Module):
     coefficients: Coefficients
 
     def __call__(self, base: Base) -> Any:
-        return self.coefficients.at(base.a_WO_B, base.w_WB_B, base.al_WB_B)
+        return self.coefficients.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
 
 
 @eqx.filter_jit
@@ -157,7 +157,7 @@ def quasi_static(c: Coefficients, motion: Any, t: Any) -> Any:
     """K⁻¹F over time: the steady motion that the vibration is about."""
 
     def rest(base: Base) -> Any:
-        _, stiffness, load = c.at(base.a_WO_B, base.w_WB_B, base.al_WB_B)
+        _, stiffness, load = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
         return jnp.linalg.solve(stiffness, load)
 
     return jax.vmap(rest)(motion.base(t))
@@ -169,7 +169,7 @@ def vibration(
     """Times, and the coordinates along z about the quasi-static ones, of a run that starts without vibration."""
     c, h = constants(), 2e-3
     state = State.rest(jnp.zeros(7))
-    if moving:  # respond() starts at rest: here the load is moving from the start
+    if moving:  # simulate() starts at rest: here the load is moving from the start
         before, now, after = quasi_static(c, motion, start + h * jnp.array([-1.0, 0.0, 1.0]))
         state = State(now, (after - before) / (2 * h), 0 * now, 0 * now)
     system = LinearSystem(c.mass, _Matrices(c), motion.base)
@@ -185,7 +185,7 @@ def at_tip(q: np.ndarray) -> np.ndarray:
 def ramp_to_plateau(jerk: float) -> tuple[Any, float]:
     """Load along z at 5 g when t = 0, rising to 10 g; and the time of the corner."""
     corner = 5.0 / jerk
-    return stack(z=table([-0.5, corner], [(5 - 0.5 * jerk) * G0, 10 * G0])), corner
+    return stack(z=tabulated([-0.5, corner], [(5 - 0.5 * jerk) * G0, 10 * G0])), corner
 
 
 def amplitude(values: np.ndarray) -> float:

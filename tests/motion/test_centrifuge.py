@@ -39,7 +39,7 @@ def f16() -> Centrifuge:
 def test_root_has_the_control_points_motion_moved() -> None:
     machine = Centrifuge(target(), R, XC, "flat", gravity=True)
     t = np.linspace(0, 12, 61)
-    root, here = eqx.filter_jit(lambda m, s: (m.base(s), m.achieved(s)))(machine, t)
+    root, here = eqx.filter_jit(lambda m, s: (m.base(s), m.actual(s)))(machine, t)
     back = moved(root, [XC, 0.0, 0.0])
     np.testing.assert_allclose(back.a_WO_B, here, atol=1e-11)
     scalar = eqx.filter_jit(lambda m, s: m.base(s))(machine, 3.0)
@@ -55,10 +55,10 @@ def test_steady_load_at_the_root_is_less_the_centrifugal_one() -> None:
 
 def test_f16_record_on_a_short_arm(f16: Centrifuge) -> None:
     t = np.linspace(0, 15.99, 4001)
-    base, error, held = eqx.filter_jit(lambda m, s: (m.base(s), m.tracking_error(s), m.held(s)))(f16, t)
-    for part in (base.a_WO_B, base.w_WB_B, base.al_WB_B):
+    base, error, held = eqx.filter_jit(lambda m, s: (m.base(s), m.tracking_error(s), m.not_followed(s)))(f16, t)
+    for part in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B):
         assert np.isfinite(part).all()
-    wanted = np.asarray(f16.wanted(t))
+    wanted = np.asarray(f16.reference(t))
     assert np.hypot(wanted[:, 1], wanted[:, 2]).min() > 1.01 * G
     # The 8 g turn. Near idle the aileron's steps change the load faster than so slow an arm can follow.
     turn = (t > 3.2) & (t < 11.2)
@@ -97,7 +97,7 @@ def test_like_scenarios_share_one_compiled_function() -> None:
 
 def test_sharp_corners_only_for_quasi_static_and_a_load_that_does_not_turn() -> None:
     sharp = Centrifuge(target(smoothing=None, gravity=False), R, XC, "quasi-static", gravity=False)
-    assert np.isfinite(sharp.base(np.linspace(0, 12, 61)).al_WB_B).all() and sharp.breaks.size
+    assert np.isfinite(sharp.base(np.linspace(0, 12, 61)).alpha_WB_B).all() and sharp.breaks.size
     for inverse, gravity in (("flat", False), ("quasi-static", True)):
         with pytest.raises(InputError, match="60 ms") as caught:
             Centrifuge(target(smoothing=None, gravity=gravity), R, XC, inverse, gravity)

@@ -85,7 +85,7 @@ def test_a_start_far_from_level_flight_is_the_wrong_unit(
     )
     with pytest.raises(InputError, match=f'begins at .*wants unit = "{right}"'.replace("^", r"\^")):
         fly(calm, declared)
-    assert fly(calm, declared, trust=True).acceleration.times.size == 1600
+    assert fly(calm, declared, skip_checks=True).acceleration.times.size == 1600
     if level != 6.0:
         assert fly(calm, right).acceleration.times.size == 1600
 
@@ -132,7 +132,7 @@ def test_body_rates_turn_the_base() -> None:
     base, h = flight.base(t), 1e-4
     np.testing.assert_allclose(base.w_WB_B, record.rates(t), atol=0.05)
     slope = (flight.base(t + h).w_WB_B - flight.base(t - h).w_WB_B) / (2 * h)
-    np.testing.assert_allclose(base.al_WB_B, slope, atol=1e-4)
+    np.testing.assert_allclose(base.alpha_WB_B, slope, atol=1e-4)
     # A pull-up turns the nose up: about −y of a y axis that points left, while the load is upwards.
     pull = np.argmax(base.a_WO_B[:, 2])
     assert base.w_WB_B[pull, 1] < 0 < base.a_WO_B[pull, 2]

@@ -18,12 +18,12 @@ from gbeam.motion import (
     build_target,
     constant,
     stack,
-    table,
+    tabulated,
     trapezoid,
 )  # fmt: skip
 
 G, R = STANDARD_GRAVITY, 3.3
-seen = eqx.filter_jit(lambda m, t: (m.wanted(t), m.achieved(t), m.axes(t), m.base(t)))
+seen = eqx.filter_jit(lambda m, t: (m.reference(t), m.actual(t), m.axes(t), m.base(t)))
 
 
 def machine(
@@ -49,7 +49,7 @@ def test_forward_of_inverse_is_the_identity_on_a_smooth_load(gravity: bool, sign
     # (9): ω1⁴ + (dω1/dt)² = (H/R)²
     horizontal = np.sqrt(np.sum(wanted**2, axis=1) - (G**2 if gravity else 0))
     np.testing.assert_allclose(np.hypot(axes.rate1**2, axes.acceleration1), horizontal / R, rtol=1e-9)
-    assert np.isfinite(base.al_WB_B).all()
+    assert np.isfinite(base.alpha_WB_B).all()
 
 
 @pytest.mark.parametrize("width", [0.06, 0.2, 0.8])
@@ -77,7 +77,7 @@ def test_smooth_step_and_rates() -> None:
 @pytest.mark.parametrize(("frequency", "arm", "possible"), [(0.5, 3.3, True), (1.0, 3.3, False), (0.5, 15.0, False)])
 def test_a_maximum_can_be_followed_where_it_is_flat_enough(frequency: float, arm: float, possible: bool) -> None:
     t = np.arange(0, 4, 0.005)
-    raw = stack(z=table(t, 2 * G + 1.2 * G * np.sin(2 * np.pi * frequency * t)))
+    raw = stack(z=tabulated(t, 2 * G + 1.2 * G * np.sin(2 * np.pi * frequency * t)))
     sharp = 1.2 * G * (2 * np.pi * frequency) ** 2 / ((3.2 * G) ** 2 / arm)  # −ä over a²/R
     assert (sharp <= 1) == possible
     if possible:

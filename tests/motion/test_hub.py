@@ -28,13 +28,13 @@ def test_root_acceleration_is_that_of_the_rim(radius: float) -> None:
         base = hub.base(t)
         np.testing.assert_allclose(base.a_WO_B, np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) @ a_W, atol=1e-12)
         np.testing.assert_allclose(base.w_WB_B, [0, 0, jax.grad(angle)(t)], atol=1e-12)
-        np.testing.assert_allclose(base.al_WB_B, [0, 0, jax.grad(jax.grad(angle))(t)], atol=1e-12)
+        np.testing.assert_allclose(base.alpha_WB_B, [0, 0, jax.grad(jax.grad(angle))(t)], atol=1e-12)
 
 
 def test_vector_of_times_and_steady_rate() -> None:
     base = HubRate(0.5, constant(4.0)).base(np.linspace(0, 1, 7))
     np.testing.assert_allclose(base.a_WO_B, np.tile([-8.0, 0.0, 0.0], (7, 1)))
-    assert not np.any(base.al_WB_B)
+    assert not np.any(base.alpha_WB_B)
 
 
 def test_free_hub_keeps_its_numbers() -> None:

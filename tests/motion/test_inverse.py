@@ -38,7 +38,7 @@ def centrifuge(
 @eqx.filter_jit
 def seen(machine: Centrifuge, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, Axes, Base]:
     """Wanted and achieved loads, axes and base."""
-    return machine.wanted(t), machine.achieved(t), machine.axes(t), machine.base(t)
+    return machine.reference(t), machine.actual(t), machine.axes(t), machine.base(t)
 
 
 def swinging() -> Profile:
@@ -58,8 +58,8 @@ def test_constant_loads_are_exact(load: tuple[float, float, float], sign: int, g
     machine = centrifuge(constant(f), inverse, gravity, sign)
     _, achieved, _, base = seen(machine, 1.0)
     np.testing.assert_allclose(achieved, f, atol=1e-9)
-    np.testing.assert_allclose(base.al_WB_B, 0, atol=1e-5)  # the splines' rounding, two derivatives on
-    assert inverse in ("exact", "planned") or not np.any(base.al_WB_B)
+    np.testing.assert_allclose(base.alpha_WB_B, 0, atol=1e-5)  # the splines' rounding, two derivatives on
+    assert inverse in ("exact", "planned") or not np.any(base.alpha_WB_B)
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -74,7 +74,7 @@ def test_six_g_through_the_thickness(inverse: str, sign: int) -> None:
 def test_a_load_along_the_beam_is_free_of_nan(inverse: str) -> None:
     load = stack(x=Sum((constant(-4 * G), Sine(G, 4.0, start=-1.0))))
     base = seen(centrifuge(load, inverse), T)[3]
-    for part in (base.a_WO_B, base.w_WB_B, base.al_WB_B):
+    for part in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B):
         assert np.isfinite(part).all()
 
 

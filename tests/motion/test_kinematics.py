@@ -45,7 +45,7 @@ def test_forward_and_shift_against_double_differentiation(seed: int, gravity: fl
     axes = Axes(r[0], dd[0], a[1], r[1], dd[1], a[2], r[2], dd[2])
     base = moved(forward(axes, arm, gravity), offset)
     np.testing.assert_allclose(base.w_WB_B, [w[2, 1], w[0, 2], w[1, 0]], atol=1e-12)
-    np.testing.assert_allclose(base.al_WB_B, [skew[2, 1], skew[0, 2], skew[1, 0]], atol=1e-12)
+    np.testing.assert_allclose(base.alpha_WB_B, [skew[2, 1], skew[0, 2], skew[1, 0]], atol=1e-12)
     np.testing.assert_allclose(base.a_WO_B, R_WB.T @ a_W, atol=1e-12)
 
 
@@ -53,5 +53,5 @@ def test_many_times_at_once() -> None:
     states = jnp.asarray(np.random.default_rng(1).normal(size=(8, 4, 5)))
     whole, one = forward(Axes(*states), 3.3, 9.8), forward(Axes(*states[:, 2, 3]), 3.3, 9.8)
     assert whole.a_WO_B.shape == (4, 5, 3)
-    np.testing.assert_allclose(whole.al_WB_B[2, 3], one.al_WB_B, atol=1e-14)
+    np.testing.assert_allclose(whole.alpha_WB_B[2, 3], one.alpha_WB_B, atol=1e-14)
     np.testing.assert_allclose(moved(whole, np.zeros(3)).a_WO_B, whole.a_WO_B)

@@ -15,7 +15,7 @@ from gbeam.motion import (
     Profile,
     build_target,
     stack,
-    table,
+    tabulated,
     trapezoid,
     usage,
 )  # fmt: skip
@@ -77,16 +77,16 @@ def test_example_machines_are_marked_as_examples_and_reach_their_load() -> None:
         assert rate is not None and machine.arm * rate**2 > 10 * G
 
 
-def unreachable(
+def shortfalls(
     raw: Profile, arm: float = R, smoothing: float = 0.06, idle: float | None = None, gravity: bool = True
 ) -> tuple[Shortfall, ...]:
     made = build_target(raw, span=(0.0, 8.0), idle=idle, smoothing=smoothing, gravity=gravity, arm=arm)
-    return Centrifuge(made, arm, 0.15, "flat", gravity).unreachable()
+    return Centrifuge(made, arm, 0.15, "flat", gravity).shortfalls()
 
 
 def dip(level: float) -> Profile:
     """From 6 g to a level and back in 1 s each, m/s²."""
-    return stack(z=table([0.0, 2.0, 3.0, 5.0, 6.0, 8.0], np.array([6, 6, level, level, 6, 6]) * G))
+    return stack(z=tabulated([0.0, 2.0, 3.0, 5.0, 6.0, 8.0], np.array([6, 6, level, level, 6, 6]) * G))
 
 
 def quoted(it: Shortfall) -> float:
@@ -95,18 +95,18 @@ def quoted(it: Shortfall) -> float:
 
 
 def test_loads_below_idle_are_followed_with_the_idle_that_is_named_and_not_above() -> None:
-    (low,) = (it for it in unreachable(dip(1.25), idle=1.4 * G) if it.reason == "below idle")
-    assert (low.wanted, low.possible) == (pytest.approx(1.25), pytest.approx(1.4))
+    (low,) = (it for it in shortfalls(dip(1.25), idle=1.4 * G) if it.reason == "below idle")
+    assert (low.reference, low.possible) == (pytest.approx(1.25), pytest.approx(1.4))
     assert low.start == pytest.approx(2.968, abs=3e-3) and low.end == pytest.approx(5.032, abs=3e-3)
     made = build_target(dip(1.25), span=(0.0, 8.0), idle=quoted(low) * G, smoothing=0.06, gravity=True, arm=R)
     assert made.episodes() == [] and 'idle = "1.19 g" or less' in low.remedy
-    assert any(it.reason == "below idle" for it in unreachable(dip(1.25), idle=quoted(low) * G / 0.9))
+    assert any(it.reason == "below idle" for it in shortfalls(dip(1.25), idle=quoted(low) * G / 0.9))
 
 
 def test_what_no_idle_lets_is_said() -> None:
     """Idle is 1.1 g at least, and raises what is below 1.05 times it."""
     for level, words in ((1.12, "without idle it would be followed"), (0.9, "no machine follows a load below 1.05 g")):
-        (low,) = (it for it in unreachable(dip(level), idle=1.4 * G) if it.reason == "below idle")
+        (low,) = (it for it in shortfalls(dip(level), idle=1.4 * G) if it.reason == "below idle")
         assert words in low.remedy
     made = build_target(dip(1.12), span=(0.0, 8.0), idle=None, smoothing=0.06, gravity=True, arm=R)
     assert made.episodes() == []
@@ -118,7 +118,7 @@ def test_what_no_idle_lets_is_said() -> None:
         (stack(z=trapezoid(4 * G, 8 * G, 1.0, 2.0)), R, False, 2 * 8 * R / (16 * G)),
         (dip(2.0), R, True, 2 * 4 * 6 / np.sqrt(35) * R / (35 * G)),  # the horizontal load's slope is f f'/H
         (dip(1.25), R, True, None),
-        (stack(z=table([0.0, 1.0, 8.0], np.array([1.06, 1.06, 4.5]) * G)), 15.0, True, None),
+        (stack(z=tabulated([0.0, 1.0, 8.0], np.array([1.06, 1.06, 4.5]) * G)), 15.0, True, None),
     ],
 )
 def test_the_smoothing_that_is_named_is_the_least_that_does(
@@ -130,12 +130,12 @@ def test_the_smoothing_that_is_named_is_the_least_that_does(
     several times more.
     """
     idle = None if gravity else G
-    first = next(it for it in unreachable(raw, arm, idle=idle, gravity=gravity) if it.reason == "turns sharply")
+    first = next(it for it in shortfalls(raw, arm, idle=idle, gravity=gravity) if it.reason == "turns sharply")
     width = 1e-3 * quoted(first)
     assert formula is None or formula < width < 1.3 * formula
 
     def remains(smoothing: float) -> bool:
-        left = unreachable(raw, arm, smoothing, idle, gravity)
+        left = shortfalls(raw, arm, smoothing, idle, gravity)
         return any(it.reason == "turns sharply" and it.start <= first.end and it.end >= first.start for it in left)
 
     assert remains(0.06) and remains(0.9 * width) and not remains(width)

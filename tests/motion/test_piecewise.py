@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from gbeam.errors import InputError
-from gbeam.motion import PiecewiseLinear, constant, smoothed, table, trapezoid
+from gbeam.motion import PiecewiseLinear, constant, smoothed, tabulated, trapezoid
 from gbeam.numerics.time_derivative import with_rate
 
 TRAPEZOID = trapezoid(level=10.0, jerk=4.0, start=1.0, hold=4.0)
@@ -39,7 +39,7 @@ def test_constant_trapezoid_table() -> None:
     np.testing.assert_allclose(TRAPEZOID(t), [0, 0, 4, 10, 10, 5, 0], atol=1e-14)
     np.testing.assert_allclose(trapezoid(-10.0, 4.0, 1.0, 4.0)(t), -TRAPEZOID(t), atol=1e-14)
     np.testing.assert_allclose(trapezoid(2.0, 2.0, 0.0, 0.0)(np.array([0.5, 1.0, 1.5, 2.5])), [1, 2, 1, 0])
-    np.testing.assert_allclose(table([0, 1, 3], [1, 2, 0])(t), np.interp(t, [0, 1, 3], [1, 2, 0]))
+    np.testing.assert_allclose(tabulated([0, 1, 3], [1, 2, 0])(t), np.interp(t, [0, 1, 3], [1, 2, 0]))
     assert TRAPEZOID(2.0).shape == ()
 
 

@@ -22,7 +22,7 @@ from gbeam.numerics.bspline import Grid
 G, R = STANDARD_GRAVITY, 3.3
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 TIGHT = MachineLimits(AxisLimit(10, 20, 40), AxisLimit(20, 60, 3e3), AxisLimit(10, 30, 1e3), inertia=2e3, power=1e5)
-errors = eqx.filter_jit(lambda m, t: (m.tracking_error(t), m.held(t)))
+errors = eqx.filter_jit(lambda m, t: (m.tracking_error(t), m.not_followed(t)))
 
 
 @pytest.fixture(scope="module")

@@ -18,7 +18,7 @@ from gbeam.motion import (
     read_record,
     smoothed,
     stack,
-    table,
+    tabulated,
     trapezoid,
 )
 from gbeam.motion.centrifuge.spin_up import LEAST_TURNED
@@ -27,7 +27,9 @@ G, R = STANDARD_GRAVITY, 3.3
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 SPIN_UP, W = 3.0, 0.2
 RISING = stack(
-    x=table([0, 4, 6], [0.5 * G, 0.5 * G, G]), y=table([0.0], [G]), z=table([0, 3.5, 5, 8], np.array([2, 2, 5, 4]) * G)
+    x=tabulated([0, 4, 6], [0.5 * G, 0.5 * G, G]),
+    y=tabulated([0.0], [G]),
+    z=tabulated([0, 3.5, 5, 8], np.array([2, 2, 5, 4]) * G),
 )
 
 
@@ -42,7 +44,7 @@ def machine(
 @eqx.filter_jit
 def seen(it: Centrifuge, t: np.ndarray) -> tuple[Axes, np.ndarray, Base, np.ndarray, np.ndarray]:
     axes, jerk = it.axes_and_jerks(t)
-    return axes, jerk, it.base(t), it.wanted(t), forward(axes, it.geometry.arm, it.geometry.gravity).a_WO_B
+    return axes, jerk, it.base(t), it.reference(t), forward(axes, it.geometry.arm, it.geometry.gravity).a_WO_B
 
 
 def states(axes: Axes) -> np.ndarray:
@@ -68,7 +70,7 @@ def test_standstill_first_and_no_jump_at_the_join(start: str, inverse: str, grav
     before, after = (seen(it, end + np.array([side])) for side in (-1e-6, 1e-6))
     rough = 1e-3 if inverse == "planned" else 0.0
     np.testing.assert_allclose(after[1], before[1], atol=1e-3 + 100 * rough)  # jerk: the slope of the fourth order left
-    for one, other in ((before[2].a_WO_B, after[2].a_WO_B), (before[2].al_WB_B, after[2].al_WB_B)):
+    for one, other in ((before[2].a_WO_B, after[2].a_WO_B), (before[2].alpha_WB_B, after[2].alpha_WB_B)):
         np.testing.assert_allclose(other, one, atol=1e-6 + rough)
     np.testing.assert_allclose(states(after[0]), states(before[0]), atol=1e-4 if inverse == "planned" else 1e-6)
 
@@ -132,7 +134,7 @@ def test_a_flight_that_begins_with_nothing(start: str, inverse: str) -> None:
     it = machine(start, inverse, raw=raw, gravity=False, spin_up=2.0, smoothing=0.1)
     t = np.linspace(0, 8, 4001)
     axes, jerk, base, wanted, achieved = seen(it, t)
-    assert np.isfinite(states(axes)).all() and np.isfinite(jerk).all() and np.isfinite(base.al_WB_B).all()
+    assert np.isfinite(states(axes)).all() and np.isfinite(jerk).all() and np.isfinite(base.alpha_WB_B).all()
     after = t >= 2.0
     np.testing.assert_allclose(np.asarray(wanted)[after, 2], smoothed(raw, 0.1)(t)[after, 2], atol=1e-9)
     if inverse == "exact":
@@ -140,13 +142,13 @@ def test_a_flight_that_begins_with_nothing(start: str, inverse: str) -> None:
 
 
 def test_spin_up_is_an_episode_and_nothing_before_it_counts() -> None:
-    raw = stack(z=table([0, 1, 2, 5, 7, 8], np.array([0.2, 0.2, 3, 3, 1.2, 1.2]) * G))
+    raw = stack(z=tabulated([0, 1, 2, 5, 7, 8], np.array([0.2, 0.2, 3, 3, 1.2, 1.2]) * G))
     it = machine("rest", "flat", raw=raw, idle=1.4 * G)
     spin_up, held = it.episodes()
     assert (spin_up.start, spin_up.end, spin_up.reason) == (0.0, SPIN_UP, "spin-up")
     assert held.reason == "below idle" and held.start > 6
-    assert np.asarray(it.held(np.array([0.0, 2.9, 3.001, 5.0]))).tolist() == [True, True, False, False]
-    assert all(each.start >= SPIN_UP for each in it.unreachable())
+    assert np.asarray(it.not_followed(np.array([0.0, 2.9, 3.001, 5.0]))).tolist() == [True, True, False, False]
+    assert all(each.start >= SPIN_UP for each in it.shortfalls())
     use = {(u.axis, u.quantity): u for u in it.usage()}
     assert use["axis 1", "rate"].used == pytest.approx((3**2 - 1) ** 0.25 * np.sqrt(G / R), rel=1e-6)
     assert use["axis 1", "acceleration"].time < SPIN_UP  # not where the flight is followed

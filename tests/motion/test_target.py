@@ -46,13 +46,13 @@ def test_a_load_above_idle_is_smoothed_and_nothing_else() -> None:
     for gravity in (False, True):
         made = target(raw, idle=1.4 * G, gravity=gravity)
         np.testing.assert_allclose(made.load(T), smoothed(raw, 0.06)(T), rtol=1e-14)
-        assert made.episodes() == [] and not np.any(made.held(T))
+        assert made.episodes() == [] and not np.any(made.not_followed(T))
 
 
 @pytest.mark.parametrize("gravity", [False, True])
 def test_idle_is_held_below_and_the_load_kept_above(gravity: bool) -> None:
     made = target(TRAPEZOID, idle=1.4 * G, gravity=gravity)
-    load, held = np.asarray(made.load(T)), np.asarray(made.held(T))
+    load, held = np.asarray(made.load(T)), np.asarray(made.not_followed(T))
     kept = smoothed(TRAPEZOID, 0.06)(T)
     np.testing.assert_allclose(load[~held], kept[~held], atol=1e-11)
     np.testing.assert_allclose(sizes(load)[T < 1.2], 1.4, rtol=1e-12)
@@ -88,7 +88,7 @@ def test_loads_gravity_exceeds_are_bridged_and_the_axial_one_is_kept() -> None:
     across = np.hypot(load[:, 1], load[:, 2])
     assert across.min() > 1.01 * G
     np.testing.assert_allclose(load[:, 0], 2 * G)
-    held = np.asarray(made.held(T))
+    held = np.asarray(made.not_followed(T))
     np.testing.assert_allclose(load[~held], smoothed(raw, 0.06)(T)[~held], atol=1e-10)
     (episode,) = made.episodes()
     assert episode.reason == "out of reach of the gimbals" and 4.5 < episode.start < 5 < episode.end < 5.5
@@ -116,7 +116,7 @@ def test_curved_profiles_are_kept_exactly_or_sampled_finely() -> None:
     raw = stack(z=Sum((constant(3 * G), Sine(2 * G, 10.0, start=1.0))))
     np.testing.assert_allclose(target(raw).load(T), smoothed(raw, 0.06)(T), rtol=1e-14)
     made = target(raw, idle=2 * G)
-    held = np.asarray(made.held(T))
+    held = np.asarray(made.not_followed(T))
     assert held.any() and not held.all()
     np.testing.assert_allclose(made.load(T)[~held], smoothed(raw, 0.06)(T)[~held], atol=1e-4)
 

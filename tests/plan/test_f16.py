@@ -24,7 +24,7 @@ def planned(*overrides: str) -> MachinePlan:
 
 def error(it: MachinePlan) -> tuple[float, float]:
     """Largest and rms, m/s², where the target is not held."""
-    size = it.axes.tracking_error[~it.axes.held]
+    size = it.axes.tracking_error[~it.axes.not_followed]
     return float(size.max()), float(np.sqrt(np.mean(size**2)))
 
 
@@ -61,7 +61,7 @@ def test_on_an_example_machine_only_the_plan_is_within_limits_and_it_beats_flat(
 def test_what_an_arm_too_slow_for_the_load_misses_is_told() -> None:
     slow = planned("inverse=planned", "limits.axis1.rate=4 rad/s")
     assert slow.outcome == "done" and slow.axes.within_limits
-    size = np.sqrt(np.sum(slow.axes.wanted**2, axis=1) - 9.80665**2)[~slow.axes.held]
+    size = np.sqrt(np.sum(slow.axes.reference**2, axis=1) - 9.80665**2)[~slow.axes.not_followed]
     assert error(slow)[0] == pytest.approx(size.max() - 3.3 * 4**2, rel=0.03)  # what a steady arm misses
     (warning,) = slow.axes.warnings
     assert f"({error(slow)[0]:.3g} m/s² at" in warning and "limits used up: axis 1 rate" in warning

@@ -93,7 +93,7 @@ def test_exceeding_a_limit_is_status_1_unless_allowed(
     assert main(["plan", str(scenario), *low, "--out", str(tmp_path / "low")]) == 1
     assert "limits exceeded: exceeds axis 1 rate" in capsys.readouterr().err
     assert "LIMITS EXCEEDED" in (tmp_path / "low" / "commands_spin.csv").read_text(encoding="utf-8")
-    assert main(["plan", str(scenario), *low, "--allow-limits", "--json"]) == 0
+    assert main(["plan", str(scenario), *low, "--ignore-limits", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["outcome"] == "limits exceeded"
 
 
@@ -129,7 +129,7 @@ def test_a_broken_promise_is_told_by_every_verb(
 
 def test_run_names_the_limits_too(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:
     scenario.write_text(PLAN.replace("60 rpm", "20 rpm") + BEAM, encoding="utf-8")
-    for allow, status, mark in ((), 1, "%) at"), (("--allow-limits",), 0, "(allowed)"):
+    for allow, status, mark in ((), 1, "%) at"), (("--ignore-limits",), 0, "(allowed)"):
         assert main(["run", str(scenario), "--json", *allow]) == status
         told = capsys.readouterr()
         assert "motion.spin limits exceeded: exceeds axis 1 rate" in told.err and mark in told.err
@@ -151,11 +151,11 @@ def test_a_clipped_target_is_asked_for_and_marked(
         told = capsys.readouterr().err
         assert "0.9 g only at 1.400 s" in told and "clip = true" in told and "add 0.15 g across" in told
         assert not out.exists()
-    clip = ["--set", "motion.spin.clip=true", "--allow-limits"]
+    clip = ["--set", "motion.spin.clip=true", "--ignore-limits"]
     assert main(["plan", str(scenario), *DIP, *clip, "--out", str(out), "--json"]) == 0
     spin = json.loads(capsys.readouterr().out)["motions"]["spin"]
-    (held,) = spin["held"]
-    (far,) = (it for it in spin["unreachable"] if it["reason"] == "across below gravity")
+    (held,) = spin["not_followed"]
+    (far,) = (it for it in spin["shortfalls"] if it["reason"] == "across below gravity")
     assert held["reason"] == "out of reach of the gimbals" and held["start"] < far["start"] < far["end"] < held["end"]
     marked = f"TARGET HELD {held['start']:.3f} to {held['end']:.3f} s: out of reach of the gimbals"
     assert marked in (out / "commands_spin.csv").read_text(encoding="utf-8")
@@ -166,7 +166,7 @@ def test_what_is_lacking_across_the_beam_is_enough_when_added(
     scenario: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     for level, status in ("1.05 g", 0), ("1.035 g", 2):  # 0.9 g and 0.15 g; and 0.9 of that
-        assert main(["plan", str(scenario), *(it.replace("0.9 g", level) for it in DIP), "--allow-limits"]) == status
+        assert main(["plan", str(scenario), *(it.replace("0.9 g", level) for it in DIP), "--ignore-limits"]) == status
     assert "add 0.02 g across the beam" in capsys.readouterr().err
 
 
@@ -176,9 +176,9 @@ def test_a_spin_up_is_told_and_commanded(
 ) -> None:
     text = PLAN.replace('inverse = "flat"', f'inverse = "flat"\nstart = "{start}"\nspin_up = "2 s"')
     scenario.write_text(text.replace('duration = "3 s"', 'duration = "4 s"'), encoding="utf-8")
-    assert main(["plan", str(scenario), "--allow-limits", "--json", "--out", str(tmp_path)]) == 0
+    assert main(["plan", str(scenario), "--ignore-limits", "--json", "--out", str(tmp_path)]) == 0
     spin = json.loads(capsys.readouterr().out)["motions"]["spin"]
-    assert spin["held"] == [{"start": 0.0, "end": 2.0, "reason": "spin-up"}]
+    assert spin["not_followed"] == [{"start": 0.0, "end": 2.0, "reason": "spin-up"}]
     hardest = next(it for it in spin["limits"] if (it["axis"], it["quantity"]) == ("axis 1", "acceleration"))
     assert hardest["time"] < 1.9 and hardest["exceeded"]  # 2 s from nothing to 6 g
     commands = loadmat(tmp_path / "commands_spin.mat")
@@ -195,18 +195,18 @@ def test_the_spin_up_that_the_arm_needs_is_named(
     text = text.replace("0.5 s", "9 s").replace('duration = "3 s"', 'duration = "6 s"')  # a load of 2 g throughout
     scenario.write_text(text, encoding="utf-8")
 
-    def told(*more: str) -> tuple[int, dict[str, Any]]:
+    def to_json(*more: str) -> tuple[int, dict[str, Any]]:
         status = main(["plan", str(scenario), "--json", *more])
         return status, json.loads(capsys.readouterr().out)["motions"]["spin"]
 
-    status, spin = told()
+    status, spin = to_json()
     (warning,) = spin["warnings"]
     assert (
         status == 1 and spin["outcome"] == "limits exceeded" and "the arm exceeds its limits in the spin-up" in warning
     )
     enough = float(warning.split('"')[1].split()[0])
-    assert told("--set", f"motion.spin.spin_up={enough} s")[0] == 0
-    assert told("--set", f"motion.spin.spin_up={0.9 * enough} s")[0] == 1
+    assert to_json("--set", f"motion.spin.spin_up={enough} s")[0] == 0
+    assert to_json("--set", f"motion.spin.spin_up={0.9 * enough} s")[0] == 1
 
 
 def test_start_and_spin_up_belong_together(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -57,7 +57,7 @@ def test_json(study: Study) -> None:
     told = json.loads(as_json(summary_json(study)))
     spin = told["motions"]["spin"]
     assert spin["tracking_error"] == pytest.approx({"max": 0.6, "time_of_max": 2.0, "fraction": 0.01})
-    assert spin["held"] == [{"start": 0.505, "end": 0.795, "reason": "below idle"}]
+    assert spin["not_followed"] == [{"start": 0.505, "end": 0.795, "reason": "below idle"}]
     assert spin["axes"]["1"]["acceleration"]["max_abs"] == pytest.approx(8 * np.sin(np.pi / 2), rel=1e-3)
     assert told["motions"]["slew"]["hub"] == {"angle_end": 2.0, "rate_max": 4.0, "rate_end": 4.0}
     assert told["comparisons"][0]["relative"]["z"] == pytest.approx(0.1)

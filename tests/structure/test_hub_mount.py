@@ -55,7 +55,7 @@ def test_a_free_hub_and_a_prescribed_one_are_one_thing(name: str) -> None:
     def all_of_it(y: Any, yd: Any, ydd: Any, torque: Any) -> Any:
         free = on_free_hub(system, hub, y, yd, ydd, torque)
         base = HUB.mount.base(y[0], yd[0], ydd[0])
-        given = on_prescribed_base(system, y[1:], yd[1:], ydd[1:], base.a_WO_B, base.w_WB_B, base.al_WB_B)
+        given = on_prescribed_base(system, y[1:], yd[1:], ydd[1:], base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
         return free, given, jax.jvp(total, (y, yd), (yd, ydd))[1]
 
     y, yd, ydd = state(structure.size + 1)
@@ -76,7 +76,7 @@ def test_a_setting_angle_mixes_the_planes() -> None:
     """At 90° the section's z lies where y was: the lag and flap stiffnesses change places."""
     both = coefficients(assemble(BEAM, Model("FOAM", 0, 1, 1)).system)
     bases = [HubRate(0.5, constant(2.0), setting_angle=angle).base(0.0) for angle in (0.0, np.pi / 2)]
-    flat, edge = (both.at(b.a_WO_B, b.w_WB_B, b.al_WB_B)[1] for b in bases)
+    flat, edge = (both.at(b.a_WO_B, b.w_WB_B, b.alpha_WB_B)[1] for b in bases)
     np.testing.assert_allclose(np.diag(flat)[::-1], np.diag(edge), rtol=1e-12)
     assert flat[0, 0] < flat[1, 1]
 

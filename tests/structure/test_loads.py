@@ -23,7 +23,7 @@ from gbeam import (
     SmoothStep,
     assemble,
     equilibrium,
-    respond,
+    simulate,
     stack,
     trapezoid,
 )
@@ -58,10 +58,10 @@ def test_elastica_table() -> None:
         np.testing.assert_allclose(found, wanted, atol=6e-7)
 
 
-@pytest.mark.parametrize("follows", [False, True])
-def test_roll_up_into_a_full_circle(follows: bool) -> None:
+@pytest.mark.parametrize("follower", [False, True])
+def test_roll_up_into_a_full_circle(follower: bool) -> None:
     moment = 2 * np.pi * 3.0 / 10
-    structure = assemble(beam(10.0, 3.0, Load(10.0, moment=(0, 0, moment), follows=follows)), Model("exact", 0, 2, 0))
+    structure = assemble(beam(10.0, 3.0, Load(10.0, moment=(0, 0, moment), follower=follower)), Model("exact", 0, 2, 0))
     moved = structure.displacement(equilibrium(structure, STILL))[-1]
     np.testing.assert_allclose(moved, [-10, 0, 0], atol=1e-11)
 
@@ -79,7 +79,7 @@ def test_geradin_and_cardonas_cantilever_but_for_its_shear() -> None:
 def test_generalised_forces_are_the_virtual_work(kind: str) -> None:
     """F·δr + M·δθ by finite differences of the points and of their rotations, root springs included."""
     force, moment = np.array([1.0, -2.0, 3.0]), np.array([0.5, 0.7, -0.4])
-    loads = [Load(0.6, force, moment), Load(0.6, force, moment, follows=True)]
+    loads = [Load(0.6, force, moment), Load(0.6, force, moment, follower=True)]
     structure = assemble(beam(1.0, 1.0, *loads, root=Root(rotation_y=1.0)), Model(kind, 1, 2, 2), [0.6])
     q, step = jnp.asarray(np.random.default_rng(5).normal(size=structure.size) * 0.2), 1e-6
 
@@ -101,7 +101,7 @@ def test_generalised_forces_are_the_virtual_work(kind: str) -> None:
 @cache
 def stiffness() -> tuple[np.ndarray, ...]:
     """M, K and what K loses under a dead and under a following unit thrust, of FOAM."""
-    thrusts = [Load(1.0, force=(-1.0, 0.0, 0.0), follows=follows) for follows in (False, True)]
+    thrusts = [Load(1.0, force=(-1.0, 0.0, 0.0), follower=follower) for follower in (False, True)]
     found = coefficients(assemble(beam(1.0, 1.0, *thrusts), Model("FOAM", 0, 0, 8)).system)
     o, free = jnp.zeros(3), found.stiffness
     under = [found.at(o, o, o, jnp.zeros((2, 6)).at[k, 0].set(-1.0))[1] for k in (0, 1)]
@@ -133,8 +133,8 @@ def test_a_spread_load_over_time_is_an_acceleration_of_the_base(model: Model) ->
     pulse = stack(z=trapezoid(0.4, 2.0, 0.1, 0.5))
     counter = stack(z=trapezoid(-0.4, 2.0, 0.1, 0.5))
     settings = ResponseSettings(1.5, step=0.005)
-    moving = respond(assemble(beam(1.0, 1.0), model), Flight(pulse), settings)
-    pushed = respond(assemble(beam(1.0, 1.0, Load(force=counter)), model), Flight(stack()), settings)
+    moving = simulate(assemble(beam(1.0, 1.0), model), Flight(pulse), settings)
+    pushed = simulate(assemble(beam(1.0, 1.0, Load(force=counter)), model), Flight(stack()), settings)
     np.testing.assert_allclose(pushed.tip, moving.tip, atol=1e-9 * np.abs(moving.tip).max())
 
 
@@ -149,7 +149,7 @@ def test_equilibrium_takes_the_loads_at_its_time() -> None:
 
 
 def test_truncated_work_is_the_first_order_of_the_complete_one() -> None:
-    loads = [Load(1.0, (1.0, 2.0, 3.0), (0.4, 0.5, 0.6)), Load(None, (0.2, 0.3, 0.4), follows=True)]
+    loads = [Load(1.0, (1.0, 2.0, 3.0), (0.4, 0.5, 0.6)), Load(None, (0.2, 0.3, 0.4), follower=True)]
     full = assemble(beam(1.0, 1.0, *loads), Model("CFOAM", 1, 2, 2)).system
     truncated = first_order(full.work, full.applied, 5)
     zero, q = jnp.zeros(5), jnp.asarray(np.random.default_rng(1).normal(size=5))

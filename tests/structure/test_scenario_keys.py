@@ -19,7 +19,7 @@ root = { rotation_y = "500 N m/rad", translation_z = "20 kN/m" }
 [[beam.loads]]
 at = "2 m"
 force = { z = "5 N", x = { profile = "trapezoid", level = "-2 N", jerk = "4 N/s", start = "1 s", hold = "1 s" } }
-follows = true
+follower = true
 [[beam.loads]]
 at = "1 m"
 moment = { y = "3 N m" }
@@ -52,7 +52,7 @@ def test_what_they_build() -> None:
     case = build(loads(TEXT))
     beam = case.beam
     assert beam.root.springs == {"translation_z": 20e3, "rotation_y": 500.0}
-    assert [load.follows for load in beam.loads] == [True, False, False]
+    assert [load.follower for load in beam.loads] == [True, False, False]
     assert [load.at for load in beam.loads] == [2.0, 1.0, None]
     assert callable(beam.loads[0].force)
     np.testing.assert_allclose(beam.loads[0].force(1.7), [-2.0, 0.0, 5.0])

@@ -32,15 +32,15 @@ import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
 
-import gbeam._jax  # noqa: F401
-from gbeam.analysis.response.simulation import respond
+import gbeam.arrays.jax_setup  # noqa: F401
+from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.study.case import ResponseSettings
 from gbeam.checks import positive
 from gbeam.errors import InputError
 from gbeam.mechanics.assembly import Structure, rest_modes
 from gbeam.mechanics.energy import rest_matrices
 from gbeam.mechanics.equations import coefficients
-from gbeam.motion import Base, Centrifuge, Profile, build_target, smoothed, stack, table
+from gbeam.motion import Base, Centrifuge, Profile, build_target, smoothed, stack, tabulated
 from gbeam.numerics.time_derivative import with_rate
 from gbeam.results.response import Floats
 
@@ -257,7 +257,7 @@ def _run(
 ) -> tuple[Floats, Floats, float]:
     """Times, the tip's displacement along z, and ω₁."""
     settings = ResponseSettings(start=start, duration=duration, step=step, integrator="gauss")
-    response = respond(structure, motion, settings)  # type: ignore[arg-type]  # a motion like any other
+    response = simulate(structure, motion, settings)  # type: ignore[arg-type]  # a motion like any other
     return response.time, response.tip[:, 2], float(response.frequencies[0])
 
 
@@ -273,7 +273,7 @@ def _from_rest(structure: Structure, jerk: float, arm: float, at: float, period:
     end = (2 + _PERIODS) * period
     # The square root begins vertically: knots graded towards zero, rounded over a thirtieth of a period.
     grid = end * np.linspace(0, 1, 2001) ** 2
-    rate = smoothed(table(grid, np.sqrt(jerk * grid / arm)), period / 30)
+    rate = smoothed(tabulated(grid, np.sqrt(jerk * grid / arm)), period / 30)
     motion = _FromRest(rate, jnp.asarray(arm), jnp.asarray(at))
     t, z, w = _run(structure, motion, -period / 15, end * 0.95, period / 200)
     late = t > 2 * period
@@ -285,7 +285,7 @@ def _flat(structure: Structure, jerk: float, arm: float, at: float, level: float
     corner, watched = 0.5 * level / jerk, _PERIODS * period
     first, last = corner - width / 2, corner + width / 2
     start, end = first - watched, last + watched
-    load = stack(z=table([0.0, corner], [0.5 * level, level]))
+    load = stack(z=tabulated([0.0, corner], [0.5 * level, level]))
     target = build_target(load, span=(start, end), idle=None, smoothing=width, gravity=False)
     motion = Centrifuge(target, arm, at, "flat", False)
     t, z, w = _run(structure, motion, start, end - start, period / 100)

@@ -86,7 +86,7 @@ def base_json(base: Any) -> dict[str, Any]:
     return {
         "acceleration": dict(zip("xyz", map(float, base.a_WO_B), strict=True)),
         "angular_velocity": dict(zip("xyz", map(float, base.w_WB_B), strict=True)),
-        "angular_acceleration": dict(zip("xyz", map(float, base.al_WB_B), strict=True)),
+        "angular_acceleration": dict(zip("xyz", map(float, base.alpha_WB_B), strict=True)),
     }
 
 

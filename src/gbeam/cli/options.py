@@ -24,9 +24,12 @@ Out = Annotated[
 Json = Annotated[
     bool, Parameter(name="--json", negative="", show_default=False, help="Print one JSON object and nothing else.")
 ]
-AllowLimits = Annotated[
+IgnoreLimits = Annotated[
     bool,
     Parameter(
-        name="--allow-limits", negative="", show_default=False, help="Exit with 0 though a machine's limit is exceeded."
+        name="--ignore-limits",
+        negative="",
+        show_default=False,
+        help="Exit with 0 though a machine's limit is exceeded.",
     ),
 ]

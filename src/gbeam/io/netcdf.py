@@ -146,7 +146,7 @@ def _response(it: Response) -> xr.Dataset:
             ta, it.base.a_WO_B, "m s-2", "acceleration of the root; specific force where gravity acts"
         ),
         "angular_velocity": v(ta, it.base.w_WB_B, "rad s-1", "angular velocity of the base"),
-        "angular_acceleration": v(ta, it.base.al_WB_B, "rad s-2", "angular acceleration of the base"),
+        "angular_acceleration": v(ta, it.base.alpha_WB_B, "rad s-2", "angular acceleration of the base"),
         "tip_max_abs": v(("axis",), it.peaks.max_abs, "m", "largest displacement of the tip at any step computed"),
         "tip_time_of_max": v(("axis",), it.peaks.time_of_max, "s", "time of that displacement"),
         "tip_residual_amplitude": v(
@@ -171,8 +171,10 @@ def _response(it: Response) -> xr.Dataset:
                 tsa, it.loads.acceleration, "m s-2", "acceleration in the world, base axes; specific force with gravity"
             ),
         }
-        if it.loads.hub_torque is not None:
-            data["beam_torque"] = v(t, it.loads.hub_torque, "N m", "torque about the hub's axis that the beam asks for")
+        if it.loads.beam_torque is not None:
+            data["beam_torque"] = v(
+                t, it.loads.beam_torque, "N m", "torque about the hub's axis that the beam asks for"
+            )
         if it.loads.drive_torque is not None:
             data["drive_torque"] = v(t, it.loads.drive_torque, "N m", "the same with the hub's own inertia")
     if it.hub is not None:

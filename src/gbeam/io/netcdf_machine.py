@@ -33,16 +33,16 @@ def machine_variables(it: AxesResult) -> dict[str, Variable]:
         "axis_angle": v(tm, it.angle, "rad", "angle of the centrifuge's axes"),
         "axis_rate": v(tm, it.rate, "rad s-1", "rate of the centrifuge's axes"),
         "axis_acceleration": v(tm, it.acceleration, "rad s-2", "acceleration of the centrifuge's axes"),
-        "load_wanted": v(ta, it.wanted, "m s-2", "load wanted at the control point"),
-        "load_achieved": v(ta, it.achieved, "m s-2", "load that the axes make at the control point"),
-        "held": v(
-            t, it.held.astype(np.int8), "1", "whether the target is held instead of the flight's load",
+        "load_reference": v(ta, it.reference, "m s-2", "load wanted at the control point"),
+        "load_actual": v(ta, it.actual, "m s-2", "load that the axes make at the control point"),
+        "not_followed": v(
+            t, it.not_followed.astype(np.int8), "1", "whether the target is held instead of the flight's load",
             flag_values=np.array([0, 1], dtype=np.int8), flag_meanings="follows_flight held",
         ),
         "control_point": v((), it.control_point, "m", "control point, from the root along the beam"),
         **_limits(it.limits),
         **_episodes(it.episodes),
-        **_shortfalls(it.unreachable),
+        **_shortfalls(it.shortfalls),
     }  # fmt: skip
 
 
@@ -68,9 +68,9 @@ def _episodes(episodes: tuple[tuple[float, float, str], ...]) -> dict[str, Varia
         return {}
     (first, last, reason), e = zip(*episodes, strict=True), ("episode",)
     return {
-        "held_from": variable(e, np.array(first), "s", "start of a stretch in which the target is held"),
-        "held_to": variable(e, np.array(last), "s", "its end"),
-        "held_reason": words(e, list(reason), "why it is held"),
+        "not_followed_from": variable(e, np.array(first), "s", "start of a stretch in which the target is held"),
+        "not_followed_to": variable(e, np.array(last), "s", "its end"),
+        "not_followed_reason": words(e, list(reason), "why it is held"),
     }
 
 
@@ -83,12 +83,12 @@ def _shortfalls(found: tuple[Shortfall, ...]) -> dict[str, Variable]:
         "from": ("start", "s", "start of a stretch in which the flight's load cannot be made"),
         "to": ("end", "s", "its end"),
         "time": ("time", "s", "when it is worst"),
-        "wanted": ("wanted", own, "what the flight asks for then"),
+        "reference": ("reference", own, "what the flight asks for then"),
         "possible": ("possible", own, "the nearest that the machine can make then"),
     }
     texts = {
         "reason": "why it cannot",
-        "unit": "unit of wanted and possible",
+        "unit": "unit of reference and possible",
         "remedy": "smallest change that would help",
     }
     return {

@@ -12,7 +12,7 @@ import scipy.linalg
 from jaxtyping import Array, Float
 from numpy.typing import ArrayLike, NDArray
 
-import gbeam._jax  # noqa: F401
+import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.errors import InputError
 from gbeam.mechanics.adapted import adapted_shapes
 from gbeam.mechanics.basis import Quadrature, quadrature
@@ -304,5 +304,5 @@ def _work(beam: Beam, field: Field, rule: Quadrature, first: int) -> FieldWork:
         station=jnp.array(np.concatenate(station)),
         load=jnp.array(which),
         weight=jnp.array(np.concatenate(weight)),
-        follows=jnp.array([it.follows for it in beam.loads])[which],
+        follower=jnp.array([it.follower for it in beam.loads])[which],
     )

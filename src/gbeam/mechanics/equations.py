@@ -10,7 +10,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-import gbeam._jax  # noqa: F401
+import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.mechanics.energy import Energy
 from gbeam.mechanics.field import Coordinates
 from gbeam.mechanics.virtual_work import Applied, Work
@@ -48,7 +48,7 @@ def on_prescribed_base(
     qdd: Coordinates,
     a_WO_B: Vector,
     w_WB_B: Vector,
-    al_WB_B: Vector,
+    alpha_WB_B: Vector,
 ) -> Coordinates:
     """Residual d/dt ∂T/∂q̇ − ∂T/∂q + Cq̇ + ∂U/∂q − Q on a base whose motion is given, (n,).
 
@@ -58,11 +58,11 @@ def on_prescribed_base(
     ----------
     q, qd, qdd : (n,) coordinates and their rates
     a_WO_B : (3,) acceleration of the root, base axes, m/s²
-    w_WB_B, al_WB_B : (3,) angular velocity and acceleration of the base, base axes, rad/s, rad/s²
+    w_WB_B, alpha_WB_B : (3,) angular velocity and acceleration of the base, base axes, rad/s, rad/s²
     """
     kinetic = system.energy.kinetic
     u = jnp.concatenate([jnp.zeros(3), w_WB_B])
-    ud = jnp.concatenate([a_WO_B, al_WB_B])
+    ud = jnp.concatenate([a_WO_B, alpha_WB_B])
     _, momentum_rate = jax.jvp(jax.grad(kinetic, 2), (u, q, qd), (ud, qd, qdd))
     inertial = momentum_rate - jax.grad(kinetic, 1)(u, q, qd)
     return inertial + system.damping @ qd + jax.grad(system.energy.potential)(q) - system.generalised(q)[6:]
@@ -171,7 +171,7 @@ class Coefficients(eqx.Module):
     applied: Applied | None = None
 
     def at(
-        self, a_WO_B: Vector, w_WB_B: Vector, al_WB_B: Vector, applied: Applied | None = None
+        self, a_WO_B: Vector, w_WB_B: Vector, alpha_WB_B: Vector, applied: Applied | None = None
     ) -> tuple[Matrix, Matrix, Coordinates]:
         """C + G, K and F at a base motion, under the loads `applied` or, without, those of the system."""
         w2 = w_WB_B[:, None] * w_WB_B[None, :]
@@ -179,10 +179,10 @@ class Coefficients(eqx.Module):
         stiffness = (
             self.stiffness
             + jnp.einsum("ij,ijnm->nm", w2, self.k_ww)
-            + jnp.einsum("i,inm->nm", al_WB_B, self.k_al)
+            + jnp.einsum("i,inm->nm", alpha_WB_B, self.k_al)
             + jnp.einsum("i,inm->nm", a_WO_B, self.k_a)
         )
-        load = jnp.einsum("ij,ijn->n", w2, self.f_ww) + al_WB_B @ self.f_al + a_WO_B @ self.f_a
+        load = jnp.einsum("ij,ijn->n", w2, self.f_ww) + alpha_WB_B @ self.f_al + a_WO_B @ self.f_a
         p = self.applied if applied is None else applied
         if p is not None and self.k_p is not None and self.f_p is not None:
             stiffness = stiffness + jnp.einsum("li,linm->nm", p, self.k_p)

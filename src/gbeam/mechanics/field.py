@@ -14,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-import gbeam._jax  # noqa: F401
+import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.mechanics.basis import Families, Quadrature, closed_forms, polynomials
 
 Points = Float[Array, "points 3"]

@@ -12,7 +12,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-import gbeam._jax  # noqa: F401
+import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.mechanics.field import Coordinates, Field
 
 Applied = Float[Array, "loads 6"]
@@ -36,14 +36,14 @@ class FieldWork(eqx.Module):
     station : (p,) index of each loaded point in the field
     load : (p,) index of the load that acts there
     weight : (p,) 1, or the quadrature weight of a load per length, m
-    follows : (p,) whether its axes are the section's
+    follower : (p,) whether its axes are the section's
     """
 
     field: Field
     station: Array
     load: Array
     weight: Float[Array, " p"]
-    follows: Array
+    follower: Array
 
     def generalised(self, q: Coordinates, applied: Applied) -> Generalised:
         """Resultant at the root and forces on the coordinates."""
@@ -53,7 +53,7 @@ class FieldWork(eqx.Module):
 
         (r, rotation), pull_back = jax.vjp(place, q)
         here = self.weight[:, None] * applied[self.load]
-        axes = jnp.where(self.follows[:, None, None], rotation, jnp.eye(3))
+        axes = jnp.where(self.follower[:, None, None], rotation, jnp.eye(3))
         force = jnp.einsum("pij,pj->pi", axes, here[:, :3])
         moment = jnp.einsum("pij,pj->pi", axes, here[:, 3:])
         # δR = [δθ]× R, so that ½ [M]× R : δR = M·δθ. The columns of [M]× R are M × those of R.

@@ -14,7 +14,7 @@ from gbeam.motion.centrifuge.kinematics import Axes, forward, moved
 from gbeam.motion.centrifuge.limits import AxisLimit, Limits, MachineLimits, usage
 from gbeam.motion.centrifuge.machines import MACHINES, Machine
 from gbeam.motion.centrifuge.target.target import Episode, Target, build_target
-from gbeam.motion.profiles.piecewise import PiecewiseLinear, constant, table, trapezoid
+from gbeam.motion.profiles.piecewise import PiecewiseLinear, constant, tabulated, trapezoid
 from gbeam.motion.profiles.profile import Profile, Stack, Sum, smoothed
 from gbeam.motion.profiles.pulse import Sine, SmoothStep
 
@@ -50,7 +50,7 @@ __all__ = [
     "read_record",
     "smoothed",
     "stack",
-    "table",
+    "tabulated",
     "trapezoid",
     "usage",
 ]

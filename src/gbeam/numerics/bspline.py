@@ -11,7 +11,7 @@ import scipy.linalg
 from jaxtyping import Array, Float
 from numpy.typing import NDArray
 
-import gbeam._jax  # noqa: F401
+import gbeam.arrays.jax_setup  # noqa: F401
 
 DEGREE = 5
 PIECE = DEGREE + 1  # coefficients that one piece depends on

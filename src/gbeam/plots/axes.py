@@ -7,11 +7,11 @@ from matplotlib.figure import Figure
 
 from gbeam.plots.base import G0
 from gbeam.plots.style import REFERENCE, colour, heading, legend, panels, shade, styled
-from gbeam.results.response import AxesResult, Told
+from gbeam.results.response import AxesResult, PlotHeading
 
 
 @styled
-def plot_axes(response: Told, axes: AxesResult, title: str) -> Figure:
+def plot_axes(response: PlotHeading, axes: AxesResult, title: str) -> Figure:
     """Plot a centrifuge's axes and how well they track.
 
     Parameters
@@ -35,11 +35,11 @@ def plot_axes(response: Told, axes: AxesResult, title: str) -> Figure:
     for i in range(3):
         rate.plot(time, axes.rate[:, i], color=colour(i), label=f"axis {i + 1}")
         acceleration.plot(time, axes.acceleration[:, i], color=colour(i))
-        load.plot(time, axes.achieved[:, i] / G0, color=colour(i), label="xyz"[i])
+        load.plot(time, axes.actual[:, i] / G0, color=colour(i), label="xyz"[i])
         # The two agree to a line's width: dashes show that both are there.
         load.plot(
             time,
-            axes.wanted[:, i] / G0,
+            axes.reference[:, i] / G0,
             color=REFERENCE,
             dashes=(2, 4),
             lw=0.9,
@@ -51,9 +51,9 @@ def plot_axes(response: Told, axes: AxesResult, title: str) -> Figure:
     load.set_ylabel("load, g0")
     error.set_ylabel("tracking error,\nm/s²")
     # Below a millionth of the load it is rounding, and shown as none.
-    error.set_ylim(0, max(error.get_ylim()[1], 1e-6 * np.abs(axes.wanted).max()) or 1.0)
+    error.set_ylim(0, max(error.get_ylim()[1], 1e-6 * np.abs(axes.reference).max()) or 1.0)
     for panel in (rate, acceleration, load, error):
-        shade(panel, time, axes.held)
+        shade(panel, time, axes.not_followed)
     legend(rate)
     legend(load, columns=5)
     return figure

@@ -28,8 +28,8 @@ def plot_base(response: Response, title: str) -> Figure:
     """
     base = response.base
     shown: list[tuple[Floats, str]] = [(base.a_WO_B / G0, "acceleration\nof the root, g0")]
-    if np.any(base.w_WB_B) or np.any(base.al_WB_B):
-        shown += [(base.w_WB_B, "angular\nvelocity, rad/s"), (base.al_WB_B, "angular\nacceleration, rad/s²")]
+    if np.any(base.w_WB_B) or np.any(base.alpha_WB_B):
+        shown += [(base.w_WB_B, "angular\nvelocity, rad/s"), (base.alpha_WB_B, "angular\nacceleration, rad/s²")]
     figure, axes = panels(
         heading(title, f"{response.name}: motion of the base, base axes", [response]),
         len(shown),

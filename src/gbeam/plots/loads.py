@@ -52,7 +52,7 @@ def plot_loads(response: Response, loads: Loads, title: str) -> Figure:
     title : str
         Of the scenario.
     """
-    stress, torque = np.isfinite(loads.stress).all(), loads.hub_torque
+    stress, torque = np.isfinite(loads.stress).all(), loads.beam_torque
     figure, drawn = panels(
         heading(title, f"{response.name}: force and moment of the base on the root, base axes", [response]),
         2 + int(stress) + int(torque is not None),

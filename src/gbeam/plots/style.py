@@ -17,7 +17,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from gbeam.results.response import Floats, Told
+from gbeam.results.response import Floats, PlotHeading
 
 P = ParamSpec("P")
 
@@ -83,7 +83,7 @@ def panels(title: str, count: int, *, heights: Iterable[float] | None = None) ->
     return figure, axes
 
 
-def heading(title: str, subject: str, responses: Iterable[Told]) -> str:
+def heading(title: str, subject: str, responses: Iterable[PlotHeading]) -> str:
     """Title of a plot: the scenario's, what is shown, and in capitals what must not be overlooked."""
     parts = [part for part in (title, subject) if part]
     failed = sorted({it.outcome.upper() for it in responses if it.outcome != "done"})

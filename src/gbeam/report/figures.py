@@ -44,15 +44,15 @@ def peak(time: Floats, values: Floats) -> Peak:
 
 def tracking(time: Floats, axes: AxesResult) -> Tracking:
     """Largest tracking error of a centrifuge, where its target is not held."""
-    if axes.held.all():
+    if axes.not_followed.all():
         return Tracking(np.nan, np.nan, np.nan)
-    error = np.where(axes.held, -1.0, axes.tracking_error)
+    error = np.where(axes.not_followed, -1.0, axes.tracking_error)
     i = int(np.argmax(error))
-    wanted = float(np.linalg.norm(axes.wanted[i]))
+    wanted = float(np.linalg.norm(axes.reference[i]))
     return Tracking(float(error[i]), float(time[i]), float(error[i]) / wanted if wanted > 0 else np.nan)
 
 
-def held_stretches(axes: AxesResult) -> list[tuple[float, float, str]]:
+def not_followed_stretches(axes: AxesResult) -> list[tuple[float, float, str]]:
     """Stretches in which the target is held, s, those that overlap joined with their reasons."""
     joined: list[tuple[float, float, str]] = []
     for start, end, reason in sorted(axes.episodes):

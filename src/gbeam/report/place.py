@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from gbeam.results.placement import Option, Placement
+from gbeam.results.placement import Candidate, Placement
 
-_PLACES = ("best", "present", "middle")
+_PLACES = ("best", "current", "middle")
 _TOLD = 6  # options of either kind
 
 
@@ -24,10 +24,10 @@ def place_json(answer: Placement) -> dict[str, Any]:
         "mounting": best.mounting,
         "smoothing": best.smoothing,
         "smoothing_range": list(answer.widths),
-        "present_control_point": answer.present,
+        "current_control_point": answer.current,
         "mismatch": {place: dict(values) for place, values in answer.values.items()},
         "options": [asdict(it) for it in answer.options],
-        "proofs": {it.name: asdict(it) for it in answer.proofs},
+        "verifications": {it.name: asdict(it) for it in answer.verifications},
         "vibration_gain_over_middle": answer.vibration_gain,
         "refused": list(answer.refused),
     }
@@ -43,18 +43,18 @@ def place_text(answer: Placement) -> str:
     lines = [
         f"{answer.centrifuge}, tracking {answer.flight}: least {measure}",
         f"  control point  {1e3 * best.control_point:.2f} mm from the root, {answer.fraction:.4f} of the length "
-        f"(now {1e3 * answer.present:.2f} mm)",
+        f"(now {1e3 * answer.current:.2f} mm)",
         f"  mounting       {best.mounting}",
         f"  smoothing      {1e3 * best.smoothing:.4g} ms{_range(answer)}",
         "",
-        "What the mismatch field does, of flight's peak".ljust(56) + "best       present    middle",
+        "What the mismatch field does, of flight's peak".ljust(56) + "best       current    middle",
     ]
     for name in answer.values["best"]:
         row = "".join(f"{100 * answer.values[place][name]:<9.3g}% " for place in _PLACES)
         lines.append(f"  {name:<54}{row}")
-    if answer.proofs:
+    if answer.verifications:
         lines += ["", "Proven by the model's response, against flight"]
-        for it in answer.proofs:
+        for it in answer.verifications:
             lines.append(
                 f"  {it.name:<8} {1e3 * it.control_point:8.2f} mm: tip within {1e3 * it.tip_difference:.4g} mm, "
                 f"vibration {1e3 * it.vibration:.3g} mm, root moment within {it.moment_difference:.3g} N m"
@@ -83,8 +83,9 @@ def _range(answer: Placement) -> str:
     return f"{searched}: the least tried" + ("; no limit of the machine forbids less" if answer.best.share < 1 else "")
 
 
-def _option(it: Option) -> str:
-    told = f"  {it.mounting}, {1e3 * it.smoothing:.4g} ms: {100 * it.whole:.3g} % at {1e3 * it.control_point:.2f} mm; "
+def _option(it: Candidate) -> str:
+    told = f"  {it.mounting}, {1e3 * it.smoothing:.4g} ms: {100 * it.total_error:.3g} % "
+    told += f"at {1e3 * it.control_point:.2f} mm; "
     if it.exceeded:
         worst, others = max(it.exceeded, key=lambda use: use.share), len(it.exceeded) - 1
         return told + f"exceeds {worst}" + (f" and {others} more" if others else "")

@@ -12,7 +12,7 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from gbeam.report.figures import held_stretches, tracking
+from gbeam.report.figures import not_followed_stretches, tracking
 from gbeam.report.limits import limits_json, limits_table
 from gbeam.results.response import MachinePlan
 
@@ -26,13 +26,14 @@ def plan_table(title: str, plans: Iterable[MachinePlan]) -> RenderableType:
         parts += ["", Text(f"{it.name} ({it.arm:g} m, tracks {it.tracks}): {it.outcome}")]
         lines: list[RenderableType] = [limits_table(it.axes.limits), Text(_followed(it))]
         lines += [
-            Text(f"target held {start:.3f} to {end:.3f} s: {why}") for start, end, why in held_stretches(it.axes)[:8]
+            Text(f"target held {start:.3f} to {end:.3f} s: {why}")
+            for start, end, why in not_followed_stretches(it.axes)[:8]
         ]
         lines += [Text(f"warning: {each}", style="yellow") for each in it.axes.warnings]
-        told = it.axes.unreachable[:_SHORTFALLS]
+        told = it.axes.shortfalls[:_SHORTFALLS]
         lines += [Text(f"warning: {each}", style="yellow") for each in told]
-        if len(it.axes.unreachable) > len(told):
-            lines.append(Text(f"and {len(it.axes.unreachable) - len(told)} more: see --json"))
+        if len(it.axes.shortfalls) > len(told):
+            lines.append(Text(f"and {len(it.axes.shortfalls) - len(told)} more: see --json"))
         parts += [Padding(line, (0, 0, 0, 2), expand=False) for line in lines]
     return Group(*parts)
 
@@ -60,8 +61,8 @@ def plan_json(title: str, plans: Iterable[MachinePlan], files: Iterable[Path] = 
                 "warnings": list(it.axes.warnings),
                 "limits": limits_json(it.axes),
                 "tracking_error": asdict(tracking(it.time, it.axes)),
-                "held": [{"start": start, "end": end, "reason": why} for start, end, why in it.axes.episodes],
-                "unreachable": [asdict(each) for each in it.axes.unreachable],
+                "not_followed": [{"start": start, "end": end, "reason": why} for start, end, why in it.axes.episodes],
+                "shortfalls": [asdict(each) for each in it.axes.shortfalls],
             }
             for it in told
         },

@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from gbeam.report.comparison import comparison_lines
-from gbeam.report.figures import held_stretches, tracking
+from gbeam.report.figures import not_followed_stretches, tracking
 from gbeam.report.limits import limits_table
 from gbeam.results.response import AxesResult, HubResult, Response, Study
 from gbeam.results.section_forces import Loads
@@ -125,8 +125,8 @@ def _loads(it: Loads) -> str:
     if np.isfinite(it.stress).all():
         where = it.stations[it.stress.max(axis=0).argmax()]
         told += f"; stress {number(1e-6 * float(it.stress.max()))} MPa at {number(float(where))} m"
-    if it.hub_torque is not None:
-        told += f"; torque for the beam {number(float(np.abs(it.hub_torque).max()))} N m"
+    if it.beam_torque is not None:
+        told += f"; torque for the beam {number(float(np.abs(it.beam_torque).max()))} N m"
     return told
 
 
@@ -143,13 +143,13 @@ def _tracking(response: Response, it: AxesResult) -> Iterator[str]:
             f"load followed within {number(error.max, 3)} m/s² ({100 * error.fraction:.3g} % of the load there), "
             f"at {error.time_of_max:.3f} s"
         )
-    stretches = held_stretches(it)
+    stretches = not_followed_stretches(it)
     for start, end, reason in stretches[:EPISODES]:
         yield f"target held {start:.3f} to {end:.3f} s: {reason}"
     if len(stretches) > EPISODES:
         yield f"target held {len(stretches) - EPISODES} times more: see the result file"
     # What is held has just been said; what is not held and yet cannot be followed is news.
-    told = [each for each in it.unreachable if not any(start <= each.time <= end for start, end, _ in stretches)]
+    told = [each for each in it.shortfalls if not any(start <= each.time <= end for start, end, _ in stretches)]
     for each in told[:SHORTFALLS]:
         yield f"warning: {each}"
     if len(told) > SHORTFALLS:

@@ -97,8 +97,8 @@ def _loads(time: Floats, it: Loads) -> dict[str, Any]:
     if np.isfinite(it.stress).all():
         when, where = np.unravel_index(it.stress.argmax(), it.stress.shape)
         told["stress"] = {"max": it.stress.max(), "time_of_max": time[when], "station": it.stations[where]}
-    if it.hub_torque is not None:
-        told["beam_torque"] = asdict(peak(time, it.hub_torque))
+    if it.beam_torque is not None:
+        told["beam_torque"] = asdict(peak(time, it.beam_torque))
     return told
 
 
@@ -117,8 +117,8 @@ def _centrifuge(response: Response, it: AxesResult) -> dict[str, Any]:
         "axes": {str(i + 1): peaks(i) for i in range(3)},
         "tracking_error": asdict(tracking(response.time, it)),
         "limits": limits_json(it),
-        "held": [{"start": start, "end": end, "reason": reason} for start, end, reason in it.episodes],
-        "unreachable": [asdict(each) for each in it.unreachable],
+        "not_followed": [{"start": start, "end": end, "reason": reason} for start, end, reason in it.episodes],
+        "shortfalls": [asdict(each) for each in it.shortfalls],
     }
 
 

@@ -20,7 +20,7 @@ class FrozenBase:
 
     a_WO_B: Floats
     w_WB_B: Floats
-    al_WB_B: Floats
+    alpha_WB_B: Floats
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ MEASURES = ("root-shear", "root-moment", "vibration", "tip")
 
 
 @dataclass(frozen=True)
-class Option:
+class Candidate:
     """One way of mounting and smoothing, with the control point that is best for it.
 
     Parameters
@@ -24,7 +24,7 @@ class Option:
         Best for this option, from the root, m.
     mismatch : float
         Weighted measure of what the mismatch field alone does there, as a fraction of flight's peak.
-    whole : float
+    total_error : float
         The same with what smoothing and tracking change of the load: what options are chosen by.
     accelerations : tuple of float
         Largest accelerations of axes 1, 2, 3, rad/s².
@@ -38,20 +38,20 @@ class Option:
     smoothing: float
     control_point: float
     mismatch: float
-    whole: float
+    total_error: float
     accelerations: tuple[float, float, float]
     share: float = 0.0
     exceeded: tuple[LimitUse, ...] = ()
 
 
 @dataclass(frozen=True)
-class Proof:
+class Verification:
     """What the full model says of a control point, over the times at which the target was not held.
 
     Parameters
     ----------
     name : str
-        best, present or middle.
+        best, current or middle.
     control_point : float
         m.
     tip_difference : float
@@ -82,15 +82,15 @@ class Placement:
         Of the measures.
     length : float
         Of the beam, m.
-    best : Option
-    options : tuple of Option
+    best : Candidate
+    options : tuple of Candidate
         All that were tried, the best first, those that break limits last.
-    present : float
+    current : float
         The scenario's control point, m.
     values : mapping of str to (mapping of str to float)
-        For ``best``, ``present`` and ``middle`` of the beam: each measure of the mismatch field, as a fraction of
+        For ``best``, ``current`` and ``middle`` of the beam: each measure of the mismatch field, as a fraction of
         flight's peak.
-    proofs : tuple of Proof
+    verifications : tuple of Verification
         Empty where none was asked for.
     refused : tuple of str
         Options that could not be built, and why.
@@ -102,11 +102,11 @@ class Placement:
     centrifuge: str
     weights: Mapping[str, float]
     length: float
-    best: Option
-    options: tuple[Option, ...]
-    present: float
+    best: Candidate
+    options: tuple[Candidate, ...]
+    current: float
     values: Mapping[str, Mapping[str, float]]
-    proofs: tuple[Proof, ...] = field(default=())
+    verifications: tuple[Verification, ...] = field(default=())
     refused: tuple[str, ...] = ()
     widths: tuple[float, float] = (0.0, 0.0)
 
@@ -118,7 +118,7 @@ class Placement:
     @property
     def vibration_gain(self) -> float:
         """How much less the specimen vibrates than with the control point at mid-span, as proven; NaN without proof."""
-        found = {proof.name: proof.vibration for proof in self.proofs}
+        found = {proof.name: proof.vibration for proof in self.verifications}
         if not {"best", "middle"} <= found.keys() or found["best"] <= 0:
             return float("nan")
         return found["middle"] / found["best"]

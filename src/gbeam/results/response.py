@@ -24,13 +24,13 @@ class BaseHistory:
     ----------
     a_WO_B : (t, 3)
         Acceleration of the root, m/s²; specific force a − g where gravity acts.
-    w_WB_B, al_WB_B : (t, 3)
+    w_WB_B, alpha_WB_B : (t, 3)
         Angular velocity rad/s and acceleration rad/s².
     """
 
     a_WO_B: Floats
     w_WB_B: Floats
-    al_WB_B: Floats
+    alpha_WB_B: Floats
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ class Shortfall:
         below idle, below gravity, across below gravity, turns sharply.
     time : float
         When it is worst, s.
-    wanted, possible : float
+    reference, possible : float
         There: what the flight asks for, and the nearest that the machine can make.
     unit : str
         Of both.
@@ -111,7 +111,7 @@ class Shortfall:
     end: float
     reason: str
     time: float
-    wanted: float
+    reference: float
     possible: float
     unit: str
     remedy: str
@@ -120,7 +120,8 @@ class Shortfall:
         # A turn too sharp may yet be made: axis 2 pays for it.
         can = "is the most without a jerk of axis 2" if self.reason == "turns sharply" else "can be made"
         return (
-            f"{self.start:.3f} to {self.end:.3f} s: {self.reason}, {self.wanted:.3g} {self.unit} at {self.time:.3f} s "
+            f"{self.start:.3f} to {self.end:.3f} s: {self.reason}, {self.reference:.3g} {self.unit} "
+            f"at {self.time:.3f} s "
             f"where {self.possible:.3g} {self.unit} {can}; {self.remedy}"
         )
 
@@ -133,15 +134,15 @@ class AxesResult:
     ----------
     angle, rate, acceleration : (t, 3)
         Of axes 1, 2, 3; rad, rad/s, rad/s².
-    wanted, achieved : (t, 3)
+    reference, actual : (t, 3)
         Load at the control point, base axes, m/s²: what was asked, and what the axes make.
-    held : (t,) bool
+    not_followed : (t,) bool
         Where the target is not the flight's load.
     episodes : tuple of (start s, end s, reason)
         The stretches of time in which it is not.
     limits : tuple of LimitUse
         Rate, acceleration and jerk of every axis, used and allowed.
-    unreachable : tuple of Shortfall
+    shortfalls : tuple of Shortfall
         Where the machine cannot make the flight's load, by how much, and what would help.
     control_point : float
         From the root along the beam, m.
@@ -152,12 +153,12 @@ class AxesResult:
     angle: Floats
     rate: Floats
     acceleration: Floats
-    wanted: Floats
-    achieved: Floats
-    held: NDArray[np.bool_]
+    reference: Floats
+    actual: Floats
+    not_followed: NDArray[np.bool_]
     episodes: tuple[tuple[float, float, str], ...]
     limits: tuple[LimitUse, ...] = ()
-    unreachable: tuple[Shortfall, ...] = ()
+    shortfalls: tuple[Shortfall, ...] = ()
     control_point: float = math.nan
     warnings: tuple[str, ...] = ()
 
@@ -174,8 +175,8 @@ class AxesResult:
 
     @property
     def tracking_error(self) -> Floats:
-        """Size of achieved − wanted, (t,) m/s²."""
-        return np.asarray(np.linalg.norm(self.achieved - self.wanted, axis=1))
+        """Size of actual − reference, (t,) m/s²."""
+        return np.asarray(np.linalg.norm(self.actual - self.reference, axis=1))
 
 
 @dataclass(frozen=True)
@@ -226,7 +227,7 @@ class Commands:
     acceleration: Floats
 
 
-class Told(Protocol):
+class PlotHeading(Protocol):
     """What a plot's title says of a result: the motion's name and how its computation ended."""
 
     @property

@@ -29,11 +29,11 @@ class Loads:
     section_moment : (t, s, 3)
         Torque, M_y, M_z in the same axes, N m.
     stress : (t, s)
-        Largest normal stress at the outer fibre, N/A + |M_y| fibre_z/I_y + |M_z| fibre_y/I_z, Pa; NaN where the
-        section's outer fibres are unknown.
+        Largest normal stress at the outer fibre, N/A + |M_y| c_z/I_y + |M_z| c_y/I_z, Pa, with the
+        section's extreme fibres c_y and c_z; NaN where these are unknown.
     acceleration : (t, s, 3)
         Of the stations in the world, base axes, m/s²; specific force where gravity acts.
-    hub_torque : (t,) or None
+    beam_torque : (t,) or None
         Torque about the hub's axis that the beam asks of the hub, N m.
     drive_torque : (t,) or None
         The same with the hub's own inertia, N m; NaN where that is unknown.
@@ -46,7 +46,7 @@ class Loads:
     section_moment: Floats
     stress: Floats
     acceleration: Floats
-    hub_torque: Floats | None = None
+    beam_torque: Floats | None = None
     drive_torque: Floats | None = None
 
     @property

@@ -118,7 +118,7 @@ def _load(parts: Collector, where: str, it: schema.Load) -> Load | None:
         for name, table in tables.items()
         if table is not None
     }
-    return None if None in built.values() else parts.attempt(where, Load, it.at, follows=it.follows, **built)
+    return None if None in built.values() else parts.attempt(where, Load, it.at, follower=it.follower, **built)
 
 
 def _model(parts: Collector, it: schema.Model) -> Model | None:

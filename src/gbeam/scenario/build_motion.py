@@ -144,7 +144,7 @@ def _profile(parts: Collector, where: str, it: Any) -> Profile | None:
         case schema.Sine():
             profile = parts.attempt(where, motion.Sine, it.amplitude, it.duration)
         case schema.Listed():
-            profile = parts.attempt(where, motion.table, it.times, it.values)
+            profile = parts.attempt(where, motion.tabulated, it.times, it.values)
         case _:
             terms = [_profile(parts, f"{where}.terms[{i}]", term) for i, term in enumerate(it.terms)]
             sound = tuple(term for term in terms if term is not None)
@@ -156,7 +156,7 @@ def _record(it: Record) -> FlightRecord:
     rates = None
     if it.p is not None and it.q is not None and it.r is not None and it.rate_unit is not None:
         rates = Rates(it.p, it.q, it.r, it.rate_unit)
-    conditioning = Conditioning(it.cutoff, it.resample, it.despike, it.trust)
+    conditioning = Conditioning(it.cutoff, it.resample, it.despike, it.skip_checks)
     return read_flight(it.file, it.time, it.x, it.y, it.z, it.unit, rates=rates, conditioning=conditioning)
 
 

@@ -26,7 +26,7 @@ material = { density = "2700 kg/m^3", youngs_modulus = "70 GPa" }
 damping_ratio = 0.01  # of critical; a list gives one per mode
 # masses = [ { at = "300 mm", mass = "0.1 kg" } ]
 # root = { rotation_y = "500 N m/rad" }  # springs instead of a perfect clamp; what is left out is rigid
-# loads = [ { at = "300 mm", force = { z = "5 N" }, follows = false } ]  # moment likewise; or { distributed = ... }
+# loads = [ { at = "300 mm", force = { z = "5 N" }, follower = false } ]  # moment likewise; or { distributed = ... }
 
 [model]
 kind = "FOAM"  # TLAM | FOAM | SFOAM | CFOAM | exact

@@ -25,7 +25,7 @@ class Load:
         Position from the root, m; None spreads the load evenly over the length.
     force, moment : sequence of three floats, or vector Profile of time, or None
         N and N m; N/m and N m/m where spread. Along x, y, z of the base axes, which a dead load keeps.
-    follows : bool
+    follower : bool
         Whether the axes are those of the section, with which a following load turns.
 
     Raises
@@ -37,7 +37,7 @@ class Load:
     at: float | None = None
     force: Sequence[float] | Profile | None = None
     moment: Sequence[float] | Profile | None = None
-    follows: bool = False
+    follower: bool = False
 
     def __post_init__(self) -> None:
         if self.at is not None:

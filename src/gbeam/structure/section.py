@@ -37,8 +37,8 @@ def general(
     area: Array,
     inertia_y: Array,
     inertia_z: Array,
-    fibre_y: Array | None = None,
-    fibre_z: Array | None = None,
+    extreme_fibre_y: Array | None = None,
+    extreme_fibre_z: Array | None = None,
 ) -> tuple[Array, ...]:
     """Area and second moments as given; the outer fibres, if unknown, are NaN (no stress can be told)."""
     unknown = np.full_like(area, np.nan)
@@ -46,8 +46,8 @@ def general(
         area,
         inertia_y,
         inertia_z,
-        unknown if fibre_y is None else fibre_y,
-        unknown if fibre_z is None else fibre_z,
+        unknown if extreme_fibre_y is None else extreme_fibre_y,
+        unknown if extreme_fibre_z is None else extreme_fibre_z,
     )
 
 
@@ -56,7 +56,7 @@ SHAPES: dict[str, tuple[Rule, tuple[str, ...], tuple[str, ...]]] = {
     "rectangle": (rectangle, ("width", "thickness"), ()),
     "circle": (circle, ("diameter",), ()),
     "tube": (tube, ("diameter", "wall"), ()),
-    "general": (general, ("area", "inertia_y", "inertia_z"), ("fibre_y", "fibre_z")),
+    "general": (general, ("area", "inertia_y", "inertia_z"), ("extreme_fibre_y", "extreme_fibre_z")),
 }
 _UNITS = {"area": "m²", "inertia_y": "m⁴", "inertia_z": "m⁴"}
 
@@ -170,8 +170,8 @@ class Section:
         inertia_y: ArrayLike,
         inertia_z: ArrayLike,
         stations: ArrayLike = (),
-        fibre_y: ArrayLike | None = None,
-        fibre_z: ArrayLike | None = None,
+        extreme_fibre_y: ArrayLike | None = None,
+        extreme_fibre_z: ArrayLike | None = None,
     ) -> Section:
         """Any section: `area` m², second moments I_y and I_z m⁴, outer fibres along y and z m (for stress)."""
         return cls.of(
@@ -180,8 +180,8 @@ class Section:
             area=area,
             inertia_y=inertia_y,
             inertia_z=inertia_z,
-            fibre_y=fibre_y,
-            fibre_z=fibre_z,
+            extreme_fibre_y=extreme_fibre_y,
+            extreme_fibre_z=extreme_fibre_z,
         )
 
     def at(self, x: ArrayLike) -> SectionValues:
@@ -202,5 +202,5 @@ class SectionValues:
     area: Array
     inertia_y: Array
     inertia_z: Array
-    fibre_y: Array
-    fibre_z: Array
+    extreme_fibre_y: Array
+    extreme_fibre_z: Array

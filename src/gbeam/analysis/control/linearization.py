@@ -12,7 +12,7 @@ import numpy as np
 import scipy.linalg
 from jaxtyping import Array
 
-import gbeam._jax  # noqa: F401
+import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.analysis.control.state_space import Signal, StateSpace
 from gbeam.analysis.equilibrium.operating_point import (
     OperatingPoint,

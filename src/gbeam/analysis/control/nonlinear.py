@@ -11,7 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
-import gbeam._jax  # noqa: F401
+import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.analysis.control.linearization import (
     BASE_RATES,
     Gauge,

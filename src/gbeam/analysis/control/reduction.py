@@ -37,7 +37,7 @@ def _split(system: StateSpace, chosen: Callable[[complex], bool]) -> Parts:
     )
 
 
-def truncate(system: StateSpace, modes: int) -> StateSpace:
+def modal_truncation(system: StateSpace, modes: int) -> StateSpace:
     """Keep the slowest modes; what the others add in statics goes into D.
 
     Parameters
@@ -67,7 +67,7 @@ def truncate(system: StateSpace, modes: int) -> StateSpace:
     return replace(slow, d=slow.d - fast.c @ np.linalg.solve(fast.a, fast.b))
 
 
-def balance(system: StateSpace, order: int) -> tuple[StateSpace, Floats]:
+def balanced_truncation(system: StateSpace, order: int) -> tuple[StateSpace, Floats]:
     """Balanced truncation (Moore 1981): keep what inputs reach and outputs see most.
 
     Parameters

@@ -8,13 +8,13 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
-import gbeam._jax  # noqa: F401
+import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.mechanics.equations import Coefficients
 from gbeam.results.response import BaseHistory, Floats
 
 
 @eqx.filter_jit
-def lowest_stiffness(coefficients: Coefficients, a_WO_B: Array, w_WB_B: Array, al_WB_B: Array) -> Array:
+def lowest_stiffness(coefficients: Coefficients, a_WO_B: Array, w_WB_B: Array, alpha_WB_B: Array) -> Array:
     """Lowest eigenvalue of K, M-normalised, at base motions (t, 3): negative where K is not positive definite, rad²/s².
 
     The antisymmetric part of K, from the angular acceleration, stores no energy and is left out.
@@ -25,7 +25,7 @@ def lowest_stiffness(coefficients: Coefficients, a_WO_B: Array, w_WB_B: Array, a
         _, k, _ = coefficients.at(a, w, al)
         return jnp.linalg.eigvalsh(scale @ (k + k.T) @ scale.T / 2)[0]
 
-    return jax.vmap(lowest)(a_WO_B, w_WB_B, al_WB_B)
+    return jax.vmap(lowest)(a_WO_B, w_WB_B, alpha_WB_B)
 
 
 def first_loss(coefficients: Coefficients, time: Floats, base: BaseHistory) -> tuple[float, float] | None:
@@ -33,7 +33,7 @@ def first_loss(coefficients: Coefficients, time: Floats, base: BaseHistory) -> t
 
     Found between the samples by interpolating the lowest eigenvalue.
     """
-    lowest = np.asarray(lowest_stiffness(coefficients, *map(jnp.asarray, (base.a_WO_B, base.w_WB_B, base.al_WB_B))))
+    lowest = np.asarray(lowest_stiffness(coefficients, *map(jnp.asarray, (base.a_WO_B, base.w_WB_B, base.alpha_WB_B))))
     lost = np.flatnonzero(lowest < 0)
     if not lost.size:
         return None

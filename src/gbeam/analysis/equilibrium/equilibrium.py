@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
-import gbeam._jax  # noqa: F401
+import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.errors import ComputationError
 from gbeam.mechanics.assembly import Structure
 from gbeam.mechanics.equations import Coefficients, Damped, coefficients, on_prescribed_base
@@ -27,7 +27,7 @@ def _newton(system: Damped, base: Base, share: Array, q: Array) -> tuple[Array, 
     def residual(q: Array) -> Array:
         o = jnp.zeros_like(q)
         return on_prescribed_base(
-            loaded, q, o, o, share * base.a_WO_B, jnp.sqrt(share) * base.w_WB_B, share * base.al_WB_B
+            loaded, q, o, o, share * base.a_WO_B, jnp.sqrt(share) * base.w_WB_B, share * base.alpha_WB_B
         )
 
     def iterate(carry: tuple[Array, Array, Array, Array]) -> tuple[Array, Array, Array, Array]:
@@ -47,7 +47,7 @@ def _newton(system: Damped, base: Base, share: Array, q: Array) -> tuple[Array, 
 
 @eqx.filter_jit
 def _direct(constants: Coefficients, base: Base, applied: Array | None) -> tuple[Array, Array]:
-    _, stiffness, load = constants.at(base.a_WO_B, base.w_WB_B, base.al_WB_B, applied)
+    _, stiffness, load = constants.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, applied)
     return jnp.linalg.solve(stiffness, load), stiffness
 
 

@@ -16,7 +16,7 @@ import numpy as np
 import scipy.integrate
 from jaxtyping import Array
 
-import gbeam._jax  # noqa: F401
+import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.analysis.equilibrium.equilibrium import equilibrium
 from gbeam.analysis.response.problem import free_hub
 from gbeam.analysis.study.case import Motion
@@ -190,7 +190,7 @@ def on_base(structure: Structure, base: Base, q: Array | None = None, qd: Array 
     """
     here, moving, rests = _placed(structure, base, q, qd)
     residual = OnBase(structure.system)
-    u = _inputs(structure.system, jnp.concatenate([base.a_WO_B, base.w_WB_B, base.al_WB_B]))
+    u = _inputs(structure.system, jnp.concatenate([base.a_WO_B, base.w_WB_B, base.alpha_WB_B]))
     still = jnp.zeros_like(here)
     qdd = still if rests else _beam_acceleration(residual, here, moving, still, u)
     return OperatingPoint(residual, here, moving, qdd, u, base)

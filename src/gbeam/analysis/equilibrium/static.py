@@ -28,7 +28,7 @@ def beam_block(point: OperatingPoint) -> tuple[np.ndarray, np.ndarray]:
     return linear.mass[i:, i:], linear.stiffness[i:, i:]
 
 
-def deflect(
+def static(
     structure: Structure, motion: Motion, time: float, *, name: str = "", beam: Beam | None = None
 ) -> Deflection:
     """Where the beam rests relative to a base whose motion is frozen at a time.
@@ -75,4 +75,4 @@ def _carried(structure: Structure, beam: Beam, motion: Motion, point: OperatingP
     base = history_of(point.base)
     q = np.asarray(point.q)[None]
     loads = section_loads(structure, beam, base, q, 0 * q, 0 * q, np.array([time]))
-    return about_the_hub(loads, motion, base.al_WB_B)
+    return about_the_hub(loads, motion, base.alpha_WB_B)

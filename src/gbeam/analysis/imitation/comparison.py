@@ -40,7 +40,7 @@ def compare(flight: Response, centrifuge: Response) -> Comparison:
         return _sampled(time, flight.time, values)
 
     there, here = in_flight(flight.displacement), centrifuge.displacement[:n]
-    covered = np.ones(n, dtype=bool) if centrifuge.axes is None else ~centrifuge.axes.held[:n]
+    covered = np.ones(n, dtype=bool) if centrifuge.axes is None else ~centrifuge.axes.not_followed[:n]
     difference = here[:, -1] - there[:, -1]
     root, shock = None, None
     if flight.loads is not None and centrifuge.loads is not None and covered.any():
@@ -116,7 +116,7 @@ def _statistics(time: Floats, covered: Flags, there: Floats, here: Floats, centr
 
 def _gradient(base: BaseHistory) -> Floats:
     """∂a/∂x along the beam of a base in rotation, base axes, (t, 3) 1/s² (2020 (4))."""
-    (wx, wy, wz), (_, aly, alz) = base.w_WB_B.T, base.al_WB_B.T
+    (wx, wy, wz), (_, aly, alz) = base.w_WB_B.T, base.alpha_WB_B.T
     return np.stack([-(wy**2 + wz**2), wx * wy + alz, wx * wz - aly], axis=1)
 
 

@@ -20,7 +20,7 @@ import scipy.optimize
 from gbeam.analysis.imitation.comparison import CUTOFF, compare
 from gbeam.analysis.imitation.place_measures import Answers, Histories
 from gbeam.analysis.response.section_forces import internal_loads
-from gbeam.analysis.response.simulation import respond
+from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.study.case import ResponseSettings
 from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.assembly import Structure
@@ -28,7 +28,7 @@ from gbeam.motion import Base, Centrifuge, Flight
 from gbeam.motion.centrifuge.limits import exceeded
 from gbeam.numerics.bounded_search import refine
 from gbeam.numerics.low_pass import low_pass
-from gbeam.results.placement import MEASURES, Option, Placement, Proof
+from gbeam.results.placement import MEASURES, Candidate, Placement, Verification
 from gbeam.results.response import Response
 from gbeam.structure.beam import Beam
 
@@ -67,7 +67,7 @@ def place(
     settings: ResponseSettings,
     weights: Mapping[str, float],
     *,
-    present: Centrifuge,
+    current: Centrifuge,
     names: tuple[str, str] = ("flight", "centrifuge"),
     beam: Beam | None = None,
 ) -> Placement:
@@ -86,12 +86,12 @@ def place(
         ``root-moment`` (quasi-static), ``vibration`` (of the first mode, at the tip), ``tip`` (quasi-static
         displacement). For each option they choose the control point by what Δa does, and then the option by that
         together with what smoothing and tracking change of the load.
-    present : Centrifuge
+    current : Centrifuge
         The scenario's own: its control point is compared with.
     names : tuple of str
         Of flight and centrifuge.
     beam : Beam, optional
-        With it the answer is proven by the model's own response, and so are the present control point and the middle
+        With it the answer is proven by the model's own response, and so are the current control point and the middle
         of the beam.
 
     Raises
@@ -122,8 +122,8 @@ def place(
             'try wider smoothing or inverse = "planned"',
         )
     length, at = structure.length, best.option.control_point
-    places = {"best": at, "present": float(present.control_point), "middle": length / 2}
-    proofs = () if beam is None else _prove(structure, beam, flight, best.centrifuge, settings, places)
+    places = {"best": at, "current": float(current.control_point), "middle": length / 2}
+    verifications = () if beam is None else _prove(structure, beam, flight, best.centrifuge, settings, places)
     return Placement(
         flight=names[0],
         centrifuge=names[1],
@@ -131,9 +131,9 @@ def place(
         length=length,
         best=best.option,
         options=tuple(it.option for it in ranked),
-        present=places["present"],
+        current=places["current"],
         values={name: {m: h.size(x, False) for m, h in best.histories.items()} for name, x in places.items()},
-        proofs=proofs,
+        verifications=verifications,
         refused=tuple(tried.refused),
         widths=(choice.widths[0], choice.widths[-1]),
     )
@@ -143,7 +143,7 @@ def place(
 class _Found:
     """An option with what it came from."""
 
-    option: Option
+    option: Candidate
     histories: dict[str, Histories]
     centrifuge: Centrifuge
 
@@ -175,7 +175,7 @@ class _Tried:
                 self.reasons.append(error)
                 return np.inf, np.inf
         it = self.found[mounting, width].option
-        return it.whole, it.share if self.choice.limited else 0.0
+        return it.total_error, it.share if self.choice.limited else 0.0
 
     def ranked(self) -> list[_Found]:
         """Best first; those that break limits last, by how much."""
@@ -183,7 +183,7 @@ class _Tried:
         def rank(it: _Found) -> tuple[float, float]:
             # Rounding must not choose between mirror images: then the scenario's own comes first.
             excess = it.option.share if self.choice.limited and it.option.exceeded else 0.0
-            return excess, float(f"{it.option.whole:.6g}")
+            return excess, float(f"{it.option.total_error:.6g}")
 
         return sorted(self.found.values(), key=rank)
 
@@ -201,7 +201,9 @@ class _Tried:
         share = max(use.share for use in uses)
         broken = exceeded(uses)
         return _Found(
-            Option(mounting, width, at, size(at), size(at, True), accelerations, share, broken), histories, centrifuge
+            Candidate(mounting, width, at, size(at), size(at, True), accelerations, share, broken),
+            histories,
+            centrifuge,
         )
 
 
@@ -222,7 +224,7 @@ class _Carried(eqx.Module):
     centrifuge: Centrifuge
 
     def base(self, t: jax.Array) -> Base:
-        load = self.centrifuge.achieved(t)
+        load = self.centrifuge.actual(t)
         return Base(load, jnp.zeros_like(load), jnp.zeros_like(load))
 
     @property
@@ -237,15 +239,15 @@ def _prove(
     centrifuge: Centrifuge,
     settings: ResponseSettings,
     places: Mapping[str, float],
-) -> tuple[Proof, ...]:
+) -> tuple[Verification, ...]:
     """The model's own response at each control point against that in flight."""
 
     def computed(motion: Flight | Centrifuge) -> Response:
-        response = respond(structure, motion, settings)
+        response = simulate(structure, motion, settings)
         return replace(response, loads=internal_loads(structure, beam, response))
 
-    there, proofs = computed(flight), []
-    carried = respond(structure, _Carried(centrifuge), settings)  # type: ignore[arg-type]  # a motion like any other
+    there, verifications = computed(flight), []
+    carried = simulate(structure, _Carried(centrifuge), settings)  # type: ignore[arg-type]  # a motion like any other
     step = float(there.time[1] - there.time[0])
     cutoff = CUTOFF * float(there.frequencies[0]) / (2 * np.pi)
     for name, at in places.items():
@@ -257,5 +259,5 @@ def _prove(
         apart, swung = (
             float(np.linalg.norm(values[answer.covered], axis=1).max()) for values in (answer.difference[:, 1:], swing)
         )
-        proofs.append(Proof(name, at, apart, swung, moment))
-    return tuple(proofs)
+        verifications.append(Verification(name, at, apart, swung, moment))
+    return tuple(verifications)

@@ -46,13 +46,13 @@ def _load_error(flight: Flight, centrifuge: Centrifuge, t: jax.Array) -> tuple[j
     there, here = flight.base(t), centrifuge.base(t)
 
     def gradient(base: Base) -> jax.Array:
-        w, al = base.w_WB_B, base.al_WB_B
+        w, al = base.w_WB_B, base.alpha_WB_B
         wx, wy, wz = w[..., 0], w[..., 1], w[..., 2]
         return jnp.stack([-(wy**2 + wz**2), wx * wy + al[..., 2], wx * wz - al[..., 1]], axis=-1)
 
     turning = jnp.stack([axes.acceleration1, axes.acceleration2, axes.acceleration3], axis=-1)
-    error = centrifuge.achieved(t) - there.a_WO_B
-    return error, gradient(here) - gradient(there), there.a_WO_B, turning, centrifuge.held(t)
+    error = centrifuge.actual(t) - there.a_WO_B
+    return error, gradient(here) - gradient(there), there.a_WO_B, turning, centrifuge.not_followed(t)
 
 
 class Answers:

@@ -19,7 +19,7 @@ _FINE = 1e-3  # s: the angle of axis 1 is integrated on times no further apart
 @eqx.filter_jit
 def _states(motion: Centrifuge, time: Array) -> tuple[Axes, Array, Array, Array, Array]:
     axes, jerk = motion.axes_and_jerks(time)
-    return axes, jerk, motion.wanted(time), motion.achieved_by(axes), motion.held(time)
+    return axes, jerk, motion.reference(time), motion.actual_by(axes), motion.not_followed(time)
 
 
 @eqx.filter_jit
@@ -36,12 +36,12 @@ def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
         angle=angle,
         rate=rate,
         acceleration=acceleration,
-        wanted=wanted,
-        achieved=achieved,
-        held=held,
+        reference=wanted,
+        actual=achieved,
+        not_followed=held,
         episodes=tuple((e.start, e.end, e.reason) for e in motion.episodes()),
         limits=limits,
-        unreachable=motion.unreachable(),
+        shortfalls=motion.shortfalls(),
         control_point=float(motion.control_point),
         warnings=(
             *_broken_promise(motion, time, wanted, np.asarray(achieved - wanted), held, limits),

@@ -10,7 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
-import gbeam._jax  # noqa: F401
+import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.analysis.equilibrium.equilibrium import settled
 from gbeam.analysis.study.case import Motion
 from gbeam.integrate import LinearSystem, NonlinearSystem, State, evaluate
@@ -29,7 +29,7 @@ class _Matrices(eqx.Module):
 
     def __call__(self, inputs: tuple[Base, Applied | None]) -> tuple[Array, Array, Array]:
         base, applied = inputs
-        return self.coefficients.at(base.a_WO_B, base.w_WB_B, base.al_WB_B, applied)
+        return self.coefficients.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, applied)
 
 
 class _OnBase(eqx.Module):
@@ -39,7 +39,7 @@ class _OnBase(eqx.Module):
 
     def __call__(self, q: Array, qd: Array, qdd: Array, inputs: tuple[Base, Applied | None]) -> Array:
         base, applied = inputs
-        return on_prescribed_base(self.system.under(applied), q, qd, qdd, base.a_WO_B, base.w_WB_B, base.al_WB_B)
+        return on_prescribed_base(self.system.under(applied), q, qd, qdd, base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
 
 
 class _OnHub(eqx.Module):
@@ -67,7 +67,7 @@ class _Inputs(eqx.Module):
 
 def history_of(base: Base) -> BaseHistory:
     """Base motion, (t, 3) or of one time (3,), as a record."""
-    return BaseHistory(*(np.atleast_2d(np.asarray(x)) for x in (base.a_WO_B, base.w_WB_B, base.al_WB_B)))
+    return BaseHistory(*(np.atleast_2d(np.asarray(x)) for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
 
 
 def free_hub(motion: HubTorque) -> Hub:

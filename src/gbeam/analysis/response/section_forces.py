@@ -20,7 +20,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
-import gbeam._jax  # noqa: F401
+import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.analysis.study.case import Motion
 from gbeam.mechanics.assembly import Structure
 from gbeam.mechanics.equations import coefficients
@@ -99,7 +99,7 @@ def sections(
     acceleration : (s, 3) base axes, m/s²; specific force where gravity acts
     """
     field, work = structure.field, structure.applied
-    w, al = base.w_WB_B, base.al_WB_B
+    w, al = base.w_WB_B, base.alpha_WB_B
 
     def everything(q: Array) -> tuple[Array, Array]:
         stations = jnp.concatenate([jnp.zeros((1, 3)), field.position(q)[outboard.points]])
@@ -119,7 +119,7 @@ def sections(
     force, about_root = -outboard.mass @ a[0], -outboard.mass @ jnp.cross(particle, a[0])
     if work is not None and applied is not None:
         at, rotation = field.position(q)[work.station], field.rotation(q)[work.station]
-        axes = jnp.where(work.follows[:, None, None], rotation, jnp.eye(3))
+        axes = jnp.where(work.follower[:, None, None], rotation, jnp.eye(3))
         here = applied[work.load]
         pull, turn = (jnp.einsum("pij,pj->pi", axes, part) for part in (here[:, :3], here[:, 3:]))
         force, about_root = force + outboard.loaded @ pull, about_root + outboard.loaded @ (jnp.cross(at, pull) + turn)
@@ -169,7 +169,7 @@ def section_loads(
     """
     outboard = outboard_of(structure)
     when = np.zeros(len(q)) if time is None else time
-    given = tuple(np.asarray(x) for x in (when, base.a_WO_B, base.w_WB_B, base.al_WB_B, q, qd, qdd))
+    given = tuple(np.asarray(x) for x in (when, base.a_WO_B, base.w_WB_B, base.alpha_WB_B, q, qd, qdd))
     count = len(given[0])
     size = min(_BLOCK, max(count, 1))
     padded = [np.concatenate([x, np.repeat(x[-1:], -count % size, axis=0)]) for x in given]
@@ -182,8 +182,8 @@ def section_loads(
     )
     stations = np.append(0.0, np.asarray(structure.stations))
     here = beam.section.at(stations)
-    bending = np.abs(section_moment[..., 1]) * here.fibre_z / here.inertia_y
-    bending = bending + np.abs(section_moment[..., 2]) * here.fibre_y / here.inertia_z
+    bending = np.abs(section_moment[..., 1]) * here.extreme_fibre_z / here.inertia_y
+    bending = bending + np.abs(section_moment[..., 2]) * here.extreme_fibre_y / here.inertia_z
     stress = section_force[..., 0] / here.area + bending
     return Loads(stations, force, moment, section_force, section_moment, stress, a)
 
@@ -210,10 +210,10 @@ def internal_loads(
     Loads
     """
     loads = section_loads(structure, beam, response.base, response.q, response.qd, response.qdd, response.time)
-    return about_the_hub(loads, motion, response.base.al_WB_B)
+    return about_the_hub(loads, motion, response.base.alpha_WB_B)
 
 
-def about_the_hub(loads: Loads, motion: Motion | None, al_WB_B: Floats) -> Loads:
+def about_the_hub(loads: Loads, motion: Motion | None, alpha_WB_B: Floats) -> Loads:
     """The same loads, on a hub with the torque about its axis, however the beam is mounted on it.
 
     Parameters
@@ -221,16 +221,16 @@ def about_the_hub(loads: Loads, motion: Motion | None, al_WB_B: Floats) -> Loads
     loads : Loads
     motion : Flight, Centrifuge, HubRate, HubTorque or None
         Of the base. A free hub's inertia is known, and so is the torque of its drive.
-    al_WB_B : (t, 3)
+    alpha_WB_B : (t, 3)
         Angular acceleration of the base, rad/s².
     """
     if not isinstance(motion, (HubRate, HubTorque)):
         return loads
     mount, inertia = motion.mount, float(motion.inertia) if isinstance(motion, HubTorque) else np.nan
     turned = np.asarray(mount.R_HB).T
-    force_H, moment_H, al_H = (x @ turned for x in (loads.root_force, loads.root_moment, al_WB_B))
+    force_H, moment_H, al_H = (x @ turned for x in (loads.root_force, loads.root_moment, alpha_WB_B))
     torque = moment_H[:, 2] + float(mount.radius) * force_H[:, 1]
-    return replace(loads, hub_torque=torque, drive_torque=torque + inertia * al_H[:, 2])
+    return replace(loads, beam_torque=torque, drive_torque=torque + inertia * al_H[:, 2])
 
 
 @eqx.filter_jit

@@ -12,7 +12,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
-import gbeam._jax  # noqa: F401
+import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.analysis.imitation.plan import axes_result
 from gbeam.analysis.response.outcome import describe
 from gbeam.analysis.response.problem import Problem, history_of, problem_of
@@ -45,7 +45,7 @@ def displacement(structure: Structure, q: Floats) -> Floats:
     return np.concatenate(pieces)[: len(q)]
 
 
-def respond(
+def simulate(
     structure: Structure,
     motion: Motion,
     settings: ResponseSettings,

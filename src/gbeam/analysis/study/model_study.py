@@ -11,7 +11,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
-from gbeam.analysis.response.simulation import displacement, respond
+from gbeam.analysis.response.simulation import displacement, simulate
 from gbeam.analysis.study.case import Case, Motion, ResponseSettings
 from gbeam.analysis.study.study import structure_of
 from gbeam.errors import ComputationError, InputError
@@ -104,7 +104,7 @@ def _answer(
     if isinstance(structure, Failure):
         return structure
     try:
-        response = respond(structure, motion, settings, name=name, progress=progress)
+        response = simulate(structure, motion, settings, name=name, progress=progress)
     except InputError as error:
         return Failure("cannot", str(error))
     except ComputationError as error:

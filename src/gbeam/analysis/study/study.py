@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from gbeam.analysis.imitation.comparison import compare
 from gbeam.analysis.response.section_forces import influence, internal_loads
-from gbeam.analysis.response.simulation import respond
+from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.study.case import Case, Motion
 from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.assembly import Structure, assemble
@@ -53,7 +53,7 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
             if progress is not None:
                 progress(f"{name}: {what}", share)
 
-        response = respond(structure, motion, case.response, name=name, progress=report)
+        response = simulate(structure, motion, case.response, name=name, progress=report)
         return _with_loads(structure, case, motion, response)
 
     responses: dict[str, Response] = {}

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.linalg
 from jaxtyping import Array
 
-import gbeam._jax  # noqa: F401
+import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.analysis.equilibrium.operating_point import Linear, OperatingPoint, linear_matrices, operating_point
 from gbeam.analysis.study.case import Motion
 from gbeam.mechanics.assembly import Structure
@@ -77,7 +77,7 @@ def directions(structure: Structure, point: OperatingPoint, coordinates: Complex
 
 def frozen(base: Base) -> FrozenBase:
     """Base motion as a record."""
-    return FrozenBase(np.asarray(base.a_WO_B), np.asarray(base.w_WB_B), np.asarray(base.al_WB_B))
+    return FrozenBase(np.asarray(base.a_WO_B), np.asarray(base.w_WB_B), np.asarray(base.alpha_WB_B))
 
 
 def modes_at(

@@ -71,7 +71,7 @@ def campbell(
             orders=range(1, orders + 1),
             name=name,
         )
-    facts = told(found)
+    facts = to_json(found)
     files = []
     if folder is not None:
         from gbeam.plots.campbell import plot_campbell
@@ -98,7 +98,7 @@ def _largest_rate(given: Input, name: str) -> float:
     return float(np.abs(np.asarray(rate(times))).max())
 
 
-def told(found: Campbell) -> dict[str, Any]:
+def to_json(found: Campbell) -> dict[str, Any]:
     """Diagram as JSON; rad/s, Hz."""
     return {
         "outcome": "done",

@@ -1,4 +1,4 @@
-"""``gbeam check``: what was understood of a scenario, without computing a response."""
+"""``gbeam check``: what a scenario means, without computing a response."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = No
         refuse_unwritable(out)
     given = read("check", scenario, overrides)
     with given.placing():
-        facts = understood(given)
+        facts = describe(given)
 
     from gbeam.report import as_json
 
@@ -39,7 +39,7 @@ def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = No
     return 0
 
 
-def understood(given: Input) -> dict[str, Any]:
+def describe(given: Input) -> dict[str, Any]:
     """Return what a scenario says, in SI units."""
     from gbeam.analysis.study.study import structure_of
     from gbeam.mechanics.assembly import rest_modes

@@ -31,7 +31,7 @@ def critical_speed(
     raised: Annotated[
         Literal["rate", "loads", "acceleration"],
         Parameter(
-            name="--raise",
+            name="--vary",
             help="What is raised: the hub's rate; all loads on the beam, by one factor, the base being frozen; or the "
             "acceleration of the root along the beam, which pushes it.",
         ),
@@ -67,7 +67,7 @@ def critical_speed(
         raise InputError("--positions", "stands without --masses", 'add --masses "0.1 kg, 0.5 kg"')
     if masses is not None:
         if raised != "rate":
-            raise InputError("--masses", f"stands beside --raise {raised}", "a map is of hub rates")
+            raise InputError("--masses", f"stands beside --vary {raised}", "a map is of hub rates")
         return _map(given, motion, masses, positions, upper, out, json)
     name, chosen = motion_of(given, motion, hubs_only=True)
     time = time_of(given, at)
@@ -85,7 +85,7 @@ def critical_speed(
             found = stability.critical_load(structure, held_base(chosen, time), upper=upper)
         else:
             found = stability.buckling_acceleration(structure, upper=upper)
-    facts = told(found, name, KEYS[raised])
+    facts = to_json(found, name, KEYS[raised])
     write(out, facts, "critical_speed", {})
     if json:
         print(as_json(facts))
@@ -94,7 +94,7 @@ def critical_speed(
     return 0
 
 
-def told(found: Critical, motion: str, key: str = "critical_speed") -> dict[str, Any]:
+def to_json(found: Critical, motion: str, key: str = "critical_speed") -> dict[str, Any]:
     """Critical value as JSON; rad/s, m/s² or a factor, null where there is none."""
     rest = asdict(found)
     value = rest.pop("value")

@@ -80,7 +80,7 @@ def linearize(
             raise InputError(option, f"stands beside {beside}", "give one of them")
 
     from gbeam.analysis.control.linearization import linearize as find
-    from gbeam.analysis.control.reduction import balance, truncate
+    from gbeam.analysis.control.reduction import balanced_truncation, modal_truncation
     from gbeam.analysis.study.study import structure_of
     from gbeam.report import as_json
 
@@ -91,14 +91,14 @@ def linearize(
     try:
         found = found.select(inputs=_names(inputs), outputs=_names(outputs))
         if modes is not None:
-            found = truncate(found, modes)
+            found = modal_truncation(found, modes)
         elif balanced is not None:
-            found, hankel = balance(found, balanced)
+            found, hankel = balanced_truncation(found, balanced)
     except InputError as error:
         option = "--balanced" if error.where == "order" else f"--{error.where}"
         raise InputError(option, error.problem, error.fix) from None
     extra = {"gauges": [asdict(it) for it in gauges], "hankel_singular_values": [float(it) for it in hankel]}
-    text = as_json({**told(found), **extra})
+    text = as_json({**to_json(found), **extra})
     if out is not None:
 
         def make(hidden: Path) -> None:
@@ -127,14 +127,16 @@ def gauges_at(beam: Beam, stations: tuple[str, ...]) -> list[Gauge]:
         if not 0 <= at <= beam.length:
             raise InputError("--strain-at", f"is {at:g} m, off the beam", f"give 0 to {beam.length:g} m")
         section = beam.section.at(np.array([at]))
-        fibres = float(section.fibre_y[0]), float(section.fibre_z[0])
+        fibres = float(section.extreme_fibre_y[0]), float(section.extreme_fibre_z[0])
         if not np.isfinite(fibres).all():
-            raise InputError("--strain-at", "needs the outer fibres", "add fibre_y and fibre_z to beam.section")
+            raise InputError(
+                "--strain-at", "needs the outer fibres", "add extreme_fibre_y and extreme_fibre_z to beam.section"
+            )
         gauges += [Gauge(at, z=fibres[1]), Gauge(at, y=fibres[0])]
     return gauges
 
 
-def told(found: StateSpace) -> dict[str, Any]:
+def to_json(found: StateSpace) -> dict[str, Any]:
     """State space as JSON."""
 
     def signals(listed: Any, values: Any) -> list[dict[str, Any]]:

@@ -37,7 +37,7 @@ def models(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = N
 
     with Watch() as watch, given.placing():
         study = compare_models(given.case, progress=watch)
-    facts = told(study)
+    facts = to_json(study)
     write(out, facts, "models", {})
     if json:
         print(as_json(facts))
@@ -52,7 +52,7 @@ def models(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = N
     return 0 if study.compared else FAILED
 
 
-def told(study: ModelStudy) -> dict[str, Any]:
+def to_json(study: ModelStudy) -> dict[str, Any]:
     """Study as JSON; m, s, rad."""
     return {
         "title": study.title,

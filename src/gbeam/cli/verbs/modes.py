@@ -45,7 +45,7 @@ def modes(
 
     with Watch(), given.placing():
         found = find(along_the_beam(given), chosen, time, gyroscopic=gyroscopic, name=name)
-    facts = told(found)
+    facts = to_json(found)
     if out is not None:
         from gbeam.plots.modes import plot_modes
 
@@ -57,7 +57,7 @@ def modes(
     return 0
 
 
-def told(found: Modes) -> dict[str, Any]:
+def to_json(found: Modes) -> dict[str, Any]:
     """Modes as JSON: ascending; Hz, 1/s; the shapes are complex, with the largest component 1."""
     return {
         "outcome": "done",

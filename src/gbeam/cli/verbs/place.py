@@ -10,7 +10,7 @@ from cyclopts import Parameter
 from gbeam.cli.common import number
 from gbeam.cli.console import stdout
 from gbeam.cli.inputs import Input, read
-from gbeam.cli.options import AllowLimits, Json, Out, Overrides, ScenarioFile
+from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, ScenarioFile
 from gbeam.cli.outputs import publish, refuse_unwritable
 from gbeam.errors import InputError
 
@@ -51,11 +51,11 @@ def place(
     overrides: Overrides = (),
     out: Out = None,
     json: Json = False,
-    allow_limits: AllowLimits = False,
+    ignore_limits: IgnoreLimits = False,
 ) -> int:
     """Find the control point, mounting and smoothing that change the specimen's response least.
 
-    Options that exceed the machine's limits are told but not chosen, unless --allow-limits is given. With --out also
+    Options that exceed the machine's limits are told but not chosen, unless --ignore-limits is given. With --out also
     writes place.json. Exit status: 0 done, 1 every option exceeds the limits, 2 the input is wrong.
     """
     weights = parse(measure)
@@ -73,16 +73,16 @@ def place(
     from gbeam.report.place import place_json, place_text
 
     check_weights(weights, "--measure")
-    flight, present = given.case.motions[given.case.tracks[name]], given.case.motions[name]
-    assert isinstance(flight, Flight) and isinstance(present, Centrifuge)  # the schema sees to it
+    flight, current = given.case.motions[given.case.tracks[name]], given.case.motions[name]
+    assert isinstance(flight, Flight) and isinstance(current, Centrifuge)  # the schema sees to it
     with given.placing():
         answer = best_place(
             structure_of(given.case),
             flight,
-            choice(given, name, flight, tried, not allow_limits),
+            choice(given, name, flight, tried, not ignore_limits),
             given.case.response,
             weights,
-            present=present,
+            current=current,
             names=(given.case.tracks[name], name),
             beam=given.case.beam if proof else None,
         )

@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 from gbeam.cli.console import stdout
 from gbeam.cli.failures import FAILED, complain
-from gbeam.cli.options import AllowLimits, Json, Out, Overrides, ScenarioFile
+from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, ScenarioFile
 from gbeam.cli.outputs import publish, refuse_unwritable
 from gbeam.errors import InputError
 
@@ -26,7 +26,7 @@ def plan(
     sample: Annotated[
         str | None, Parameter(help='Sample time of the commands, such as "5 ms"; else the scenario\'s, else 5 ms.')
     ] = None,
-    allow_limits: AllowLimits = False,
+    ignore_limits: IgnoreLimits = False,
 ) -> int:
     """Plan the axis motions of the centrifuges of a scenario; it needs no beam.
 
@@ -79,8 +79,8 @@ def plan(
             console.print(f"\n{len(files)} files in {out}: {', '.join(it.name for it in files)}", soft_wrap=True)
     broken = [each for each in plans.values() if each.outcome != "done"]
     for each in broken:
-        complain(f"motion.{each.name} {each.outcome}: {each.message}" + (" (allowed)" if allow_limits else ""))
-    return FAILED if broken and not allow_limits else 0
+        complain(f"motion.{each.name} {each.outcome}: {each.message}" + (" (allowed)" if ignore_limits else ""))
+    return FAILED if broken and not ignore_limits else 0
 
 
 def _time(text: str) -> float:

@@ -9,7 +9,7 @@ from threading import Thread
 from gbeam.cli.console import Watch, stdout
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import read
-from gbeam.cli.options import AllowLimits, Json, Out, Overrides, ScenarioFile
+from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, ScenarioFile
 from gbeam.cli.outputs import publish, refuse_unwritable
 
 
@@ -20,7 +20,7 @@ def run(
     overrides: Overrides = (),
     out: Out = None,
     json: Json = False,
-    allow_limits: AllowLimits = False,
+    ignore_limits: IgnoreLimits = False,
 ) -> int:
     """Compute the response in every environment of a scenario, and compare them.
 
@@ -62,8 +62,8 @@ def run(
         complain(f"motion.{name} {failure.outcome}: {failure.message}")
     broken = {name: it.axes.exceeding for name, it in answer.responses.items() if it.axes and it.axes.exceeding}
     for name, which in broken.items():
-        complain(f"motion.{name} limits exceeded: {which}" + (" (allowed)" if allow_limits else ""))
-    return 0 if answer.outcome == "done" and (allow_limits or not broken) else FAILED
+        complain(f"motion.{name} limits exceeded: {which}" + (" (allowed)" if ignore_limits else ""))
+    return 0 if answer.outcome == "done" and (ignore_limits or not broken) else FAILED
 
 
 def _names(files: list[Path]) -> list[str]:

@@ -38,13 +38,13 @@ def static(
     chosen = dict(given.case.motions) if motion is None else dict([motion_of(given, motion)])
     time = time_of(given, at)
 
-    from gbeam.analysis.equilibrium.static import deflect
+    from gbeam.analysis.equilibrium.static import static
     from gbeam.report import as_json
 
     with Watch(), given.placing():
         structure = along_the_beam(given)
-        found = [deflect(structure, it, time, name=name, beam=given.case.beam) for name, it in chosen.items()]
-    facts = {"title": given.case.title, "outcome": "done", "motions": {it.motion: told(it) for it in found}}
+        found = [static(structure, it, time, name=name, beam=given.case.beam) for name, it in chosen.items()]
+    facts = {"title": given.case.title, "outcome": "done", "motions": {it.motion: to_json(it) for it in found}}
     if out is not None:
         from gbeam.plots.loads import plot_loads_along
         from gbeam.plots.static import plot_static
@@ -59,7 +59,7 @@ def static(
     return 0
 
 
-def told(found: Deflection) -> dict[str, Any]:
+def to_json(found: Deflection) -> dict[str, Any]:
     """Deflection as JSON; m, J, N, N m, Pa."""
     assert found.loads is not None
     return {
@@ -90,8 +90,8 @@ def loads_told(it: Loads) -> dict[str, Any]:
         "section_moment": xyz(it.section_moment[0]),
         "stress": it.stress[0].tolist(),
     }
-    if it.hub_torque is not None:
-        told["beam_torque"] = float(it.hub_torque[0])
+    if it.beam_torque is not None:
+        told["beam_torque"] = float(it.beam_torque[0])
     return told
 
 
@@ -113,8 +113,8 @@ def _carried(it: Loads | None) -> str:
     told = f"base on root: force ({force}) N, moment ({moment}) N m"
     if np.isfinite(it.stress).all():
         told += f"; stress up to {1e-6 * it.stress.max():.5g} MPa at {it.stations[it.stress[0].argmax()]:.4g} m"
-    if it.hub_torque is not None:
-        told += f"; torque for the beam {_tidy(it.hub_torque, turn)[0]:.5g} N m"
+    if it.beam_torque is not None:
+        told += f"; torque for the beam {_tidy(it.beam_torque, turn)[0]:.5g} N m"
     return told
 
 

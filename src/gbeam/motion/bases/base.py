@@ -15,10 +15,10 @@ class Base(eqx.Module):
         Acceleration of the root O in the world W, m/s²; where gravity acts, the specific force a − g.
     w_WB_B : array, shape (..., 3)
         Angular velocity of B in W, rad/s.
-    al_WB_B : array, shape (..., 3)
+    alpha_WB_B : array, shape (..., 3)
         Angular acceleration of B in W, rad/s².
     """
 
     a_WO_B: Float[Array, "... 3"]
     w_WB_B: Float[Array, "... 3"]
-    al_WB_B: Float[Array, "... 3"]
+    alpha_WB_B: Float[Array, "... 3"]

@@ -16,7 +16,7 @@ FEWEST = 6  # samples
 SLOWEST = 5.0  # Hz
 LARGEST = 50 * STANDARD_GRAVITY
 _BEGINS = 3.0  # g0: above that, no flight begins
-_TRUST = "if the record is right as it is, add trust = true"
+_TRUST = "if the record is right as it is, add skip_checks = true"
 _WINDOW, _OUTLIER = 3, 6.0  # samples either side; deviations from the window's median
 _LEAST_JUMP = 0.5  # m/s²: a smaller step is nobody's dropout or spike
 

@@ -43,14 +43,14 @@ class Conditioning:
         New sampling rate, Hz.
     despike : bool
         Replace single samples far off their neighbours.
-    trust : bool
+    skip_checks : bool
         Take the record as it is, without looking at its size, rate and dropouts.
     """
 
     cutoff: float | None = None
     resample: float | None = None
     despike: bool = False
-    trust: bool = False
+    skip_checks: bool = False
 
 
 @dataclass(frozen=True)
@@ -136,7 +136,7 @@ def read_flight(
     clock = _column(header, rows, numbers, "time", time)
     _check_sampling(clock, numbers)
     load = UNITS[unit] * _vector(header, rows, numbers, {"x": x, "y": y, "z": z})
-    if not conditioning.trust:
+    if not conditioning.skip_checks:
         refuse_unsound(clock, load, (x, y, z), unit, numbers)
     notes = []
     odd = spikes(load)

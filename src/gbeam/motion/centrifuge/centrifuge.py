@@ -124,25 +124,25 @@ class Centrifuge(eqx.Module):
         here = forward(self.axes(t), self.geometry.arm, self.geometry.gravity)
         return moved(here, self.control_point * jnp.array([-1.0, 0.0, 0.0]))
 
-    def wanted(self, t: ArrayLike) -> Float[Array, "... 3"]:
+    def reference(self, t: ArrayLike) -> Float[Array, "... 3"]:
         """Load wanted at the control point at times `t` (s), base axes, m/s²."""
         return self.start.load(self.target.load, jnp.asarray(t, dtype=float))
 
-    def achieved(self, t: ArrayLike) -> Float[Array, "... 3"]:
+    def actual(self, t: ArrayLike) -> Float[Array, "... 3"]:
         """Load that the axes make at the control point at times `t` (s), base axes, m/s²."""
-        return self.achieved_by(self.axes(t))
+        return self.actual_by(self.axes(t))
 
-    def achieved_by(self, axes: Axes) -> Float[Array, "... 3"]:
+    def actual_by(self, axes: Axes) -> Float[Array, "... 3"]:
         """Load that given states of the axes make at the control point, base axes, m/s²."""
         return forward(axes, self.geometry.arm, self.geometry.gravity).a_WO_B
 
     def tracking_error(self, t: ArrayLike) -> Float[Array, "... 3"]:
         """Achieved less wanted at times `t` (s), base axes, m/s²."""
-        return self.achieved(t) - self.wanted(t)
+        return self.actual(t) - self.reference(t)
 
-    def held(self, t: ArrayLike) -> Bool[Array, "*t"]:
+    def not_followed(self, t: ArrayLike) -> Bool[Array, "*t"]:
         """Tell at which times `t` (s) what is wanted is not the flight's load."""
-        return self.target.held(t)
+        return self.target.not_followed(t)
 
     def episodes(self) -> list[Episode]:
         """Stretches of time in which it is not, with the reason."""
@@ -157,7 +157,7 @@ class Centrifuge(eqx.Module):
         acceleration = np.stack([axes.acceleration1, axes.acceleration2, axes.acceleration3], axis=1)
         return usage(time, rate, acceleration, jerk, self.limits)
 
-    def unreachable(self) -> tuple[Shortfall, ...]:
+    def shortfalls(self) -> tuple[Shortfall, ...]:
         """Where no such machine can make the flight's load, and what would help."""
         return shortfalls(self.target, float(self.geometry.arm))
 

@@ -86,5 +86,5 @@ def moved(base: Base, offset: ArrayLike) -> Base:
         r, from the point of `base` to the new one, base axes, m.
     """
     r = jnp.broadcast_to(jnp.asarray(offset, dtype=float), base.w_WB_B.shape)
-    turning = jnp.cross(base.al_WB_B, r) + jnp.cross(base.w_WB_B, jnp.cross(base.w_WB_B, r))
-    return Base(base.a_WO_B + turning, base.w_WB_B, base.al_WB_B)
+    turning = jnp.cross(base.alpha_WB_B, r) + jnp.cross(base.w_WB_B, jnp.cross(base.w_WB_B, r))
+    return Base(base.a_WO_B + turning, base.w_WB_B, base.alpha_WB_B)

@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Array, Float
 from numpy.typing import NDArray
 
-import gbeam._jax  # noqa: F401
+import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.checks import positive
 from gbeam.errors import InputError
 from gbeam.results.response import LimitUse

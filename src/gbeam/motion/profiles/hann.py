@@ -8,7 +8,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-import gbeam._jax  # noqa: F401
+import gbeam.arrays.jax_setup  # noqa: F401
 
 TURN = 2 * jnp.pi
 

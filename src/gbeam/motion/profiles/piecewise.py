@@ -199,7 +199,7 @@ def trapezoid(level: float, jerk: float, start: float, hold: float) -> Piecewise
     return PiecewiseLinear(times[distinct], corners[distinct])
 
 
-def table(times: ArrayLike, values: ArrayLike) -> PiecewiseLinear:
+def tabulated(times: ArrayLike, values: ArrayLike) -> PiecewiseLinear:
     """Return a profile through points, straight between them and constant beyond the ends.
 
     Parameters

@@ -69,8 +69,8 @@ class General(Stations):
     area: Areas = Field(description="area")
     inertia_y: SecondMoments = Field(description="∫z² dA, which bends the beam along z")
     inertia_z: SecondMoments = Field(description="∫y² dA, which bends the beam along y")
-    fibre_y: Lengths | None = Field(default=None, description="outer fibre along y, for stress")
-    fibre_z: Lengths | None = Field(default=None, description="outer fibre along z, for stress")
+    extreme_fibre_y: Lengths | None = Field(default=None, description="outer fibre along y, for stress")
+    extreme_fibre_z: Lengths | None = Field(default=None, description="outer fibre along z, for stress")
 
 
 def _shape(section: Any) -> str | None:
@@ -139,7 +139,7 @@ class Beam(Table):
 
     root: Root = Field(default=Root(), description="springs that hold the root, which is rigid where left out")
     loads: tuple[Load, ...] = Field(
-        default=(), description="forces and moments on the beam: [ { at, force, moment, distributed, follows } ]"
+        default=(), description="forces and moments on the beam: [ { at, force, moment, distributed, follower } ]"
     )
 
     @model_validator(mode="after")

@@ -52,7 +52,7 @@ class Load(Table):
     distributed: SpreadForces | None = Field(
         default=None, description="force per length over the whole beam: { x, y, z }; instead of at, force and moment"
     )
-    follows: StrictBool = Field(
+    follower: StrictBool = Field(
         default=False,
         description="true if the components turn with the section; false if they keep to the base axes",
     )

@@ -76,7 +76,7 @@ class Record(Table):
         default=None, description="new sampling rate, such as 200 Hz; the record's own if left out"
     )
     despike: StrictBool = Field(default=False, description="replace single samples far off their neighbours")
-    trust: StrictBool = Field(
+    skip_checks: StrictBool = Field(
         default=False, description="take the record as it is: no look at its size, sampling rate and dropouts"
     )
 

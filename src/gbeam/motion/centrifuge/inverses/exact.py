@@ -131,12 +131,13 @@ def _refusal(target: Target, geometry: Geometry, grid: Grid, errors: Floats) -> 
         at = grid.time[int(np.argmax(np.where(np.isfinite(errors), errors, 0.0)))]
         problem = f"is too small for the exact inverse: no smooth motion follows the load about {at:.3f} s"
         return InputError("smoothing", problem, 'give more, or inverse = "planned" or "flat"')
-    worst = max((it for it, _ in turns), key=lambda it: it.wanted / it.possible)
+    worst = max((it for it, _ in turns), key=lambda it: it.reference / it.possible)
     widths = [width for _, width in turns if width is not None]
     wider = f'give "{np.ceil(1e3 * max(widths)):.0f} ms" or more, or ' if len(widths) == len(turns) else "give "
     return InputError(
         "smoothing",
-        f"is too small for the exact inverse: about {worst.time:.3f} s the load turns by −ä = {worst.wanted:.3g} m/s^4 "
+        f"is too small for the exact inverse: about {worst.time:.3f} s the load turns by "
+        f"−ä = {worst.reference:.3g} m/s^4 "
         f"and the arm allows a²/R = {worst.possible:.3g} m/s^4",
         f'{wider}inverse = "planned" or "flat"',
     )

@@ -78,7 +78,7 @@ def planned(target: Target, geometry: Geometry, limits: Limits) -> Planned:
 @eqx.filter_jit
 def _start(it: tuple[Target, tuple[Inverse, ...]], t: Array) -> tuple[list[Pose], Array, Array]:
     target, starts = it
-    return [inverse(target.load, t) for inverse in starts], target.load(t), target.held(t)
+    return [inverse(target.load, t) for inverse in starts], target.load(t), target.not_followed(t)
 
 
 class _Tracking:

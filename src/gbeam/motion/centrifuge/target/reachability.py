@@ -73,7 +73,7 @@ def _times(target: Target) -> Floats:
 @eqx.filter_jit
 def _seen(target: Target, time: Array) -> tuple[Array, tuple[Array, Array, Array], Array]:
     """The flight's load; size of the horizontal target with two rates; whether it is held."""
-    return target.flight(time), size_and_rates(target.load, target.gravity, time), target.held(time)
+    return target.flight(time), size_and_rates(target.load, target.gravity, time), target.not_followed(time)
 
 
 def size_and_rates(

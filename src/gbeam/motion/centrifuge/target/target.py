@@ -94,7 +94,7 @@ class Target(eqx.Module):
     rounded: bool = eqx.field(static=True)
     turns: bool = eqx.field(static=True)
 
-    def held(self, t: ArrayLike) -> Bool[Array, "*t"]:
+    def not_followed(self, t: ArrayLike) -> Bool[Array, "*t"]:
         """Tell at which times `t` (s, any shape) the machine spins up or a changed knot has a say in the load."""
         now = jnp.asarray(t, dtype=float)
         count, last = self.below_idle + self.out_of_reach, self.times.size - 1

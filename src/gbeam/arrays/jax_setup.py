@@ -1,0 +1,38 @@
+"""JAX as gbeam needs it: double precision, compiled programs kept on disk, gbeam's records known as pytrees.
+
+Import this module before the first use of JAX; every module that needs JAX does.
+"""
+
+import os
+from typing import Any
+
+import jax
+from platformdirs import user_cache_path
+
+from gbeam.arrays.tree import leaves_and_statics, register_all
+
+jax.config.update("jax_enable_x64", True)
+if not os.environ.get("JAX_COMPILATION_CACHE_DIR"):
+    jax.config.update("jax_compilation_cache_dir", os.fspath(user_cache_path("gbeam") / "jax"))
+# By default JAX keeps only what took a second to compile: here a hundred programs take a tenth each.
+if not os.environ.get("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS"):
+    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.05)
+
+
+def _register(cls: type) -> None:
+    leaves, fixed = leaves_and_statics(cls)
+
+    def flatten(record: Any) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+        return tuple(getattr(record, name) for name in leaves), tuple(getattr(record, name) for name in fixed)
+
+    def unflatten(aux: tuple[Any, ...], children: Any) -> Any:
+        # Not by __init__, which may check or compute: what JAX passes here need not be arrays.
+        new: Any = object.__new__(cls)
+        for name, value in (*zip(leaves, children, strict=True), *zip(fixed, aux, strict=True)):
+            object.__setattr__(new, name, value)
+        return new
+
+    jax.tree_util.register_pytree_node(cls, flatten, unflatten)
+
+
+register_all(_register)

@@ -1,0 +1,34 @@
+"""Which array library the values at hand belong to: NumPy, or JAX where one of them is traced or lives there."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+
+def is_jax(value: Any) -> bool:
+    """Whether a value is a JAX array or a tracer; never imports JAX."""
+    jax = sys.modules.get("jax")
+    return jax is not None and isinstance(value, jax.Array)
+
+
+def namespace(*values: Any) -> Any:
+    """Return ``jax.numpy`` if one of the values is a JAX array, else ``numpy``.
+
+    Numbers, lists and None count as NumPy's. The same lines then serve plain arrays, and JAX arrays under ``grad``,
+    ``vmap`` and ``jit``.
+    """
+    if any(is_jax(value) for value in values):
+        import jax.numpy as jnp
+
+        import gbeam.arrays.jax_setup  # noqa: F401
+
+        return jnp
+    import numpy as np
+
+    return np
+
+
+def as_array(value: Any) -> Any:
+    """A float64 array of the value's own library."""
+    return namespace(value).asarray(value, dtype=float)
