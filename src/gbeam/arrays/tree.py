@@ -1,8 +1,8 @@
 """Frozen records that JAX can trace, map and differentiate, defined without importing JAX.
 
 A record is a pytree: its fields are leaves, but for those marked :func:`static`, which belong to the compiled program.
-Records wait here until JAX is imported (`gbeam.arrays.jax_setup` then registers them all), so that what needs no JAX never pays
-for the import.
+Records wait here until JAX is imported (`gbeam.arrays.jax_setup` then registers them all), so that what needs no JAX
+never pays for the import.
 """
 
 from __future__ import annotations
