@@ -16,7 +16,7 @@ import jax.numpy as jnp
 import numpy as np
 import scipy.linalg
 
-from gbeam import Beam, HubTorque, Material, Model, PointMass, Section, assemble, constant
+from gbeam import Beam, Hub, Material, Model, PointMass, Section, assemble, constant
 from gbeam.analysis.control.linearization import linearize
 from gbeam.analysis.vibration.modal import modes
 from gbeam.integrate import NonlinearSystem, State, integrate, newmark
@@ -34,7 +34,7 @@ def structure(kind: str, axial: int, y: int):
     )
 
 
-HUB = HubTorque(0.5, 200.0, constant(0.0))
+HUB = Hub(radius=0.5, inertia=200.0, torque=constant(0.0))
 
 
 def tip(beam, q):

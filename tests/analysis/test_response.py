@@ -10,8 +10,7 @@ import pytest
 from gbeam import (
     Beam,
     Flight,
-    HubRate,
-    HubTorque,
+    Hub,
     InputError,
     Material,
     Model,
@@ -92,7 +91,7 @@ def test_truncated_model_is_linear_in_the_load() -> None:
 
 def test_hub_angle_is_the_integral_of_its_rate() -> None:
     """A slew of 3 rad/s in 1 s turns by 1.5 rad, then by 3 rad each second."""
-    result = run(strip("FOAM", (0, 2, 0)), HubRate(0.5, SmoothStep(3.0, 1.0)), 2.0)
+    result = run(strip("FOAM", (0, 2, 0)), Hub(radius=0.5, rate=SmoothStep(3.0, 1.0)), 2.0)
     assert result.environment == "hub" and result.hub is not None
     assert result.hub.angle[-1] == pytest.approx(4.5, abs=1e-6)
     assert result.hub.rate[-1] == pytest.approx(3.0)
@@ -103,7 +102,7 @@ def test_hub_angle_is_the_integral_of_its_rate() -> None:
 def test_free_hub_turns_as_a_rigid_body_would() -> None:
     """Against τ = J θ̈ of hub and beam together: the strip is 10⁵ times lighter than what turns it."""
     inertia = 50.0 + LINE * ((0.5 + LENGTH) ** 3 - 0.5**3) / 3
-    result = run(strip("FOAM", (0, 2, 0)), HubTorque(0.5, 50.0, Sine(20.0, 2.0)), 2.0, step=2e-3)
+    result = run(strip("FOAM", (0, 2, 0)), Hub(radius=0.5, inertia=50.0, torque=Sine(20.0, 2.0)), 2.0, step=2e-3)
     assert result.hub is not None
     wanted = 20 / inertia * (2 / (2 * np.pi)) * (result.time - np.sin(np.pi * result.time) / np.pi)
     np.testing.assert_allclose(result.hub.angle, wanted, atol=1e-5 * wanted.max())
@@ -186,7 +185,8 @@ def test_progress_is_told() -> None:
 def test_tlam_is_warned_about_beyond_its_divergence_only() -> None:
     stiff = 1.875104068711961**2 * np.sqrt(7e10 * 0.004 * 0.02**3 / 12 / (LINE * LENGTH**4))  # bending along y
     below, beyond = (
-        run(strip("TLAM", (0, 1, 0)), HubRate(0.1, constant(share * stiff)), 0.1, step=1e-3) for share in (0.99, 1.01)
+        run(strip("TLAM", (0, 1, 0)), Hub(radius=0.1, rate=constant(share * stiff)), 0.1, step=1e-3)
+        for share in (0.99, 1.01)
     )
     assert below.outcome == beyond.outcome == "done"
     assert below.warnings == ()
@@ -195,7 +195,7 @@ def test_tlam_is_warned_about_beyond_its_divergence_only() -> None:
 
 
 def test_divergence_stops_the_run_where_the_model_ends() -> None:
-    result = run(strip("TLAM", (0, 2, 0)), HubRate(0.1, SmoothStep(4000.0, 0.5)), 1.0)
+    result = run(strip("TLAM", (0, 2, 0)), Hub(radius=0.1, rate=SmoothStep(4000.0, 0.5)), 1.0)
     assert result.outcome == "diverged"
     assert "TLAM's stiffness is not positive definite" in result.message and "FOAM or exact" in result.message
     assert result.time[-1] < 1.0
@@ -214,7 +214,7 @@ def test_large_deflection_is_warned_about_in_second_order_models_only() -> None:
 
 
 def test_gauss_and_newmark_agree_on_a_nonlinear_model() -> None:
-    structure, motion = strip("CFOAM", (0, 2, 0)), HubTorque(0.5, 50.0, Sine(20.0, 2.0))
+    structure, motion = strip("CFOAM", (0, 2, 0)), Hub(radius=0.5, inertia=50.0, torque=Sine(20.0, 2.0))
     quick, slow = (run(structure, motion, 4 * PERIOD, integrator=it, tolerance=1e-5) for it in ("gauss", "newmark"))
     np.testing.assert_allclose(quick.tip, slow.tip, atol=2e-5 * np.abs(slow.tip).max())
     assert quick.steps < slow.steps / 8

@@ -5,14 +5,14 @@ from __future__ import annotations
 from functools import cache
 
 from gbeam import Beam, Material, Model, PointMass, Section, Structure, assemble
-from gbeam.motion import HubRate, HubTorque, Sine, constant
+from gbeam.motion import Hub, Sine, constant
 
 AREA = 1e-2
-HUB = HubRate(0.0, constant(1.0))
+HUB = Hub(radius=0.0, rate=constant(1.0))
 # The beam of 2009 Table 1.
 BOX, ALUMINIUM = Section.general(7.2968e-5, 8.2189e-9, 8.2189e-9), Material(2766.7, 6.8952e10)
-HUB_2009 = HubRate(0.5, constant(1.0))
-FREE_2009 = HubTorque(0.5, 200.0, Sine(200.0, 10.0))
+HUB_2009 = Hub(radius=0.5, rate=constant(1.0))
+FREE_2009 = Hub(radius=0.5, inertia=200.0, torque=Sine(200.0, 10.0))
 
 
 def slender(slenderness: float, *masses: PointMass, chord: float = 1.0) -> Beam:

@@ -9,7 +9,7 @@ from gbeam import InputError, Model, assemble
 from gbeam.analysis.vibration.campbell import campbell
 from gbeam.analysis.vibration.modal import modes
 from gbeam.analysis.vibration.stability import critical_speed_map
-from gbeam.motion import Flight, HubRate, constant, stack
+from gbeam.motion import Flight, Hub, constant, stack
 
 from .beams import HUB, HUB_2009, beam_2009, slender
 
@@ -24,7 +24,9 @@ def test_a_true_crossing_is_followed():
     assert found.mac.min() > 0.99
     # Each track alone, by the model that has its direction only.
     for track, counts in ((0, (0, 0, 4)), (1, (0, 4, 0))):
-        alone = modes(assemble(slender(1e3, chord=2.0), Model("FOAM", *counts)), HubRate(0.0, constant(12.0)), 0.0)
+        alone = modes(
+            assemble(slender(1e3, chord=2.0), Model("FOAM", *counts)), Hub(radius=0.0, rate=constant(12.0)), 0.0
+        )
         assert found.frequency[-1, track] == pytest.approx(alone.frequency[0], rel=1e-9)
 
 
@@ -34,7 +36,7 @@ def test_engine_orders():
     assert found.crossings
     for it in found.crossings:
         assert it.frequency == pytest.approx(it.order * it.speed / (2 * np.pi), rel=1e-12)
-        there = modes(structure, HubRate(0.0, constant(it.speed)), 0.0)
+        there = modes(structure, Hub(radius=0.0, rate=constant(it.speed)), 0.0)
         assert np.abs(there.frequency / it.frequency - 1).min() < 1e-8
 
 

@@ -14,7 +14,7 @@ from scipy.special import jv
 from gbeam import Beam, InputError, Load, Material, Model, Section, assemble, critical_load
 from gbeam.analysis.vibration.modal import modes
 from gbeam.analysis.vibration.stability import buckling_acceleration, critical_speed
-from gbeam.motion import Flight, HubRate, SmoothStep, constant, stack
+from gbeam.motion import Flight, Hub, SmoothStep, constant, stack
 
 from .beams import slender
 
@@ -123,6 +123,8 @@ def test_a_beam_pointing_inward_diverges(kind, counts):
     for row, condition in ((0, (d @ d)[0]), (1, (d @ d @ d)[0]), (n, np.eye(n + 1)[n]), (n - 1, d[n])):
         stiff[row], spin[row] = condition, 0.0
     square = 1 / np.linalg.eigvals(np.linalg.solve(stiff, spin)).real.max()
-    found = critical_speed(assemble(slender(1e4), Model(kind, *counts)), HubRate(radius, constant(1.0), "inward"))
+    found = critical_speed(
+        assemble(slender(1e4), Model(kind, *counts)), Hub(radius=radius, rate=constant(1.0), pointing="inward")
+    )
     assert found.value == pytest.approx(np.sqrt(square), rel=2e-5)
     assert (found.kind, found.direction) == ("divergence", "y")

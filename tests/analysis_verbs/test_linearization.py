@@ -14,7 +14,7 @@ from gbeam.analysis.control.nonlinear import nonlinear_system
 from gbeam.analysis.control.reduction import balanced_truncation, modal_truncation
 from gbeam.analysis.equilibrium.operating_point import linear_matrices, on_base, on_hub, operating_point
 from gbeam.analysis.vibration.modal import modes
-from gbeam.motion import Base, HubRate, HubTorque, constant
+from gbeam.motion import Base, Hub, constant
 
 from .beams import ALUMINIUM, BOX, FREE_2009, HUB_2009, beam_2009, structure_2009
 
@@ -135,11 +135,11 @@ def test_nonlinear_system_has_the_same_linearisation():
 
 def test_a_gauge_off_the_beam():
     with pytest.raises(InputError, match="off the beam"):
-        linearize(SOFT, HubRate(0.5, constant(1.0)), gauges=[Gauge(9.0)])
+        linearize(SOFT, Hub(radius=0.5, rate=constant(1.0)), gauges=[Gauge(9.0)])
 
 
 def test_a_hub_on_a_spring_rests_where_it_balances_the_torque():
-    hub = HubTorque(0.5, 200.0, constant(30.0), stiffness=600.0, damping=5.0)
+    hub = Hub(radius=0.5, inertia=200.0, torque=constant(30.0), stiffness=600.0, damping=5.0)
     structure = structure_2009("FOAM", 1, 3)
     point = operating_point(structure, hub, 2.0)
     assert float(point.y[0]) == pytest.approx(0.05) and float(point.yd[0]) == 0

@@ -12,7 +12,7 @@ import pytest
 from gbeam import Model, PointMass, assemble
 from gbeam.analysis.vibration.modal import modes
 from gbeam.analysis.vibration.stability import critical_speed
-from gbeam.motion import HubRate, constant
+from gbeam.motion import Hub, constant
 
 from .beams import FREE_2009, HUB, HUB_2009, slender, structure_2009
 
@@ -34,8 +34,8 @@ TIP_MASS = {
 }
 
 
-def spin(rate: float) -> HubRate:
-    return HubRate(0.0, constant(rate))
+def spin(rate: float) -> Hub:
+    return Hub(radius=0.0, rate=constant(rate))
 
 
 def along(structure, motion, direction):
@@ -88,7 +88,7 @@ def test_2009_table_2():
         ("FOAM", 1.0): ([0.47111, 2.92933, 8.15767, 15.96005, 26.36425], [0.4714, 2.9308, 8.1618, 15.9682, 26.3776]),
     }
     for (kind, rate), (true, printed) in tables.items():
-        found = along(structure_2009(kind, 5, 5), HubRate(0.5, constant(rate)), "y")[:5]
+        found = along(structure_2009(kind, 5, 5), Hub(radius=0.5, rate=constant(rate)), "y")[:5]
         assert found / (2 * np.pi) == pytest.approx(true, abs=2e-5)
         assert found / (2 * 3.14) == pytest.approx(printed, abs=1.01e-4)  # FOAM's fourth is one digit off in print
 
@@ -119,6 +119,6 @@ def test_critical_speed_exact():
 
 def test_hub_radius_is_irrelevant_to_tlam_and_stiffens_foam():
     structure = structure_2009("TLAM", 5, 5)
-    far = critical_speed(structure, HubRate(4.0, constant(1.0))).value
+    far = critical_speed(structure, Hub(radius=4.0, rate=constant(1.0))).value
     assert far == pytest.approx(critical_speed(structure, HUB_2009).value, abs=1e-9)
     assert along(structure_2009("FOAM", 5, 5), HUB, "y")[0] / 2 / 3.14 == pytest.approx(0.46871, abs=2e-5)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from gbeam import HubRate, ResponseSettings, SmoothStep, simulate
+from gbeam import Hub, ResponseSettings, SmoothStep, simulate
 from gbeam.analysis.study.model_study import SHAPES_FINE, shape_tail
 from gbeam.cli import main
 
@@ -77,6 +77,6 @@ def test_models_that_do_not_fit_the_scenario_do_not_end_the_study(call):
 @pytest.mark.parametrize(("rotations", "fine"), [(3, False), (6, True)])
 def test_too_few_shapes_show_in_the_last(rotations, fine):
     structure = structure_2009("exact", 3, rotations)
-    hub = HubRate(0.5, SmoothStep(6.0, 4.0))
+    hub = Hub(radius=0.5, rate=SmoothStep(6.0, 4.0))
     response = simulate(structure, hub, ResponseSettings(duration=8.0, step=0.04))
     assert (shape_tail(structure, response) < SHAPES_FINE) == fine

@@ -10,7 +10,7 @@ from gbeam import Beam, Material, Model, PointMass, Section, assemble
 from gbeam.analysis.equilibrium.static import static
 from gbeam.analysis.vibration.modal import modes
 from gbeam.analysis.vibration.stability import buckling_acceleration, critical_speed
-from gbeam.motion import HubRate, constant
+from gbeam.motion import Hub, constant
 
 from .beams import slender, structure_2009
 
@@ -45,7 +45,7 @@ def hermite_flap(length, area, inertia, density, e, rate, radius, tip=0.0):
 
 def flap(beam, count, rate, radius, shapes="clamped-free"):
     structure = assemble(beam, Model("FOAM", 0, 0, count, shapes=shapes))
-    return 2 * np.pi * modes(structure, HubRate(radius, constant(rate)), 0.0).frequency
+    return 2 * np.pi * modes(structure, Hub(radius=radius, rate=constant(rate)), 0.0).frequency
 
 
 @pytest.mark.parametrize("radius", [0.0, 1.0, 3.0])
@@ -71,7 +71,7 @@ def test_rotating_bar():
     structure = assemble(slender(10.0), Model("exact", 8, 1, 0))
     for rate in (1.0, 5.0):
         a = rate / 10.0
-        tip = static(structure, HubRate(0.0, constant(rate)), 0.0).tip
+        tip = static(structure, Hub(radius=0.0, rate=constant(rate)), 0.0).tip
         assert tip[0] == pytest.approx(np.tan(a) / a - 1, rel=1e-9)
 
 
@@ -93,6 +93,6 @@ def test_foam_has_no_critical_speed():
 
 def test_a_beam_pointing_inward_diverges():
     """The hub's centre beyond the tip pushes the beam: FOAM and exact agree on the speed at which it gives way."""
-    inward = HubRate(16.0, constant(1.0), pointing="inward")
+    inward = Hub(radius=16.0, rate=constant(1.0), pointing="inward")
     foam = critical_speed(structure_2009("FOAM", 1, 5), inward)
     assert foam.kind == "divergence" and foam.value == pytest.approx(1.694305, abs=2e-5)

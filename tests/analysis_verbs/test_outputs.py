@@ -12,7 +12,7 @@ from gbeam import Beam, InputError, Load, Material, Model, PointMass, Root, Sect
 from gbeam.analysis.control.linearization import Gauge, linearize
 from gbeam.analysis.control.nonlinear import nonlinear_system
 from gbeam.analysis.response.section_forces import section_loads
-from gbeam.motion import Flight, HubRate, HubTorque, constant, stack
+from gbeam.motion import Flight, Hub, constant, stack
 from gbeam.results.response import BaseHistory
 
 MODELS = {
@@ -36,8 +36,8 @@ BEAM = Beam(
 )
 MOUNT = {"setting_angle": 0.4, "gravity": (1.0, -7.0, -5.0)}
 HUBS = {
-    "free": HubTorque(0.5, 3.0, constant(0.0), stiffness=20.0, damping=4.0, **MOUNT),
-    "prescribed": HubRate(0.5, constant(1.2), **MOUNT),
+    "free": Hub(radius=0.5, inertia=3.0, torque=constant(0.0), stiffness=20.0, damping=4.0, **MOUNT),
+    "prescribed": Hub(radius=0.5, rate=constant(1.2), **MOUNT),
 }
 GAUGES = [Gauge(0.01, y=0.015), Gauge(1.0, z=0.003)]
 
@@ -114,17 +114,17 @@ def test_names_say_whether_gravity_is_in():
     beam = assemble(Beam(1.0, Section.rectangle(0.02, 0.004), Material(2700.0, 7e10)), Model("FOAM", 0, 1, 1))
     for motion, word in (
         (Flight(stack(z=constant(9.8))), "acceleration"),
-        (HubRate(0.5, constant(1.0)), "acceleration"),
-        (HubRate(0.5, constant(1.0), gravity=(0.0, 0.0, -9.8)), "specific_force"),
+        (Hub(radius=0.5, rate=constant(1.0)), "acceleration"),
+        (Hub(radius=0.5, rate=constant(1.0), gravity=(0.0, 0.0, -9.8)), "specific_force"),
     ):
         system = linearize(beam, motion)
         assert system.outputs[3].name == f"tip_{word}_x" and system.inputs[0].name == f"base_{word}_x"
-    still = linearize(beam, HubTorque(0.5, 3.0, constant(0.0), gravity=(0.0, 0.0, -9.8)))
+    still = linearize(beam, Hub(radius=0.5, inertia=3.0, torque=constant(0.0), gravity=(0.0, 0.0, -9.8)))
     assert still.output[5] == pytest.approx(9.8)  # what an accelerometer shows that stays where it is
 
 
 def test_a_swinging_hub_is_refused():
     beam = assemble(Beam(1.0, Section.rectangle(0.02, 0.004), Material(2700.0, 7e10)), Model("FOAM", 0, 1, 0))
-    swinging = HubTorque(0.5, 3.0, constant(0.0), gravity=(0.0, -9.8, 0.0))
+    swinging = Hub(radius=0.5, inertia=3.0, torque=constant(0.0), gravity=(0.0, -9.8, 0.0))
     with pytest.raises(InputError, match="gbeam run"):
         linearize(beam, swinging, 2.0)

@@ -19,8 +19,7 @@ from scipy.optimize import brentq
 
 from gbeam import (
     Beam,
-    HubRate,
-    HubTorque,
+    Hub,
     Material,
     Model,
     PointMass,
@@ -35,7 +34,8 @@ from gbeam import (
     critical_speed,
     simulate,
 )
-from gbeam.mechanics.equations import Coefficients, Hub, coefficients, on_free_hub
+from gbeam.mechanics.equations import Coefficients, coefficients, on_free_hub
+from gbeam.mechanics.equations import Hub as HubBody
 
 from .hubbeam2009 import AREA, DENSITY, HUB_INERTIA, HUB_RADIUS, INERTIA, LENGTH, YOUNG, Paper
 
@@ -58,7 +58,7 @@ def structure(kind: str, axial: int, bending: int, mt: float = 0.0, at: float = 
 @eqx.filter_jit
 def mass_and_rest(s: Structure, y: Any, yd: Any) -> Any:
     """M and h of the library, from its residual."""
-    hub = Hub(jnp.asarray(HUB_RADIUS), jnp.asarray(HUB_INERTIA))
+    hub = HubBody(jnp.asarray(HUB_RADIUS), jnp.asarray(HUB_INERTIA))
 
     def residual(ydd: Any) -> Any:
         return on_free_hub(s.system, hub, y, yd, ydd, jnp.zeros(()), hub_force=s.hub_force)
@@ -200,7 +200,9 @@ def test_critical_speed(mt: float, printed: float, independent: float) -> None:
     assert abs(speed - printed) < 5e-3
     # Five clamped-free shapes end at 1.93655 with 0.5 kg; shapes that know of the mass at the transcendental 1.93645.
     beam = Beam(LENGTH, Section.general(AREA, INERTIA, INERTIA), Material(DENSITY, YOUNG), [PointMass(LENGTH, mt)])
-    found = critical_speed(assemble(beam, Model("TLAM", 0, 5, 0, "adapted")), HubRate(HUB_RADIUS, constant(1.0)))
+    found = critical_speed(
+        assemble(beam, Model("TLAM", 0, 5, 0, "adapted")), Hub(radius=HUB_RADIUS, rate=constant(1.0))
+    )
     assert found.value == pytest.approx(independent, abs=6e-5)
 
 
@@ -218,7 +220,9 @@ SLEW = dict(duration=50.0, residual_from=30.0)
 
 def slew(kind: str, counts: tuple[int, int], rate: float, mt: float = 0.0, **how: Any) -> Response:
     return simulate(
-        structure(kind, *counts, mt), HubRate(HUB_RADIUS, SmoothStep(rate, 30.0)), ResponseSettings(**SLEW, **how)
+        structure(kind, *counts, mt),
+        Hub(radius=HUB_RADIUS, rate=SmoothStep(rate, 30.0)),
+        ResponseSettings(**SLEW, **how),
     )
 
 
@@ -257,7 +261,9 @@ def test_slew_of_3_rad_per_s_with_newmark_in_automatic_steps() -> None:
 def test_tlam_diverges_and_says_at_which_speed(mt: float, rate: float, critical: float) -> None:
     """The paper: "diverges above 3 rad/s" (erratum 14), and at 2 rad/s with 0.5 kg."""
     result = simulate(
-        structure("TLAM", 5, 5, mt), HubRate(HUB_RADIUS, SmoothStep(rate, 30.0)), ResponseSettings(duration=60.0)
+        structure("TLAM", 5, 5, mt),
+        Hub(radius=HUB_RADIUS, rate=SmoothStep(rate, 30.0)),
+        ResponseSettings(duration=60.0),
     )
     assert result.outcome == "diverged"
     assert f"{critical:.3f}"[:4] in result.message and "rad/s" in result.message
@@ -284,7 +290,7 @@ def test_exact_slew_of_5_rad_per_s() -> None:
 
 
 def pulse(kind: str, counts: tuple[int, int], torque: float, mt: float, **how: Any) -> Response:
-    drive = HubTorque(HUB_RADIUS, HUB_INERTIA, Sine(torque, 10.0))
+    drive = Hub(radius=HUB_RADIUS, inertia=HUB_INERTIA, torque=Sine(torque, 10.0))
     settings = ResponseSettings(duration=20.0, residual_from=10.0, **{"step": 5e-3, **how})
     return simulate(structure(kind, *counts, mt), drive, settings)
 

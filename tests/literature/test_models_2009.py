@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from gbeam import HubRate, HubTorque, Sine, SmoothStep
+from gbeam import Hub, Sine, SmoothStep
 from gbeam.analysis.response.problem import problem_of
 from gbeam.analysis.response.simulation import displacement
 from gbeam.integrate import integrate, newmark
@@ -62,9 +62,9 @@ def tip(kind: str, counts: tuple[int, int], drive: str, level: float, mt: float)
     """Displacement along y, m, from rest to 20 s after the drive has ended, every STEP."""
     beam = structure(kind, *counts, mt)
     motion = (
-        HubRate(HUB_RADIUS, SmoothStep(level, 30.0))
+        Hub(radius=HUB_RADIUS, rate=SmoothStep(level, 30.0))
         if drive == "slew"
-        else HubTorque(HUB_RADIUS, HUB_INERTIA, Sine(level, 10.0))
+        else Hub(radius=HUB_RADIUS, inertia=HUB_INERTIA, torque=Sine(level, 10.0))
     )
     problem = problem_of(beam, motion, 0.0)
     end = 50.0 if drive == "slew" else 20.0

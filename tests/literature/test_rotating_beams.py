@@ -17,7 +17,7 @@ import scipy.linalg
 
 from gbeam import (
     Beam,
-    HubRate,
+    Hub,
     Material,
     Model,
     PointMass,
@@ -276,7 +276,7 @@ def robot_arm() -> Structure:
 def test_spin_up_of_the_robot_arm() -> None:
     """Peaks: published within 2 %, independent (exact beam, finite elements) within 0.05 %."""
     settings = ResponseSettings(duration=20.0, step=5e-3, residual_from=15.5)
-    result = simulate(robot_arm(), HubRate(0.0, SPIN_UP), settings)
+    result = simulate(robot_arm(), Hub(radius=0.0, rate=SPIN_UP), settings)
     time, (axial, across) = result.time, result.tip[:, :2].T
     assert across.min() == pytest.approx(-0.57384, rel=5e-4)
     assert across.min() == pytest.approx(-0.5723, rel=2e-2)

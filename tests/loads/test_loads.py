@@ -12,8 +12,7 @@ import pytest
 from gbeam import (
     Beam,
     Flight,
-    HubRate,
-    HubTorque,
+    Hub,
     Material,
     Model,
     PointMass,
@@ -29,7 +28,8 @@ from gbeam import (
 )
 from gbeam.analysis.response.section_forces import influence, internal_loads, section_loads
 from gbeam.mechanics.energy import FieldEnergy
-from gbeam.mechanics.equations import Hub, on_prescribed_base
+from gbeam.mechanics.equations import Hub as HubBody
+from gbeam.mechanics.equations import on_prescribed_base
 from gbeam.motion import Base
 from gbeam.results.response import BaseHistory
 from gbeam.structure.loads import Load
@@ -92,7 +92,7 @@ def test_root_reaction_is_the_rate_of_momentum(kind: str) -> None:
 def test_power_of_a_driven_hub_is_the_rate_of_energy(kind: str) -> None:
     radius = 0.5
     structure = assemble(TAPERED, Model(kind, 1, 3, 0))
-    system, hub = structure.system, Hub(jnp.asarray(radius), jnp.asarray(0.0))
+    system, hub = structure.system, HubBody(jnp.asarray(radius), jnp.asarray(0.0))
     assert isinstance(system.energy, FieldEnergy)
     rng = np.random.default_rng(3)
 
@@ -217,7 +217,16 @@ def test_static_influence_of_a_uniform_cantilever() -> None:
 def test_torque_for_the_beam_and_the_hub_is_what_drives_them(pointing: str, angle: float) -> None:
     """Torque less what spring and damper take, however the beam is mounted; in gravity too."""
     structure = assemble(TAPERED, Model("CFOAM", 1, 2, 2))
-    hub = HubTorque(0.5, 20.0, Sine(10.0, 0.4), pointing, angle, [1.0, 2.0, -9.8], stiffness=30.0, damping=2.0)
+    hub = Hub(
+        radius=0.5,
+        inertia=20.0,
+        torque=Sine(10.0, 0.4),
+        pointing=pointing,
+        setting_angle=angle,
+        gravity=[1.0, 2.0, -9.8],
+        stiffness=30.0,
+        damping=2.0,
+    )
     response = simulate(structure, hub, ResponseSettings(duration=0.2, step=2e-3))
     loads = internal_loads(structure, TAPERED, response, hub)
     assert response.hub is not None and loads.drive_torque is not None
@@ -230,7 +239,7 @@ def test_torque_for_the_beam_and_the_hub_is_what_drives_them(pointing: str, angl
 def test_static_loads_are_those_of_the_frozen_slew() -> None:
     """At rest on a steadily turning hub: the centripetal force of the beam, and no torque for it."""
     structure = assemble(SPECIMEN, Model("FOAM", 2, 2, 0), [0.0, 0.15])
-    found = static(structure, HubRate(0.4, constant(5.0)), 0.0, beam=SPECIMEN)
+    found = static(structure, Hub(radius=0.4, rate=constant(5.0)), 0.0, beam=SPECIMEN)
     assert found.loads is not None and found.loads.beam_torque is not None
     np.testing.assert_allclose(found.loads.root_force[0], [-M * 25 * (0.4 * L + L**2 / 2), 0, 0], rtol=1e-5)
     np.testing.assert_allclose(

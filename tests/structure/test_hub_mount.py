@@ -13,8 +13,7 @@ from exact_beams import AREA, DENSITY, INERTIA, LENGTH, MODULUS
 
 from gbeam import (
     Beam,
-    HubRate,
-    HubTorque,
+    Hub,
     InputError,
     Material,
     Model,
@@ -32,7 +31,7 @@ BOX, METAL = Section.general(AREA, INERTIA, INERTIA), Material(DENSITY, MODULUS)
 BEAM = Beam(LENGTH, BOX, METAL, [PointMass(LENGTH, 0.1)], 0.01)
 GRAVITY = (3.0, -7.0, -5.0)
 MOUNTED: dict[str, Any] = {"pointing": "inward", "setting_angle": 0.7, "gravity": GRAVITY}
-HUB = HubTorque(0.5, 200.0, constant(0.0), **MOUNTED, stiffness=30.0, damping=4.0)
+HUB = Hub(radius=0.5, inertia=200.0, torque=constant(0.0), **MOUNTED, stiffness=30.0, damping=4.0)
 MODELS = {"FOAM": Model("FOAM", 1, 1, 1), "exact": Model("exact", 1, 1, 1)}
 
 
@@ -67,7 +66,7 @@ def test_a_free_hub_and_a_prescribed_one_are_one_thing(name: str) -> None:
 
 
 def test_inward_is_a_negative_radius() -> None:
-    inward, outward = (HubRate(0.5, constant(2.0), pointing=p).base(0.0) for p in ("inward", "outward"))
+    inward, outward = (Hub(radius=0.5, rate=constant(2.0), pointing=p).base(0.0) for p in ("inward", "outward"))
     np.testing.assert_allclose(inward.a_WO_B, -outward.a_WO_B, atol=1e-12)
     np.testing.assert_allclose(inward.w_WB_B, [0, 0, 2.0])
 
@@ -75,7 +74,7 @@ def test_inward_is_a_negative_radius() -> None:
 def test_a_setting_angle_mixes_the_planes() -> None:
     """At 90° the section's z lies where y was: the lag and flap stiffnesses change places."""
     both = coefficients(assemble(BEAM, Model("FOAM", 0, 1, 1)).system)
-    bases = [HubRate(0.5, constant(2.0), setting_angle=angle).base(0.0) for angle in (0.0, np.pi / 2)]
+    bases = [Hub(radius=0.5, rate=constant(2.0), setting_angle=angle).base(0.0) for angle in (0.0, np.pi / 2)]
     flat, edge = (both.at(b.a_WO_B, b.w_WB_B, b.alpha_WB_B)[1] for b in bases)
     np.testing.assert_allclose(np.diag(flat)[::-1], np.diag(edge), rtol=1e-12)
     assert flat[0, 0] < flat[1, 1]
@@ -83,7 +82,7 @@ def test_a_setting_angle_mixes_the_planes() -> None:
 
 def test_gravity_keeps_its_direction_while_a_prescribed_hub_turns() -> None:
     rate = SmoothStep(2.0, 3.0, 0.5)
-    turning, weightless = (HubRate(0.5, rate, setting_angle=0.3, gravity=g) for g in (GRAVITY, None))
+    turning, weightless = (Hub(radius=0.5, rate=rate, setting_angle=0.3, gravity=g) for g in (GRAVITY, None))
     t = np.linspace(0, 7, 200001)
     angle = np.append(0, np.cumsum(np.diff(t) * np.asarray((rate(t)[1:] + rate(t)[:-1]) / 2)))
     np.testing.assert_allclose(turning.angle(t), angle, atol=1e-8)
@@ -96,7 +95,7 @@ def test_gravity_keeps_its_direction_while_a_prescribed_hub_turns() -> None:
 def test_a_moment_at_the_root_drives_the_hub_as_a_torque_does() -> None:
     loaded = Beam(LENGTH, BOX, METAL, loads=[Load(0.0, moment=(0.0, 0.0, 11.0)), Load(5.0, force=(1.0, 2.0, 3.0))])
     system = assemble(loaded, Model("FOAM", 0, 1, 1)).system
-    hub = free_hub(HubTorque(0.5, 200.0, constant(0.0)))
+    hub = free_hub(Hub(radius=0.5, inertia=200.0, torque=constant(0.0)))
     y, yd, ydd = (jnp.zeros(3) for _ in range(3))
 
     @eqx.filter_jit
@@ -119,4 +118,4 @@ def test_a_moment_at_the_root_drives_the_hub_as_a_torque_does() -> None:
 )
 def test_impossible_mounts_are_refused(wrong: dict[str, Any], words: str) -> None:
     with pytest.raises(InputError, match=words):
-        HubTorque(0.5, 200.0, constant(0.0), **wrong)
+        Hub(radius=0.5, inertia=200.0, torque=constant(0.0), **wrong)

@@ -5,7 +5,8 @@ Every motion has ``base(t)`` (:class:`Base`) and ``breaks``; a free hub has a to
 
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.flight import Flight, stack
-from gbeam.motion.bases.hub import HubRate, HubTorque
+from gbeam.motion.bases.former_hubs import HubRate, HubTorque
+from gbeam.motion.bases.hub import Hub
 from gbeam.motion.bases.mount import Mount
 from gbeam.motion.bases.record import STANDARD_GRAVITY, read_record
 from gbeam.motion.centrifuge.centrifuge import AxisHistory, Centrifuge, axis_history
@@ -17,6 +18,7 @@ from gbeam.motion.centrifuge.target.target import Episode, Target, build_target
 from gbeam.motion.profiles.piecewise import PiecewiseLinear, constant, tabulated, trapezoid
 from gbeam.motion.profiles.profile import Profile, Stack, Sum, smoothed
 from gbeam.motion.profiles.pulse import Sine, SmoothStep
+from gbeam.motion.protocol import Motion
 
 __all__ = [
     "INVERSES",
@@ -29,11 +31,13 @@ __all__ = [
     "Centrifuge",
     "Episode",
     "Flight",
+    "Hub",
     "HubRate",
     "HubTorque",
     "Limits",
     "Machine",
     "MachineLimits",
+    "Motion",
     "Mount",
     "PiecewiseLinear",
     "Profile",

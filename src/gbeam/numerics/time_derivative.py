@@ -20,4 +20,5 @@ def with_rate(function: Callable[[Array], Any], t: Float[Array, "*t"]) -> tuple[
     t : array, any shape
         s.
     """
+    t = jnp.asarray(t, dtype=float)
     return jax.jvp(function, (t,), (jnp.ones_like(t),))

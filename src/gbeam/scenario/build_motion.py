@@ -102,15 +102,17 @@ def _limits(it: schema.Limits, example: motion.MachineLimits) -> motion.MachineL
 
 
 def _hub(parts: Collector, where: str, it: schema.Hub) -> Motion | None:
-    mount = (it.pointing, it.setting_angle, it.gravity)
+    mount = {"pointing": it.pointing, "setting_angle": it.setting_angle, "gravity": it.gravity}
     if it.rate is not None:
         rate = _profile(parts, f"{where}.rate", it.rate)
-        return None if rate is None else parts.attempt(where, motion.HubRate, it.radius, rate, *mount)
+        return None if rate is None else parts.attempt(where, motion.Hub, radius=it.radius, rate=rate, **mount)
     torque = _profile(parts, f"{where}.torque", it.torque)
     if torque is None:
         return None
-    ground = (it.stiffness or 0.0, it.damping or 0.0)
-    return parts.attempt(where, motion.HubTorque, it.radius, it.inertia, torque, *mount, *ground)
+    ground = {"stiffness": it.stiffness or 0.0, "damping": it.damping or 0.0}
+    return parts.attempt(
+        where, motion.Hub, radius=it.radius, inertia=it.inertia, torque=torque, **mount, **ground
+    )  # fmt: skip
 
 
 def components(parts: Collector, where: str, it: Any) -> Profile | None:

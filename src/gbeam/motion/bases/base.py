@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-import equinox as eqx
-from jaxtyping import Array, Float
+from typing import Any
+
+from gbeam.arrays.tree import record
 
 
-class Base(eqx.Module):
+@record
+class Base:
     """Motion of the base at one time or many, in base axes B: x along the beam, z through its thickness.
 
     Parameters
@@ -19,6 +21,6 @@ class Base(eqx.Module):
         Angular acceleration of B in W, rad/s².
     """
 
-    a_WO_B: Float[Array, "... 3"]
-    w_WB_B: Float[Array, "... 3"]
-    alpha_WB_B: Float[Array, "... 3"]
+    a_WO_B: Any
+    w_WB_B: Any
+    alpha_WB_B: Any

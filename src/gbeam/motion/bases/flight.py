@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar, Self
+
 import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
@@ -38,6 +40,7 @@ class Flight(eqx.Module):
         What was done to the record; they become warnings of the response.
     """
 
+    kind: ClassVar[str] = "flight"
     acceleration: Profile
     rates: Profile | None = None
     notes: tuple[str, ...] = eqx.field(static=True, default=())
@@ -48,6 +51,15 @@ class Flight(eqx.Module):
         if self.rates is None:
             return Base(a_WO_B, jnp.zeros_like(a_WO_B), jnp.zeros_like(a_WO_B))
         return Base(a_WO_B, *with_rate(self.rates, jnp.asarray(t, dtype=float)))
+
+    @property
+    def free(self) -> bool:
+        """False: the motion is prescribed."""
+        return False
+
+    def over(self, start: float, end: float) -> Self:
+        """The flight itself: it needs no preparation."""
+        return self
 
     @property
     def breaks(self) -> Float[Array, " b"]:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-import equinox as eqx
-import jax.numpy as jnp
-import numpy as np
-from jaxtyping import Array, ArrayLike, Float
+from typing import Any, ClassVar, Self
 
+import numpy as np
+
+from gbeam.arrays.namespace import as_array, namespace
+from gbeam.arrays.tree import record, static
 from gbeam.checks import positive
+from gbeam.errors import InputError
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.mount import Mount
+from gbeam.motion.profiles.piecewise import constant
 from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.time_derivative import with_rate
 
@@ -17,121 +20,138 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 _STRIDE = 0.01  # s, between the times at which the angle is stored: Gauss's rule is exact to rounding from there
 
 
-class HubRate(eqx.Module):
-    """A hub whose rate is prescribed.
+@record
+class Hub:
+    """A hub: its rate is prescribed, or it is free to turn under a torque and its angle is an unknown.
+
+    Without a rate and without an inertia it stands still, and serves where only its radius matters: a Campbell
+    diagram, a critical speed.
 
     Parameters
     ----------
     radius : float
         From the axis to the root, m; may be zero.
-    rate : Profile
+    rate : Profile or float, optional
         Ω(t) about z, rad/s; the angle is zero at time zero.
-    pointing, setting_angle, gravity
-        As for :class:`gbeam.motion.Mount`.
-
-    Raises
-    ------
-    InputError
-        If the radius is negative or not finite, or the mount impossible.
-    """
-
-    mount: Mount
-    rate: Profile
-    times: Float[Array, " k"]
-    angles: Float[Array, " k"]
-
-    def __init__(
-        self,
-        radius: float,
-        rate: Profile,
-        pointing: str = "outward",
-        setting_angle: float = 0.0,
-        gravity: ArrayLike | None = None,
-    ) -> None:
-        self.mount, self.rate = Mount(radius, pointing, setting_angle, gravity), rate
-        self.times, self.angles = jnp.zeros(1), jnp.zeros(1)
-        if gravity is not None:  # nothing else asks for the angle over time
-            times = jnp.asarray(np.unique(np.append(rate.knots(_STRIDE), [0.0, *np.asarray(rate.breaks)])))
-            sums = jnp.concatenate([jnp.zeros(1), jnp.cumsum(self._turned(times[:-1], times[1:]))])
-            self.times, self.angles = times, sums - sums[jnp.searchsorted(times, 0.0)]
-
-    @property
-    def radius(self) -> Float[Array, ""]:
-        """From the axis to the root, m."""
-        return self.mount.radius
-
-    def _turned(self, start: Array, end: Array) -> Array:
-        half = (end - start)[..., None] / 2
-        return jnp.sum(half * _WEIGHTS * self.rate(start[..., None] + half * (1 + _POINTS)), axis=-1)
-
-    def angle(self, t: ArrayLike) -> Array:
-        """Angle at times `t` (s, any shape), rad; of a hub with gravity, without which nobody needs it."""
-        now = jnp.asarray(t, dtype=float)
-        last = jnp.maximum(jnp.searchsorted(self.times, now, side="right") - 1, 0)
-        return self.angles[last] + self._turned(self.times[last], now)
-
-    def base(self, t: ArrayLike) -> Base:
-        """Motion of the base at times `t` (s, any shape): a_O = (−rΩ², r dΩ/dt, 0) in hub axes."""
-        rate, acceleration = with_rate(self.rate, jnp.asarray(t, dtype=float))
-        return self.mount.base(0.0 if self.mount.gravity is None else self.angle(t), rate, acceleration)
-
-    @property
-    def breaks(self) -> Float[Array, " b"]:
-        """Times at which an integrator should stop and start afresh, s."""
-        return self.rate.breaks
-
-
-class HubTorque(eqx.Module):
-    """A free hub driven by a torque; its angle is one of the unknowns of the equations of motion.
-
-    Parameters
-    ----------
-    radius : float
-        From the axis to the root, m; may be zero.
-    inertia : float
-        Moment of inertia of the hub about its axis, kg m².
-    torque : Profile
-        About z, N m; called as ``hub.torque(t)``.
+    inertia : float, optional
+        Moment of inertia of the hub about its axis, kg m². Beside a rate it gives the drive's torque.
+    torque : Profile or float, optional
+        About z on a free hub, N m; zero if left out. ``hub.torque`` is None where the hub is not free.
     pointing, setting_angle, gravity
         As for :class:`gbeam.motion.Mount`.
     stiffness, damping : float
-        Torsional spring, at ease at the initial angle zero, and damper between hub and ground, N m/rad, N m s/rad.
+        Torsional spring, at ease at the initial angle zero, and damper between a free hub and the ground, N m/rad,
+        N m s/rad.
 
     Raises
     ------
     InputError
-        If the radius, the stiffness or the damping is negative, the inertia not positive, or the mount impossible.
+        If a value is impossible, a torque is given beside a rate or without an inertia, or a spring or damper beside a
+        rate.
     """
 
+    kind: ClassVar[str] = "hub"
     mount: Mount
-    inertia: Float[Array, ""]
-    torque: Profile
-    stiffness: Float[Array, ""]
-    damping: Float[Array, ""]
+    rate: Profile | None
+    inertia: Any | None
+    torque: Profile | None
+    stiffness: Any
+    damping: Any
+    free: bool = static()
+    times: Any
+    angles: Any
 
     def __init__(
         self,
-        radius: float,
-        inertia: float,
-        torque: Profile,
+        *,
+        radius: Any,
+        rate: Profile | Any | None = None,
+        inertia: Any | None = None,
+        torque: Profile | Any | None = None,
         pointing: str = "outward",
-        setting_angle: float = 0.0,
-        gravity: ArrayLike | None = None,
-        stiffness: float = 0.0,
-        damping: float = 0.0,
+        setting_angle: Any = 0.0,
+        gravity: Any | None = None,
+        stiffness: Any = 0.0,
+        damping: Any = 0.0,
     ) -> None:
-        self.mount = Mount(radius, pointing, setting_angle, gravity)
-        self.inertia = jnp.asarray(positive("inertia", inertia, "kg m²"), dtype=float)
-        self.stiffness = jnp.asarray(positive("stiffness", stiffness, "N m/rad", zero=True), dtype=float)
-        self.damping = jnp.asarray(positive("damping", damping, "N m s/rad", zero=True), dtype=float)
-        self.torque = torque
+        if torque is not None and rate is not None:
+            raise InputError("torque", "is given beside rate", "keep rate or torque, not both")
+        if torque is not None and inertia is None:
+            raise InputError("inertia", "is missing", 'a hub under a torque needs it: inertia = "200 kg m^2"')
+        stiffness = as_array(positive("stiffness", stiffness, "N m/rad", zero=True))
+        damping = as_array(positive("damping", damping, "N m s/rad", zero=True))
+        free = rate is None and inertia is not None
+        for name, value in (("stiffness", stiffness), ("damping", damping)):
+            if not free and not (namespace(value) is np and value == 0):
+                fix = f"leave out {name}, or give inertia and no rate"
+                raise InputError(name, "is given, and the hub is not free to turn", fix)
+        mount = Mount(radius, pointing, setting_angle, gravity)
+        values: dict[str, Any] = {
+            "mount": mount,
+            "rate": None if free else _profile(rate),
+            "inertia": None if inertia is None else as_array(positive("inertia", inertia, "kg m²")),
+            "torque": _profile(torque) if free else None,
+            "stiffness": stiffness,
+            "damping": damping,
+            "free": free,
+        }  # fmt: skip
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        # Gravity turns in base axes with the hub: only then does the motion of the base need the angle.
+        times, angles = self._angles() if gravity is not None and not free else (np.zeros(1), np.zeros(1))
+        object.__setattr__(self, "times", times)
+        object.__setattr__(self, "angles", angles)
 
     @property
-    def radius(self) -> Float[Array, ""]:
+    def radius(self) -> Any:
         """From the axis to the root, m."""
         return self.mount.radius
 
+    def base(self, t: Any) -> Base:
+        """Motion of the base at times `t` (s, any shape): a_O = (−rΩ², r dΩ/dt, 0) in hub axes."""
+        rate, acceleration = with_rate(self._prescribed(), t)
+        return self.mount.base(0.0 if self.mount.gravity is None else self.angle(t), rate, acceleration)
+
+    def angle(self, t: Any) -> Any:
+        """Angle of a hub with a prescribed rate at times `t` (s, any shape), rad."""
+        times, angles = (self.times, self.angles) if self.mount.gravity is not None else self._angles()
+        now = as_array(t)
+        xp = namespace(now, times, angles)
+        last = xp.maximum(xp.searchsorted(xp.asarray(times), now, side="right") - 1, 0)
+        return xp.asarray(angles)[last] + self._turned(xp.asarray(times)[last], now)
+
     @property
-    def breaks(self) -> Float[Array, " b"]:
-        """Times at which an integrator should stop and start afresh, s."""
-        return self.torque.breaks
+    def breaks(self) -> Any:
+        """Times at which an integrator should stop and start afresh, s, shape (b,)."""
+        driving = self.torque if self.rate is None else self.rate
+        assert driving is not None
+        return driving.breaks
+
+    def over(self, start: float, end: float) -> Self:
+        """The hub itself: it needs no preparation."""
+        return self
+
+    def _prescribed(self) -> Profile:
+        if self.rate is None:
+            raise InputError("rate", "is not given: how the hub turns is a result", "give rate, or simulate its motion")
+        return self.rate
+
+    def _angles(self) -> tuple[Any, Any]:
+        """Times and angles at them, from zero at time zero; fine enough for `_turned` between them."""
+        rate = self._prescribed()
+        times = np.unique(np.append(rate.knots(_STRIDE), [0.0, *np.asarray(rate.breaks)]))
+        steps = self._turned(times[:-1], times[1:])
+        xp = namespace(steps)
+        sums = xp.concatenate([xp.zeros(1), xp.cumsum(steps)])
+        return times, sums - sums[np.searchsorted(times, 0.0)]
+
+    def _turned(self, start: Any, end: Any) -> Any:
+        half = (end - start)[..., None] / 2
+        values = self._prescribed()(start[..., None] + half * (1 + _POINTS))
+        return (half * _WEIGHTS * values).sum(axis=-1)
+
+
+def _profile(value: Any | None) -> Profile:
+    if isinstance(value, Profile):
+        return value
+    return constant(0.0 if value is None else value)

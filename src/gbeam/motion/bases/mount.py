@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-import equinox as eqx
-import jax.numpy as jnp
-import numpy as np
-from jaxtyping import Array, ArrayLike, Float
+from typing import Any
 
-from gbeam.checks import positive
+import numpy as np
+
+from gbeam.arrays.namespace import as_array, namespace
+from gbeam.arrays.tree import record
+from gbeam.checks import finite, positive
 from gbeam.errors import InputError
 from gbeam.motion.bases.base import Base
 
 POINTINGS = ("outward", "inward")
 
 
-class Mount(eqx.Module):
+@record
+class Mount:
     """The beam's root on the x axis of the hub's axes H, turned by a constant rotation.
 
     Parameters
@@ -34,37 +36,38 @@ class Mount(eqx.Module):
         If a value is impossible.
     """
 
-    radius: Float[Array, ""]
-    R_HB: Float[Array, "3 3"]
-    gravity: Float[Array, 3] | None
+    radius: Any
+    R_HB: Any
+    gravity: Any
 
     def __init__(
-        self,
-        radius: float,
-        pointing: str = "outward",
-        setting_angle: float = 0.0,
-        gravity: ArrayLike | None = None,
+        self, radius: Any, pointing: str = "outward", setting_angle: Any = 0.0, gravity: Any | None = None
     ) -> None:
         if pointing not in POINTINGS:
             raise InputError("pointing", f"is {pointing!r}", f"choose one of {', '.join(POINTINGS)}")
-        if not np.isfinite(setting_angle):
-            raise InputError("setting_angle", f"is {setting_angle}", "give a finite angle")
-        if gravity is not None and (np.shape(gravity) != (3,) or not np.isfinite(np.asarray(gravity)).all()):
-            raise InputError("gravity", f"is {gravity!r}", "give three finite components, along x, y and z of the hub")
-        c, s = np.cos(setting_angle), np.sin(setting_angle)
-        about_x = np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+        angle = finite("setting_angle", setting_angle)
+        if gravity is not None:
+            gravity = as_array(gravity)
+            concrete = namespace(gravity) is np
+            if gravity.shape != (3,) or (concrete and not np.isfinite(gravity).all()):
+                fix = "give three finite components, along x, y and z of the hub"
+                raise InputError("gravity", f"is {gravity!r}", fix)
+        xp = namespace(angle)
+        c, s, one, none = xp.cos(angle), xp.sin(angle), xp.ones(()), xp.zeros(())
+        about_x = xp.stack([xp.stack([one, none, none]), xp.stack([none, c, -s]), xp.stack([none, s, c])])
         about_z = np.diag([1.0, 1.0, 1.0] if pointing == "outward" else [-1.0, -1.0, 1.0])
-        self.radius = jnp.asarray(positive("radius", radius, "m", zero=True), dtype=float)
-        self.R_HB = jnp.asarray(about_z @ about_x)
-        self.gravity = None if gravity is None else jnp.asarray(gravity, dtype=float)
+        object.__setattr__(self, "radius", as_array(positive("radius", radius, "m", zero=True)))
+        object.__setattr__(self, "R_HB", about_z @ about_x)
+        object.__setattr__(self, "gravity", gravity)
 
-    def base(self, angle: Array | float, rate: Array, acceleration: Array) -> Base:
+    def base(self, angle: Any, rate: Any, acceleration: Any) -> Base:
         """Motion of the base, specific force where gravity acts, at angles, rates and accelerations of one shape."""
-        none = jnp.zeros_like(rate)
-        a_WO_H = jnp.stack([-self.radius * rate**2, self.radius * acceleration, none], axis=-1)
+        xp = namespace(angle, rate, acceleration, self.radius, self.R_HB, self.gravity)
+        none = xp.zeros_like(rate)
+        a_WO_H = xp.stack([-self.radius * rate**2, self.radius * acceleration, none], axis=-1)
         if self.gravity is not None:
             x, y, z = self.gravity
-            c, s = jnp.cos(angle), jnp.sin(angle)
-            a_WO_H = a_WO_H - jnp.stack([c * x + s * y, c * y - s * x, z + none], axis=-1)
-        axis = jnp.stack([none, none, none + 1], axis=-1) @ self.R_HB
+            c, s = xp.cos(angle), xp.sin(angle)
+            a_WO_H = a_WO_H - xp.stack([c * x + s * y, c * y - s * x, z + none], axis=-1)
+        axis = xp.stack([none, none, none + 1], axis=-1) @ self.R_HB
         return Base(a_WO_H @ self.R_HB, rate[..., None] * axis, acceleration[..., None] * axis)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass, replace
+from typing import ClassVar, Self
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -58,6 +59,7 @@ class Centrifuge(eqx.Module):
         If a number is impossible, the inverse unknown, or it cannot follow the target's corners.
     """
 
+    kind: ClassVar[str] = "centrifuge"
     target: Target
     geometry: Geometry
     inverse: Inverse
@@ -160,6 +162,15 @@ class Centrifuge(eqx.Module):
     def shortfalls(self) -> tuple[Shortfall, ...]:
         """Where no such machine can make the flight's load, and what would help."""
         return shortfalls(self.target, float(self.geometry.arm))
+
+    @property
+    def free(self) -> bool:
+        """False: the motion is prescribed."""
+        return False
+
+    def over(self, start: float, end: float) -> Self:
+        """The centrifuge itself: it is prepared for its target's span."""
+        return self
 
     @property
     def breaks(self) -> Float[Array, " b"]:

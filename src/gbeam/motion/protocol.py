@@ -1,0 +1,35 @@
+"""What every motion of the base offers, whatever it is."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Protocol, Self
+
+from gbeam.motion.bases.base import Base
+
+
+class Motion(Protocol):
+    """A flight, a centrifuge or a hub.
+
+    ``kind`` names which. Where ``free`` is true the motion is a result: a hub whose rate is not given. NumPy in, NumPy
+    out; JAX arrays and tracers, in the times or in the motion's own values, pass through.
+    """
+
+    kind: ClassVar[str]
+
+    @property
+    def free(self) -> bool:
+        """Whether the base's motion is an unknown of the equations of motion."""
+        ...
+
+    def base(self, t: Any) -> Base:
+        """Motion of the base at times `t` (s, any shape)."""
+        ...
+
+    @property
+    def breaks(self) -> Any:
+        """Times at which an integrator should stop and start afresh, s, shape (b,)."""
+        ...
+
+    def over(self, start: float, end: float) -> Self:
+        """The same motion, prepared for times from `start` to `end`, s."""
+        ...
