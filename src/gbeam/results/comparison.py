@@ -6,13 +6,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from gbeam.results.result import Figured, Flags, Floats, Part
+
+AGREEMENT = 0.25  # of flight's peak: beyond, the two do not agree
 
 
-@dataclass(frozen=True)
-class Sizes:
+@dataclass(frozen=True, repr=False, eq=False)
+class Sizes(Part):
     """How large a quantity is over the times compared, per station and direction.
 
     Parameters
@@ -28,8 +29,8 @@ class Sizes:
     residual: Floats
 
 
-@dataclass(frozen=True)
-class Statistics:
+@dataclass(frozen=True, repr=False, eq=False)
+class Statistics(Part):
     """Displacements of all stations in both environments, and the tip's trend and elastic vibration apart.
 
     Trend: a Butterworth low-pass of fourth order, run forwards and backwards so that it shifts nothing in time, −6 dB
@@ -65,8 +66,8 @@ class Statistics:
         return self.trend_centrifuge - self.trend_flight
 
 
-@dataclass(frozen=True)
-class Mismatch:
+@dataclass(frozen=True, repr=False, eq=False)
+class Mismatch(Part):
     """Acceleration that grows with the distance from the control point: Δa(x, t) = gradient(t) (x − x_c).
 
     Parameters
@@ -86,6 +87,8 @@ class Mismatch:
         The same of the force at the root, N: m L² |1/2 − ξ| max|gradient|.
     moment_bound : (3,)
         The same of the moment at the root, in the plane of x and the axis, N m: m L³ |1/3 − ξ/2| max|gradient|.
+    length : float
+        Of the beam, L, m.
     """
 
     control_point: float
@@ -95,6 +98,7 @@ class Mismatch:
     tip_bound: Floats
     force_bound: Floats
     moment_bound: Floats
+    length: float
 
     @property
     def tip_envelope(self) -> Floats:
@@ -108,8 +112,26 @@ class Mismatch:
         return self.gradient[:, None, :] * (np.asarray(x)[:, None] - self.control_point)
 
 
-@dataclass(frozen=True)
-class RootLoads:
+@dataclass(frozen=True, repr=False, eq=False)
+class RootHistory(Part):
+    """What the root carries at the comparison's times, axes of its section.
+
+    Parameters
+    ----------
+    force_flight, force_centrifuge : (t, 3)
+        N, V_y, V_z, N.
+    moment_flight, moment_centrifuge : (t, 3)
+        Torque, M_y, M_z, N m.
+    """
+
+    force_flight: Floats
+    force_centrifuge: Floats
+    moment_flight: Floats
+    moment_centrifuge: Floats
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class RootLoads(Part):
     """What the root carries in both environments, over the times compared.
 
     Parameters
@@ -120,6 +142,8 @@ class RootLoads:
         Largest size of the torque, M_y, M_z, N m.
     stress_flight, stress_centrifuge, stress_difference : float
         Largest normal stress at the root's outer fibre, Pa; NaN where the outer fibres are unknown.
+    history : RootHistory
+        Force and moment over time.
     """
 
     force_flight: Floats
@@ -131,17 +155,22 @@ class RootLoads:
     stress_flight: float
     stress_centrifuge: float
     stress_difference: float
+    history: RootHistory
+
+    @property
+    def main(self) -> int:
+        """Component of the moment (0, 1, 2) that is largest in flight."""
+        return int(np.argmax(self.moment_flight))
 
     @property
     def moment_agreement(self) -> float:
         """Largest difference of the bending moment that is largest in flight, over that; NaN without a moment."""
-        main = int(np.argmax(self.moment_flight))
-        largest = float(self.moment_flight[main])
-        return float(self.moment_difference[main]) / largest if largest > 0 else float("nan")
+        largest = float(self.moment_flight[self.main])
+        return float(self.moment_difference[self.main]) / largest if largest > 0 else float("nan")
 
 
-@dataclass(frozen=True)
-class Shock:
+@dataclass(frozen=True, repr=False, eq=False)
+class Shock(Part):
     """Shock response spectra of the tip's acceleration: largest absolute acceleration of an oscillator riding on it.
 
     Smallwood's ramp-invariant filter (absolute acceleration, maximax over the times compared); the oscillators begin at
@@ -163,8 +192,8 @@ class Shock:
     centrifuge: Floats
 
 
-@dataclass(frozen=True)
-class Comparison:
+@dataclass(frozen=True, repr=False, eq=False)
+class Comparison(Figured):
     """How a centrifuge's response differs from the flight's that it imitates, where its target is the flight's load.
 
     Parameters
@@ -194,7 +223,7 @@ class Comparison:
     centrifuge: str
     time: Floats
     difference: Floats
-    covered: NDArray[np.bool_]
+    covered: Flags
     max_difference: Floats
     rms_difference: Floats
     peak_flight: Floats
@@ -216,18 +245,39 @@ class Comparison:
         return int(np.argmax(self.peak_flight)) if self.covered.any() else 2
 
     @property
+    def agrees(self) -> bool:
+        """Whether the tip's displacement differs by a quarter of the flight's peak at most."""
+        return bool(self.covered.any() and self.relative[self.main_axis] <= AGREEMENT)
+
+    @property
     def verdict(self) -> str:
         """One line that a person can quote."""
         if not self.covered.any():
             return f"{self.centrifuge} never carries {self.flight}'s load: the target was held all the time"
-        main = self.main_axis
-        axis = "xyz"[main]
-        root = "" if self.root is None else f", root moment within {_percent(self.root.moment_agreement)}"
+        main, root = self.main_axis, ""
+        if self.root is not None:
+            root = f", root moment {'within' if self.agrees else 'by'} {_percent(self.root.moment_agreement)}"
+        differs, peak = (f"{1e3 * each[main]:.4g} mm" for each in (self.max_difference, self.peak_flight))
+        share = float(self.relative[main])
+        if not math.isfinite(share):
+            still = int(np.argmax(self.max_difference))
+            moved = f"{1e3 * self.max_difference[still]:.4g} mm along {'xyz'[still]} on {self.centrifuge}"
+            return f"{self.flight} does not move the tip, which differs by up to {moved}{root}, {self._when}"
+        if self.agrees:
+            return (
+                f"tip displacement along {'xyz'[main]} on {self.centrifuge} agrees with {self.flight} within "
+                f"{_percent(share)} of its peak ({differs} of {peak}){root}, {self._when}"
+            )
         return (
-            f"tip displacement along {axis} on {self.centrifuge} agrees with {self.flight} within "
-            f"{_percent(float(self.relative[main]))} of its peak ({1e3 * self.max_difference[main]:.4g} mm of "
-            f"{1e3 * self.peak_flight[main]:.4g} mm){root}, {self._when}"
+            f"{self.centrifuge} does not agree with {self.flight}: tip differs along {'xyz'[main]} by up to {differs}, "
+            f"{_times(share)} {self.flight}'s peak ({peak}){root}, {self._when}"
         )
+
+    def __str__(self) -> str:
+        return self.verdict[:1].upper() + self.verdict[1:]
+
+    def __repr__(self) -> str:
+        return f"Comparison: {self.verdict}"
 
     @property
     def _when(self) -> str:
@@ -246,3 +296,8 @@ class Comparison:
 def _percent(share: float) -> str:
     # Rounded first: two digits without an exponent.
     return f"{float(f'{100 * share:.2g}'):g} %" if math.isfinite(share) else "an unknown share"
+
+
+def _times(share: float) -> str:
+    """A share in words that go before what it is a share of: 8.8 times, or 31 % of."""
+    return f"{share:.2g} times" if share >= 1 else f"{_percent(share)} of"

@@ -1,66 +1,16 @@
-"""What the questions about small motions return: frozen records of arrays and words."""
+"""Small vibrations about a relative equilibrium: modes at one instant, and frequencies against a hub's speed."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gbeam.results.response import Floats
-from gbeam.results.section_forces import Loads
+from gbeam.results.equilibrium import Critical
+from gbeam.results.response import BaseMotion
+from gbeam.results.result import Complex, Figured, Floats
 
-Complex = NDArray[np.complex128]
-
-
-@dataclass(frozen=True)
-class FrozenBase:
-    """Motion of the root at one instant, base axes: acceleration m/s², angular velocity rad/s, and its rate rad/s²."""
-
-    a_WO_B: Floats
-    w_WB_B: Floats
-    alpha_WB_B: Floats
-
-
-@dataclass(frozen=True)
-class Deflection:
-    """Relative equilibrium at a frozen base motion.
-
-    Parameters
-    ----------
-    motion, model : str
-    time : float
-        s.
-    base : FrozenBase
-    stations : (s,) m, the last is the tip
-    displacement : (s, 3)
-        Relative to the base axes, m.
-    q : (n,)
-        Coordinates.
-    strain_energy : float
-        J.
-    stable : bool
-        Whether the stiffness about the equilibrium is positive definite.
-    loads : Loads or None
-        What the sections carry, of one time.
-    """
-
-    motion: str
-    model: str
-    time: float
-    base: FrozenBase
-    stations: Floats
-    displacement: Floats
-    q: Floats
-    strain_energy: float
-    stable: bool
-    loads: Loads | None = None
-
-    @property
-    def tip(self) -> Floats:
-        """Displacement of the tip, (3,) m."""
-        return self.displacement[-1]
+SHOWN = 6  # frequencies in a short description
 
 
 @dataclass(frozen=True)
@@ -84,8 +34,8 @@ class Instability:
     direction: str
 
 
-@dataclass(frozen=True)
-class Modes:
+@dataclass(frozen=True, repr=False, eq=False)
+class Modes(Figured):
     """Small vibrations about a relative equilibrium, ascending in frequency.
 
     Parameters
@@ -93,7 +43,8 @@ class Modes:
     motion, model : str
     time : float
         s.
-    base : FrozenBase
+    base : BaseMotion
+        At that time, (3,).
     gyroscopic : bool
         Whether Coriolis coupling is in.
     eigenvalue : (k,) complex
@@ -117,7 +68,7 @@ class Modes:
     motion: str
     model: str
     time: float
-    base: FrozenBase
+    base: BaseMotion
     gyroscopic: bool
     eigenvalue: Complex
     direction: tuple[str, ...]
@@ -144,58 +95,13 @@ class Modes:
         """Whether nothing grows."""
         return not self.instabilities
 
-
-@dataclass(frozen=True)
-class Critical:
-    """Where the stiffness about the relative equilibrium stops being positive definite, or something grows.
-
-    Parameters
-    ----------
-    quantity, unit : str
-        What was raised: ``hub rate``, rad/s; ``acceleration along x``, m/s²; or ``load factor``, times the loads.
-    value : float or None
-        None where it is not reached.
-    searched_to : float
-        End of the search.
-    kind : str
-        ``divergence``, ``flutter``, ``no equilibrium`` or ``none``.
-    direction : str
-        Of the mode that is lost; empty where there is none.
-    reason : str
-        The answer as a sentence.
-    model : str
-    """
-
-    quantity: str
-    unit: str
-    value: float | None
-    searched_to: float
-    kind: str
-    direction: str
-    reason: str
-    model: str
-
-
-@dataclass(frozen=True)
-class CriticalMap:
-    """Critical hub rates against a mass on the beam and its position.
-
-    Parameters
-    ----------
-    motion, model : str
-    mass : (m,) kg
-    position : (p,) m from the root
-    speed : (m, p) rad/s; NaN where it is not reached
-    searched_to : float
-        rad/s.
-    """
-
-    motion: str
-    model: str
-    mass: Floats
-    position: Floats
-    speed: Floats
-    searched_to: float
+    def __repr__(self) -> str:
+        of = f" {self.motion!r}" if self.motion else ""
+        modes = [f"{f:.4g} Hz {way}" for f, way in zip(self.frequency, self.direction, strict=True)]
+        more = f" and {len(modes) - SHOWN} more" if len(modes) > SHOWN else ""
+        lines = [f"Modes{of} ({self.model}) at {self.time:.4g} s: {', '.join(modes[:SHOWN])}{more}"]
+        lines += [f"{e.kind} along {e.direction}, growing with {e.growth_rate:.4g} 1/s" for e in self.instabilities]
+        return "\n  ".join(lines)
 
 
 @dataclass(frozen=True)
@@ -221,8 +127,8 @@ class Crossing:
     direction: str
 
 
-@dataclass(frozen=True)
-class Campbell:
+@dataclass(frozen=True, repr=False, eq=False)
+class Campbell(Figured):
     """Frequencies against speed, each column one mode followed through crossings and veering.
 
     Parameters
@@ -252,79 +158,26 @@ class Campbell:
     crossings: tuple[Crossing, ...]
     critical: Critical | None
 
-
-@dataclass(frozen=True)
-class ModelRow:
-    """One model's answer to a scenario, beside the reference's.
-
-    Parameters
-    ----------
-    model : str
-    motion : str
-    outcome : str
-        done, diverged, not converged, or cannot: the model is not made for this.
-    message : str
-        Why it is not done; what follows is then NaN.
-    warnings : tuple of str
-        Why the row may not be what it seems.
-    peak, time_of_peak : float
-        Of the tip in the direction in which the reference moves most, m, s.
-    peak_error : float
-        Peak over the reference's, less one.
-    residual : float
-        Amplitude of the vibration left, m; NaN where none was asked for.
-    residual_error : float
-        Over the reference's, less one.
-    phase : float
-        Of the vibration left, at the reference's dominant frequency, ahead of the reference's, rad.
-    difference : float
-        Largest distance between the two histories over the reference's peak.
-    hub_angle : float
-        At the end, of a free hub, rad; else NaN.
-    error_estimate : float
-        Of the steps, over the largest displacement.
-    steps : int
-    seconds : float
-        To compute it, once compiled.
-    """
-
-    model: str
-    motion: str
-    outcome: str
-    message: str
-    warnings: tuple[str, ...]
-    peak: float = math.nan
-    time_of_peak: float = math.nan
-    peak_error: float = math.nan
-    residual: float = math.nan
-    residual_error: float = math.nan
-    phase: float = math.nan
-    difference: float = math.nan
-    hub_angle: float = math.nan
-    error_estimate: float = math.nan
-    steps: int = 0
-    seconds: float = math.nan
+    def __repr__(self) -> str:
+        of = f" {self.motion!r}" if self.motion else ""
+        lost = "" if self.critical is None or self.critical.value is None else f"\n  {self.critical.reason}"
+        return (
+            f"Campbell{of} ({self.model}): {len(self.direction)} modes at {len(self.speed)} speeds, "
+            f"{self.speed[0]:.4g} to {self.speed[-1]:.4g} rad/s; {len(self.crossings)} crossings with multiples "
+            f"{', '.join(str(order) for order in self.orders) or 'none'} of the speed{lost}"
+        )
 
 
-@dataclass(frozen=True)
-class ModelStudy:
-    """The same scenario by every model; rows by motion, then model.
+# Old places, until their users have moved.
+from gbeam.results.equilibrium import CriticalMap as CriticalMap  # noqa: E402
+from gbeam.results.equilibrium import Deflection as Deflection  # noqa: E402
 
-    Parameters
-    ----------
-    title, reference : str
-        The reference is the model that the others are compared with.
-    direction : dict of str to str
-        Per motion, the direction compared.
-    rows : tuple of ModelRow
-    """
+FrozenBase = BaseMotion
 
-    title: str
-    reference: str
-    direction: dict[str, str]
-    rows: tuple[ModelRow, ...]
 
-    @property
-    def compared(self) -> bool:
-        """Whether there is a reference in every environment."""
-        return all(it.outcome == "done" for it in self.rows if it.model == self.reference)
+def __getattr__(name: str) -> object:
+    if name in ("ModelRow", "ModelStudy"):
+        from gbeam.results import study
+
+        return getattr(study, name)
+    raise AttributeError(name)

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from gbeam.results.response import LimitUse
+from gbeam.results.machine import LimitUse
+from gbeam.results.result import Part, Result
 
 MEASURES = ("root-shear", "root-moment", "vibration", "tip")
 
 
-@dataclass(frozen=True)
-class Candidate:
+@dataclass(frozen=True, repr=False)
+class Candidate(Part):
     """One way of mounting and smoothing, with the control point that is best for it.
 
     Parameters
@@ -21,11 +22,11 @@ class Candidate:
     smoothing : float
         Width of the target's kernel, s.
     control_point : float
-        Best for this option, from the root, m.
+        Best for this candidate, from the root, m.
     mismatch : float
         Weighted measure of what the mismatch field alone does there, as a fraction of flight's peak.
     total_error : float
-        The same with what smoothing and tracking change of the load: what options are chosen by.
+        The same with what smoothing and tracking change of the load: what candidates are chosen by.
     accelerations : tuple of float
         Largest accelerations of axes 1, 2, 3, rad/s².
     share : float
@@ -70,8 +71,8 @@ class Verification:
     moment_difference: float
 
 
-@dataclass(frozen=True)
-class Placement:
+@dataclass(frozen=True, repr=False, eq=False)
+class Placement(Result):
     """The best control point, mounting and smoothing for a measure.
 
     Parameters
@@ -91,9 +92,9 @@ class Placement:
         For ``best``, ``current`` and ``middle`` of the beam: each measure of the mismatch field, as a fraction of
         flight's peak.
     verifications : tuple of Verification
-        Empty where none was asked for.
+        Empty where there was none.
     refused : tuple of str
-        Options that could not be built, and why.
+        Candidates that could not be built, and why.
     widths : tuple of float
         First and last width of smoothing that was tried, s.
     """
@@ -117,8 +118,20 @@ class Placement:
 
     @property
     def vibration_gain(self) -> float:
-        """How much less the specimen vibrates than with the control point at mid-span, as proven; NaN without proof."""
-        found = {proof.name: proof.vibration for proof in self.verifications}
-        if not {"best", "middle"} <= found.keys() or found["best"] <= 0:
+        """How much less the specimen vibrates than with the control point at mid-span, simulated; NaN where it was not."""
+        vibration = {check.name: check.vibration for check in self.verifications}
+        if not {"best", "middle"} <= vibration.keys() or vibration["best"] <= 0:
             return float("nan")
-        return found["middle"] / found["best"]
+        return vibration["middle"] / vibration["best"]
+
+    def __repr__(self) -> str:
+        best = self.best
+        measure = " + ".join(f"{weight:g} × {name}" for name, weight in self.weights.items() if weight)
+        lines = [
+            f"Placement of {self.centrifuge!r}, tracking {self.flight!r}, by {measure}",
+            f"control point {1e3 * best.control_point:.2f} mm from the root ({self.fraction:.4f} of the length), "
+            f"{best.mounting}, smoothing {1e3 * best.smoothing:.4g} ms",
+            f"mismatch {100 * best.mismatch:.3g} % of flight's peak, in total {100 * best.total_error:.3g} %; "
+            f"{len(self.options)} candidates",
+        ]
+        return "\n  ".join(lines)

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-Floats = NDArray[np.float64]
+from gbeam.results.result import Floats, Part
 
 
-@dataclass(frozen=True)
-class Loads:
+@dataclass(frozen=True, repr=False, eq=False)
+class Loads(Part):
     """What the sections of the beam carry, and what its base must supply.
 
     The outboard part of the beam acts on the inboard part with `force` and `moment` at the section's deformed
@@ -34,9 +31,9 @@ class Loads:
     acceleration : (t, s, 3)
         Of the stations in the world, base axes, m/s²; specific force where gravity acts.
     beam_torque : (t,) or None
-        Torque about the hub's axis that the beam asks of the hub, N m.
+        Torque about the hub's axis that the beam takes from the hub, N m.
     drive_torque : (t,) or None
-        The same with the hub's own inertia, N m; NaN where that is unknown.
+        The same with the hub's own inertia, N m: what its drive supplies; NaN where the inertia is unknown.
     """
 
     stations: Floats
@@ -60,8 +57,8 @@ class Loads:
         return -self.moment[:, 0]
 
 
-@dataclass(frozen=True)
-class Influence:
+@dataclass(frozen=True, repr=False, eq=False)
+class Influence(Part):
     """Static answer of the beam, straight and at rest, to acceleration fields of its base: e and g·x, base axes.
 
     Column i is the answer to the field along axis i: a uniform acceleration of 1 m/s² (`*_uniform`), or one that

@@ -1,0 +1,119 @@
+"""What all results share: short words on the screen, and the doors to xarray, to a file and to a figure.
+
+The doors lead to the leaves `gbeam.io` and `gbeam.plots`, which are imported when one is opened: a record needs
+neither, and importing a record loads neither.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Floats = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Flags = NDArray[np.bool_]
+
+
+def brief(record: Any) -> str:
+    """A record on one line: numbers and words as they are, arrays by their shapes, other records by their names."""
+    values = ", ".join(f"{f.name}={_short(getattr(record, f.name))}" for f in fields(record))
+    return f"{type(record).__name__}({values})"
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, (str, bool, int)) or value is None:
+        return repr(value)
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    if getattr(value, "shape", None) is not None:
+        return str(tuple(value.shape))
+    if isinstance(value, (tuple, dict)) and len(value) > 3:
+        return f"<{len(value)}>"
+    if isinstance(value, tuple):
+        return f"({', '.join(_short(each) for each in value)}{',' if len(value) == 1 else ''})"
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{key}: {_short(each)}' for key, each in value.items())}}}"
+    return f"<{type(value).__name__}>"
+
+
+class Part:
+    """A part of a result: it prints on one line, arrays as their shapes."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return brief(self)
+
+
+class Result:
+    """What an analysis returns as a whole: it goes to xarray and to a netCDF file."""
+
+    __slots__ = ()
+
+    def to_xarray(self) -> Any:
+        """Return the result with named dimensions, units and frames.
+
+        Returns
+        -------
+        xarray.Dataset
+            Of a :class:`~gbeam.Study` an xarray.DataTree.
+        """
+        from gbeam.io.export import to_xarray
+
+        return to_xarray(self)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the result to a netCDF file, whole or not at all; xarray, MATLAB and h5py open it.
+
+        Parameters
+        ----------
+        path : path
+            Replaced if it exists.
+
+        Raises
+        ------
+        OSError
+            If it cannot be written.
+        """
+        from gbeam.io.export import save
+
+        save(self, path)
+
+
+class Figured(Result):
+    """A result that has figures."""
+
+    __slots__ = ()
+
+    def plot(self, what: str = "", *, title: str = "") -> Figure:
+        """Draw the result.
+
+        Parameters
+        ----------
+        what : str
+            Which of its figures; the first that the result has by default. Of a response: tip, base, loads, axes, hub;
+            of a study: tip, or any other followed by a space and a motion's name; of a comparison: parts, shock; of a
+            deflection: shape, loads; of a plan: axes. Other results have one.
+        title : str
+            First line above the figure.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Made without pyplot: ``figure.savefig(path)`` writes it, a notebook shows it.
+
+        Raises
+        ------
+        InputError
+            If it has no such figure.
+        """
+        from gbeam.plots.figures import plot
+
+        return plot(self, what, title)

@@ -1,0 +1,143 @@
+"""Several answers side by side: one beam in all environments of a scenario, and one scenario by every model."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from gbeam.results.comparison import Comparison
+from gbeam.results.response import Response
+from gbeam.results.result import Figured, Part, Result
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why there is no whole response in an environment: the outcome, such as diverged, and what happened."""
+
+    outcome: str
+    message: str
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Study(Figured):
+    """The responses of one beam in all environments of a scenario, and their comparisons.
+
+    Parameters
+    ----------
+    title : str
+    responses : dict of str to Response
+        By the motion's name.
+    comparisons : tuple of Comparison
+    failures : mapping of str to Failure
+        Where a response has no state to start from.
+    """
+
+    title: str
+    responses: dict[str, Response]
+    comparisons: tuple[Comparison, ...]
+    failures: Mapping[str, Failure] = field(default_factory=dict)
+
+    @property
+    def unfinished(self) -> Mapping[str, Failure]:
+        """Why not every environment is done, by name."""
+        cut = {name: Failure(r.outcome, r.message) for name, r in self.responses.items() if r.outcome != "done"}
+        return {**cut, **self.failures}
+
+    @property
+    def outcome(self) -> str:
+        """``done`` where every response is, else the first other outcome."""
+        return next((failure.outcome for failure in self.unfinished.values()), "done")
+
+    def __repr__(self) -> str:
+        parts = [repr(response) for response in self.responses.values()]
+        parts += [f"{name}: {failure.outcome}\n  {failure.message}" for name, failure in self.failures.items()]
+        parts += [repr(comparison) for comparison in self.comparisons]
+        return "\n".join([f"Study{f' {self.title!r}' if self.title else ''}: {self.outcome}", *parts])
+
+
+@dataclass(frozen=True, repr=False)
+class ModelRow(Part):
+    """One model's answer to a scenario, beside the reference's.
+
+    Parameters
+    ----------
+    model : str
+    motion : str
+    outcome : str
+        done, diverged, not converged, or cannot: the model is not made for this.
+    message : str
+        Why it is not done; what follows is then NaN.
+    warnings : tuple of str
+        Why the row may not be what it seems.
+    peak, time_of_peak : float
+        Of the tip in the direction in which the reference moves most, m, s.
+    peak_error : float
+        Peak over the reference's, less one.
+    residual : float
+        Amplitude of the vibration left, m; NaN where the scenario has no time from which it is measured.
+    residual_error : float
+        Over the reference's, less one.
+    phase : float
+        Of the vibration left, at the reference's dominant frequency, ahead of the reference's, rad.
+    difference : float
+        Largest distance between the two histories over the reference's peak.
+    hub_angle : float
+        At the end, of a free hub, rad; else NaN.
+    error_estimate : float
+        Of the steps, over the largest displacement.
+    steps : int
+    seconds : float
+        To compute it, once compiled.
+    """
+
+    model: str
+    motion: str
+    outcome: str
+    message: str
+    warnings: tuple[str, ...]
+    peak: float = math.nan
+    time_of_peak: float = math.nan
+    peak_error: float = math.nan
+    residual: float = math.nan
+    residual_error: float = math.nan
+    phase: float = math.nan
+    difference: float = math.nan
+    hub_angle: float = math.nan
+    error_estimate: float = math.nan
+    steps: int = 0
+    seconds: float = math.nan
+
+    def __str__(self) -> str:
+        if self.outcome != "done":
+            return f"{self.model} on {self.motion}: {self.outcome}; {self.message}"
+        error = "" if math.isnan(self.difference) else f", differs by up to {self.difference:.2g} of the peak"
+        return f"{self.model} on {self.motion}: peak {1e3 * self.peak:.4g} mm at {self.time_of_peak:.4g} s{error}"
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class ModelStudy(Result):
+    """The same scenario by every model; rows by motion, then model.
+
+    Parameters
+    ----------
+    title, reference : str
+        The reference is the model that the others are compared with.
+    direction : dict of str to str
+        Per motion, the direction compared.
+    rows : tuple of ModelRow
+    """
+
+    title: str
+    reference: str
+    direction: dict[str, str]
+    rows: tuple[ModelRow, ...]
+
+    @property
+    def compared(self) -> bool:
+        """Whether there is a reference in every environment."""
+        return all(row.outcome == "done" for row in self.rows if row.model == self.reference)
+
+    def __repr__(self) -> str:
+        of = f" {self.title!r}" if self.title else ""
+        return "\n  ".join([f"ModelStudy{of}, against {self.reference}", *(str(row) for row in self.rows)])
