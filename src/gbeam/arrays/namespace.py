@@ -32,3 +32,9 @@ def namespace(*values: Any) -> Any:
 def as_array(value: Any) -> Any:
     """A float64 array of the value's own library."""
     return namespace(value).asarray(value, dtype=float)
+
+
+def is_traced(*values: Any) -> bool:
+    """Whether one of the values is a JAX tracer, which has no numbers to look at."""
+    jax = sys.modules.get("jax")
+    return jax is not None and any(isinstance(value, jax.core.Tracer) for value in values)

@@ -25,13 +25,19 @@ def static(**options: Any) -> Any:
 def record(cls: type[_T]) -> type[_T]:
     """Make a class a frozen dataclass that is a pytree; it compares by identity, since arrays have no one truth.
 
-    A class with an ``__init__`` of its own keeps it, and sets its fields by ``object.__setattr__``.
+    A class with an ``__init__`` of its own keeps it, and sets its fields by :func:`assign`.
     """
     made = dataclasses.dataclass(frozen=True, eq=False, init="__init__" not in cls.__dict__)(cls)
     _records.append(made)
     if _register is not None:
         _register(made)
     return made
+
+
+def assign(instance: Any, **fields: Any) -> None:
+    """Set the fields of a record in its own ``__init__`` or ``__post_init__``."""
+    for name, value in fields.items():
+        object.__setattr__(instance, name, value)
 
 
 def register_all(register: Callable[[type], None]) -> None:
