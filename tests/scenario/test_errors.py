@@ -6,6 +6,10 @@ from collections.abc import Callable
 
 import pytest
 
+from gbeam.scenario import Diagnostic
+
+from ..scenarios import SLEW
+
 RATE = 'rate = { profile = "smooth-step", level = "60 rpm", duration = "2 s" }'
 Z = '{ profile = "constant", level = "6 g" }'
 INLINE = f"acceleration = {{ z = {Z} }}"
@@ -50,17 +54,9 @@ CASES = {
         'at = "200 mm"', 'at = "-1 mm"', "beam.masses[0].at",
         "-1 mm is negative", "give zero or a positive length", '"-1 mm"',
     ),
-    "beyond the tip": (
-        'at = "200 mm"', 'at = "400 mm"', "beam.masses[0].at",
-        "400 mm is beyond the tip", "give 0 to 300 mm from the root", '"400 mm"',
-    ),
     "control point": (
         'control_point = "150 mm"', "control_point = 0.4", f"{SPIN}.control_point",
         "0.4 m is beyond the tip", "give 0 to 300 mm from the root", "0.4",
-    ),
-    "station": (
-        'duration = "4 s"', 'duration = "4 s"\nstations = [0.1, "310 mm"]', "response.stations[1]",
-        "310 mm is beyond the tip", "give 0 to 300 mm", '"310 mm"',
     ),
     "unknown key": (
         'thickness = "4 mm"', 'thickness = "4 mm", thicknes = 1', "beam.section.thicknes",
@@ -120,10 +116,6 @@ CASES = {
         'duration = "4 s"', 'duration = "4 s"\nintegrator = "gauss"\nbeta = 0.1', "response.beta",
         "does not belong to gauss", "it has no parameters", "beta",
     ),
-    "residual too late": (
-        'duration = "4 s"', 'duration = "4 s"\nresidual_from = "5 s"', "response.residual_from",
-        "5 s is not within the computation", "give a time before the end, 4 s", '"5 s"',
-    ),
     "step too long": (
         'duration = "4 s"', 'duration = "4 s"\nstep = "5 s"', "response.step",
         "5 s is longer than the computation", "4 s", '"5 s"',
@@ -143,14 +135,6 @@ CASES = {
     ),
     "negative count": (
         "axial = 1", "axial = -1", "model.modes.axial", "-1 is negative", "give 0 or more", "-1",
-    ),
-    "no modes": (
-        "axial = 1, y = 1, z = 1", "axial = 0, y = 0, z = 0", "model.modes",
-        "every number of shapes is zero", "give at least one shape", "{ axial = 0, y = 0, z = 0 }",
-    ),
-    "SFOAM": (
-        'kind = "FOAM"', 'kind = "SFOAM"', "model.modes.axial",
-        "SFOAM has no axial coordinates, and 1 are asked for", "use axial = 0, or the kind FOAM", "1",
     ),
     "hub without its plane": (
         "y = 1", "y = 0", "model.modes.y",
@@ -189,16 +173,8 @@ CASES = {
     "neither source": (
         INLINE + "\n", "", "motion.flight", "record or acceleration is missing", "add one of them", "flight",
     ),
-    "rate and torque": (
-        RATE, RATE + '\ninertia = 1\ntorque = { profile = "constant", level = 1 }', "motion.slew.torque",
-        "is given beside rate", "keep rate or torque, not both", "torque",
-    ),
     "rate and inertia": (
         RATE, RATE + "\ninertia = 1", "motion.slew.inertia", "is given beside rate", "needs none", "inertia",
-    ),
-    "torque without inertia": (
-        RATE, 'torque = { profile = "constant", level = "1 N m" }', "motion.slew",
-        "inertia is missing", 'inertia = "200 kg m^2"', "slew",
     ),
     "unit of a level": (
         '"60 rpm"', '"6 g"', "motion.slew.rate.level", '"6 g" is a mass', "expected an angular rate", '"6 g"',
@@ -211,20 +187,45 @@ CASES = {
         Z, f'{{ profile = "sum", terms = [ {Z}, {{ profile = "constant", level = "6 m" }} ] }}',
         f"{ACC}.z.terms[1].level", '"6 m" is a length', "expected an acceleration", '"6 m"',
     ),
-    "table of unequal lists": (
-        Z, '{ profile = "table", times = [0, 1], values = [1, 2, 3] }', f"{ACC}.z.values",
-        "has 3 values for 2 times", "give one value per time", "[1, 2, 3]",
-    ),
-    "table out of order": (
-        Z, '{ profile = "table", times = [0, "2 s", "1 s"], values = [1, 2, 3] }', f"{ACC}.z.times[2]",
-        "1 s does not come after the time before it", "list times in order", '"1 s"',
-    ),
     "name of a motion": (
         "[motion.slew]", '[motion."my hub"]', "motion.my hub",
         "'my hub' is not a word", "letters, digits, _ and -", '"my hub"',
     ),
 }  # fmt: skip
+# Rules of the objects: the scenario only puts their words at the right place.
 BUILT = {
+    "beyond the tip": (
+        'at = "200 mm"', 'at = "400 mm"', "beam.masses[0].at",
+        "is 0.4 m, beyond the tip", "give 0 to 0.3 m from the root", '"400 mm"',
+    ),
+    "station": (
+        'duration = "4 s"', 'duration = "4 s"\nstations = [0.1, "310 mm"]', "response.stations[1]",
+        "is 0.31 m, off the beam", "give 0 to 0.3 m", '"310 mm"',
+    ),
+    "residual too late": (
+        'duration = "4 s"', 'duration = "4 s"\nresidual_from = "5 s"', "response.residual_from",
+        "is 5 s", "give a time from 0 s to 4 s", '"5 s"',
+    ),
+    "SFOAM": (
+        'kind = "FOAM"', 'kind = "SFOAM"', "model.modes.axial",
+        "is 1 for SFOAM, which has no axial coordinates", "give 0, or use FOAM", "1",
+    ),
+    "rate and torque": (
+        RATE, RATE + '\ninertia = 1\ntorque = { profile = "constant", level = 1 }', "motion.slew.torque",
+        "is given beside rate", "keep rate or torque, not both", "torque",
+    ),
+    "torque without inertia": (
+        RATE, 'torque = { profile = "constant", level = "1 N m" }', "motion.slew.inertia",
+        "is missing", 'inertia = "200 kg m^2"', "slew",
+    ),
+    "table of unequal lists": (
+        Z, '{ profile = "table", times = [0, 1], values = [1, 2, 3] }', f"{ACC}.z.values",
+        "has 3 entries for 2 times", "give one value per time", "[1, 2, 3]",
+    ),
+    "table out of order": (
+        Z, '{ profile = "table", times = [0, "2 s", "1 s"], values = [1, 2, 3] }', f"{ACC}.z.times[2]",
+        "is 1 s, after 2 s", "list times in strictly increasing order", '"1 s"',
+    ),
     "stations of a section": (
         'shape = "rectangle"', 'shape = "rectangle", stations = [0, 0.2]', "beam.section.stations",
         "cover 0 to 0.2 m", "start at the root", "[0, 0.2]",
@@ -269,3 +270,12 @@ def test_is_refused_at_its_place(case: tuple[str, ...], refused: Callable[..., N
 @pytest.mark.parametrize("case", BUILT.values(), ids=BUILT)
 def test_is_refused_by_the_core(case: tuple[str, ...], refused: Callable[..., None]) -> None:
     refused(*case, building=True)
+
+
+def test_no_shapes_at_all(text: str, errors: Callable[..., tuple[Diagnostic, ...]]) -> None:
+    (error,) = errors(
+        text.replace("axial = 1, y = 1, z = 1", "axial = 0, y = 0, z = 0").replace(SLEW, ""), building=True
+    )
+    assert (error.path, error.message) == ("model.modes", "are all zero")
+    assert error.hint == "give at least one mode in one direction"
+    assert error.source_line == "modes = { axial = 0, y = 0, z = 0 }"

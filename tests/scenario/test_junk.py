@@ -12,35 +12,8 @@ from hypothesis import strategies as st
 
 from gbeam.scenario import ScenarioError, loads
 
-FULL = """\
-title = "test"
-[beam]
-length = "300 mm"
-section = { shape = "rectangle", width = "20 mm", thickness = ["4 mm", "3 mm"], stations = [0, "300 mm"] }
-material = { density = "2700 kg/m^3", youngs_modulus = "70 GPa" }
-damping_ratio = [0.01]
-masses = [ { at = 0.2, mass = "0.1 kg", inertia = { x = 1, y = 1, z = 1 }, offset = [0, 0, 0] } ]
-[model]
-kind = "FOAM"
-modes = { axial = 1, y = 1, z = 1 }
-[motion.flight]
-kind = "flight"
-acceleration = { z = { profile = "sum", terms = [ { profile = "table", times = [0, 1], values = [1, 2] } ] } }
-[motion.spin]
-kind = "centrifuge"
-tracks = "flight"
-arm = "3.3 m"
-control_point = "150 mm"
-inverse = "flat"
-gravity = false
-[motion.slew]
-kind = "hub"
-radius = "0.5 m"
-inertia = 1
-torque = { profile = "sine", amplitude = "6 N m", duration = "2 s" }
-[response]
-duration = "4 s"
-"""
+from ..scenarios import MANY_KINDS
+
 Path = tuple[str | int, ...]
 
 
@@ -50,7 +23,7 @@ def _paths(node: Any, path: Path = ()) -> Iterator[Path]:
         yield from _paths(value, (*path, key))
 
 
-PATHS = list(_paths(tomllib.loads(FULL)))[1:]
+PATHS = list(_paths(tomllib.loads(MANY_KINDS)))[1:]
 WORDS = [
     "sum",
     "table",
@@ -77,18 +50,18 @@ JUNK = st.recursive(
 @settings(max_examples=200, deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(PATHS), JUNK, st.booleans()), min_size=1, max_size=2))
 def test_junk(changes: list[tuple[Path, Any, bool]]) -> None:
-    data = tomllib.loads(FULL)
+    data = tomllib.loads(MANY_KINDS)
     for path, junk, beside in changes:
-        here: Any = data
+        node: Any = data
         try:
             for step in path[:-1]:
-                here = here[step]
-            here["unknown" if beside and isinstance(here, dict) else path[-1]] = junk
+                node = node[step]
+            node["unknown" if beside and isinstance(node, dict) else path[-1]] = junk
         except (KeyError, IndexError, TypeError):
             continue  # the first change took the second one's place away
     try:
         loads(json.dumps(data, indent=1))
     except ScenarioError as error:
         assert error.diagnostics
-        assert all(it.line and it.column and it.message and "{" not in it.path for it in error.diagnostics)
+        assert all(d.line and d.column and d.message and "{" not in d.path for d in error.diagnostics)
         assert "{value}" not in str(error) and "Input should" not in str(error)

@@ -38,8 +38,8 @@ def test_is_frozen(text: str) -> None:
 
 def test_all_errors_at_once_in_order(text: str, errors: Errors) -> None:
     wrong = text.replace('"300 mm"', '"300 kg"').replace("axial = 1", "axal = 1").replace('"4 s"', "-4")
-    found = errors(wrong.replace('"3.3 m"', '"3.3"'))
-    assert [(it.line, it.path) for it in found] == [
+    diagnostics = errors(wrong.replace('"3.3 m"', '"3.3"'))
+    assert [(error.line, error.path) for error in diagnostics] == [
         (3, "beam.length"),
         (10, "model.modes"),
         (10, "model.modes.axal"),
@@ -49,20 +49,20 @@ def test_all_errors_at_once_in_order(text: str, errors: Errors) -> None:
 
 
 def test_printed_like_a_compiler(text: str, errors: Errors) -> None:
-    (it,) = errors(text.replace('at = "200 mm"', 'at = "400 mm"'))
-    assert str(it) == (
-        "s.toml:7:19: beam.masses[0].at: 400 mm is beyond the tip\n"
+    (error,) = errors(text.replace('at = "200 mm"', 'at = "400 mm"'), building=True)
+    assert str(error) == (
+        "s.toml:7:19: beam.masses[0].at: is 0.4 m, beyond the tip\n"
         '    7 | masses = [ { at = "400 mm", mass = "0.1 kg" } ]\n'
         "      |                   ^^^^^^^^\n"
-        "      = give 0 to 300 mm from the root"
+        "      = give 0 to 0.3 m from the root"
     )
-    assert isinstance(ScenarioError([it]), GbeamError)
-    assert json.loads(json.dumps(ScenarioError([it]).as_json()))[0]["column"] == 19
+    assert isinstance(ScenarioError([error]), GbeamError)
+    assert json.loads(json.dumps(ScenarioError([error]).as_json()))[0]["column"] == 19
 
 
 def test_tabs_and_wide_characters_before_the_caret(text: str, errors: Errors) -> None:
-    (it,) = errors(text.replace('title = "test"', 'title = "é"\t# ∫').replace('arm = "3.3 m"', '\tarm = "3.3 ü"'))
-    excerpt, carets = str(it).split("\n")[1:3]
+    (error,) = errors(text.replace('title = "test"', 'title = "é"\t# ∫').replace('arm = "3.3 m"', '\tarm = "3.3 ü"'))
+    excerpt, carets = str(error).split("\n")[1:3]
     assert excerpt.endswith('| \tarm = "3.3 ü"')
     assert carets.endswith("| \t      ^^^^^^^")
 
@@ -77,29 +77,29 @@ def test_tabs_and_wide_characters_before_the_caret(text: str, errors: Errors) ->
     ],
 )
 def test_syntax(text: str, line: int, column: int, message: str, errors: Errors) -> None:
-    (it,) = errors(text)
-    assert (it.line, it.message) == (line, message)
-    assert abs((it.column or 0) - column) <= 1  # Python's versions differ by one
-    assert it.hint == f"this is not valid {'JSON' if text[0] == '{' else 'TOML'}"
-    assert str(it).split("\n")[2].endswith("^")
+    (error,) = errors(text)
+    assert (error.line, error.message) == (line, message)
+    assert abs((error.column or 0) - column) <= 1  # Python's versions differ by one
+    assert error.hint == f"this is not valid {'JSON' if text[0] == '{' else 'TOML'}"
+    assert str(error).split("\n")[2].endswith("^")
 
 
 def test_empty_text_misses_every_table(errors: Errors) -> None:
-    assert [str(it).split("\n")[0] for it in errors("")] == [
+    assert [str(error).split("\n")[0] for error in errors("")] == [
         f"s.toml:1:1: {name} is missing" for name in ("beam", "model", "motion")
     ]
 
 
 def test_unknown_table(text: str, errors: Errors) -> None:
-    (it,) = errors(text.replace("[response]", "[respons]"))
-    assert (it.path, it.hint, it.line) == ("respons", "did you mean 'response'?", 25)
+    (error,) = errors(text.replace("[response]", "[respons]"))
+    assert (error.path, error.hint, error.line) == ("respons", "did you mean 'response'?", 25)
 
 
 def test_motion_without_a_name(text: str, errors: Errors) -> None:
-    found = errors(text.replace("[motion.slew]", "[motion]"))
-    assert [it.path for it in found] == ["motion.kind", "motion.radius", "motion.rate"]
-    assert all("[motion.NAME]" in it.hint for it in found[:2])
-    assert found[2].message == "kind is missing"
+    diagnostics = errors(text.replace("[motion.slew]", "[motion]"))
+    assert [error.path for error in diagnostics] == ["motion.kind", "motion.radius", "motion.rate"]
+    assert all("[motion.NAME]" in error.hint for error in diagnostics[:2])
+    assert diagnostics[2].message == "kind is missing"
 
 
 def test_files(tmp_path: Path, text: str) -> None:
@@ -123,11 +123,11 @@ def test_files(tmp_path: Path, text: str) -> None:
 def test_json_is_taken_and_located(text: str, errors: Errors) -> None:
     as_json = json.dumps(tomllib.loads(text), indent=1)
     assert loads(as_json).model_dump() == loads(text).model_dump()
-    (it,) = errors(as_json.replace('"200 mm"', '"400 mm"'))
-    assert it.source_line is not None and it.column is not None and it.end is not None
-    assert it.source_line[it.column - 1 : it.end - 1] == '"400 mm"'
-    (it,) = errors(as_json.replace('"length": "300 mm"', '"length": null'))
-    assert it.message == "null is not a number"
+    (error,) = errors(as_json.replace('"200 mm"', '"400 mm"'), building=True)
+    assert error.source_line is not None and error.column is not None and error.end is not None
+    assert error.source_line[error.column - 1 : error.end - 1] == '"400 mm"'
+    (error,) = errors(as_json.replace('"length": "300 mm"', '"length": null'))
+    assert error.message == "null is not a number"
 
 
 class TestRecord:
@@ -149,21 +149,21 @@ class TestRecord:
 
     def test_missing_file(self, tmp_path: Path, text: str, errors: Errors) -> None:
         recorded = text.replace(INLINE, RECORD)
-        (it,) = errors(recorded)
-        assert (it.path, it.message) == ("motion.flight.record.file", "there is no file 'f.csv'")
+        (error,) = errors(recorded)
+        assert (error.path, error.message) == ("motion.flight.record.file", "there is no file 'f.csv'")
         self.write(tmp_path)
-        (it,) = errors(recorded.replace("f.csv", "ff.csv"))
-        assert it.hint == "did you mean 'f.csv'?"
-        (it,) = errors(recorded.replace('"g"', '"m/s2"'))
-        assert (it.path, it.hint) == ("motion.flight.record.unit", "did you mean 'm/s^2'?")
-        (it,) = errors(recorded.replace("[motion.spin]", INLINE + "\n[motion.spin]"))
-        assert (it.path, it.message) == ("motion.flight.acceleration", "is given beside record")
+        (error,) = errors(recorded.replace("f.csv", "ff.csv"))
+        assert error.hint == "did you mean 'f.csv'?"
+        (error,) = errors(recorded.replace('"g"', '"m/s2"'))
+        assert (error.path, error.hint) == ("motion.flight.record.unit", "did you mean 'm/s^2'?")
+        (error,) = errors(recorded.replace("[motion.spin]", INLINE + "\n[motion.spin]"))
+        assert (error.path, error.message) == ("motion.flight.acceleration", "is given beside record")
 
     def test_column(self, tmp_path: Path, text: str, errors: Errors) -> None:
         self.write(tmp_path, header="t,yy,z")
-        (it,) = errors(text.replace(INLINE, RECORD), building=True)
-        assert (it.path, it.line, it.column) == ("motion.flight.record.y", 13, 53)
-        assert "did you mean 'yy'?" in it.hint
+        (error,) = errors(text.replace(INLINE, RECORD), building=True)
+        assert (error.path, error.line, error.column) == ("motion.flight.record.y", 13, 53)
+        assert "did you mean 'yy'?" in error.hint
 
 
 def test_errors_of_the_core_are_all_told(text: str, errors: Errors) -> None:
@@ -171,7 +171,7 @@ def test_errors_of_the_core_are_all_told(text: str, errors: Errors) -> None:
         'profile = "constant", level = "6 g"',
         'profile = "trapezoid", level = 0, jerk = 1, start = 0, hold = 0',
     )
-    assert [it.path for it in errors(wrong, building=True)] == [
+    assert [error.path for error in errors(wrong, building=True)] == [
         "beam.masses[0].mass",
         "motion.flight.acceleration.z.level",
     ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gbeam.scenario import ScenarioError, loads
+from gbeam.scenario import ScenarioError, build, loads
 
 
 def test_values(text: str) -> None:
@@ -31,7 +31,7 @@ def test_values(text: str) -> None:
     assert scenario.beam.section.shape == "circle"
     assert scenario.response.tolerance == 1e-4
     assert scenario.motion["other"].kind == "hub"
-    assert [it.text for it in scenario.source.overrides] == changes  # type: ignore[union-attr]
+    assert [change.text for change in scenario.source.overrides] == changes  # type: ignore[union-attr]
 
 
 def test_the_last_one_holds(text: str) -> None:
@@ -45,8 +45,8 @@ def test_the_last_one_holds(text: str) -> None:
         ("beam.lenth=20 mm", "beam.lenth: unknown key\n    = did you mean 'length'?"),
         ("motoin.spin.arm=2", "motoin: unknown key\n    = did you mean 'motion'?"),
         (
-            "beam.masses[0].at=310 mm",
-            "beam.masses[0].at: 310 mm is beyond the tip\n    = give 0 to 300 mm from the root",
+            "motion.spin.control_point=310 mm",
+            "motion.spin.control_point: 310 mm is beyond the tip\n    = give 0 to 300 mm from the root",
         ),
         ("motion.x.kind=hub", "motion.x: radius is missing\n    = add radius"),
         ("title=2024-01-01 00:00:00 x", None),
@@ -75,12 +75,20 @@ def test_errors_name_the_override(change: str, message: str | None, text: str) -
 def test_an_error_in_the_file_that_an_override_provokes_stays_in_the_file(text: str) -> None:
     with pytest.raises(
         ScenarioError,
-        match=r"s.toml:7:19: beam.masses\[0\].at: 200 mm is beyond the tip\n.*\n.*\n.*0 to 180 mm",
+        match=r"s.toml:7:19: beam.masses\[0\].at: is 0.2 m, beyond the tip\n.*\n.*\n.*0 to 0.18 m",
     ):
-        loads(text, "s.toml", ["beam.length=180 mm"])
+        build(loads(text, "s.toml", ["beam.length=180 mm"]))
+
+
+def test_an_override_that_the_objects_refuse_is_named(text: str) -> None:
+    change = "beam.masses[0].at=310 mm"
+    with pytest.raises(ScenarioError) as caught:
+        build(loads(text, "s.toml", [change]))
+    words = "beam.masses[0].at: is 0.31 m, beyond the tip\n    = give 0 to 0.3 m from the root"
+    assert str(caught.value) == f"--set {change}: {words}"
 
 
 def test_all_refused_overrides_at_once(text: str) -> None:
     with pytest.raises(ScenarioError) as caught:
         loads(text, overrides=["x", "beam.length=1 m", "title.x=1"])
-    assert [it.override for it in caught.value.diagnostics] == ["x", "title.x=1"]
+    assert [diagnostic.override for diagnostic in caught.value.diagnostics] == ["x", "title.x=1"]

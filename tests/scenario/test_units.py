@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gbeam.scenario.text.units import KINDS, UnitError, argument, quantity
+from gbeam.scenario.text.kinds import KINDS, USUAL
+from gbeam.scenario.text.units import UnitError, argument, parsed_factor, quantity
 
 G0 = 9.80665
 
@@ -55,6 +56,12 @@ G0 = 9.80665
 )
 def test_value(text: object, kind: str, value: float) -> None:
     assert quantity(text, kind) == pytest.approx(value, rel=1e-14)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_usual_units_are_those_of_the_parser(kind: str) -> None:
+    for unit, factor in {KINDS[kind].unit or "dimensionless": 1.0, **USUAL.get(kind, {})}.items():
+        assert parsed_factor(unit, kind) == pytest.approx(factor, rel=1e-15, abs=0)
 
 
 def test_argument_takes_bare_numbers() -> None:

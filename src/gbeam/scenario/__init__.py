@@ -1,13 +1,12 @@
 """Scenario files: text -> validated scenario -> the objects of the core.
 
-units read "300 mm"; schema says what may be written; locate, explain and diagnostics say what is wrong
-and where; load puts them together; build makes the objects; template is for those
-who write scenarios.
+text/ reads quantities, places and overrides; schema/ declares the tables; load validates; build makes the objects;
+explain and placing put every error at its line; template is for those who write scenarios.
 """
 
-from gbeam.scenario.build import build, build_machines
-from gbeam.scenario.explain import placed
+from gbeam.scenario.build import build, build_machines, read_scenario
 from gbeam.scenario.load import load, load_environments, loads
+from gbeam.scenario.placing import placed, placing
 from gbeam.scenario.schema import Environments, Scenario
 from gbeam.scenario.template import json_schema, template
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
@@ -27,6 +26,8 @@ __all__ = [
     "load_environments",
     "loads",
     "placed",
+    "placing",
     "quantity",
+    "read_scenario",
     "template",
 ]

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from gbeam.errors import InputError
 from gbeam.scenario import schema
 from gbeam.scenario.collect import Collector
-from gbeam.scenario.explain import placed
+from gbeam.scenario.load import load
+from gbeam.scenario.placing import placed
 
 if TYPE_CHECKING:
     from gbeam.analysis.study.case import Case, ResponseSettings
@@ -16,6 +18,29 @@ if TYPE_CHECKING:
     from gbeam.motion import Centrifuge, PiecewiseLinear
     from gbeam.structure.beam import Beam
     from gbeam.structure.loads import Load
+
+
+def read_scenario(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Case:
+    """Read a scenario file and make its objects.
+
+    Parameters
+    ----------
+    path : path
+        TOML, or JSON if its text begins with a brace. File names in it are relative to its folder.
+    overrides : iterable of str
+        Changes such as ``beam.length=250 mm`` or ``beam.masses[0].mass=0.2 kg``, made before validation.
+
+    Returns
+    -------
+    Case
+        Beam, model, motions by name and response settings; SI.
+
+    Raises
+    ------
+    ScenarioError
+        With everything that is wrong, each with its place in the file.
+    """
+    return build(load(path, overrides))
 
 
 def build(scenario: schema.Scenario) -> Case:
@@ -53,7 +78,7 @@ def build(scenario: schema.Scenario) -> Case:
         model=model,
         motions={name: motions[name] for name in scenario.motion},
         response=response,
-        tracks={name: it.tracks for name, it in scenario.motion.items() if isinstance(it, schema.Centrifuge)},
+        tracks={name: table.tracks for name, table in scenario.motion.items() if isinstance(table, schema.Centrifuge)},
         stations=scenario.response.stations or (),
     )
 
@@ -86,45 +111,48 @@ def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
         motions |= centrifuges(parts, scenario, motions, span)
     if parts.errors or response is None:
         raise placed(scenario, parts.errors)
-    return {name: it for name in scenario.motion if isinstance(it := motions[name], Centrifuge)}
+    return {name: machine for name in scenario.motion if isinstance(machine := motions[name], Centrifuge)}
 
 
-def _beam(parts: Collector, it: schema.Beam) -> Beam | None:
-    from gbeam.structure.beam import Beam, Material, PointMass
+def _beam(parts: Collector, table: schema.Beam) -> Beam | None:
+    from gbeam.structure.beam import Beam
+    from gbeam.structure.bodies import PointMass
+    from gbeam.structure.material import Material
     from gbeam.structure.section import Section
     from gbeam.structure.support import Root
 
-    dimensions = it.section.model_dump(exclude={"shape", "stations"}, exclude_none=True)
-    section = parts.attempt("beam.section", Section.of, it.section.shape, it.section.stations, **dimensions)
-    material = parts.attempt("beam.material", Material, it.material.density, it.material.youngs_modulus)
+    dimensions = table.section.model_dump(exclude={"shape", "stations"}, exclude_none=True)
+    section = parts.attempt("beam.section", Section.of, table.section.shape, table.section.stations, **dimensions)
+    material = parts.attempt("beam.material", Material, table.material.density, table.material.youngs_modulus)
     masses = []
-    for i, m in enumerate(it.masses):
-        moments = (m.inertia.x, m.inertia.y, m.inertia.z) if m.inertia else (0.0, 0.0, 0.0)
-        masses.append(parts.attempt(f"beam.masses[{i}]", PointMass, m.at, m.mass, moments, m.offset or (0.0, 0.0, 0.0)))
-    root = parts.attempt("beam.root", Root, **it.root.model_dump())
-    loads = [_load(parts, f"beam.loads[{i}]", load) for i, load in enumerate(it.loads)]
+    for i, body in enumerate(table.masses):
+        moments = (body.inertia.x, body.inertia.y, body.inertia.z) if body.inertia else (0.0, 0.0, 0.0)
+        offset = body.offset or (0.0, 0.0, 0.0)
+        masses.append(parts.attempt(f"beam.masses[{i}]", PointMass, body.at, body.mass, moments, offset))
+    root = parts.attempt("beam.root", Root, **table.root.model_dump())
+    loads = [_load(parts, f"beam.loads[{i}]", entry) for i, entry in enumerate(table.loads)]
     if section is None or material is None or root is None or None in masses or None in loads:
         return None
-    return parts.attempt("beam", Beam, it.length, section, material, masses, it.damping_ratio, root, loads)
+    return parts.attempt("beam", Beam, table.length, section, material, masses, table.damping_ratio, root, loads)
 
 
-def _load(parts: Collector, where: str, it: schema.Load) -> Load | None:
+def _load(parts: Collector, where: str, table: schema.Load) -> Load | None:
     from gbeam.scenario.build_motion import components
     from gbeam.structure.loads import Load
 
-    tables = {"force": it.force, "distributed": it.distributed, "moment": it.moment}
+    vectors = {"force": table.force, "distributed": table.distributed, "moment": table.moment}
     built = {
-        "moment" if name == "moment" else "force": components(parts, f"{where}.{name}", table)
-        for name, table in tables.items()
-        if table is not None
+        "moment" if name == "moment" else "force": components(parts, f"{where}.{name}", vector)
+        for name, vector in vectors.items()
+        if vector is not None
     }
-    return None if None in built.values() else parts.attempt(where, Load, it.at, follower=it.follower, **built)
+    return None if None in built.values() else parts.attempt(where, Load, table.at, follower=table.follower, **built)
 
 
-def _model(parts: Collector, it: schema.Model) -> Model | None:
+def _model(parts: Collector, table: schema.Model) -> Model | None:
     from gbeam.mechanics.assembly import Model
 
-    return parts.attempt("model", Model, it.kind, it.modes.axial, it.modes.y, it.modes.z, it.shapes)
+    return parts.attempt("model", Model, table.kind, table.modes.axial, table.modes.y, table.modes.z, table.shapes)
 
 
 def _covered(record: PiecewiseLinear) -> tuple[float, float, float]:
@@ -136,7 +164,7 @@ def _covered(record: PiecewiseLinear) -> tuple[float, float, float]:
 
 
 def _response(
-    parts: Collector, it: schema.Response, records: list[tuple[float, float, float]]
+    parts: Collector, table: schema.Response, records: list[tuple[float, float, float]]
 ) -> ResponseSettings | None:
     """Settings; `records` are what they cover, and without a duration the time that all do."""
     from gbeam import integrate
@@ -147,14 +175,14 @@ def _response(
         "hht": integrate.hht,
         "generalized-alpha": integrate.generalized_alpha,
     }
-    if it.parameters:
+    if table.parameters:
         # Made for its refusals only: the analysis makes its own.
-        parts.attempt("response", schemes[it.integrator], **it.parameters)
+        parts.attempt("response", schemes[table.integrator], **table.parameters)
     start = max((first for first, _, _ in records), default=0.0)
-    duration = it.duration
+    duration = table.duration
     if duration is None:
         if not records:
-            return None  # the record could not be read, which has been said
+            return None  # the record could not be read, which is among the errors
         duration = min(last for _, last, _ in records) - start
         if duration <= 0:
             parts.errors.append(InputError("response", "has no time that all records cover", "add a duration"))
@@ -165,15 +193,15 @@ def _response(
         problem = f"asks for an end at {end:g} s, and the record ends at {last:g} s"
         fix = f"give {last - start:g} s or less, or leave it out"
         parts.errors.append(InputError("response.duration", problem, fix))
-    if it.residual_from is not None and not start <= it.residual_from < end:
+    if table.residual_from is not None and not start <= table.residual_from < end:
         fix = f"give a time from {start:g} s to {end:g} s"
-        parts.errors.append(InputError("response.residual_from", f"is {it.residual_from:g} s", fix))
+        parts.errors.append(InputError("response.residual_from", f"is {table.residual_from:g} s", fix))
     return ResponseSettings(
         start=start,
         duration=duration,
-        step=None if isinstance(it.step, str) else it.step,
-        integrator=it.integrator,
-        parameters=it.parameters,
-        tolerance=it.tolerance,
-        residual_from=it.residual_from,
+        step=None if isinstance(table.step, str) else table.step,
+        integrator=table.integrator,
+        parameters=table.parameters,
+        tolerance=table.tolerance,
+        residual_from=table.residual_from,
     )

@@ -101,17 +101,15 @@ def _limits(it: schema.Limits, example: motion.MachineLimits) -> motion.MachineL
     )
 
 
-def _hub(parts: Collector, where: str, it: schema.Hub) -> Motion | None:
-    mount = {"pointing": it.pointing, "setting_angle": it.setting_angle, "gravity": it.gravity}
-    if it.rate is not None:
-        rate = _profile(parts, f"{where}.rate", it.rate)
-        return None if rate is None else parts.attempt(where, motion.Hub, radius=it.radius, rate=rate, **mount)
-    torque = _profile(parts, f"{where}.torque", it.torque)
-    if torque is None:
+def _hub(parts: Collector, where: str, table: schema.Hub) -> Motion | None:
+    given = {name: getattr(table, name) for name in ("rate", "torque") if getattr(table, name) is not None}
+    profiles = {name: _profile(parts, f"{where}.{name}", profile) for name, profile in given.items()}
+    if None in profiles.values():
         return None
-    ground = {"stiffness": it.stiffness or 0.0, "damping": it.damping or 0.0}
     return parts.attempt(
-        where, motion.Hub, radius=it.radius, inertia=it.inertia, torque=torque, **mount, **ground
+        where, motion.Hub, radius=table.radius, inertia=table.inertia, **profiles, pointing=table.pointing,
+        setting_angle=table.setting_angle, gravity=table.gravity, stiffness=table.stiffness or 0.0,
+        damping=table.damping or 0.0,
     )  # fmt: skip
 
 

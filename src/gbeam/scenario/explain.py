@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
-from gbeam.errors import InputError
 from gbeam.scenario.fields import Quantity, Table
-from gbeam.scenario.schema import Environments, Scenario
-from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
-from gbeam.scenario.text.paths import parse_path
-from gbeam.scenario.text.place import Path
+from gbeam.scenario.schema import Scenario
+from gbeam.scenario.text.diagnostics import Diagnostic
+from gbeam.scenario.text.kinds import KINDS
+from gbeam.scenario.text.paths import Path
 from gbeam.scenario.text.source import Mark, Source
 from gbeam.scenario.text.suggest import advise
-from gbeam.scenario.text.units import KINDS, spoken
+from gbeam.scenario.text.units import spoken
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
@@ -86,30 +85,30 @@ def _words(source: Source, error: ErrorDetails, path: Path) -> tuple[str, str, M
 def _path(loc: tuple[int | str, ...], source: Source) -> Path:
     """Drop from pydantic's place what is not in the file: the tags of the unions it went through."""
     path: Path = ()
-    here: Any = source.data
+    node: Any = source.data
     untagged = True
     for step in loc:
         if step == "[key]":
             continue
-        if isinstance(here, dict):
-            if untagged and step == _tag(path, here):
+        if isinstance(node, dict):
+            if untagged and step == _tag(path, node):
                 untagged = False
                 continue
         elif step in ("one", "list"):
             continue
         path += (step,)
-        here = source.raw(path)
+        node = source.raw(path)
         untagged = True
     return path
 
 
-def _tag(path: Path, here: dict[str, Any]) -> object:
-    """Return the tag that pydantic puts into its places below the table `here`, if it is one of a union."""
+def _tag(path: Path, node: dict[str, Any]) -> object:
+    """Return the tag that pydantic puts into its places below the table `node`, if it is one of a union."""
     if path[:1] == ("motion",) and len(path) == 2:
-        return here.get("kind")
+        return node.get("kind")
     if path == ("beam", "section"):
-        return here.get("shape", "general")
-    return here.get("profile")
+        return node.get("shape", "general")
+    return node.get("profile")
 
 
 def _field(source: Source, path: Path) -> FieldInfo | None:
@@ -187,23 +186,3 @@ def _filled(source: Source, path: Path, text: str) -> str:
         return raw if isinstance(raw, str) else f"{raw:g} {KINDS[quantity.kind].unit}".rstrip()
 
     return _PLACEHOLDER.sub(shown, text)
-
-
-def placed(scenario: Environments, errors: Iterable[InputError]) -> ScenarioError:
-    """Return the ScenarioError of what the objects of the core refused.
-
-    Parameters
-    ----------
-    scenario : Environments
-        What they were built from.
-    errors : iterable of InputError
-        Whose ``where`` are paths from the top of the scenario, such as ``beam.masses[0].at``.
-    """
-    return ScenarioError(_placed(scenario.source, error) for error in errors)
-
-
-def _placed(source: Source | None, error: InputError) -> Diagnostic:
-    path = parse_path(error.where) or ()
-    if source is None:  # a scenario made without a text
-        return Diagnostic("scenario", error.where, error.problem, error.fix)
-    return source.diagnostic(path, error.problem, error.fix)

@@ -4,22 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import (
-    BaseModel,
-    ConfigDict,
-    Discriminator,
-    Field,
-    GetCoreSchemaHandler,
-    GetJsonSchemaHandler,
-    Tag,
-)
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, Tag
 from pydantic import ValidationError as PydanticError
-from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
 
-from gbeam.scenario.text.units import KINDS, UnitError, quantity
+from gbeam.scenario.text.kinds import KINDS
+from gbeam.scenario.text.units import UnitError, quantity
+
+if TYPE_CHECKING:
+    from pydantic.json_schema import JsonSchemaValue
 
 Sign = Literal["any", "positive", "zero or more"]
 Loc = tuple[int | str, ...]
@@ -28,7 +23,8 @@ Loc = tuple[int | str, ...]
 class Table(BaseModel):
     """A table of the scenario: frozen, and no key beside the declared ones."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    # Validators are built when the whole scenario's is, not once more for each of the fifty tables.
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
 def wrong(message: str, hint: str = "", *, mark: Literal["value", "key"] = "value") -> PydanticCustomError:
@@ -49,10 +45,10 @@ def wrong(message: str, hint: str = "", *, mark: Literal["value", "key"] = "valu
 
 def refuse(problems: Iterable[tuple[Loc, PydanticCustomError]]) -> None:
     """Raise all `problems` at once, each at its place within the table; do nothing if there are none."""
-    found = [InitErrorDetails(type=error, loc=loc, input=None) for loc, error in problems]
-    if found:
+    details = [InitErrorDetails(type=error, loc=loc, input=None) for loc, error in problems]
+    if details:
         # A validator may raise ValidationError: pydantic keeps each of its errors and prefixes their places.
-        raise PydanticError.from_exception_data("scenario", found)
+        raise PydanticError.from_exception_data("scenario", details)
 
 
 @dataclass(frozen=True)
@@ -62,7 +58,7 @@ class Quantity:
     Parameters
     ----------
     kind : str
-        A key of ``gbeam.scenario.units.KINDS``.
+        A key of ``gbeam.scenario.text.kinds.KINDS``.
     sign : str
         ``any``, ``positive`` or ``zero or more``.
     words : tuple of str

@@ -9,7 +9,6 @@ from typing import TypeVar
 
 from pydantic import ValidationError
 
-from gbeam.scenario.explain import explain
 from gbeam.scenario.schema import Environments, Scenario
 from gbeam.scenario.text.diagnostics import ScenarioError
 from gbeam.scenario.text.overrides import override
@@ -96,5 +95,7 @@ def _validated(kind: type[T], source: Source) -> T:
     try:
         return kind.model_validate(source.data, context={"folder": source.folder, "source": source})
     except ValidationError as error:
-        found = [explain(source, each) for each in error.errors(include_url=False, include_input=False)]
-        raise ScenarioError(found) from None
+        from gbeam.scenario.explain import explain  # needed only where something is wrong
+
+        details = error.errors(include_url=False, include_input=False)
+        raise ScenarioError(explain(source, detail) for detail in details) from None

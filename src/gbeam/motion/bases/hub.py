@@ -83,8 +83,9 @@ class Hub:
         free = rate is None and inertia is not None
         for name, value in (("stiffness", stiffness), ("damping", damping)):
             if not free and not (namespace(value) is np and value == 0):
+                beside = " beside rate" if rate is not None else ""
                 fix = f"leave out {name}, or give inertia and no rate"
-                raise InputError(name, "is given, and the hub is not free to turn", fix)
+                raise InputError(name, f"is given{beside}, and the hub is not free to turn", fix)
         mount = Mount(radius, pointing, setting_angle, gravity)
         values: dict[str, Any] = {
             "mount": mount,

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import Discriminator, Field, Tag
 
 from gbeam.scenario.fields import (
     Areas,
     Density,
     Length,
     Lengths,
-    Loc,
     Mass,
     MomentOfInertia,
     Offset,
@@ -24,8 +21,6 @@ from gbeam.scenario.fields import (
     SecondMoments,
     Stiffness,
     Table,
-    refuse,
-    wrong,
 )
 from gbeam.scenario.schema.load import Load
 
@@ -136,26 +131,7 @@ class Beam(Table):
     material: Material = Field(description="linear elastic material: { density, youngs_modulus }")
     damping_ratio: Ratios = Field(description="modal damping ratio: one for all modes, or a list with one per mode")
     masses: tuple[PointMass, ...] = Field(default=(), description="masses fixed to the beam: [ { at, mass } ]")
-
-    root: Root = Field(default=Root(), description="springs that hold the root, which is rigid where left out")
+    root: Root = Field(default_factory=Root, description="springs that hold the root, which is rigid where left out")
     loads: tuple[Load, ...] = Field(
         default=(), description="forces and moments on the beam: [ { at, force, moment, distributed, follower } ]"
     )
-
-    @model_validator(mode="after")
-    def _on_the_beam(self) -> Beam:
-        def problems() -> Iterator[tuple[Loc, PydanticCustomError]]:
-            for i, load in enumerate(self.loads):
-                if load.at is not None and load.at > self.length * (1 + 1e-12):
-                    yield ("loads", i, "at"), beyond_the_tip()
-            for i, mass in enumerate(self.masses):
-                if mass.at > self.length * (1 + 1e-12):
-                    yield ("masses", i, "at"), beyond_the_tip()
-
-        refuse(problems())
-        return self
-
-
-def beyond_the_tip() -> PydanticCustomError:
-    """Make the error of a position that is not on the beam."""
-    return wrong("{value} is beyond the tip", "give 0 to {beam.length} from the root")

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field, StrictInt, model_validator
+from pydantic import Field, StrictInt
 
-from gbeam.scenario.fields import Table, refuse, wrong
+from gbeam.scenario.fields import Table
 
 Count = Annotated[StrictInt, Field(ge=0)]
 
@@ -17,12 +17,6 @@ class Modes(Table):
     axial: Count = Field(description="axial shapes; for `exact` strain shapes")
     y: Count = Field(description="bending shapes along y; for `exact` rotation shapes for bending along y")
     z: Count = Field(description="bending shapes along z; for `exact` rotation shapes for bending along z")
-
-    @model_validator(mode="after")
-    def _any(self) -> Modes:
-        if not (self.axial or self.y or self.z):
-            refuse([((), wrong("every number of shapes is zero", "give at least one shape, such as z = 3"))])
-        return self
 
 
 class Model(Table):
@@ -38,12 +32,3 @@ class Model(Table):
         description="clamped-free: shapes of the bare uniform beam (for `exact`, polynomials). adapted: the modes at "
         "rest of this beam with its tapers, masses and root springs, of which fewer are needed",
     )
-
-    @model_validator(mode="after")
-    def _coordinates(self) -> Model:
-        if self.kind == "SFOAM" and self.modes.axial:
-            error = wrong(
-                "SFOAM has no axial coordinates, and {value} are asked for", "use axial = 0, or the kind FOAM"
-            )
-            refuse([(("modes", "axial"), error)])
-        return self

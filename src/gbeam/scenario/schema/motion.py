@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -25,19 +24,9 @@ from gbeam.scenario.schema.profile import AccelerationProfile, RateProfile, Torq
 from gbeam.scenario.text.suggest import closest
 
 
-def _exactly_one(table: Table, first: str, second: str) -> Iterator[tuple[Loc, PydanticCustomError]]:
-    given = [name for name in (first, second) if getattr(table, name) is not None]
-    if len(given) == 2:
-        yield (second,), wrong(f"is given beside {first}", f"keep {first} or {second}, not both", mark="key")
-    if not given:
-        yield (
-            (),
-            wrong(
-                f"{first} or {second} is missing",
-                f"add one of them: {first} = ... or {second} = ...",
-                mark="key",
-            ),
-        )
+def _missing(first: str, second: str) -> tuple[Loc, PydanticCustomError]:
+    hint = f"add one of them: {first} = ... or {second} = ..."
+    return (), wrong(f"{first} or {second} is missing", hint, mark="key")
 
 
 def _existing(file: str, info: ValidationInfo) -> str:
@@ -118,7 +107,11 @@ class Flight(Table):
 
     @model_validator(mode="after")
     def _one_source(self) -> Flight:
-        refuse(_exactly_one(self, "record", "acceleration"))
+        if self.record is None and self.acceleration is None:
+            refuse([_missing("record", "acceleration")])
+        if self.record is not None and self.acceleration is not None:
+            hint = "keep record or acceleration, not both"
+            refuse([(("acceleration",), wrong("is given beside record", hint, mark="key"))])
         return self
 
 
@@ -139,22 +132,17 @@ class AxisLimit(Table):
 class Limits(Table):
     """What the machine can do; exceeding it ends in exit status 1 unless allowed."""
 
-    axis1: AxisLimit = Field(default=AxisLimit(), description="the arm: { rate, acceleration, jerk }")
-    axis2: AxisLimit = Field(default=AxisLimit(), description="yaw at the arm's end: { rate, acceleration, jerk }")
-    axis3: AxisLimit = Field(default=AxisLimit(), description="roll about the beam: { rate, acceleration, jerk }")
+    axis1: AxisLimit = Field(default_factory=AxisLimit, description="the arm: { rate, acceleration, jerk }")
+    axis2: AxisLimit = Field(
+        default_factory=AxisLimit, description="yaw at the arm's end: { rate, acceleration, jerk }"
+    )
+    axis3: AxisLimit = Field(default_factory=AxisLimit, description="roll about the beam: { rate, acceleration, jerk }")
     inertia: Annotated[float, Quantity("moment of inertia", "positive")] | None = Field(
         default=None, description="moment of inertia of all that turns about axis 1; gives the arm's power"
     )
     power: Annotated[float, Quantity("power", "positive")] | None = Field(
         default=None, description="largest power that speeds the arm up or brakes it; needs inertia"
     )
-
-    @model_validator(mode="after")
-    def _power_needs_inertia(self) -> Limits:
-        if self.power is not None and self.inertia is None:
-            hint = 'add the arm\'s: inertia = "2000 kg m^2"'
-            refuse([(("power",), wrong("is given without the inertia", hint, mark="key"))])
-        return self
 
 
 class Commands(Table):
@@ -204,7 +192,7 @@ class Centrifuge(Table):
         default="upright", description="which of the two ways the specimen sits in the gimbals"
     )
     limits: Limits = Field(
-        default=Limits(), description="what the machine can do: { axis1, axis2, axis3, inertia, power }"
+        default_factory=Limits, description="what the machine can do: { axis1, axis2, axis3, inertia, power }"
     )
     commands: Commands | None = Field(default=None, description="axis motions for the controller: { sample }")
 
@@ -256,23 +244,11 @@ class Hub(Table):
 
     @model_validator(mode="after")
     def _one_drive(self) -> Hub:
-        def problems() -> Iterator[tuple[Loc, PydanticCustomError]]:
-            yield from _exactly_one(self, "rate", "torque")
-            if self.torque is not None and self.inertia is None:
-                yield (
-                    (),
-                    wrong(
-                        "inertia is missing",
-                        'a hub under a torque needs it: inertia = "200 kg m^2"',
-                        mark="key",
-                    ),
-                )
-            for name in ("inertia", "stiffness", "damping"):
-                if self.torque is None and self.rate is not None and getattr(self, name) is not None:
-                    fix = "a hub with a prescribed rate needs none"
-                    yield (name,), wrong("is given beside rate", fix, mark="key")
-
-        refuse(problems())
+        if self.rate is None and self.torque is None:
+            refuse([_missing("rate", "torque")])
+        if self.rate is not None and self.torque is None and self.inertia is not None:
+            hint = "a hub with a prescribed rate needs none"
+            refuse([(("inertia",), wrong("is given beside rate", hint, mark="key"))])
         return self
 
 

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Annotated, Any, Generic, Literal, TypeVar, get_args
 
-from pydantic import Discriminator, Field, Tag, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import Discriminator, Field, Tag
 
 from gbeam.scenario.fields import (
     Acceleration,
@@ -18,13 +16,10 @@ from gbeam.scenario.fields import (
     ForcePerLengthRate,
     ForceRate,
     Jerk,
-    Loc,
     Table,
     Time,
     Torque,
     TorqueRate,
-    refuse,
-    wrong,
 )
 
 L = TypeVar("L")  # the quantity itself
@@ -85,27 +80,6 @@ class Listed(Smoothed[L, S], Generic[L, S]):
     profile: Literal["table"] = Field(description="name of the profile")
     times: tuple[Time, ...] = Field(min_length=2, description="times, increasing")
     values: tuple[L, ...] = Field(min_length=2, description="one value per time")
-
-    @model_validator(mode="after")
-    def _consistent(self) -> Listed[L, S]:
-        def problems() -> Iterator[tuple[Loc, PydanticCustomError]]:
-            if len(self.values) != len(self.times):
-                yield (
-                    ("values",),
-                    wrong(
-                        f"has {len(self.values)} values for {len(self.times)} times",
-                        "give one value per time",
-                    ),
-                )
-            for i, (before, after) in enumerate(zip(self.times, self.times[1:], strict=False)):
-                if after <= before:
-                    yield (
-                        ("times", i + 1),
-                        wrong("{value} does not come after the time before it", "list times in order"),
-                    )
-
-        refuse(problems())
-        return self
 
 
 class Sum(Smoothed[L, S], Generic[L, S]):

@@ -60,12 +60,9 @@ class Response(Table):
                 if name not in takes and getattr(self, name) is not None:
                     hint = f"it takes {' and '.join(takes)}" if takes else "it has no parameters"
                     yield (name,), wrong(f"does not belong to {self.integrator}", hint, mark="key")
-            if self.duration is not None:
-                before_the_end = "give a time before the end, {response.duration}"
-                if self.residual_from is not None and self.residual_from >= self.duration:
-                    yield ("residual_from",), wrong("{value} is not within the computation", before_the_end)
-                if self.step != "auto" and self.step > self.duration:
-                    yield ("step",), wrong("{value} is longer than the computation", before_the_end)
+            if self.duration is not None and self.step != "auto" and self.step > self.duration:
+                hint = "give a time before the end, {response.duration}"
+                yield ("step",), wrong("{value} is longer than the computation", hint)
 
         refuse(problems())
         return self

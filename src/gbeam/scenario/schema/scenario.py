@@ -10,7 +10,7 @@ from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, model_v
 from pydantic_core import PydanticCustomError
 
 from gbeam.scenario.fields import Loc, Table, refuse, wrong
-from gbeam.scenario.schema.beam import Beam, beyond_the_tip
+from gbeam.scenario.schema.beam import Beam
 from gbeam.scenario.schema.model import Model
 from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub, Motion
 from gbeam.scenario.schema.response import Response
@@ -47,7 +47,7 @@ class Environments(_Titled):
     motion: dict[Annotated[str, AfterValidator(_word)], Motion] = Field(
         min_length=1, description="what the base does: one environment or more, each [motion.NAME]"
     )
-    response: Response = Field(default=Response(), description="response over time")
+    response: Response = Field(default_factory=Response, description="response over time")
 
     _source: Source | None = PrivateAttr(None)
 
@@ -62,9 +62,9 @@ class Environments(_Titled):
 
     @model_validator(mode="after")
     def _agree(self, info: ValidationInfo) -> Self:
-        # Here for both kinds of scenario, so that everything that is wrong is said at once.
-        beside = self.beside_the_beam() if isinstance(self, Scenario) else ()
-        refuse([*self._about_motions(), *beside])
+        # For both kinds of scenario in one validator, so that everything that is wrong is said at once.
+        with_beam = self.about_motions_and_beam() if isinstance(self, Scenario) else ()
+        refuse([*self._about_motions(), *with_beam])
         return self
 
     def _about_motions(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
@@ -79,7 +79,7 @@ class Environments(_Titled):
             )
 
     def _tracking(self, name: str, motion: Centrifuge) -> Iterator[tuple[Loc, PydanticCustomError]]:
-        flights = [other for other, it in self.motion.items() if isinstance(it, Flight)]
+        flights = [name for name, candidate in self.motion.items() if isinstance(candidate, Flight)]
         if motion.tracks not in flights:
             target = self.motion.get(motion.tracks)
             message = f"names a {target.kind}, not a flight" if target else "names no motion"
@@ -93,20 +93,15 @@ class Scenario(Environments, _Structure):
     Built by :func:`gbeam.scenario.load` and :func:`gbeam.scenario.loads`.
     """
 
-    def beside_the_beam(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
-        """What does not agree with the beam or its model."""
+    def about_motions_and_beam(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
+        """Motions that do not agree with the beam or its model."""
         for name, motion in self.motion.items():
-            if isinstance(motion, Centrifuge) and self._beyond(motion.control_point):
-                yield ("motion", name, "control_point"), beyond_the_tip()
+            if isinstance(motion, Centrifuge) and motion.control_point > self.beam.length * (1 + 1e-12):
+                hint = "give 0 to {beam.length} from the root"
+                yield ("motion", name, "control_point"), wrong("{value} is beyond the tip", hint)
             if isinstance(motion, Hub):
                 # A section set at a right angle bends along z in the plane of the hub.
                 axis = "y" if abs(math.cos(motion.setting_angle)) > 1e-9 else "z"
                 if not getattr(self.model.modes, axis):
                     problem = f"there is no bending shape along {axis}, the plane of the hub {name!r}"
                     yield ("model", "modes", axis), wrong(problem, f"give {axis} = 1 or more")
-        for i, station in enumerate(self.response.stations or ()):
-            if self._beyond(station):
-                yield ("response", "stations", i), beyond_the_tip()
-
-    def _beyond(self, position: float) -> bool:
-        return position > self.beam.length * (1 + 1e-12)

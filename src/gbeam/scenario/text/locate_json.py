@@ -6,7 +6,7 @@ import json
 import re
 from collections.abc import Iterator
 
-from gbeam.scenario.text.place import Path, Place, Span
+from gbeam.scenario.text.paths import Path, Place, Span
 
 _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[{}\[\]:,]|[^\s{}\[\]:,"]+')
 
@@ -40,9 +40,9 @@ class _Reader:
     def value(self, path: Path, key: Span | None) -> None:
         """Read the next value."""
         token, span = next(self.tokens)
-        self.known(path, key, token, span)
+        self.value_from(path, key, token, span)
 
-    def known(self, path: Path, key: Span | None, token: str, span: Span) -> None:
+    def value_from(self, path: Path, key: Span | None, token: str, span: Span) -> None:
         """Read the value whose first token has been taken."""
         last = span
         if token in ("[", "{"):
@@ -53,7 +53,7 @@ class _Reader:
                 if inner == ",":
                     continue
                 if token == "[":
-                    self.known((*path, index), None, inner, last)
+                    self.value_from((*path, index), None, inner, last)
                     index += 1
                 else:
                     next(self.tokens)  # the colon

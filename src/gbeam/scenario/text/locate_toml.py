@@ -6,7 +6,7 @@ import tomllib
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from gbeam.scenario.text.place import Path, Place, Span
+from gbeam.scenario.text.paths import Path, Place, Span
 
 if TYPE_CHECKING:
     from tree_sitter import Node

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
-from gbeam.scenario.text.paths import parse_path, path_text
-from gbeam.scenario.text.place import Path
+from gbeam.scenario.text.paths import Path, parse_path, path_text
 
 
 @dataclass(frozen=True)
@@ -49,9 +48,9 @@ def override(data: dict[str, Any], name: str, texts: Iterable[str]) -> tuple[dic
     refused: list[Diagnostic] = []
     for text in texts:
         try:
-            it = _read(text)
-            _write(changed, it)
-            done.append(it)
+            change = _read(text)
+            _write(changed, change)
+            done.append(change)
         except _Refused as error:
             message, hint = error.args
             refused.append(Diagnostic(name, "", message, hint, override=text))
@@ -78,22 +77,22 @@ def _value(text: str) -> Any:
     return value if is_one_value else text
 
 
-def _write(data: dict[str, Any], it: Override) -> None:
-    here: Any = data
-    for i, step in enumerate(it.path):
-        above = path_text(it.path[:i])
+def _write(data: dict[str, Any], change: Override) -> None:
+    node: Any = data
+    for i, step in enumerate(change.path):
+        above = path_text(change.path[:i])
         if isinstance(step, int):
-            if not isinstance(here, list):
+            if not isinstance(node, list):
                 raise _Refused(f"{above} is not a list", "leave the index out")
-            if step >= len(here):
-                count = f"{len(here)} {'entry' if len(here) == 1 else 'entries'}"
+            if step >= len(node):
+                count = f"{len(node)} {'entry' if len(node) == 1 else 'entries'}"
                 raise _Refused(f"{above} has {count}", "the first is [0]; set the whole list to add to it")
-        elif not isinstance(here, dict):
-            raise _Refused(f"{above} is {'a list' if isinstance(here, list) else 'not a table'}", "check the key")
-        if i == len(it.path) - 1:
-            here[step] = it.value
+        elif not isinstance(node, dict):
+            raise _Refused(f"{above} is {'a list' if isinstance(node, list) else 'not a table'}", "check the key")
+        if i == len(change.path) - 1:
+            node[step] = change.value
         elif isinstance(step, str):
-            # A table that is not there yet: the schema will say if it may not be.
-            here = here.setdefault(step, [] if isinstance(it.path[i + 1], int) else {})
+            # A table that does not exist yet: the schema will say if it may not be.
+            node = node.setdefault(step, [] if isinstance(change.path[i + 1], int) else {})
         else:
-            here = here[step]
+            node = node[step]

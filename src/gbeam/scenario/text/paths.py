@@ -1,12 +1,33 @@
-"""Places in a scenario as text, ``beam.masses[0].at``, and as tuples."""
+"""Places in a scenario: the path of an entry, ``beam.masses[0].at``, and where in the text it stands."""
 
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 
-from gbeam.scenario.text.place import Path
+Path = tuple[str | int, ...]
 
 _STEP = re.compile(r"([^.\[\]=\s]+)((?:\[\d+\])*)")
+
+
+@dataclass(frozen=True)
+class Span:
+    """A stretch of one line: `line` and `column` count from 1, in characters; `end` is past its last."""
+
+    line: int
+    column: int
+    end: int
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where an entry stands: its key (an element of a list has its value's place) and its value.
+
+    A table written under a ``[header]`` has the header's name for both.
+    """
+
+    key: Span
+    value: Span
 
 
 def path_text(path: Path) -> str:

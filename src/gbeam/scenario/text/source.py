@@ -11,11 +11,8 @@ from pathlib import Path as File
 from typing import Any, Literal
 
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
-from gbeam.scenario.text.locate_json import locate_json
-from gbeam.scenario.text.locate_toml import locate_toml
 from gbeam.scenario.text.overrides import Override
-from gbeam.scenario.text.paths import path_text
-from gbeam.scenario.text.place import Path, Place, Span
+from gbeam.scenario.text.paths import Path, Place, Span, path_text
 from gbeam.scenario.text.suggest import closest
 
 Mark = Literal["value", "key"]
@@ -45,35 +42,39 @@ class Source:
 
     @cached_property
     def _places(self) -> dict[Path, Place]:
+        # Imported where something is wrong: what is right needs no places.
+        from gbeam.scenario.text.locate_json import locate_json
+        from gbeam.scenario.text.locate_toml import locate_toml
+
         return locate_json(self.text) if _is_json(self.text) else locate_toml(self.text)
 
     def raw(self, path: Path) -> Any:
         """Return what is written at `path`, None if nothing is."""
-        here: Any = self.data
+        node: Any = self.data
         for step in path:
             try:
-                here = here[step]
+                node = node[step]
             except (KeyError, IndexError, TypeError):
                 return None
-        return here
+        return node
 
     def diagnostic(self, path: Path, message: str, hint: str = "", mark: Mark = "value") -> Diagnostic:
         """Put a message at the place of `path`: in the file, or in the override that wrote it."""
         override = self._override_of(path)
         if override is not None:
             return Diagnostic(self.name, path_text(path), message, hint, override=override.text)
-        known = path
-        while known and known not in self._places:
-            known = known[:-1]
-        place = self._places.get(known)
-        span = Span(1, 1, 2) if place is None else place.key if mark == "key" or known != path else place.value
+        nearest = path  # the entry itself, or the innermost table or list around it that is written
+        while nearest and nearest not in self._places:
+            nearest = nearest[:-1]
+        place = self._places.get(nearest)
+        span = Span(1, 1, 2) if place is None else place.key if mark == "key" or nearest != path else place.value
         return at_span(self.name, self.text, span, path_text(path), message, hint)
 
     def _override_of(self, path: Path) -> Override | None:
-        above = [it for it in self.overrides if path[: len(it.path)] == it.path]
+        above = [change for change in self.overrides if path[: len(change.path)] == change.path]
         if above:
             return above[-1]
-        below = [it for it in self.overrides if path and it.path[: len(path)] == path]
+        below = [change for change in self.overrides if path and change.path[: len(path)] == path]
         return below[-1] if below and path not in self._places else None
 
 
@@ -108,10 +109,10 @@ def parse(name: str, text: str) -> dict[str, Any]:
         line, column, message = error.lineno, error.colno, error.msg
     except tomllib.TOMLDecodeError as error:
         # Its place is in its text only: "... (at line 3, column 5)" or "... (at end of document)".
-        told = re.fullmatch(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", str(error), re.DOTALL)
-        message = told[1] if told else str(error)
-        if told and told[2]:
-            line, column = int(told[2]), int(told[3])
+        match = re.fullmatch(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", str(error), re.DOTALL)
+        message = match[1] if match else str(error)
+        if match and match[2]:
+            line, column = int(match[2]), int(match[3])
         else:
             lines = text.rstrip("\n").split("\n")
             line, column = len(lines), len(lines[-1]) + 1

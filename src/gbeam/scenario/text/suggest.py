@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from difflib import get_close_matches
 
 
 def closest(word: str, choices: Iterable[str]) -> str | None:
     """Return the choice that `word` was probably meant to be, or None; case does not count."""
+    from difflib import get_close_matches  # needed only where something is wrong
+
     lowered: dict[str, str] = {}
     for choice in choices:
         lowered.setdefault(choice.lower(), choice)
-    found = get_close_matches(word.lower(), lowered, n=1, cutoff=0.6)
-    return lowered[found[0]] if found else None
+    near = get_close_matches(word.lower(), lowered, n=1, cutoff=0.6)
+    return lowered[near[0]] if near else None
 
 
 def advise(word: str, choices: Iterable[str], *, listed: str = "choose one of") -> str:
@@ -27,6 +28,6 @@ def advise(word: str, choices: Iterable[str], *, listed: str = "choose one of") 
     listed : str
         How the list of choices begins.
     """
-    known = list(choices)
-    near = closest(word, known)
-    return f"did you mean {near!r}?" if near else f"{listed} {', '.join(known)}"
+    possible = list(choices)
+    near = closest(word, possible)
+    return f"did you mean {near!r}?" if near else f"{listed} {', '.join(possible)}"

@@ -1,17 +1,17 @@
 """Quantities as text: "300 mm", "15 g/s", "60 rpm". One small registry, in which angle is a dimension.
 
 pint's default registry takes 1 Hz for 1 rad/s and `g` for a gram everywhere, and lets an angle pass for
-a number; the parser is pint's, the registry is ours.
+a number; the parser is pint's, the registry is gbeam's.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from gbeam.scenario.text.kinds import KINDS, USUAL, Kind
 from gbeam.scenario.text.suggest import closest
 
 if TYPE_CHECKING:
@@ -55,56 +55,6 @@ m mm cm km µm um g kg mg s ms us min h rad mrad deg rev rpm Hz kHz g0 N kN MN W
 psi % watt meter metre millimeter gram kilogram second millisecond minute hour radian degree revolution hertz
 newton pascal inch foot pound percent
 """
-
-
-@dataclass(frozen=True)
-class Kind:
-    """A kind of quantity: its name in a sentence, its SI unit and an example.
-
-    Parameters
-    ----------
-    phrase : str
-        Name with its article, ``a length``.
-    unit : str
-        SI unit that bare numbers are in.
-    example : str
-        A quantity as one would write it.
-    """
-
-    phrase: str
-    unit: str
-    example: str
-
-
-KINDS: dict[str, Kind] = {
-    "length": Kind("a length", "m", "20 mm"),
-    "area": Kind("an area", "m^2", "80 mm^2"),
-    "second moment of area": Kind("a second moment of area", "m^4", "8219 mm^4"),
-    "mass": Kind("a mass", "kg", "0.1 kg"),
-    "density": Kind("a density", "kg/m^3", "2700 kg/m^3"),
-    "moment of inertia": Kind("a moment of inertia", "kg m^2", "200 kg m^2"),
-    "pressure": Kind("a pressure", "Pa", "70 GPa"),
-    "force": Kind("a force", "N", "5 N"),
-    "force rate": Kind("a rate of force", "N/s", "10 N/s"),
-    "force per length": Kind("a force per length", "N/m", "20 N/m"),
-    "force per length rate": Kind("a rate of force per length", "N/m/s", "20 N/m/s"),
-    "stiffness": Kind("a stiffness", "N/m", "1e6 N/m"),
-    "rotational stiffness": Kind("a rotational stiffness", "N m/rad", "5000 N m/rad"),
-    "rotational damping": Kind("a rotational damping", "N m s/rad", "2 N m s/rad"),
-    "torque": Kind("a torque", "N m", "200 N m"),
-    "torque rate": Kind("a rate of torque", "N m/s", "10 N m/s"),
-    "time": Kind("a time", "s", "16 s"),
-    "speed": Kind("a speed", "m/s", "3 m/s"),
-    "acceleration": Kind("an acceleration", "m/s^2", "6 g"),
-    "jerk": Kind("a jerk", "m/s^3", "4 g/s"),
-    "angle": Kind("an angle", "rad", "30 deg"),
-    "angular rate": Kind("an angular rate", "rad/s", "3 rad/s"),
-    "angular acceleration": Kind("an angular acceleration", "rad/s^2", "1 rad/s^2"),
-    "angular jerk": Kind("an angular jerk", "rad/s^3", "10 rad/s^3"),
-    "power": Kind("a power", "W", "50 kW"),
-    "frequency": Kind("a frequency", "1/s", "20 Hz"),
-    "ratio": Kind("a ratio", "", "1 %"),
-}
 _NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*", re.DOTALL)
 # pint's tokenizer drops what it does not know ("5 m$", "5 m # note"), so the letters are checked first.
 _UNIT = re.compile(r"[\w°%()*/^+\-·.⁻⁰¹²³⁴-⁹ ]+")
@@ -116,53 +66,6 @@ class UnitError(ValueError):
     def __init__(self, problem: str, hint: str = "") -> None:
         self.problem, self.hint = problem, hint
         super().__init__(f"{problem}; {hint}" if hint else problem)
-
-
-@cache
-def _registry() -> UnitRegistry[Any]:
-    from pint import UnitRegistry
-
-    return UnitRegistry(_DEFINITIONS.strip().splitlines())
-
-
-@cache
-def _factor(unit: str, kind: str) -> float:
-    """SI value of one `unit` read as a `kind`; UnitError if it is not one."""
-    from pint import UndefinedUnitError
-
-    expected = KINDS[kind]
-    registry = _registry()
-    unreadable = UnitError(f"has the unreadable unit {unit!r}", f'write it such as "{expected.example}"')
-    if not _UNIT.fullmatch(unit):
-        raise unreadable
-    # The same letter is two units: of a mass, except where only an acceleration makes sense.
-    text = re.sub(r"\bg\b", "gee", unit) if kind in ("acceleration", "jerk") else unit
-    try:
-        # "60 1/min": parse_units takes no number in front, parse_expression takes any.
-        parsed = registry.parse_units(re.sub(r"^1\s*/", "dimensionless/", text))
-    except UndefinedUnitError as error:
-        names = error.unit_names
-        name = names if isinstance(names, str) else next(iter(names))
-        near = closest(name, _SPELLINGS.split())
-        hint = f"did you mean {near!r}?" if near else f'expected {expected.phrase}, such as "{expected.example}"'
-        raise UnitError(f"has the unknown unit {name!r}", hint) from None
-    except Exception:  # pint's parser lets tokenizer, syntax, type and value errors through
-        raise unreadable from None
-    amount = registry.Quantity(1.0, parsed)
-    if kind == "frequency" and amount.dimensionality == _registry().parse_units("rad/s").dimensionality:
-        return float(amount.to("hertz").magnitude)
-    if amount.dimensionality != registry.parse_units(expected.unit).dimensionality:
-        raise UnitError(_what(amount.dimensionality), f'expected {expected.phrase}, such as "{expected.example}"')
-    return float(amount.to(expected.unit or "dimensionless").magnitude)
-
-
-def _what(dimensionality: Any) -> str:
-    """Say what a quantity of this dimension is: ``is a mass``."""
-    registry = _registry()
-    for kind in KINDS.values():
-        if registry.parse_units(kind.unit).dimensionality == dimensionality:
-            return f"is {kind.phrase}"
-    return f"has the dimension {dimensionality}"
 
 
 def quantity(value: object, kind: str) -> float:
@@ -253,3 +156,58 @@ def _no_unit(number: str, expected: Kind) -> str:
     if not expected.unit:
         return f"write the bare number {number}, without quotes"
     return f'add a unit, such as "{expected.example}", or write the bare number {number} for {expected.unit}'
+
+
+def _factor(unit: str, kind: str) -> float:
+    """SI value of one `unit` read as a `kind`; UnitError if it is not one."""
+    if unit == KINDS[kind].unit:
+        return 1.0
+    usual = USUAL.get(kind, {}).get(unit)
+    return parsed_factor(unit, kind) if usual is None else usual
+
+
+@cache
+def parsed_factor(unit: str, kind: str) -> float:
+    """SI value of one `unit` read as a `kind`, by pint's parser; UnitError if it is not one."""
+    from pint import UndefinedUnitError
+
+    expected = KINDS[kind]
+    registry = _registry()
+    unreadable = UnitError(f"has the unreadable unit {unit!r}", f'write it such as "{expected.example}"')
+    if not _UNIT.fullmatch(unit):
+        raise unreadable
+    # The same letter is two units: of a mass, except where only an acceleration makes sense.
+    text = re.sub(r"\bg\b", "gee", unit) if kind in ("acceleration", "jerk") else unit
+    try:
+        # "60 1/min": parse_units takes no number in front, parse_expression takes any.
+        parsed = registry.parse_units(re.sub(r"^1\s*/", "dimensionless/", text))
+    except UndefinedUnitError as error:
+        names = error.unit_names
+        name = names if isinstance(names, str) else next(iter(names))
+        near = closest(name, _SPELLINGS.split())
+        hint = f"did you mean {near!r}?" if near else f'expected {expected.phrase}, such as "{expected.example}"'
+        raise UnitError(f"has the unknown unit {name!r}", hint) from None
+    except Exception:  # pint's parser lets tokenizer, syntax, type and value errors through
+        raise unreadable from None
+    amount = registry.Quantity(1.0, parsed)
+    if kind == "frequency" and amount.dimensionality == registry.parse_units("rad/s").dimensionality:
+        return float(amount.to("hertz").magnitude)
+    if amount.dimensionality != registry.parse_units(expected.unit).dimensionality:
+        raise UnitError(_what(amount.dimensionality), f'expected {expected.phrase}, such as "{expected.example}"')
+    return float(amount.to(expected.unit or "dimensionless").magnitude)
+
+
+@cache
+def _registry() -> UnitRegistry[Any]:
+    from pint import UnitRegistry
+
+    return UnitRegistry(_DEFINITIONS.strip().splitlines())
+
+
+def _what(dimensionality: Any) -> str:
+    """Say what a quantity of this dimension is: ``is a mass``."""
+    registry = _registry()
+    for kind in KINDS.values():
+        if registry.parse_units(kind.unit).dimensionality == dimensionality:
+            return f"is {kind.phrase}"
+    return f"has the dimension {dimensionality}"

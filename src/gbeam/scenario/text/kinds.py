@@ -1,0 +1,79 @@
+"""The kinds of quantity that a scenario holds, and the units that most files write them in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of quantity: its name in a sentence, its SI unit and an example.
+
+    Parameters
+    ----------
+    phrase : str
+        Name with its article, ``a length``.
+    unit : str
+        SI unit that bare numbers are in.
+    example : str
+        A quantity as one would write it.
+    """
+
+    phrase: str
+    unit: str
+    example: str
+
+
+KINDS: dict[str, Kind] = {
+    "length": Kind("a length", "m", "20 mm"),
+    "area": Kind("an area", "m^2", "80 mm^2"),
+    "second moment of area": Kind("a second moment of area", "m^4", "8219 mm^4"),
+    "mass": Kind("a mass", "kg", "0.1 kg"),
+    "density": Kind("a density", "kg/m^3", "2700 kg/m^3"),
+    "moment of inertia": Kind("a moment of inertia", "kg m^2", "200 kg m^2"),
+    "pressure": Kind("a pressure", "Pa", "70 GPa"),
+    "force": Kind("a force", "N", "5 N"),
+    "force rate": Kind("a rate of force", "N/s", "10 N/s"),
+    "force per length": Kind("a force per length", "N/m", "20 N/m"),
+    "force per length rate": Kind("a rate of force per length", "N/m/s", "20 N/m/s"),
+    "stiffness": Kind("a stiffness", "N/m", "1e6 N/m"),
+    "rotational stiffness": Kind("a rotational stiffness", "N m/rad", "5000 N m/rad"),
+    "rotational damping": Kind("a rotational damping", "N m s/rad", "2 N m s/rad"),
+    "torque": Kind("a torque", "N m", "200 N m"),
+    "torque rate": Kind("a rate of torque", "N m/s", "10 N m/s"),
+    "time": Kind("a time", "s", "16 s"),
+    "speed": Kind("a speed", "m/s", "3 m/s"),
+    "acceleration": Kind("an acceleration", "m/s^2", "6 g"),
+    "jerk": Kind("a jerk", "m/s^3", "4 g/s"),
+    "angle": Kind("an angle", "rad", "30 deg"),
+    "angular rate": Kind("an angular rate", "rad/s", "3 rad/s"),
+    "angular acceleration": Kind("an angular acceleration", "rad/s^2", "1 rad/s^2"),
+    "angular jerk": Kind("an angular jerk", "rad/s^3", "10 rad/s^3"),
+    "power": Kind("a power", "W", "50 kW"),
+    "frequency": Kind("a frequency", "1/s", "20 Hz"),
+    "ratio": Kind("a ratio", "", "1 %"),
+}
+
+# Importing pint takes longer than reading a whole scenario. These units, and each kind's SI unit, are read without it;
+# tests/scenario/test_units.py holds them against pint's answers.
+USUAL: dict[str, dict[str, float]] = {
+    "length": {"km": 1e3, "cm": 1e-2, "mm": 1e-3, "µm": 1e-6},
+    "area": {"cm^2": 1e-4, "mm^2": 1e-6},
+    "second moment of area": {"cm^4": 1e-8, "mm^4": 1e-12},
+    "mass": {"g": 1e-3},
+    "density": {"g/cm^3": 1e3},
+    "pressure": {"kPa": 1e3, "MPa": 1e6, "GPa": 1e9},
+    "force": {"kN": 1e3},
+    "force per length": {"kN/m": 1e3},
+    "stiffness": {"kN/m": 1e3, "N/mm": 1e3},
+    "torque": {"kN m": 1e3},
+    "time": {"ms": 1e-3, "min": 60.0},
+    "acceleration": {"g": 9.80665},
+    "jerk": {"g/s": 9.80665},
+    "angle": {"deg": 0.017453292519943295},
+    "angular rate": {"rpm": 0.10471975511965977, "deg/s": 0.017453292519943295, "Hz": 6.283185307179586},
+    "angular acceleration": {"deg/s^2": 0.017453292519943295},
+    "power": {"kW": 1e3},
+    "frequency": {"Hz": 1.0},
+    "ratio": {"%": 0.01},
+}
