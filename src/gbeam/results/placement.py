@@ -118,7 +118,7 @@ class Placement(Result):
 
     @property
     def vibration_gain(self) -> float:
-        """How much less the specimen vibrates than with the control point at mid-span, simulated; NaN where it was not."""
+        """Vibration with the control point at mid-span over that with the best, simulated; NaN where it was not."""
         vibration = {check.name: check.vibration for check in self.verifications}
         if not {"best", "middle"} <= vibration.keys() or vibration["best"] <= 0:
             return float("nan")

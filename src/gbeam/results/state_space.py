@@ -19,6 +19,23 @@ class Signal(NamedTuple):
     unit: str
 
 
+@dataclass(frozen=True)
+class Gauge:
+    """A strain gauge along the beam.
+
+    Parameters
+    ----------
+    at : float
+        Position from the root, m.
+    y, z : float
+        Where it sits in the section, m from the axis.
+    """
+
+    at: float
+    y: float = 0.0
+    z: float = 0.0
+
+
 @dataclass(frozen=True, repr=False, eq=False)
 class StateSpace(Result):
     """ẋ = Ax + Bu, y = Cx + Du; all are departures from the operating point.
