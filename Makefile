@@ -1,21 +1,28 @@
-# make demo: install and run the main job; make test: the tests; make check: what CI checks besides.
+# make demo: install and run the main job; make test: the tests; make check: what CI checks besides;
+# make benchmark: how long commands take, and a comparison with Exudyn (minutes; nothing else should run).
 PYTHON ?= python3
 BIN := .venv/bin
 EXAMPLE := examples/f16_8g_turn.toml
+# Compiled programs are kept here between test runs.
+CACHE := $(CURDIR)/.cache/jax
 
-.PHONY: demo test check lock clean
+.PHONY: demo test check benchmark lock clean
 
 demo: .venv/installed
 	$(BIN)/gbeam run $(EXAMPLE) --out out/f16_8g_turn
 
 test: .venv/dev-installed
-	$(BIN)/pytest -n 2 --dist loadfile
+	JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/pytest -n 2 --dist loadfile
 
 check: .venv/dev-installed
-	$(BIN)/ruff check src tests benchmarks
-	$(BIN)/ruff format --check src tests benchmarks
+	$(BIN)/ruff check src tests benchmarks examples
+	$(BIN)/ruff format --check src tests benchmarks examples
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+benchmark: .venv/dev-installed
+	$(BIN)/python benchmarks/latency.py
+	$(BIN)/python benchmarks/exudyn.py
 
 .venv/installed: pyproject.toml requirements.lock
 	$(PYTHON) -m venv .venv
@@ -36,4 +43,4 @@ lock: .venv/installed
 		pyproject.toml --group dev -o requirements-dev.lock
 
 clean:
-	rm -rf .venv out
+	rm -rf .venv .cache out
