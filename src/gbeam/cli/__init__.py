@@ -1,7 +1,8 @@
 """The command line: one file per verb, imported when it is called.
 
-A verb is a function with annotated parameters that returns its exit status. To add one, write its file and name it
-in VERBS; what is wrong is raised, and answered for in `failures`.
+A verb is a function with annotated parameters that reads a scenario, calls a public function of gbeam, prints what
+`gbeam.report` makes of the result, and returns its exit status. To add one, write its file and name it in VERBS.
+Errors are raised; `failures` prints them.
 """
 
 from __future__ import annotations
@@ -11,13 +12,18 @@ import os
 import sys
 from collections.abc import Sequence
 
+# A beam's matrices are small: threads of OpenBLAS, started as NumPy and SciPy are imported, would only spin.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# No plugin has a part in reading a scenario, and the search for plugins takes as long as the reading.
+os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+
 from cyclopts import App, CycloptsError
 
 import gbeam
-from gbeam.cli.failures import FAILED, answer, answer_syntax, complain
+from gbeam.cli.failures import FAILED, complain, report, report_syntax
 from gbeam.errors import GbeamError
 
-# The help is here and not only with the verb, so that `gbeam --help` imports none of them.
+# The help stands here and not only with the verb, so that `gbeam --help` imports none of them.
 VERBS = {
     "run": "Compute the response in every environment of a scenario, and compare them.",
     "static": "Where the beam rests relative to its base at one time of the motions.",
@@ -54,10 +60,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without µ or ² is no reason to fail
     try:
-        status = _answered(tokens)
+        status = _status(tokens)
         sys.stdout.flush()
     except OSError as error:
-        # Stdout is closed (`gbeam run ... | head`, where nobody listens any more) or its disk is full.
+        # Stdout is closed (`gbeam run ... | head`) or its disk is full.
         if not isinstance(error, BrokenPipeError):
             complain(str(error))
         _abandon_stdout()
@@ -65,17 +71,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     return status
 
 
-def _answered(tokens: list[str]) -> int:
-    """Run a verb; say what went wrong, if anything."""
+def _status(tokens: list[str]) -> int:
+    """Run a verb and print what went wrong, if anything; the exit status."""
     as_json = "--json" in tokens
     try:
         status = _app(tokens[0] if tokens else "")(
             tokens, exit_on_error=False, print_error=False, result_action="return_value"
         )
     except CycloptsError as error:
-        return answer_syntax(str(error), as_json)
+        return report_syntax(str(error), as_json)
     except GbeamError as error:
-        return answer(error, as_json)
+        return report(error, as_json)
     except KeyboardInterrupt:
         return _INTERRUPTED
     return status if isinstance(status, int) else 0
@@ -87,15 +93,15 @@ def _abandon_stdout() -> None:
         os.dup2(nowhere.fileno(), sys.stdout.fileno())
 
 
-def _app(asked: str) -> App:
+def _app(chosen: str) -> App:
     app = App(
         name="gbeam",
         help="How a flexible beam responds while its base moves a lot: in flight, on a centrifuge, on a hub.",
         version=gbeam.__version__,
         suppress_keyboard_interrupt=False,
     )
-    for verb, told in VERBS.items():
-        # The help of the verb that is asked is its own docstring, which says more.
+    for verb, summary in VERBS.items():
+        # The help of the chosen verb is its own docstring, which says more.
         name = verb.replace("-", "_")
-        app.command(f"gbeam.cli.verbs.{name}:{name}", name=verb, help=None if verb == asked else told)
+        app.command(f"gbeam.cli.verbs.{name}:{name}", name=verb, help=None if verb == chosen else summary)
     return app

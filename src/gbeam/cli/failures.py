@@ -1,4 +1,4 @@
-"""The one place where what went wrong becomes words and an exit status."""
+"""The one place where an error becomes words and an exit status."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ FAILED = 1
 WRONG_INPUT = 2
 
 
-def answer(error: GbeamError, as_json: bool) -> int:
-    """Say on stderr what went wrong, with JSON on stdout if asked for; return the exit status."""
+def report(error: GbeamError, as_json: bool) -> int:
+    """Print an error on stderr, with `as_json` also as JSON on stdout; return the exit status."""
     if isinstance(error, ComputationError):
         complain(f"{error.outcome}: {error}")
         if as_json:
@@ -24,14 +24,14 @@ def answer(error: GbeamError, as_json: bool) -> int:
     return _refuse(f"{mark}{error}", _diagnostics(error), as_json)
 
 
-def answer_syntax(message: str, as_json: bool) -> int:
-    """Say that the command line is wrong."""
+def report_syntax(message: str, as_json: bool) -> int:
+    """Print that the command line is wrong; return the exit status."""
     problem = {"path": "", "message": message, "hint": "see gbeam --help"}
     return _refuse(f"gbeam: {message} (see gbeam --help)", [problem], as_json)
 
 
 def complain(message: str) -> None:
-    """Say on stderr that a computation failed."""
+    """Print on stderr that a computation failed."""
     print(f"gbeam: {message}", file=sys.stderr)
 
 
@@ -46,7 +46,7 @@ def _diagnostics(error: GbeamError) -> list[dict[str, Any]]:
     from gbeam.scenario import ScenarioError  # not needed, nor imported, for help
 
     if isinstance(error, ScenarioError):
-        return [dict(it) for it in error.as_json()]
+        return [dict(diagnostic) for diagnostic in error.as_json()]
     if isinstance(error, InputError):
         return [{"path": error.where, "message": error.problem, "hint": error.fix}]
     return [{"path": "", "message": str(error), "hint": ""}]

@@ -1,37 +1,73 @@
-"""From the command line's scenario to the objects of the core."""
+"""From the command line's scenario and options to the objects of the core."""
 
 from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from gbeam.cli.outputs import refuse_unwritable
 from gbeam.errors import InputError
-from gbeam.scenario import Scenario, build, load, placed
+from gbeam.scenario import Scenario, UnitError, argument, build, load, placing
 
 if TYPE_CHECKING:
     from gbeam.analysis.study.case import Case
     from gbeam.io.netcdf import Provenance
+    from gbeam.mechanics.structure import Structure
+    from gbeam.motion.protocol import Motion
+
+STATIONS = 81  # along the beam, at which shapes are given
 
 
 @dataclass(frozen=True)
 class Input:
-    """A scenario as read, and the case that it describes."""
+    """A scenario as read, the case that it describes, and the command that names both."""
 
     scenario: Scenario
     case: Case
     command: str
 
-    @contextmanager
-    def placing(self) -> Iterator[None]:
+    def placing(self) -> AbstractContextManager[None]:
         """Give the InputErrors raised inside their place in the scenario file."""
+        return placing(self.scenario)
+
+    def motion(self, name: str | None, *, hubs_only: bool = False) -> tuple[str, Motion]:
+        """The motion of ``--motion``, and its name: without one the only one; with `hubs_only` the only hub.
+
+        Raises
+        ------
+        InputError
+            If there is no such motion, or more than one could be meant.
+        """
+        motions = self.case.motions
+        if name is not None:
+            if name not in motions:
+                raise InputError("--motion", f"is {name!r}", f"the scenario has {', '.join(motions)}")
+            return name, motions[name]
+        hubs = {key: motion for key, motion in motions.items() if motion.kind == "hub"}
+        choice = hubs if hubs_only and hubs else motions
+        if len(choice) != 1 and not (hubs_only and not hubs):
+            raise InputError("--motion", "is missing", f"name one of {', '.join(choice)}")
+        # Without any hub the first motion is as good as another: the analysis refuses it with its reason.
+        return next(iter(choice.items()))
+
+    def time(self, text: str | None) -> float:
+        """Time of ``--at``, s; the response's start where it is not given."""
+        return self.case.response.start if text is None else number("--at", text, "time")
+
+    def structure(self) -> Structure:
+        """The scenario's beam in its model, with stations all along it."""
+        from gbeam.mechanics.assembly import assemble
+
+        length = self.case.beam.length
+        along = [length * i / (STATIONS - 1) for i in range(STATIONS)]
         try:
-            yield
+            return assemble(self.case.beam, self.case.model, along)
         except InputError as error:
-            raise placed(self.scenario, [error]) from None
+            raise error.within("beam") from None
 
     def provenance(self) -> Provenance:
         """What a result file says about where it came from."""
@@ -40,17 +76,58 @@ class Input:
         source = self.scenario.source
         if source is None:
             return Provenance(command=self.command)
-        return Provenance(source.text, tuple(it.text for it in source.overrides), self.command)
+        return Provenance(source.text, tuple(change.text for change in source.overrides), self.command)
 
 
-def read(verb: str, file: Path, overrides: Sequence[str]) -> Input:
-    """Load and build the scenario that a verb was given.
+def read(verb: str, file: Path, overrides: Sequence[str], out: Path | None = None) -> Input:
+    """Load and build the scenario of a verb, once its folder is known to be writable.
 
     Raises
     ------
+    InputError
+        If `out` cannot be written to.
     ScenarioError
         With everything that is wrong, each with its place.
     """
+    if out is not None:
+        refuse_unwritable(out)
     scenario = load(file, overrides)
     changes = [word for change in overrides for word in ("--set", change)]
     return Input(scenario, build(scenario), shlex.join(["gbeam", verb, str(file), *changes]))
+
+
+@contextmanager
+def naming(option: str) -> Iterator[None]:
+    """Name an option as the place of the InputErrors raised inside."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(option, error.problem, error.fix) from None
+
+
+def number(option: str, text: str, kind: str) -> float:
+    """Read an option with a unit.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
+    try:
+        return argument(text, kind)
+    except UnitError as error:
+        raise InputError(option, error.problem, error.hint or "write a number with its unit") from None
+
+
+def numbers(option: str, text: str, kind: str) -> list[float]:
+    """Read the quantities of one option, separated by commas.
+
+    Raises
+    ------
+    InputError
+        If one cannot be read or is negative.
+    """
+    values = [number(option, part.strip(), kind) for part in text.split(",")]
+    if min(values) < 0:
+        raise InputError(option, f"has {min(values):g}", "give none that is negative")
+    return values

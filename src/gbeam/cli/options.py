@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
+# Of all verbs, or of many.
 ScenarioFile = Annotated[Path, Parameter(help="Scenario file, TOML or JSON.")]
 Overrides = Annotated[
     tuple[str, ...],
@@ -24,6 +25,12 @@ Out = Annotated[
 Json = Annotated[
     bool, Parameter(name="--json", negative="", show_default=False, help="Print one JSON object and nothing else.")
 ]
+MotionName = Annotated[
+    str | None, Parameter(name="--motion", help="Which [motion.NAME]; may be left out where only one can answer.")
+]
+At = Annotated[
+    str | None, Parameter(name="--at", help='Time at which the motion is frozen, such as "2 s"; by default the start.')
+]
 IgnoreLimits = Annotated[
     bool,
     Parameter(
@@ -32,4 +39,53 @@ IgnoreLimits = Annotated[
         show_default=False,
         help="Exit with 0 though a machine's limit is exceeded.",
     ),
+]
+
+# Of critical-speed.
+Vary = Annotated[
+    Literal["rate", "loads", "acceleration"],
+    Parameter(
+        name="--vary",
+        help="What is raised: the hub's rate; all loads on the beam, by one factor, the base being frozen; or the "
+        "acceleration of the root along the beam, which pushes it.",
+    ),
+]
+To = Annotated[
+    str | None,
+    Parameter(name="--to", help='End of search, such as "20 rad/s"; by default ten times what the beam resists.'),
+]
+Masses = Annotated[str | None, Parameter(name="--masses", help='A map instead, with one more mass: "0.1 kg, 0.5 kg".')]
+Positions = Annotated[
+    str | None, Parameter(name="--positions", help='Where that mass sits: "2 m, 5 m, 8 m"; by default all along.')
+]
+
+# Of linearize.
+Rate = Annotated[
+    str | None, Parameter(name="--rate", help='A hub\'s steady rate in place of a time, such as "2 rad/s".')
+]
+ModesKept = Annotated[
+    int | None,
+    Parameter(name="--modes", help="Keep so many of the slowest modes, besides what has no frequency; by default all."),
+]
+Balanced = Annotated[
+    int | None,
+    Parameter(name="--balanced", help="Keep so many states by balanced truncation, besides what does not decay."),
+]
+StrainAt = Annotated[
+    tuple[str, ...],
+    Parameter(
+        name="--strain-at",
+        negative="",
+        show_default=False,
+        help='Strain at a station, "10 mm", on the faces towards +z and +y; any number of times.',
+    ),
+]
+Inputs = Annotated[
+    str | None, Parameter(name="--inputs", help='Only these, "torque"; by default all. So with --outputs.')
+]
+Outputs = Annotated[str | None, Parameter(name="--outputs", help='Only these, "tip_y, hub_angle".')]
+
+# Of campbell.
+Speed = Annotated[
+    str | None, Parameter(help='Such as "60 rpm"; by default from rest to the largest rate of the motion.')
 ]

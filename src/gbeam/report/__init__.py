@@ -1,6 +1,10 @@
-"""A study in words: a table for people, one JSON object for programs. Both say the same, from `figures`."""
+"""Every result in words for people and as one JSON object for programs; one module per kind of result.
 
-from gbeam.report.summary import summary
-from gbeam.report.summary_json import as_json, summary_json
+study/ has responses, their comparisons and the study of models; machine/ the axes of a centrifuge and the placement;
+steady/ what is asked of one instant: equilibrium, modes, Campbell, critical values, state space. Each module has
+``to_json`` and ``text``, of which the command line prints one.
+"""
 
-__all__ = ["as_json", "summary", "summary_json"]
+from gbeam.report.words import as_json
+
+__all__ = ["as_json"]

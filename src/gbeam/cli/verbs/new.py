@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from gbeam.cli.options import Json
+from gbeam.cli.outputs import show
 from gbeam.errors import InputError
 
 
@@ -22,18 +23,16 @@ def new(
 
     Exit status: 0 written, 2 there is such a file or it cannot be written.
     """
-    from gbeam.report import as_json
-    from gbeam.scenario import template
+    from gbeam.scenario.template import template
 
-    text = template(kind)
     if file.suffix != ".toml":
         raise InputError(str(file), "does not end in .toml", f"name it {file.with_suffix('.toml')}")
     try:
-        with file.open("x", encoding="utf-8") as it:
-            it.write(text)
+        with file.open("x", encoding="utf-8") as new_file:
+            new_file.write(template(kind))
     except FileExistsError:
         raise InputError(str(file), "exists", "name a new file, or delete it first") from None
     except OSError as error:
         raise InputError(str(file), f"cannot be written ({error.strerror})", "name another place") from None
-    print(as_json({"file": str(file), "kind": kind}) if json else f"{file} written; `gbeam run {file}` computes it")
+    show(f"{file} written; `gbeam run {file}` computes it", {"file": str(file), "kind": kind}, json)
     return 0

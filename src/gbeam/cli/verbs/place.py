@@ -142,7 +142,7 @@ def choice(given: Input, name: str, flight: Flight, tried: list[float], limited:
 
     def make(mounting: str, width: float) -> Centrifuge:
         changed = own.model_copy(update={"mounting": mounting, "smoothing": width})
-        return centrifuge_of(changed, flight.acceleration, span)
+        return centrifuge_of(changed, flight, span)
 
     others = tuple(it for it in MOUNTINGS if it != own.mounting)
     return Choice(make, (own.mounting, *others), widths, len(widths) > 1, limited)

@@ -7,13 +7,13 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from gbeam.cli.console import stdout
 from gbeam.cli.failures import FAILED, complain
+from gbeam.cli.inputs import number
 from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, ScenarioFile
-from gbeam.cli.outputs import publish, refuse_unwritable
+from gbeam.cli.outputs import list_files, publish, refuse_unwritable, show, show_table
 from gbeam.errors import InputError
 
-SAMPLE = 0.005  # s, where neither the scenario nor the command line says
+SAMPLE = 0.005  # s, where neither the scenario nor the command line gives one
 
 
 def plan(
@@ -30,7 +30,7 @@ def plan(
 ) -> int:
     """Plan the axis motions of the centrifuges of a scenario; it needs no beam.
 
-    Tells what the axes do, what that uses of the machine's limits, how well the load is followed and where it cannot
+    Prints what the axes do, what that uses of the machine's limits, how well the load is followed and where it cannot
     be. With --out also writes the axis motions at the controller's sample time (commands_NAME.csv and .mat) and a plot.
     Exit status: 0 done, 1 a limit is exceeded, 2 the input is wrong.
     """
@@ -43,54 +43,34 @@ def plan(
     machines = build_machines(given)
     if not machines:
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
-    every = None if sample is None else _time(sample)
+    every = None if sample is None else number("--sample", sample, "time")
+    if every is not None and every <= 0:
+        raise InputError("--sample", f"is {sample}", 'give a positive time, such as "5 ms"')
 
-    from gbeam.analysis.imitation.plan import commands
-    from gbeam.analysis.imitation.plan import plan as planned
-    from gbeam.report import as_json
-    from gbeam.report.plan import plan_json, plan_table
+    from gbeam.analysis.imitation import plan as analysis
+    from gbeam.report.machine import plan as report
 
-    plans = {}
-    files: list[Path] = []
-    samples = {}
-    for name, machine in machines.items():
-        it = given.motion[name]
-        assert isinstance(it, schema.Centrifuge)
-        plans[name] = planned(name, machine, it.tracks)
-        samples[name] = every or (it.commands.sample if it.commands else SAMPLE)
-    if out is not None:
+    tables = {name: table for name, table in given.motion.items() if isinstance(table, schema.Centrifuge)}
+    plans = {name: analysis.plan(name, machine, tables[name].tracks) for name, machine in machines.items()}
 
-        def make(hidden: Path) -> None:
-            from gbeam.io.commands import write_commands
-            from gbeam.plots import plot_axes
-            from gbeam.plots.style import save
+    def make(hidden: Path) -> None:
+        from gbeam.io.commands import write_commands
+        from gbeam.plots import plot_axes
+        from gbeam.plots.style import save
 
-            for name, each in plans.items():
-                write_commands(each, commands(machines[name], samples[name]), hidden)
-                save(plot_axes(each, each.axes, given.title), hidden, f"axes_{name}")
+        for name, each in plans.items():
+            own = tables[name].commands
+            time = every or (own.sample if own else SAMPLE)
+            write_commands(each, analysis.commands(machines[name], time), hidden)
+            save(plot_axes(each, each.axes, given.title), hidden, f"axes_{name}")
 
-        files = publish(out, make)
+    files = [] if out is None else publish(out, make)
     if json:
-        print(as_json(plan_json(given.title, plans.values(), files)))
+        show("", report.to_json(given.title, plans.values(), files), json)
     else:
-        console = stdout()
-        console.print(plan_table(given.title, plans.values()))
-        if files:
-            console.print(f"\n{len(files)} files in {out}: {', '.join(it.name for it in files)}", soft_wrap=True)
+        show_table(report.table(given.title, plans.values()))
+        list_files(out, files)
     broken = [each for each in plans.values() if each.outcome != "done"]
     for each in broken:
         complain(f"motion.{each.name} {each.outcome}: {each.message}" + (" (allowed)" if ignore_limits else ""))
     return FAILED if broken and not ignore_limits else 0
-
-
-def _time(text: str) -> float:
-    """Read the sample time; InputError if it is none."""
-    from gbeam.scenario import UnitError, argument
-
-    try:
-        value = argument(text, "time")
-    except UnitError as error:
-        raise InputError("--sample", error.problem, error.hint) from None
-    if value <= 0:
-        raise InputError("--sample", f"is {text}", 'give a positive time, such as "5 ms"')
-    return value

@@ -1,4 +1,4 @@
-"""The numbers that a report quotes from a centrifuge's axes."""
+"""How well a centrifuge follows the load of its flight: the numbers that reports quote."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gbeam.results.response import AxesResult, Floats
+from gbeam.results.machine import AxesResult
+from gbeam.results.result import Floats
 
 
 @dataclass(frozen=True)
@@ -24,11 +25,11 @@ class Tracking:
     Parameters
     ----------
     max : float
-        m/s²; NaN where the target was held all the time.
+        m/s²; NaN where the load was followed at no time.
     time_of_max : float
         s.
     fraction : float
-        Of the load wanted at that time.
+        Of the reference load at that time.
     """
 
     max: float
@@ -43,17 +44,17 @@ def peak(time: Floats, values: Floats) -> Peak:
 
 
 def tracking(time: Floats, axes: AxesResult) -> Tracking:
-    """Largest tracking error of a centrifuge, where its target is not held."""
+    """Largest tracking error of a centrifuge, where its target is the flight's load."""
     if axes.not_followed.all():
         return Tracking(np.nan, np.nan, np.nan)
     error = np.where(axes.not_followed, -1.0, axes.tracking_error)
     i = int(np.argmax(error))
-    wanted = float(np.linalg.norm(axes.reference[i]))
-    return Tracking(float(error[i]), float(time[i]), float(error[i]) / wanted if wanted > 0 else np.nan)
+    size = float(np.linalg.norm(axes.reference[i]))
+    return Tracking(float(error[i]), float(time[i]), float(error[i]) / size if size > 0 else np.nan)
 
 
 def not_followed_stretches(axes: AxesResult) -> list[tuple[float, float, str]]:
-    """Stretches in which the target is held, s, those that overlap joined with their reasons."""
+    """Stretches in which the target is not the flight's load, s, those that overlap joined with their reasons."""
     joined: list[tuple[float, float, str]] = []
     for start, end, reason in sorted(axes.episodes):
         if joined and start <= joined[-1][1]:

@@ -5,35 +5,38 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from rich.table import Table
+from gbeam.results.machine import AxesResult, LimitUse
 
-from gbeam.results.response import AxesResult, LimitUse
+if TYPE_CHECKING:
+    from rich.table import Table
 
 
-def limits_table(uses: Iterable[LimitUse]) -> Table:
+def table(uses: Iterable[LimitUse]) -> Table:
     """Return a table of what is used of each limit, when, and the share of what is allowed."""
-    table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
-    table.add_column("machine")
+    from rich.table import Table
+
+    rows = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
+    rows.add_column("machine")
     for heading in ("used", "allowed", "share", "at, s"):
-        table.add_column(heading, justify="right")
-    table.add_column("unit")
+        rows.add_column(heading, justify="right")
+    rows.add_column("unit")
     for use in uses:
-        known = math.isfinite(use.allowed)
+        limited = math.isfinite(use.allowed)
         style = "bold red" if use.exceeded else None
-        table.add_row(
+        rows.add_row(
             f"{use.axis} {use.quantity}",
             f"{use.used:.4g}",
-            f"{use.allowed:.4g}" if known else "–",
-            f"{use.share:.0%}" if known else "–",
+            f"{use.allowed:.4g}" if limited else "–",
+            f"{use.share:.0%}" if limited else "–",
             f"{use.time:.3f}" if use.used > 0 else "–",
             use.unit,
             style=style,
         )
-    return table
+    return rows
 
 
-def limits_json(axes: AxesResult) -> list[dict[str, Any]]:
+def to_json(axes: AxesResult) -> list[dict[str, Any]]:
     """Return the limits as objects; null is allowed where there is none."""
     return [asdict(use) | {"share": use.share, "exceeded": use.exceeded} for use in axes.limits]

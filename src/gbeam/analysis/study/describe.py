@@ -1,0 +1,52 @@
+"""What a case means, before anything is simulated."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gbeam.analysis.study.case import Case
+from gbeam.analysis.study.study import structure_of
+from gbeam.mechanics.fields.basis import quadrature
+from gbeam.results.description import Description
+
+MODES = 6  # natural frequencies at most
+
+
+def describe(case: Case) -> Description:
+    """Describe a case: the beam's mass, its natural frequencies at rest, the motions and the response's settings.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`gbeam.read_scenario`, or made by hand.
+
+    Returns
+    -------
+    Description
+
+    Raises
+    ------
+    InputError
+        If the beam does not fit its model, with its place in the scenario.
+    """
+    structure, beam, settings = structure_of(case), case.beam, case.response
+    frequencies, modes = structure.rest
+    # Which group of coordinates moves most says along which axis a mode bends.
+    groups = np.repeat(("axial", "y", "z"), structure.counts)
+    rule = quadrature(beam.length, 4, beam.section.stations)
+    return Description(
+        title=case.title,
+        length=beam.length,
+        mass=beam.material.density * float(np.sum(beam.section.at(rule.node).area * rule.weight)),
+        bodies=tuple((body.at, body.mass) for body in beam.masses),
+        model=case.model.kind,
+        counts=case.model.counts,
+        frequency=np.asarray(frequencies)[:MODES] / (2 * np.pi),
+        direction=tuple(str(groups[i]) for i in np.abs(modes[: len(groups)]).argmax(axis=0)[:MODES]),
+        motions={name: motion.kind for name, motion in case.motions.items()},
+        tracks=dict(case.tracks),
+        start=settings.start,
+        duration=settings.duration,
+        step=settings.step,
+        integrator=settings.integrator,
+    )

@@ -1,0 +1,1 @@
+"""A centrifuge's axes: limits, tracking, plan, and where to put the specimen."""

@@ -1,0 +1,102 @@
+"""Where to put the specimen."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from gbeam.results.placement import Candidate, Placement
+
+_PLACES = ("best", "current", "middle")
+_LISTED = 6  # candidates of either kind
+
+
+def to_json(placement: Placement) -> dict[str, Any]:
+    """Placement as JSON: SI units; fractions are of flight's peaks."""
+    best = placement.best
+    return {
+        "outcome": "done",
+        "flight": placement.flight,
+        "centrifuge": placement.centrifuge,
+        "measure": dict(placement.weights),
+        "control_point": best.control_point,
+        "fraction_of_length": placement.fraction,
+        "mounting": best.mounting,
+        "smoothing": best.smoothing,
+        "smoothing_range": list(placement.widths),
+        "current_control_point": placement.current,
+        "mismatch": {place: dict(values) for place, values in placement.values.items()},
+        "options": [asdict(candidate) for candidate in placement.options],
+        "verifications": {check.name: asdict(check) for check in placement.verifications},
+        "vibration_gain_over_middle": placement.vibration_gain,
+        "refused": list(placement.refused),
+    }
+
+
+def text(placement: Placement) -> str:
+    """The best placement, what the mismatch does at it, the simulations that check it, and the other candidates."""
+    best = placement.best
+    parts = {name: weight for name, weight in placement.weights.items() if weight}
+    measure = (
+        " + ".join(f"{weight:g} × {name}" for name, weight in parts.items()) if len(parts) > 1 else next(iter(parts))
+    )
+    lines = [
+        f"{placement.centrifuge}, tracking {placement.flight}: least {measure}",
+        f"  control point  {1e3 * best.control_point:.2f} mm from the root, {placement.fraction:.4f} of the length "
+        f"(now {1e3 * placement.current:.2f} mm)",
+        f"  mounting       {best.mounting}",
+        f"  smoothing      {1e3 * best.smoothing:.4g} ms{_range(placement)}",
+        "",
+        "What the mismatch field does, of flight's peak".ljust(56) + "best       current    middle",
+    ]
+    for name in placement.values["best"]:
+        row = "".join(f"{100 * placement.values[place][name]:<9.3g}% " for place in _PLACES)
+        lines.append(f"  {name:<54}{row}")
+    return "\n".join([*lines, *_verified(placement), *_candidates(placement, measure)])
+
+
+def _range(placement: Placement) -> str:
+    """What was searched, and whether the best lies at its end."""
+    low, high = placement.widths
+    if low == high:
+        return ""
+    searched = f", of {1e3 * low:.4g} to {1e3 * high:.4g} ms"
+    if placement.best.smoothing > low * (1 + 1e-6):
+        return searched + (": the widest tried" if placement.best.smoothing > high * (1 - 1e-6) else "")
+    unlimited = "; no limit of the machine forbids less" if placement.best.share < 1 else ""
+    return f"{searched}: the least tried{unlimited}"
+
+
+def _verified(placement: Placement) -> list[str]:
+    if not placement.verifications:
+        return []
+    lines = ["", "Checked by simulation, against flight"]
+    lines += [
+        f"  {check.name:<8} {1e3 * check.control_point:8.2f} mm: tip within {1e3 * check.tip_difference:.4g} mm, "
+        f"vibration {1e3 * check.vibration:.3g} mm, root moment within {check.moment_difference:.3g} N m"
+        for check in placement.verifications
+    ]
+    gain = placement.vibration_gain
+    return [*lines, f"  {gain:.3g} times less vibration than with the control point at mid-span"]
+
+
+def _candidates(placement: Placement, measure: str) -> list[str]:
+    kept = [candidate for candidate in placement.options if not candidate.exceeded]
+    broken = [candidate for candidate in placement.options if candidate.exceeded]
+    listed = [*kept[:_LISTED], *broken[:_LISTED]]
+    lines = ["", f"Options by {measure} with what smoothing and tracking change of the load, best first"]
+    lines += [_candidate(candidate) for candidate in listed]
+    more = len(placement.options) - len(listed)
+    lines += [f"  and {more} more: see --json"] if more else []
+    return [*lines, *(f"  cannot: {reason}" for reason in placement.refused)]
+
+
+def _candidate(candidate: Candidate) -> str:
+    words = f"  {candidate.mounting}, {1e3 * candidate.smoothing:.4g} ms: {100 * candidate.total_error:.3g} % "
+    words += f"at {1e3 * candidate.control_point:.2f} mm; "
+    if candidate.exceeded:
+        worst, others = max(candidate.exceeded, key=lambda use: use.share), len(candidate.exceeded) - 1
+        return words + f"exceeds {worst}" + (f" and {others} more" if others else "")
+    peaks = ", ".join(f"{acceleration:.3g}" for acceleration in candidate.accelerations)
+    share = f", {candidate.share:.0%} of a limit" if candidate.share else ""
+    return words + f"axis accelerations {peaks} rad/s²{share}"

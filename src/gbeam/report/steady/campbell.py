@@ -1,0 +1,42 @@
+"""Frequencies against the speed of a hub."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from gbeam.results.modal import Campbell
+
+
+def to_json(diagram: Campbell) -> dict[str, Any]:
+    """Diagram as JSON; rad/s, Hz."""
+    columns = (diagram.direction, diagram.frequency.T, diagram.damping_ratio.T, diagram.mac.T)
+    return {
+        "outcome": "done",
+        "motion": diagram.motion,
+        "model": diagram.model,
+        "speed": diagram.speed.tolist(),
+        "tracks": [
+            {"direction": d, "frequency": f.tolist(), "damping_ratio": z.tolist(), "mac": m.tolist()}
+            for d, f, z, m in zip(*columns, strict=True)
+        ],
+        "orders": list(diagram.orders),
+        "crossings": [asdict(crossing) for crossing in diagram.crossings],
+        "critical_speed": None if diagram.critical is None else diagram.critical.value,
+    }
+
+
+def text(diagram: Campbell) -> str:
+    """First and last frequency of each mode, crossings, and a critical speed if there is one."""
+    low, high = diagram.speed[[0, -1]]
+    lines = [f"{diagram.motion}: {diagram.model}, {low:.4g} to {high:.4g} rad/s"]
+    lines.append("  mode along   Hz at the start   at the end")
+    rows = enumerate(zip(diagram.direction, diagram.frequency[0], diagram.frequency[-1], strict=True), 1)
+    lines += [f"  {i:>4} {d:>5} {first:17.6g} {last:12.6g}" for i, (d, first, last) in rows]
+    lines += [
+        f"  mode {each.track + 1} meets {each.order} × speed at {each.speed:.6g} rad/s, {each.frequency:.6g} Hz"
+        for each in diagram.crossings
+    ]
+    if diagram.critical is not None:
+        lines.append(f"  {diagram.critical.reason}")
+    return "\n".join(lines)

@@ -1,0 +1,72 @@
+"""Where the equilibrium is lost: one value, or a map of hub rates against a mass and its position."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from gbeam.results.equilibrium import Critical, CriticalMap
+
+KEYS = {"rate": "critical_speed", "loads": "critical_load_factor", "acceleration": "critical_acceleration"}
+
+
+def to_json(critical: Critical, motion: str, varied: str = "rate") -> dict[str, Any]:
+    """Critical value as JSON; rad/s, m/s² or a factor, null where there is none.
+
+    Parameters
+    ----------
+    critical : Critical
+    motion : str
+        Name of the motion.
+    varied : str
+        What was varied: rate, loads or acceleration.
+    """
+    return {
+        "outcome": "done",
+        "motion": motion,
+        KEYS[varied]: critical.value,
+        "quantity": critical.quantity,
+        "unit": critical.unit,
+        "searched_to": critical.searched_to,
+        "kind": critical.kind,
+        "direction": critical.direction,
+        "reason": critical.reason,
+        "model": critical.model,
+    }
+
+
+def text(critical: Critical, motion: str) -> str:
+    """The answer as one sentence."""
+    return f"{motion}: {critical.reason}"
+
+
+def map_json(critical: CriticalMap) -> dict[str, Any]:
+    """Map as JSON: critical_speed[i][j] with mass i at position j; rad/s, null where there is none."""
+    return {
+        "outcome": "done",
+        "motion": critical.motion,
+        "model": critical.model,
+        "mass": critical.mass.tolist(),
+        "position": critical.position.tolist(),
+        "critical_speed": [[None if np.isnan(v) else float(v) for v in row] for row in critical.speed],
+        "searched_to": critical.searched_to,
+    }
+
+
+def map_text(critical: CriticalMap) -> str:
+    """Map as a table, positions down and masses across."""
+    lines = [f"{critical.motion}: {critical.model}, critical hub rate in rad/s with one more mass"]
+    lines.append("  at, m    " + "".join(f"{m:>9.4g} kg" for m in critical.mass))
+    for place, speeds in zip(critical.position, critical.speed.T, strict=True):
+        lines.append(f"  {place:<9.4g}" + "".join("           –" if np.isnan(v) else f"{v:12.5f}" for v in speeds))
+    if np.isnan(critical.speed).any():
+        lines.append(f"  –: none up to {critical.searched_to:.4g} rad/s")
+    return "\n".join(lines)
+
+
+def map_csv(critical: CriticalMap) -> str:
+    """Map as comma-separated values: a row per position, a column per mass, nan where there is none."""
+    head = ",".join(["position_m", *(f"critical_rad_per_s_with_{m:g}_kg" for m in critical.mass)])
+    rows = np.column_stack([critical.position, critical.speed.T])
+    return "\n".join([head, *(",".join(f"{value:.12g}" for value in row) for row in rows), ""])

@@ -1,0 +1,86 @@
+"""Where the beam rests, and what its sections carry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from gbeam.report.words import tidy, xyz, xyz_lists
+from gbeam.results.equilibrium import Deflection
+from gbeam.results.response import BaseMotion
+from gbeam.results.section_forces import Loads
+
+
+def to_json(title: str, deflections: Iterable[Deflection]) -> dict[str, Any]:
+    """Deflections by motion as JSON; m, J, N, N m, Pa."""
+    return {"title": title, "outcome": "done", "motions": {each.motion: _deflection(each) for each in deflections}}
+
+
+def _deflection(deflection: Deflection) -> dict[str, Any]:
+    values = {
+        "outcome": "done",
+        "time": deflection.time,
+        "model": deflection.model,
+        "base": base_json(deflection.base),
+        "tip": xyz(deflection.tip),
+        "stations": deflection.stations.tolist(),
+        "displacement": xyz_lists(deflection.displacement),
+        "strain_energy": deflection.strain_energy,
+        "stable": deflection.stable,
+    }
+    return values if deflection.loads is None else values | {"loads": loads_json(deflection.loads)}
+
+
+def base_json(base: BaseMotion) -> dict[str, Any]:
+    """Base motion of one instant as JSON; m/s², rad/s, rad/s², base axes."""
+    return {
+        "acceleration": xyz(base.a_WO_B),
+        "angular_velocity": xyz(base.w_WB_B),
+        "angular_acceleration": xyz(base.alpha_WB_B),
+    }
+
+
+def loads_json(loads: Loads) -> dict[str, Any]:
+    """Loads of one time as JSON: of the base on the root, base axes; along the beam, section axes."""
+    values: dict[str, Any] = {
+        "root_force": xyz(loads.root_force[0]),
+        "root_moment": xyz(loads.root_moment[0]),
+        "stations": loads.stations.tolist(),
+        "section_force": xyz_lists(loads.section_force[0]),
+        "section_moment": xyz_lists(loads.section_moment[0]),
+        "stress": loads.stress[0].tolist(),
+    }
+    if loads.beam_torque is not None:
+        values["beam_torque"] = float(loads.beam_torque[0])
+    return values
+
+
+def text(deflections: Iterable[Deflection]) -> str:
+    """Deflections on two lines each."""
+    return "\n".join(map(_lines, deflections))
+
+
+def _lines(deflection: Deflection) -> str:
+    x, y, z = tidy(1e3 * deflection.tip, 1e3 * float(np.abs(deflection.displacement).max()))
+    warning = "" if deflection.stable else "; UNSTABLE: the stiffness there is not positive definite"
+    tip = f"tip x {x:.6g} mm, y {y:.6g} mm, z {z:.6g} mm"
+    first = f"{deflection.motion} at {deflection.time:.4g} s: {tip} ({deflection.model}){warning}"
+    return first if deflection.loads is None else f"{first}\n  {_loads(deflection.loads)}"
+
+
+def _loads(loads: Loads) -> str:
+    largest = float(np.abs(loads.force).max())
+    lever = max(float(np.abs(loads.moment).max()), largest * float(loads.stations[-1]))
+    force, moment = (
+        ", ".join(f"{value:.5g}" for value in tidy(vector[0], size))
+        for vector, size in ((loads.root_force, largest), (loads.root_moment, lever))
+    )
+    words = f"base on root: force ({force}) N, moment ({moment}) N m"
+    if np.isfinite(loads.stress).all():
+        at = loads.stations[loads.stress[0].argmax()]
+        words += f"; stress up to {1e-6 * loads.stress.max():.5g} MPa at {at:.4g} m"
+    if loads.beam_torque is not None:
+        words += f"; torque for the beam {tidy(loads.beam_torque, lever)[0]:.5g} N m"
+    return words

@@ -1,0 +1,62 @@
+"""State-space models."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict
+from textwrap import wrap
+from typing import Any
+
+from gbeam.results.state_space import Gauge, StateSpace
+
+WIDTH = 100  # columns of the text
+
+
+def to_json(system: StateSpace, gauges: Iterable[Gauge] = (), hankel: Iterable[float] = ()) -> dict[str, Any]:
+    """State space as JSON.
+
+    Parameters
+    ----------
+    system : StateSpace
+    gauges : iterable of Gauge
+        Strain gauges among the outputs, in the order of their names.
+    hankel : iterable of float
+        Hankel singular values of the system before its truncation, if it was balanced.
+    """
+
+    def signals(listed: Any, values: Any) -> list[dict[str, Any]]:
+        pairs = zip(listed, values, strict=True)
+        return [{"name": signal.name, "unit": signal.unit, "value": float(value)} for signal, value in pairs]
+
+    return {
+        "outcome": "done",
+        "motion": system.motion,
+        "time": system.time,
+        "model": system.model,
+        "states": signals(system.states, system.state),
+        "inputs": signals(system.inputs, system.input),
+        "outputs": signals(system.outputs, system.output),
+        **{key: getattr(system, key.lower()).tolist() for key in "ABCD"},
+        "gauges": [asdict(gauge) for gauge in gauges],
+        "hankel_singular_values": [float(value) for value in hankel],
+    }
+
+
+def text(system: StateSpace, gauges: Iterable[Gauge] = (), hankel: Iterable[float] = ()) -> str:
+    """Names and units of the signals; the arguments are those of :func:`to_json`."""
+    lines = [f"{system.motion}: {system.model}, {len(system.a)} states"]
+    for what in ("states", "inputs", "outputs"):
+        # No line ends between a name and its unit.
+        words = (f"{signal.name} [{signal.unit}]" for signal in getattr(system, what))
+        signals = ", ".join(each.replace(" ", "\N{NO-BREAK SPACE}") for each in words)
+        lines += wrap(
+            signals, WIDTH, initial_indent=f"  {what:<8} ", subsequent_indent=11 * " ", break_on_hyphens=False
+        )
+    names = {signal.name for signal in system.outputs}
+    for k, gauge in enumerate(gauges, 1):
+        if f"strain_{k}" in names:
+            fibre = f"fibre y {1e3 * gauge.y:g} mm, z {1e3 * gauge.z:g} mm"
+            lines.append(f"  strain_{k} at {gauge.at:g} m, {fibre}")
+    if values := list(hankel):
+        lines.append("  Hankel singular values " + " ".join(f"{value:.3g}" for value in values))
+    return "\n".join([*lines, "--json prints the matrices, --out writes them for MATLAB too."])

@@ -1,0 +1,1 @@
+"""Responses over time: the study of all environments, their comparisons, and the study of models."""

@@ -1,0 +1,87 @@
+"""A comparison of a centrifuge's response with flight's: as JSON, and as lines below its verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from gbeam.report.words import xyz
+from gbeam.results.comparison import Comparison, Mismatch, RootLoads, Sizes
+
+_PLACES = ("flight", "centrifuge", "difference")
+
+
+def to_json(comparison: Comparison) -> dict[str, Any]:
+    """Comparison as JSON, with those of ``stations``, ``mismatch``, ``root`` and ``shock`` that it has; SI."""
+    values = {
+        "flight": comparison.flight,
+        "centrifuge": comparison.centrifuge,
+        "verdict": comparison.verdict,
+        "covered": float(comparison.covered.mean()),
+        "max_difference": xyz(comparison.max_difference),
+        "rms_difference": xyz(comparison.rms_difference),
+        "peak_flight": xyz(comparison.peak_flight),
+        "peak_centrifuge": xyz(comparison.peak_centrifuge),
+        "relative": xyz(comparison.relative),
+    }
+    if comparison.stations is not None:
+        values["cutoff"] = comparison.stations.cutoff
+        values["stations"] = [
+            {"at": float(x), **{place: _sizes(getattr(comparison.stations, place), k) for place in _PLACES}}
+            for k, x in enumerate(comparison.stations.stations)
+        ]
+    if comparison.mismatch is not None:
+        values["mismatch"] = _mismatch(comparison.mismatch)
+    if comparison.root is not None:
+        values["root"] = _root(comparison.root)
+    if comparison.shock is not None:
+        values["shock"] = {
+            "quality": comparison.shock.quality,
+            "frequency": comparison.shock.frequency.tolist(),
+            "flight": comparison.shock.flight.tolist(),
+            "centrifuge": comparison.shock.centrifuge.tolist(),
+        }
+    return values
+
+
+def _sizes(sizes: Sizes, station: int) -> dict[str, Any]:
+    return {name: xyz(getattr(sizes, name)[station]) for name in ("peak", "rms", "residual")}
+
+
+def _mismatch(mismatch: Mismatch) -> dict[str, Any]:
+    names = ("max_gradient", "max_acceleration", "tip_bound", "force_bound", "moment_bound")
+    return {"control_point": mismatch.control_point, **{name: xyz(getattr(mismatch, name)) for name in names}}
+
+
+def _root(root: RootLoads) -> dict[str, Any]:
+    return {
+        "force": {place: xyz(getattr(root, f"force_{place}")) for place in _PLACES},
+        "moment": {place: xyz(getattr(root, f"moment_{place}")) for place in _PLACES},
+        "stress": {place: getattr(root, f"stress_{place}") for place in _PLACES},
+    }
+
+
+def lines(comparison: Comparison) -> Iterator[str]:
+    """Root loads, vibration, and a bound on what the mismatch field can do."""
+    main = comparison.main_axis
+    if comparison.root is not None:
+        root, bent = comparison.root, int(np.argmax(comparison.root.moment_flight))
+        yield (
+            f"root moment {root.moment_flight[bent]:.4g} N m in flight, {root.moment_centrifuge[bent]:.4g} N m on the "
+            f"centrifuge; stress {1e-6 * root.stress_flight:.4g} and {1e-6 * root.stress_centrifuge:.4g} MPa"
+        )
+    if comparison.stations is not None:
+        both = comparison.stations.flight, comparison.stations.centrifuge
+        flight, centrifuge = (1e3 * sizes.residual[-1, main] for sizes in both)
+        yield (
+            f"elastic vibration of the tip {flight:.3g} mm in flight, {centrifuge:.3g} mm on the centrifuge "
+            f"(above {comparison.stations.cutoff:.3g} Hz, zero phase)"
+        )
+    if comparison.mismatch is not None:
+        bound = comparison.mismatch.tip_bound[main]
+        yield (
+            f"mismatch up to {comparison.mismatch.max_acceleration[main]:.3g} m/s² along the beam, which bends the tip "
+            f"by up to {1e3 * bound:.3g} mm quasi-statically; `gbeam place` finds the best control point"
+        )

@@ -1,0 +1,148 @@
+"""A study as a table for a terminal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from rich.console import Group, RenderableType
+from rich.markup import escape
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from gbeam.report.machine import limits
+from gbeam.report.machine.tracking import not_followed_stretches, tracking
+from gbeam.report.study import comparison
+from gbeam.report.words import number, sentence
+from gbeam.results.machine import AxesResult
+from gbeam.results.response import HubResult, Response
+from gbeam.results.section_forces import Loads
+from gbeam.results.study import Study
+
+ROUNDING = 1e-9  # of what it belongs to: a smaller number is none
+EPISODES = 8  # of holding listed; a rough record has hundreds
+SHORTFALLS = 2
+
+
+def table(study: Study) -> RenderableType:
+    """Study as tables and lines.
+
+    Parameters
+    ----------
+    study : Study
+
+    Returns
+    -------
+    renderable of rich
+        Per environment outcome, tip displacement, accuracy, and what the machine or the hub does; then the
+        comparisons.
+    """
+    parts: list[RenderableType] = [Text(study.title, style="bold")] if study.title else []
+    for response in study.responses.values():
+        parts += ["", *_response(response)]
+    for name, failure in study.failures.items():
+        parts += ["", _heading(name, "", failure.outcome), _indented(Text(sentence(failure.message), style="red"))]
+    for each in study.comparisons:
+        parts += ["", Text(sentence(each.verdict), style="bold")]
+        parts += [_indented(Text(line)) for line in comparison.lines(each)]
+    return Group(*parts)
+
+
+def _heading(name: str, kind: str, outcome: str) -> Text:
+    colour = "green" if outcome == "done" else "bold red"
+    return Text.from_markup(f"[bold]{escape(name)}[/bold]{kind}: [{colour}]{outcome}[/{colour}]")
+
+
+def _response(response: Response) -> Iterator[RenderableType]:
+    kind = "" if response.name == response.environment else f" ({response.environment})"
+    yield _heading(response.name, kind, response.outcome)
+    if response.message:
+        yield _indented(Text(sentence(response.message), style="red"))
+    yield _indented(_tip(response))
+    yield _indented(Text(_accuracy(response)))
+    if response.loads is not None:
+        yield _indented(Text(_loads(response.loads)))
+    if response.hub is not None:
+        yield _indented(Text(_hub(response.hub)))
+    if response.axes is not None:
+        yield _indented(limits.table(response.axes.limits))
+        yield from (_indented(Text(line)) for line in _tracking(response, response.axes))
+    for warning in response.warnings:
+        yield _indented(Text(f"warning: {warning}", style="yellow"))
+
+
+def _indented(what: RenderableType) -> Padding:
+    return Padding(what, (0, 0, 0, 2), expand=False)
+
+
+def _tip(response: Response) -> Table:
+    peaks = response.peaks
+    residual = np.isfinite(peaks.residual_amplitude).any()
+    rows = Table("tip", box=None, padding=(0, 2, 0, 0), header_style="dim")
+    for heading in ("largest, mm", "at, s", *(["residual amplitude, mm"] if residual else [])):
+        rows.add_column(heading, justify="right")
+    for axis, largest, when, left in zip(
+        "xyz", peaks.max_abs, peaks.time_of_max, peaks.residual_amplitude, strict=True
+    ):
+        # A direction that nothing drives holds rounding errors, whose time would mean nothing.
+        moves = largest > ROUNDING * peaks.max_abs.max()
+        size, time = (number(1e3 * largest), f"{when:.3f}") if moves else ("0", "–")
+        rows.add_row(axis, size, time, *([number(1e3 * left) if moves else "0"] if residual else []))
+    return rows
+
+
+def _accuracy(response: Response) -> str:
+    if math.isnan(response.step):
+        step = f"{response.steps} samples of adaptive steps"
+    else:
+        step = f"{response.steps} steps of {_time(response.step)}"
+    if math.isnan(response.error_estimate) or response.outcome != "done":
+        error = "no error estimate"
+    else:
+        error = f"estimated error {number(response.error_estimate, 2)} of the largest displacement"
+    return f"{response.model}, {response.integrator}, {step}; {error}"
+
+
+def _time(seconds: float) -> str:
+    return f"{number(1e3 * seconds)} ms" if seconds < 1 else f"{number(seconds)} s"
+
+
+def _loads(loads: Loads) -> str:
+    """Largest sizes over time: at the root, of the stress, and of the torque about a hub's axis."""
+    force, moment = (float(np.linalg.norm(each, axis=1).max()) for each in (loads.root_force, loads.root_moment))
+    words = f"root: largest force {number(force)} N, moment {number(moment)} N m"
+    if np.isfinite(loads.stress).all():
+        where = loads.stations[loads.stress.max(axis=0).argmax()]
+        words += f"; stress {number(1e-6 * float(loads.stress.max()))} MPa at {number(float(where))} m"
+    if loads.beam_torque is not None:
+        words += f"; torque for the beam {number(float(np.abs(loads.beam_torque).max()))} N m"
+    return words
+
+
+def _hub(hub: HubResult) -> str:
+    rate = float(abs(hub.rate).max())
+    return f"hub: angle at the end {number(hub.angle[-1])} rad, largest rate {number(rate)} rad/s"
+
+
+def _tracking(response: Response, axes: AxesResult) -> Iterator[str]:
+    error = tracking(response.time, axes)
+    if error.fraction < ROUNDING:
+        yield "load followed exactly"
+    elif math.isfinite(error.max):
+        yield (
+            f"load followed within {number(error.max, 3)} m/s² ({100 * error.fraction:.3g} % of the load there), "
+            f"at {error.time_of_max:.3f} s"
+        )
+    stretches = not_followed_stretches(axes)
+    for start, end, reason in stretches[:EPISODES]:
+        yield f"target held {start:.3f} to {end:.3f} s: {reason}"
+    if len(stretches) > EPISODES:
+        yield f"target held {len(stretches) - EPISODES} times more: see the result file"
+    # Stretches in which the target is held are listed above; a load that is followed and yet out of reach is news.
+    others = [each for each in axes.shortfalls if not any(start <= each.time <= end for start, end, _ in stretches)]
+    for each in others[:SHORTFALLS]:
+        yield f"warning: {each}"
+    if len(others) > SHORTFALLS:
+        yield f"warning: and {len(others) - SHORTFALLS} more: see `gbeam plan`"

@@ -1,0 +1,50 @@
+"""Numbers, vectors and JSON as all reports write them."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+
+def as_json(value: Any) -> str:
+    """Write a value as JSON, with null for what is not finite, which JSON has no word for."""
+    return json.dumps(_plain(value), indent=2, ensure_ascii=False, allow_nan=False)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {key: _plain(each) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(each) for each in value]
+    if isinstance(value, float):  # numpy's float64 is one
+        return float(value) if math.isfinite(value) else None
+    return value
+
+
+def xyz(values: Iterable[float]) -> dict[str, float]:
+    """The components of a vector by their axes."""
+    return {axis: float(value) for axis, value in zip("xyz", values, strict=True)}
+
+
+def xyz_lists(values: Any) -> dict[str, list[float]]:
+    """The components of vectors (s, 3) by their axes, each a list."""
+    return dict(zip("xyz", values.T.tolist(), strict=True))
+
+
+def number(value: float, digits: int = 4) -> str:
+    """Write a number with significant digits; a dash where there is none."""
+    if not math.isfinite(value):
+        return "–"
+    return "0" if value == 0 else f"{value:#.{digits}g}".rstrip(".")
+
+
+def tidy(values: Iterable[float], size: float) -> list[float]:
+    """Values without the rounding errors of what is `size` large, or of nothing at all."""
+    return [float(value) if abs(value) > max(1e-10 * size, 1e-20) else 0.0 for value in values]
+
+
+def sentence(text: str) -> str:
+    """The same words with a capital letter in front."""
+    return text[:1].upper() + text[1:]
