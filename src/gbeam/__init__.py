@@ -10,7 +10,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from gbeam.errors import ComputationError, GbeamError, InputError
-from gbeam.structure.beam import Beam, Material, PointMass
+from gbeam.structure.beam import Beam
+from gbeam.structure.bodies import PointMass
+from gbeam.structure.material import Material
 from gbeam.structure.loads import Load
 from gbeam.structure.section import Section
 from gbeam.structure.support import Root
@@ -39,11 +41,12 @@ if TYPE_CHECKING:
         SmoothStep,
         build_target,
         constant,
+        machines,
         read_record,
         smoothed,
-        stack,
         tabulated,
         trapezoid,
+        vector,
     )
     from gbeam.results.comparison import Comparison
     from gbeam.results.response import Response, Study
@@ -86,11 +89,12 @@ _HOMES = {
         "SmoothStep",
         "build_target",
         "constant",
+        "machines",
         "read_record",
         "smoothed",
-        "stack",
         "tabulated",
         "trapezoid",
+        "vector",
     ),
     "gbeam.results.response": ("Comparison", "Response", "Study"),
     "gbeam.scenario": ("build", "load"),
@@ -136,17 +140,18 @@ __all__ = [
     "equilibrium",
     "linearize",
     "load",
+    "machines",
     "modal_truncation",
     "modes",
     "nonlinear_system",
     "read_record",
     "simulate",
     "smoothed",
-    "stack",
     "static",
     "study",
     "tabulated",
     "trapezoid",
+    "vector",
 ]
 
 

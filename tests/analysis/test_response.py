@@ -23,7 +23,6 @@ from gbeam import (
     constant,
     simulate,
     smoothed,
-    stack,
     tabulated,
     trapezoid,
 )
@@ -37,7 +36,7 @@ RAMP = tabulated([0.0, 0.002, 1.0], [0.0, 50.0, 50.0])  # m/s², a kick of 0.07 
 
 
 def flight(acceleration: Any) -> Flight:
-    return Flight(stack(z=acceleration))
+    return Flight(z=acceleration)
 
 
 def run(structure: Structure, motion: Any, duration: float, **how: Any) -> Any:
@@ -84,7 +83,9 @@ def test_undamped_ramp_response_is_the_oscillators() -> None:
 
 
 def test_truncated_model_is_linear_in_the_load() -> None:
-    one, two = (run(strip(), flight(trapezoid(a, 100 * a, 0.0, 0.05)), 0.1, step=1e-3) for a in (10.0, 20.0))
+    one, two = (
+        run(strip(), flight(trapezoid(a, jerk=100 * a, start=0.0, hold=0.05)), 0.1, step=1e-3) for a in (10.0, 20.0)
+    )
     np.testing.assert_allclose(two.q, 2 * one.q, atol=1e-15)
     np.testing.assert_allclose(two.tip[:, 0], 4 * one.tip[:, 0], atol=1e-15)  # the foreshortening
 
@@ -126,7 +127,7 @@ def test_free_hub_turns_as_a_rigid_body_would() -> None:
 )
 def test_error_estimate_brackets_the_error(integrator: str, how: dict[str, Any]) -> None:
     """The largest error of the tip over its largest size, against a step far below."""
-    load = flight(smoothed(trapezoid(50.0, 1000.0, 0.03, 0.1), 0.02))
+    load = flight(smoothed(trapezoid(50.0, jerk=1000.0, start=0.03, hold=0.1), 0.02))
     found = run(strip(), load, 0.4, integrator=integrator, **how)
     truth = run(strip(), load, 0.4, integrator="gauss", step=found.time[1] / 64)
     error = np.abs(found.tip - truth.tip[::64]).max() / np.abs(truth.tip).max()
@@ -164,7 +165,7 @@ def test_residual_vibration_is_half_of_peak_to_peak() -> None:
 
 @pytest.mark.slow
 def test_adaptive_needs_no_corners_in_the_load() -> None:
-    load = flight(smoothed(trapezoid(50.0, 1000.0, 0.03, 0.1), 0.02))
+    load = flight(smoothed(trapezoid(50.0, jerk=1000.0, start=0.03, hold=0.1), 0.02))
     found = run(strip(), load, 0.3, integrator="adaptive", tolerance=1e-4)
     gauss = run(strip(), load, 0.3, integrator="gauss", tolerance=1e-7)
     assert found.outcome == "done" and np.isnan(found.step)
@@ -243,7 +244,7 @@ def test_a_start_that_no_beam_would_keep_is_warned_of() -> None:
     critical = 7.8373 * stiffness / (m * 10.0**3)
     structure = assemble(column, Model("exact", 1, 0, 2))
     for share, expected in ((0.5, False), (10.0, True)):
-        flight = Flight(stack(x=constant(share * critical)))
+        flight = Flight(x=constant(share * critical))
         answer = simulate(structure, flight, ResponseSettings(duration=0.1, step=0.01))
         assert any("not stable" in it for it in answer.warnings) == expected
 

@@ -9,7 +9,7 @@ from gbeam import InputError, Model, assemble
 from gbeam.analysis.vibration.campbell import campbell
 from gbeam.analysis.vibration.modal import modes
 from gbeam.analysis.vibration.stability import critical_speed_map
-from gbeam.motion import Flight, Hub, constant, stack
+from gbeam.motion import Flight, Hub, constant
 
 from .beams import HUB, HUB_2009, beam_2009, slender
 
@@ -50,7 +50,7 @@ def test_it_ends_at_the_critical_speed():
 def test_a_flight_has_none():
     structure = assemble(beam_2009(), Model("TLAM", 0, 3, 0))
     with pytest.raises(InputError, match="gbeam modes"):
-        campbell(structure, Flight(stack(z=constant(9.8))), end=5.0, name="flight")
+        campbell(structure, Flight(z=constant(9.8)), end=5.0, name="flight")
 
 
 def test_map_falls_with_mass_and_towards_the_tip():

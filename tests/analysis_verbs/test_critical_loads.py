@@ -14,7 +14,7 @@ from scipy.special import jv
 from gbeam import Beam, InputError, Load, Material, Model, Section, assemble, critical_load
 from gbeam.analysis.vibration.modal import modes
 from gbeam.analysis.vibration.stability import buckling_acceleration, critical_speed
-from gbeam.motion import Flight, Hub, SmoothStep, constant, stack
+from gbeam.motion import Flight, Hub, SmoothStep, constant, vector
 
 from .beams import slender
 
@@ -55,7 +55,7 @@ def test_becks_two_modes_meet():
     close, beyond = (
         modes(
             column(MODELS["exact"], Load(1.0, force=(-share * BECK, 0.0, 0.0), follower=True)),
-            Flight(stack(z=constant(0.0))),
+            Flight(z=constant(0.0)),
             0.0,
         )
         for share in (0.99999, 1.001)
@@ -84,7 +84,7 @@ def test_buckling_under_its_own_inertia(kind):
 
 
 def test_loads_of_another_time_and_none():
-    ramp = Load(1.0, force=stack(x=SmoothStep(-1.0, 2.0)))
+    ramp = Load(1.0, force=vector(x=SmoothStep(-1.0, 2.0)))
     structure = column(MODELS["FOAM"], ramp)
     with pytest.raises(InputError, match="has none that acts"):
         critical_load(structure)
@@ -101,7 +101,7 @@ def test_pulling_never_buckles():
 def test_dead_load_lowers_the_frequency():
     """ω² falls nearly in proportion to the load, and vanishes with Euler's."""
     rest, half = (
-        modes(column(MODELS["exact"], Load(1.0, force=(-p, 0.0, 0.0))), Flight(stack(z=constant(0.0))), 0.0)
+        modes(column(MODELS["exact"], Load(1.0, force=(-p, 0.0, 0.0))), Flight(z=constant(0.0)), 0.0)
         for p in (1e-9, np.pi**2 / 8)
     )
     assert (half.frequency[0] / rest.frequency[0]) ** 2 == pytest.approx(0.5, abs=0.02)

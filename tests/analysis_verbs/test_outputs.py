@@ -12,7 +12,7 @@ from gbeam import Beam, InputError, Load, Material, Model, PointMass, Root, Sect
 from gbeam.analysis.control.linearization import Gauge, linearize
 from gbeam.analysis.control.nonlinear import nonlinear_system
 from gbeam.analysis.response.section_forces import section_loads
-from gbeam.motion import Flight, Hub, constant, stack
+from gbeam.motion import Flight, Hub, constant
 from gbeam.results.response import BaseHistory
 
 MODELS = {
@@ -113,7 +113,7 @@ def carried(kind, base, system, rates):
 def test_names_say_whether_gravity_is_in():
     beam = assemble(Beam(1.0, Section.rectangle(0.02, 0.004), Material(2700.0, 7e10)), Model("FOAM", 0, 1, 1))
     for motion, word in (
-        (Flight(stack(z=constant(9.8))), "acceleration"),
+        (Flight(z=constant(9.8)), "acceleration"),
         (Hub(radius=0.5, rate=constant(1.0)), "acceleration"),
         (Hub(radius=0.5, rate=constant(1.0), gravity=(0.0, 0.0, -9.8)), "specific_force"),
     ):

@@ -24,15 +24,14 @@ from gbeam import (
     Section,
     Structure,
     assemble,
-    build_target,
     constant,
     equilibrium,
-    stack,
     tabulated,
+    vector,
 )
 from gbeam.integrate import Gauss4, LinearSystem, State, Trajectory, integrate
 from gbeam.mechanics.equations import Coefficients, coefficients
-from gbeam.motion import Base, moved
+from gbeam.motion import Base, Profile, moved
 
 from .zhang2020 import COUNTS, DENSITY, G0, LENGTH, LINE, THICKNESS, WIDTH, YOUNG, matrices
 
@@ -100,13 +99,18 @@ def tip(base: Base, kind: str = "FOAM") -> float:
 
 
 def in_flight(g: float) -> Base:
-    return Flight(stack(z=constant(g * G0))).base(0.0)
+    return Flight(z=constant(g * G0)).base(0.0)
 
 
 def on_centrifuge(g: float, control_point: float = MIDDLE) -> Base:
-    load = stack(z=constant(g * G0))
-    target = build_target(load, span=(0.0, 1.0), idle=None, smoothing=None, gravity=False)
-    return Centrifuge(target, ARM, control_point, "flat", gravity=False).base(0.5)
+    machine = Centrifuge(Flight(z=g * G0), arm=ARM, control_point=control_point, smoothing=None, span=(0.0, 1.0))
+    return machine.base(0.5)
+
+
+def rounded(load: Profile, corner: float, control_point: float) -> Centrifuge:
+    return Centrifuge(
+        Flight(acceleration=load), arm=ARM, control_point=control_point, smoothing=KERNEL, span=(0.0, corner + 0.5)
+    )
 
 
 @pytest.mark.parametrize(("g", "independent", "printed"), [(10.0, 2.873818e-3, 2.875e-3), (6.0, 1.724291e-3, None)])
@@ -185,7 +189,7 @@ def at_tip(q: np.ndarray) -> np.ndarray:
 def ramp_to_plateau(jerk: float) -> tuple[Any, float]:
     """Load along z at 5 g when t = 0, rising to 10 g; and the time of the corner."""
     corner = 5.0 / jerk
-    return stack(z=tabulated([-0.5, corner], [(5 - 0.5 * jerk) * G0, 10 * G0])), corner
+    return vector(z=tabulated([-0.5, corner], [(5 - 0.5 * jerk) * G0, 10 * G0])), corner
 
 
 def amplitude(values: np.ndarray) -> float:
@@ -196,7 +200,7 @@ def amplitude(values: np.ndarray) -> float:
 def test_flight_corner(jerk: float, independent: float) -> None:
     """c₁ j/ω₁ in the first mode; the higher ones add 0.2 % at the tip."""
     load, corner = ramp_to_plateau(jerk)
-    time, q = vibration(Flight(load), corner + 0.3)
+    time, q = vibration(Flight(acceleration=load), corner + 0.3)
     after = time > corner
     assert 2 * amplitude(q[after, 0]) == pytest.approx(independent, rel=1e-3)
     assert amplitude(at_tip(q[after])) == pytest.approx(independent, rel=3e-3)
@@ -209,8 +213,7 @@ def test_flight_corner(jerk: float, independent: float) -> None:
 def test_centrifuge_corner(jerk: float, independent: float, printed: float) -> None:
     """The flat inverse, the corner rounded by the Hann kernel: the yaw's lag jumps; 16 times the flight's vibration."""
     load, corner = ramp_to_plateau(jerk)
-    target = build_target(load, span=(0.0, corner + 0.5), idle=None, smoothing=KERNEL, gravity=False)
-    time, q = vibration(Centrifuge(target, ARM, MIDDLE, "flat", gravity=False), corner + 0.4)
+    time, q = vibration(rounded(load, corner, MIDDLE), corner + 0.4)
     found = amplitude(at_tip(q[time > corner + KERNEL / 2]))
     assert found == pytest.approx(independent, rel=5e-3)
     assert found == pytest.approx(printed, rel=1e-2)
@@ -220,11 +223,10 @@ def test_centrifuge_corner(jerk: float, independent: float, printed: float) -> N
 def test_control_point_at_the_lever_of_the_first_mode() -> None:
     """x_C = 0.7265 L, where a yaw acceleration does not load the first mode: .0873 mm falls to .0009 mm."""
     load, corner = ramp_to_plateau(4.0)
-    target = build_target(load, span=(0.0, corner + 0.5), idle=None, smoothing=KERNEL, gravity=False)
     c = constants()
     lever = float(-c.f_al[1] @ jnp.eye(7)[4] / (c.f_a[2] @ jnp.eye(7)[4]))  # g₃/f₃ of the first mode
     assert lever / LENGTH == pytest.approx(0.5 + 0.226477, abs=1e-6)
-    time, q = vibration(Centrifuge(target, ARM, lever, "flat", gravity=False), corner + 0.4)
+    time, q = vibration(rounded(load, corner, lever), corner + 0.4)
     assert amplitude(at_tip(q[time > corner + KERNEL / 2])) < 0.02 * 8.36e-5
 
 

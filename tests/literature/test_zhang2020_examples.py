@@ -22,6 +22,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from gbeam.analysis.jerk import jerk_study
 
 from gbeam import (
     Beam,
@@ -32,12 +33,9 @@ from gbeam import (
     Section,
     Structure,
     assemble,
-    build_target,
     constant,
     equilibrium,
-    stack,
 )
-from gbeam.analysis.jerk import jerk_study
 from gbeam.motion import Base
 
 G, ARM, KERNEL = 9.81, 3.3, 0.0596
@@ -53,12 +51,12 @@ def tip(base: Base) -> float:
 
 
 def flight(level: float) -> float:
-    return tip(Flight(stack(z=constant(level * G))).base(0.0))
+    return tip(Flight(z=constant(level * G)).base(0.0))
 
 
 def centrifuge(level: float) -> float:
-    target = build_target(stack(z=constant(level * G)), span=(0.0, 1.0), idle=None, smoothing=None, gravity=False)
-    return tip(Centrifuge(target, ARM, 0.15, "flat", False).base(0.5))
+    machine = Centrifuge(Flight(z=level * G), arm=ARM, control_point=0.15, smoothing=None, span=(0.0, 1.0))
+    return tip(machine.base(0.5))
 
 
 def test_example_1_constant_6_g() -> None:

@@ -8,6 +8,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from gbeam.mechanics.energy import FieldEnergy
 
 from gbeam import (
     Beam,
@@ -23,11 +24,9 @@ from gbeam import (
     constant,
     equilibrium,
     simulate,
-    stack,
     static,
 )
 from gbeam.analysis.response.section_forces import influence, internal_loads, section_loads
-from gbeam.mechanics.energy import FieldEnergy
 from gbeam.mechanics.equations import Hub as HubBody
 from gbeam.mechanics.equations import on_prescribed_base
 from gbeam.motion import Base
@@ -169,7 +168,7 @@ def test_bodies_count_as_outboard_of_their_own_station() -> None:
 def test_response_carries_accelerations_and_gravity_hangs_on_the_root() -> None:
     structure = assemble(SPECIMEN, Model("FOAM", 1, 1, 3))
     settings = ResponseSettings(duration=0.05)
-    response = simulate(structure, Flight(stack(z=constant(9.80665))), settings)
+    response = simulate(structure, Flight(z=constant(9.80665)), settings)
     loads = internal_loads(structure, SPECIMEN, response)
     assert response.qdd.shape == response.q.shape
     np.testing.assert_allclose(loads.root_force[:, 2], M * L * 9.80665, rtol=1e-6)  # it starts in equilibrium

@@ -1,8 +1,9 @@
 """The centrifuge as a motion: the root, the axes over time, the F-16 record, refusals."""
 
 from pathlib import Path
+from typing import Any
 
-import equinox as eqx
+import jax
 import numpy as np
 import pytest
 
@@ -10,52 +11,51 @@ from gbeam.errors import InputError
 from gbeam.motion import (
     STANDARD_GRAVITY,
     Centrifuge,
-    Target,
+    Flight,
     axis_history,
-    build_target,
-    constant,
     moved,
     read_record,
-    stack,
     trapezoid,
 )
 
 G, R, XC = STANDARD_GRAVITY, 3.3, 0.15
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
-TRAPEZOID = stack(z=trapezoid(10 * G, 4 * G, 1.0, 4.0))
+TRAPEZOID = Flight(z=trapezoid(10 * G, jerk=4 * G, start=1.0, hold=4.0))
+SPAN = (0.0, 12.0)
 
 
-def target(smoothing: float | None = 0.06, gravity: bool = True) -> Target:
-    return build_target(TRAPEZOID, span=(0.0, 12.0), idle=1.4 * G, smoothing=smoothing, gravity=gravity)
+def machine(**options: Any) -> Centrifuge:
+    given = {"arm": R, "control_point": XC, "gravity": True, "idle": 1.4 * G, "span": SPAN, **options}
+    return Centrifuge(TRAPEZOID, **given)
 
 
 @pytest.fixture(scope="module")
 def f16() -> Centrifuge:
     record = read_record(F16, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
-    made = build_target(record, span=(0.0, 15.99), idle=1.4 * G, smoothing=0.06, gravity=True)
-    return Centrifuge(made, R, XC, "flat", gravity=True)
+    return Centrifuge(
+        Flight(acceleration=record), arm=R, control_point=XC, gravity=True, idle=1.4 * G, span=(0.0, 15.99)
+    )
 
 
 def test_root_has_the_control_points_motion_moved() -> None:
-    machine = Centrifuge(target(), R, XC, "flat", gravity=True)
-    t = np.linspace(0, 12, 61)
-    root, here = eqx.filter_jit(lambda m, s: (m.base(s), m.actual(s)))(machine, t)
+    turning, t = machine(), np.linspace(0, 12, 61)
+    root, here = turning.base(t), turning.actual(t)
     back = moved(root, [XC, 0.0, 0.0])
     np.testing.assert_allclose(back.a_WO_B, here, atol=1e-11)
-    scalar = eqx.filter_jit(lambda m, s: m.base(s))(machine, 3.0)
+    scalar = turning.base(3.0)
     np.testing.assert_allclose(scalar.a_WO_B, root.a_WO_B[15], atol=1e-12)
 
 
 def test_steady_load_at_the_root_is_less_the_centrifugal_one() -> None:
-    still = build_target(stack(z=constant(6 * G)), span=(0.0, 1.0), idle=None, smoothing=None, gravity=False)
-    base = Centrifuge(still, R, XC, "flat", gravity=False).base(0.5)
+    still = Centrifuge(Flight(z=6 * G), arm=R, control_point=XC, smoothing=None, span=(0.0, 1.0))
+    base = still.base(0.5)
     # C is at rest in the turning axes, the root XC nearer the tip of r = (−XC, 0, 0): a_O = a_C + XC Ω² e1
     np.testing.assert_allclose(base.a_WO_B, [XC * 6 * G / R, 0, 6 * G], atol=1e-12)
 
 
 def test_f16_record_on_a_short_arm(f16: Centrifuge) -> None:
     t = np.linspace(0, 15.99, 4001)
-    base, error, held = eqx.filter_jit(lambda m, s: (m.base(s), m.tracking_error(s), m.not_followed(s)))(f16, t)
+    base, error, held = f16.base(t), f16.tracking_error(t), f16.not_followed(t)
     for part in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B):
         assert np.isfinite(part).all()
     wanted = np.asarray(f16.reference(t))
@@ -72,7 +72,7 @@ def test_f16_record_on_a_short_arm(f16: Centrifuge) -> None:
 
 def test_axis_history_integrates_and_unwraps(f16: Centrifuge) -> None:
     t = np.linspace(0, 15.99, 20001)
-    history = axis_history(eqx.filter_jit(lambda m, s: m.axes(s))(f16, t), t)
+    history = axis_history(f16.axes(t), t)
     for angle, rate in ((history.angle1, history.axes.rate1), (history.axes.angle3, history.axes.rate3)):
         assert np.abs(np.diff(angle)).max() < np.pi
         np.testing.assert_allclose(np.gradient(angle, t)[1:-1], rate[1:-1], atol=0.02 * np.abs(rate).max())
@@ -82,25 +82,26 @@ def test_axis_history_integrates_and_unwraps(f16: Centrifuge) -> None:
 def test_like_scenarios_share_one_compiled_function() -> None:
     traces = []
 
-    @eqx.filter_jit
-    def base(machine: Centrifuge, t: np.ndarray) -> object:
+    @jax.jit
+    def base(given: Centrifuge, t: np.ndarray) -> object:
         traces.append(1)
-        return machine.base(t)
+        return given.base(t)
 
     t = np.linspace(0, 12, 11)
-    for arm, sign, level in ((3.3, 1, 10.0), (5.0, -1, 10.0), (5.0, 1, 9.9)):
-        raw = stack(z=trapezoid(level * G, level * 0.4 * G, 1.0, 4.0))
-        made = build_target(raw, span=(0.0, 12.0), idle=0.14 * level * G, smoothing=0.06, gravity=True)
-        base(Centrifuge(made, arm, XC, "flat", True, sign), t)
+    for arm, mounting, level in ((3.3, "upright", 10.0), (5.0, "inverted", 10.0), (5.0, "upright", 9.9)):
+        flight = Flight(z=trapezoid(level * G, jerk=level * 0.4 * G, start=1.0, hold=4.0))
+        idle = 0.14 * level * G
+        like = Centrifuge(flight, arm=arm, control_point=XC, gravity=True, idle=idle, mounting=mounting, span=SPAN)
+        np.testing.assert_allclose(base(like, t).w_WB_B, like.base(t).w_WB_B, atol=1e-12)
     assert len(traces) == 1
 
 
 def test_sharp_corners_only_for_quasi_static_and_a_load_that_does_not_turn() -> None:
-    sharp = Centrifuge(target(smoothing=None, gravity=False), R, XC, "quasi-static", gravity=False)
+    sharp = machine(smoothing=None, gravity=False, inverse="quasi-static")
     assert np.isfinite(sharp.base(np.linspace(0, 12, 61)).alpha_WB_B).all() and sharp.breaks.size
     for inverse, gravity in (("flat", False), ("quasi-static", True)):
         with pytest.raises(InputError, match="60 ms") as caught:
-            Centrifuge(target(smoothing=None, gravity=gravity), R, XC, inverse, gravity)
+            machine(smoothing=None, gravity=gravity, inverse=inverse)
         assert caught.value.where == "smoothing"
 
 
@@ -111,12 +112,13 @@ def test_sharp_corners_only_for_quasi_static_and_a_load_that_does_not_turn() -> 
         ({"inverse": "newton"}, "inverse", "choose one of quasi-static, flat"),
         ({"arm": 0.0}, "arm", "positive"),
         ({"control_point": -0.1}, "control_point", "non-negative"),
-        ({"sign": 0}, "sign", "1 or -1"),
-        ({"gravity": False}, "gravity", "both"),
+        ({"mounting": "sideways"}, "mounting", "upright, inverted"),
+        ({"start": "rest"}, "spin_up", "both start and spin_up"),
+        ({"arm": None}, "arm", "a machine as limits"),
+        ({"idle": -1.0}, "idle", "positive"),
     ],
 )
 def test_refusals(change: dict[str, object], where: str, words: str) -> None:
-    arguments = {"arm": R, "control_point": XC, "inverse": "flat", "gravity": True, "sign": 1, **change}
     with pytest.raises(InputError, match=words) as caught:
-        Centrifuge(target(), **arguments)  # type: ignore[arg-type]
+        machine(**{**change, "span": None})
     assert caught.value.where == where

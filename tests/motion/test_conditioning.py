@@ -127,7 +127,7 @@ def test_body_rates_turn_the_base() -> None:
     """x forward, y right, z down of the aircraft are x forward, y left, z up of the beam: q and r change sign."""
     record = fly(F16, rates=Rates("p_rad_s", "-q_rad_s", "-r_rad_s", "rad/s"))
     assert record.rates is not None
-    flight = Flight(record.acceleration, body_rates(record.rates))
+    flight = Flight(acceleration=record.acceleration, rates=body_rates(record.rates))
     t = jnp.linspace(1.2, 15.0, 200)
     base, h = flight.base(t), 1e-4
     np.testing.assert_allclose(base.w_WB_B, record.rates(t), atol=0.05)

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from gbeam.motion import Flight, stack, trapezoid
+from gbeam.motion import Flight, trapezoid
 
 
 def test_flight_is_its_load_without_rotation() -> None:
-    flight = Flight(stack(z=trapezoid(98.0, 40.0, 1.0, 4.0)))
+    flight = Flight(z=trapezoid(98.0, jerk=40.0, start=1.0, hold=4.0))
     t = np.linspace(0, 12, 25)
     base = flight.base(t)
     np.testing.assert_allclose(base.a_WO_B, flight.acceleration(t))

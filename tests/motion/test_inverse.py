@@ -4,7 +4,6 @@ Ledger of the source: its claim that the control point is "always consistent" ca
 trapezoid: a turning point of the load a can be followed only where −ä <= a²/R.
 """
 
-import equinox as eqx
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -16,12 +15,12 @@ from gbeam.motion import (
     Axes,
     Base,
     Centrifuge,
+    Flight,
     Profile,
     Sine,
     Sum,
-    build_target,
     constant,
-    stack,
+    vector,
 )
 
 G, R = STANDARD_GRAVITY, 3.3
@@ -31,11 +30,12 @@ T = np.linspace(0.2, 1.8, 33)
 def centrifuge(
     raw: Profile, inverse: str, gravity: bool = False, sign: int = 1, control_point: float = 0.0
 ) -> Centrifuge:
-    target = build_target(raw, span=(0.0, 2.0), idle=None, smoothing=None, gravity=gravity)
-    return Centrifuge(target, R, control_point, inverse, gravity, sign)
+    return Centrifuge(
+        Flight(acceleration=raw), arm=R, control_point=control_point, inverse=inverse, gravity=gravity, smoothing=None,
+        mounting="upright" if sign == 1 else "inverted", span=(0.0, 2.0),
+    )  # fmt: skip
 
 
-@eqx.filter_jit
 def seen(machine: Centrifuge, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, Axes, Base]:
     """Wanted and achieved loads, axes and base."""
     return machine.reference(t), machine.actual(t), machine.axes(t), machine.base(t)
@@ -44,7 +44,7 @@ def seen(machine: Centrifuge, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, Ax
 def swinging() -> Profile:
     """A load that varies smoothly in size and direction over all of T."""
     y, z = Sine(2 * G, 4.0, start=-1.0), Sum((constant(5 * G), Sine(1.5 * G, 5.0, start=-2.0)))
-    return stack(x=Sine(G, 6.0, start=-1.0), y=y, z=z)
+    return vector(x=Sine(G, 6.0, start=-1.0), y=y, z=z)
 
 
 @settings(deadline=None, max_examples=40)
@@ -72,7 +72,7 @@ def test_six_g_through_the_thickness(inverse: str, sign: int) -> None:
 
 @pytest.mark.parametrize("inverse", sorted(INVERSES))
 def test_a_load_along_the_beam_is_free_of_nan(inverse: str) -> None:
-    load = stack(x=Sum((constant(-4 * G), Sine(G, 4.0, start=-1.0))))
+    load = vector(x=Sum((constant(-4 * G), Sine(G, 4.0, start=-1.0))))
     base = seen(centrifuge(load, inverse), T)[3]
     for part in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B):
         assert np.isfinite(part).all()
@@ -98,7 +98,7 @@ def test_flat_with_gravity_has_the_direction_of_the_horizontal_load() -> None:
 
 def test_quasi_static_errs_along_the_beam_by_the_tangential_acceleration() -> None:
     load = Sum((constant(5 * G), Sine(0.5 * G, 8.0, start=-3.0)))
-    machine = centrifuge(stack(z=load), "quasi-static")
+    machine = centrifuge(vector(z=load), "quasi-static")
     wanted, achieved, axes, _ = seen(machine, T)
     tangential, error = R * np.asarray(axes.acceleration1), np.asarray(achieved - wanted)
     np.testing.assert_allclose(machine.tracking_error(T), error, atol=1e-12)

@@ -1,24 +1,25 @@
 """Limits and reach: what is used, where the machine cannot follow, and what is refused."""
 
-import equinox as eqx
 import numpy as np
 import pytest
 
 from gbeam.errors import InputError
 from gbeam.motion import (
-    MACHINES,
     STANDARD_GRAVITY,
     AxisLimit,
     Centrifuge,
+    Flight,
     Limits,
     MachineLimits,
     Profile,
     build_target,
-    stack,
+    machines,
     tabulated,
     trapezoid,
     usage,
+    vector,
 )  # fmt: skip
+from gbeam.motion.centrifuge.target.reachability import TOO_SHARP
 from gbeam.results.response import Shortfall
 
 G, R = STANDARD_GRAVITY, 3.3
@@ -44,11 +45,9 @@ def test_usage_of_a_known_motion() -> None:
 
 
 def test_jerks_are_the_derivatives_of_the_accelerations() -> None:
-    made = build_target(stack(z=trapezoid(10 * G, 4 * G, 1.0, 4.0)), span=(0.0, 12.0), idle=2 * G, smoothing=0.3,
-                        gravity=True, arm=R)  # fmt: skip
-    machine, t, h = Centrifuge(made, R, 0.15, "flat", True), np.linspace(2.2, 3.4, 31), 1e-6
-    states = eqx.filter_jit(lambda m, t: m.axes_and_jerks(t))
-    (after, _), (before, _), (_, jerk) = states(machine, t + h), states(machine, t - h), states(machine, t)
+    flight, t, h = Flight(z=trapezoid(10 * G, jerk=4 * G, start=1.0, hold=4.0)), np.linspace(2.2, 3.4, 31), 1e-6
+    machine = Centrifuge(flight, arm=R, control_point=0.15, gravity=True, idle=2 * G, smoothing=0.3, span=(0.0, 12.0))
+    (after, _), (before, _), (_, jerk) = (machine.axes_and_jerks(t + side) for side in (h, -h, 0.0))
     for i, name in enumerate(("acceleration1", "acceleration2", "acceleration3")):
         finite = (getattr(after, name) - getattr(before, name)) / (2 * h)
         np.testing.assert_allclose(jerk[:, i], finite, atol=1e-3 * (1 + np.abs(jerk[:, i]).max()))
@@ -70,8 +69,8 @@ def test_impossible_limits_are_refused(given: MachineLimits, where: str) -> None
 
 
 def test_example_machines_are_marked_as_examples_and_reach_their_load() -> None:
-    assert set(MACHINES) == {"human-7.6m", "specimen-3.3m", "large-15m"}
-    for machine in MACHINES.values():
+    assert set(machines) == {"human-7.6m", "specimen-3.3m", "large-15m"}
+    for machine in machines.values():
         assert machine.source.startswith("EXAMPLE") and "assumed" in machine.source
         rate = machine.limits.axis1.rate
         assert rate is not None and machine.arm * rate**2 > 10 * G
@@ -80,13 +79,15 @@ def test_example_machines_are_marked_as_examples_and_reach_their_load() -> None:
 def shortfalls(
     raw: Profile, arm: float = R, smoothing: float = 0.06, idle: float | None = None, gravity: bool = True
 ) -> tuple[Shortfall, ...]:
-    made = build_target(raw, span=(0.0, 8.0), idle=idle, smoothing=smoothing, gravity=gravity, arm=arm)
-    return Centrifuge(made, arm, 0.15, "flat", gravity).shortfalls()
+    return Centrifuge(
+        Flight(acceleration=raw), arm=arm, control_point=0.15, gravity=gravity, idle=idle, smoothing=smoothing,
+        span=(0.0, 8.0),
+    ).shortfalls()  # fmt: skip
 
 
 def dip(level: float) -> Profile:
     """From 6 g to a level and back in 1 s each, m/s²."""
-    return stack(z=tabulated([0.0, 2.0, 3.0, 5.0, 6.0, 8.0], np.array([6, 6, level, level, 6, 6]) * G))
+    return vector(z=tabulated([0.0, 2.0, 3.0, 5.0, 6.0, 8.0], np.array([6, 6, level, level, 6, 6]) * G))
 
 
 def quoted(it: Shortfall) -> float:
@@ -115,10 +116,10 @@ def test_what_no_idle_lets_is_said() -> None:
 @pytest.mark.parametrize(
     ("raw", "arm", "gravity", "formula"),
     [
-        (stack(z=trapezoid(4 * G, 8 * G, 1.0, 2.0)), R, False, 2 * 8 * R / (16 * G)),
+        (vector(z=trapezoid(4 * G, jerk=8 * G, start=1.0, hold=2.0)), R, False, 2 * 8 * R / (16 * G)),
         (dip(2.0), R, True, 2 * 4 * 6 / np.sqrt(35) * R / (35 * G)),  # the horizontal load's slope is f f'/H
         (dip(1.25), R, True, None),
-        (stack(z=tabulated([0.0, 1.0, 8.0], np.array([1.06, 1.06, 4.5]) * G)), 15.0, True, None),
+        (vector(z=tabulated([0.0, 1.0, 8.0], np.array([1.06, 1.06, 4.5]) * G)), 15.0, True, None),
     ],
 )
 def test_the_smoothing_that_is_named_is_the_least_that_does(
@@ -130,12 +131,12 @@ def test_the_smoothing_that_is_named_is_the_least_that_does(
     several times more.
     """
     idle = None if gravity else G
-    first = next(it for it in shortfalls(raw, arm, idle=idle, gravity=gravity) if it.reason == "turns sharply")
+    first = next(it for it in shortfalls(raw, arm, idle=idle, gravity=gravity) if it.reason == TOO_SHARP)
     width = 1e-3 * quoted(first)
     assert formula is None or formula < width < 1.3 * formula
 
     def remains(smoothing: float) -> bool:
         left = shortfalls(raw, arm, smoothing, idle, gravity)
-        return any(it.reason == "turns sharply" and it.start <= first.end and it.end >= first.start for it in left)
+        return any(it.reason == TOO_SHARP and it.start <= first.end and it.end >= first.start for it in left)
 
     assert remains(0.06) and remains(0.9 * width) and not remains(width)

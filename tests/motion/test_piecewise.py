@@ -1,6 +1,5 @@
 """Piecewise-linear profiles and the closed form of their smoothing."""
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -10,8 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from gbeam.errors import InputError
-from gbeam.motion import PiecewiseLinear, constant, smoothed, tabulated, trapezoid
-from gbeam.numerics.time_derivative import with_rate
+from gbeam.motion import PiecewiseLinear, Profile, constant, smoothed, tabulated, trapezoid
 
 TRAPEZOID = trapezoid(level=10.0, jerk=4.0, start=1.0, hold=4.0)
 WIDTH = 0.06
@@ -25,20 +23,19 @@ def tables(draw: st.DrawFn) -> PiecewiseLinear:
     return PiecewiseLinear(np.cumsum(gaps), values)
 
 
-def rates(profile: PiecewiseLinear, t: np.ndarray) -> list[np.ndarray]:
-    """Value and first three derivatives by nested jvp."""
-    functions = [profile]
-    for _ in range(3):
-        functions.append(lambda s, f=functions[-1]: with_rate(f, s)[1])
-    return [np.asarray(eqx.filter_jit(f)(t)) for f in functions]
+def rates(profile: Profile, t: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Value and first three derivatives."""
+    return profile.derivatives(t, 3)
 
 
 def test_constant_trapezoid_table() -> None:
     t = np.array([-1.0, 1.0, 2.0, 3.5, 7.5, 8.75, 20.0])
     np.testing.assert_allclose(constant(3.0)(t), 3.0)
     np.testing.assert_allclose(TRAPEZOID(t), [0, 0, 4, 10, 10, 5, 0], atol=1e-14)
-    np.testing.assert_allclose(trapezoid(-10.0, 4.0, 1.0, 4.0)(t), -TRAPEZOID(t), atol=1e-14)
-    np.testing.assert_allclose(trapezoid(2.0, 2.0, 0.0, 0.0)(np.array([0.5, 1.0, 1.5, 2.5])), [1, 2, 1, 0])
+    np.testing.assert_allclose(trapezoid(-10.0, jerk=4.0, start=1.0, hold=4.0)(t), -TRAPEZOID(t), atol=1e-14)
+    np.testing.assert_allclose(
+        trapezoid(2.0, jerk=2.0, start=0.0, hold=0.0)(np.array([0.5, 1.0, 1.5, 2.5])), [1, 2, 1, 0]
+    )
     np.testing.assert_allclose(tabulated([0, 1, 3], [1, 2, 0])(t), np.interp(t, [0, 1, 3], [1, 2, 0]))
     assert TRAPEZOID(2.0).shape == ()
 
@@ -129,12 +126,12 @@ def test_breaks() -> None:
         (lambda: PiecewiseLinear([0, 1], [0, np.nan]), "values[1]"),
         (lambda: PiecewiseLinear([], []), "times"),
         (lambda: constant(np.inf), "value"),
-        (lambda: trapezoid(10, 0, 0, 1), "jerk"),
-        (lambda: trapezoid(10, -4, 0, 1), "jerk"),
-        (lambda: trapezoid(0, 4, 0, 1), "level"),
-        (lambda: trapezoid(10, 4, np.nan, 1), "start"),
-        (lambda: trapezoid(10, 4, 0, -1), "hold"),
-        (lambda: trapezoid("ten", 4, 0, 1), "level"),  # type: ignore[arg-type]
+        (lambda: trapezoid(10, jerk=0, start=0, hold=1), "jerk"),
+        (lambda: trapezoid(10, jerk=-4, start=0, hold=1), "jerk"),
+        (lambda: trapezoid(0, jerk=4, start=0, hold=1), "level"),
+        (lambda: trapezoid(10, jerk=4, start=np.nan, hold=1), "start"),
+        (lambda: trapezoid(10, jerk=4, start=0, hold=-1), "hold"),
+        (lambda: trapezoid("ten", jerk=4, start=0, hold=1), "level"),  # type: ignore[arg-type]
         (lambda: smoothed(TRAPEZOID, 0.0), "smoothing"),
     ],
 )

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from gbeam.errors import InputError
-from gbeam.motion import Sine, SmoothStep, Sum, constant, smoothed, stack, trapezoid
+from gbeam.motion import Sine, SmoothStep, Sum, constant, smoothed, trapezoid, vector
 
 T = np.linspace(-1, 6, 29)
-RAMP, SINE = trapezoid(2.0, 1.0, 0.0, 1.0), Sine(3.0, 2.0, start=1.0)
+RAMP, SINE = trapezoid(2.0, jerk=1.0, start=0.0, hold=1.0), Sine(3.0, 2.0, start=1.0)
 
 
 def test_sum_adds_and_smooths_part_by_part() -> None:
@@ -21,7 +21,7 @@ def test_sum_adds_and_smooths_part_by_part() -> None:
 
 
 def test_stack_fills_in_zeros() -> None:
-    load = stack(x=SINE, z=Sum((RAMP, constant(1.0))))
+    load = vector(x=SINE, z=Sum((RAMP, constant(1.0))))
     np.testing.assert_allclose(load(T), np.stack([SINE(T), 0 * T, RAMP(T) + 1], axis=-1))
     assert load(0.3).shape == (3,)
     np.testing.assert_allclose(smoothed(load, 0.2)(T)[:, 0], smoothed(SINE, 0.2)(T))

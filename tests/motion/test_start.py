@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import equinox as eqx
 import numpy as np
 import pytest
 
@@ -12,21 +11,22 @@ from gbeam.motion import (
     Axes,
     Base,
     Centrifuge,
+    Flight,
     Profile,
     build_target,
     forward,
     read_record,
     smoothed,
-    stack,
     tabulated,
     trapezoid,
+    vector,
 )
 from gbeam.motion.centrifuge.spin_up import LEAST_TURNED
 
 G, R = STANDARD_GRAVITY, 3.3
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 SPIN_UP, W = 3.0, 0.2
-RISING = stack(
+RISING = vector(
     x=tabulated([0, 4, 6], [0.5 * G, 0.5 * G, G]),
     y=tabulated([0.0], [G]),
     z=tabulated([0, 3.5, 5, 8], np.array([2, 2, 5, 4]) * G),
@@ -37,11 +37,13 @@ def machine(
     start: str, inverse: str, *, raw: Profile = RISING, gravity: bool = True, sign: int = 1, spin_up: float = SPIN_UP,
     smoothing: float = W, idle: float | None = None,
 ) -> Centrifuge:  # fmt: skip
-    target = build_target(raw, span=(0.0, 8.0), idle=idle, smoothing=smoothing, gravity=gravity, arm=R, spin_up=spin_up)
-    return Centrifuge(target, R, 0.15, inverse, gravity, sign, start=start)
+    return Centrifuge(
+        Flight(acceleration=raw), arm=R, control_point=0.15, inverse=inverse, gravity=gravity, idle=idle,
+        smoothing=smoothing, mounting="upright" if sign == 1 else "inverted", start=start, spin_up=spin_up,
+        span=(0.0, 8.0),
+    )  # fmt: skip
 
 
-@eqx.filter_jit
 def seen(it: Centrifuge, t: np.ndarray) -> tuple[Axes, np.ndarray, Base, np.ndarray, np.ndarray]:
     axes, jerk = it.axes_and_jerks(t)
     return axes, jerk, it.base(t), it.reference(t), forward(axes, it.geometry.arm, it.geometry.gravity).a_WO_B
@@ -128,7 +130,7 @@ def test_from_rest_ignores_the_tangential_acceleration_only() -> None:
 
 @pytest.mark.parametrize(("start", "inverse"), [("rest", "flat"), ("pre-yawed", "exact")])
 def test_a_flight_that_begins_with_nothing(start: str, inverse: str) -> None:
-    raw = stack(z=trapezoid(8 * G, 2 * G, 1.0, 9.0))
+    raw = vector(z=trapezoid(8 * G, jerk=2 * G, start=1.0, hold=9.0))
     with pytest.raises(InputError, match="next to no load"):
         build_target(raw, span=(0.0, 8.0), idle=None, smoothing=0.1, gravity=False)
     it = machine(start, inverse, raw=raw, gravity=False, spin_up=2.0, smoothing=0.1)
@@ -142,7 +144,7 @@ def test_a_flight_that_begins_with_nothing(start: str, inverse: str) -> None:
 
 
 def test_spin_up_is_an_episode_and_nothing_before_it_counts() -> None:
-    raw = stack(z=tabulated([0, 1, 2, 5, 7, 8], np.array([0.2, 0.2, 3, 3, 1.2, 1.2]) * G))
+    raw = vector(z=tabulated([0, 1, 2, 5, 7, 8], np.array([0.2, 0.2, 3, 3, 1.2, 1.2]) * G))
     it = machine("rest", "flat", raw=raw, idle=1.4 * G)
     spin_up, held = it.episodes()
     assert (spin_up.start, spin_up.end, spin_up.reason) == (0.0, SPIN_UP, "spin-up")
@@ -156,15 +158,9 @@ def test_spin_up_is_an_episode_and_nothing_before_it_counts() -> None:
 
 def test_the_f16_record_from_rest() -> None:
     record = read_record(F16, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
-    made = build_target(record, span=(0.0, 15.99), idle=1.4 * G, smoothing=0.06, gravity=True, arm=R, spin_up=3.0)
-    it, t = Centrifuge(made, R, 0.15, "flat", True, start="rest"), np.linspace(0, 15.99, 3001)
-    idle = Centrifuge(
-        build_target(record, span=(0.0, 15.99), idle=1.4 * G, smoothing=0.06, gravity=True, arm=R),
-        R,
-        0.15,
-        "flat",
-        True,
-    )
+    options = {"arm": R, "control_point": 0.15, "gravity": True, "idle": 1.4 * G, "span": (0.0, 15.99)}
+    it = Centrifuge(Flight(acceleration=record), **options, start="rest", spin_up=3.0)
+    idle, t = Centrifuge(Flight(acceleration=record), **options), np.linspace(0, 15.99, 3001)
     axes, _, _, wanted, _ = seen(it, t)
     others, _, _, usual, _ = seen(idle, t)
     turn = (t > 3.2) & (t < 11)

@@ -16,9 +16,8 @@ from gbeam import (
     Section,
     Structure,
     assemble,
-    build_target,
-    stack,
     tabulated,
+    vector,
 )
 from gbeam.motion import MachineLimits, Profile
 
@@ -28,7 +27,7 @@ SPECIMEN = Beam(0.3, Section.rectangle(0.02, 0.004), Material(2700.0, 70e9))
 
 @pytest.fixture(scope="session")
 def load() -> Profile:
-    return stack(z=tabulated([0.0, 1.25], [5 * G, 10 * G]))  # 4 g/s
+    return vector(z=tabulated([0.0, 1.25], [5 * G, 10 * G]))  # 4 g/s
 
 
 @pytest.fixture(scope="session")
@@ -42,16 +41,18 @@ def settings() -> ResponseSettings:
 
 
 @pytest.fixture(scope="session")
-def spin(load: Profile) -> Callable[..., Centrifuge]:
+def spin(flight: Flight) -> Callable[..., Centrifuge]:
     def make(
         smoothing: float = 0.0596, control_point: float = 0.15, sign: int = 1, limits: MachineLimits | None = None
     ) -> Centrifuge:
-        target = build_target(load, span=(0.5, 2.0), idle=None, smoothing=smoothing, gravity=False)
-        return Centrifuge(target, 3.3, control_point, "flat", False, sign, limits)
+        return Centrifuge(
+            flight, arm=3.3, control_point=control_point, limits=limits, smoothing=smoothing,
+            mounting="upright" if sign == 1 else "inverted", span=(0.5, 2.0),
+        )  # fmt: skip
 
     return make
 
 
 @pytest.fixture(scope="session")
 def flight(load: Profile) -> Flight:
-    return Flight(load)
+    return Flight(acceleration=load)

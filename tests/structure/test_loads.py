@@ -11,6 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 import scipy.linalg
+from gbeam.mechanics.virtual_work import first_order
 
 from gbeam import (
     Beam,
@@ -24,11 +25,10 @@ from gbeam import (
     assemble,
     equilibrium,
     simulate,
-    stack,
     trapezoid,
+    vector,
 )
 from gbeam.mechanics.equations import coefficients
-from gbeam.mechanics.virtual_work import first_order
 from gbeam.motion import Base
 from gbeam.structure.loads import Load
 from gbeam.structure.support import Root
@@ -130,17 +130,17 @@ def test_a_following_thrust_flutters_at_becks_load() -> None:
 )
 def test_a_spread_load_over_time_is_an_acceleration_of_the_base(model: Model) -> None:
     """ρA = 1: the force per length −a(t) and the base's acceleration a(t) are one load."""
-    pulse = stack(z=trapezoid(0.4, 2.0, 0.1, 0.5))
-    counter = stack(z=trapezoid(-0.4, 2.0, 0.1, 0.5))
+    pulse = vector(z=trapezoid(0.4, jerk=2.0, start=0.1, hold=0.5))
+    counter = vector(z=trapezoid(-0.4, jerk=2.0, start=0.1, hold=0.5))
     settings = ResponseSettings(1.5, step=0.005)
-    moving = simulate(assemble(beam(1.0, 1.0), model), Flight(pulse), settings)
-    pushed = simulate(assemble(beam(1.0, 1.0, Load(force=counter)), model), Flight(stack()), settings)
+    moving = simulate(assemble(beam(1.0, 1.0), model), Flight(acceleration=pulse), settings)
+    pushed = simulate(assemble(beam(1.0, 1.0, Load(force=counter)), model), Flight(acceleration=vector()), settings)
     np.testing.assert_allclose(pushed.tip, moving.tip, atol=1e-9 * np.abs(moving.tip).max())
 
 
 def test_equilibrium_takes_the_loads_at_its_time() -> None:
     structure = assemble(
-        beam(1.0, 1.0, Load(1.0, force=stack(z=SmoothStep(3e-3, 2.0)))), Model("FOAM", 0, 0, 2, "adapted")
+        beam(1.0, 1.0, Load(1.0, force=vector(z=SmoothStep(3e-3, 2.0)))), Model("FOAM", 0, 0, 2, "adapted")
     )
     tips = [float(structure.displacement(equilibrium(structure, STILL, t))[-1, 2]) for t in (0.0, 1.0, 2.0)]
     np.testing.assert_allclose(tips, [0.0, 0.5e-3, 1e-3], rtol=0.05, atol=1e-12)

@@ -8,6 +8,7 @@ never pays for the import.
 from __future__ import annotations
 
 import dataclasses
+import sys
 from collections.abc import Callable
 from typing import Any, TypeVar, dataclass_transform
 
@@ -31,6 +32,8 @@ def record(cls: type[_T]) -> type[_T]:
     _records.append(made)
     if _register is not None:
         _register(made)
+    elif "jax" in sys.modules:  # whoever imported it may hand records to it before any array
+        import gbeam.arrays.jax_setup  # noqa: F401
     return made
 
 

@@ -1,28 +1,31 @@
 """What the base does: profiles, records, flight, hub and centrifuge. Knows nothing of beams.
 
-Every motion has ``base(t)`` (:class:`Base`) and ``breaks``; a free hub has a torque in its place.
+Every motion is a :class:`Motion`: it has a `kind`, ``base(t)`` (:class:`Base`), `breaks` and ``over(start, end)``; a hub
+that is `free` to turn has a torque in place of a motion.
 """
 
 from gbeam.motion.bases.base import Base
-from gbeam.motion.bases.flight import Flight, stack
+from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
+from gbeam.motion.bases.flight import Flight
 from gbeam.motion.bases.former_hubs import HubRate, HubTorque
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.bases.mount import Mount
-from gbeam.motion.bases.record import STANDARD_GRAVITY, read_record
-from gbeam.motion.centrifuge.centrifuge import AxisHistory, Centrifuge, axis_history
+from gbeam.motion.bases.record import read_record
+from gbeam.motion.centrifuge.centrifuge import Centrifuge
 from gbeam.motion.centrifuge.inverses.registry import INVERSES
-from gbeam.motion.centrifuge.kinematics import Axes, forward, moved
+from gbeam.motion.centrifuge.kinematics import Axes, AxisHistory, axis_history, forward, moved
 from gbeam.motion.centrifuge.limits import AxisLimit, Limits, MachineLimits, usage
-from gbeam.motion.centrifuge.machines import MACHINES, Machine
-from gbeam.motion.centrifuge.target.target import Episode, Target, build_target
+from gbeam.motion.centrifuge.machines import Machine, machines
+from gbeam.motion.centrifuge.target.build import build_target
+from gbeam.motion.centrifuge.target.target import Episode, Target
+from gbeam.motion.profiles.combine import Sum, Vector, vector
 from gbeam.motion.profiles.piecewise import PiecewiseLinear, constant, tabulated, trapezoid
-from gbeam.motion.profiles.profile import Profile, Stack, Sum, smoothed
+from gbeam.motion.profiles.profile import Profile, smoothed
 from gbeam.motion.profiles.pulse import Sine, SmoothStep
 from gbeam.motion.protocol import Motion
 
 __all__ = [
     "INVERSES",
-    "MACHINES",
     "STANDARD_GRAVITY",
     "Axes",
     "AxisHistory",
@@ -43,18 +46,19 @@ __all__ = [
     "Profile",
     "Sine",
     "SmoothStep",
-    "Stack",
     "Sum",
     "Target",
+    "Vector",
     "axis_history",
     "build_target",
     "constant",
     "forward",
+    "machines",
     "moved",
     "read_record",
     "smoothed",
-    "stack",
     "tabulated",
     "trapezoid",
     "usage",
+    "vector",
 ]

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from math import comb, factorial
+from typing import Any
 
-import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
-import scipy.linalg
-from jaxtyping import Array, Float
 from numpy.typing import NDArray
 
-import gbeam.arrays.jax_setup  # noqa: F401
+from gbeam.arrays.namespace import as_array, namespace
+from gbeam.arrays.tree import record
+from gbeam.numerics.series import Series
 
 DEGREE = 5
 PIECE = DEGREE + 1  # coefficients that one piece depends on
@@ -36,7 +35,8 @@ def _matrix() -> Floats:
 _BASIS = _matrix()
 
 
-class Spline(eqx.Module):
+@record
+class Spline:
     """k quintic splines with uniform knots from `start`, `step` s apart; its last piece goes on beyond the end.
 
     Parameters
@@ -46,18 +46,30 @@ class Spline(eqx.Module):
     coefficients : array, shape (pieces + 5, k)
     """
 
-    start: Float[Array, ""]
-    step: Float[Array, ""]
-    coefficients: Float[Array, "n k"]
+    start: Any
+    step: Any
+    coefficients: Any
 
-    def __call__(self, t: Float[Array, "*t"]) -> Float[Array, "*t k"]:
-        """Values at times `t` (s)."""
-        u = (t - self.start) / self.step
-        piece = jnp.clip(jnp.floor(u).astype(int), 0, self.coefficients.shape[0] - PIECE)
-        x = u - piece
-        powers = jnp.stack([x**k for k in range(PIECE)], axis=-1)
-        near = self.coefficients[piece[..., None] + jnp.arange(PIECE)]
-        return jnp.sum((powers @ _BASIS)[..., None] * near, axis=-2)
+    def __call__(self, t: Any) -> Any:
+        """Values at times `t` (s, any shape), (..., k)."""
+        return self.series(t, 0).value
+
+    def series(self, t: Any, order: int) -> Series:
+        """Values and time derivatives up to `order` at times `t` (s, any shape), (..., k)."""
+        u = (as_array(t) - self.start) / self.step
+        xp = namespace(u, self.coefficients)
+        coefficients = xp.asarray(self.coefficients)
+        piece = xp.clip(xp.floor(u).astype(int), 0, coefficients.shape[0] - PIECE)
+        near = coefficients[piece[..., None] + np.arange(PIECE)]
+        powers = [xp.ones_like(u)]
+        for _ in range(DEGREE):
+            powers.append(powers[-1] * (u - piece))
+        taylor = []
+        for j in range(order + 1):
+            rows = [comb(m, j) * powers[m - j] if m >= j else 0.0 * u for m in range(PIECE)]
+            weights = (xp.stack(rows, axis=-1) @ _BASIS) / self.step**j
+            taylor.append((weights[..., None] * near).sum(axis=-2))
+        return Series(tuple(taylor))
 
 
 class Grid:
@@ -111,7 +123,7 @@ class Grid:
 
     def spline(self, coefficients: Floats) -> Spline:
         """The spline of these coefficients."""
-        return Spline(jnp.asarray(self.start), jnp.asarray(self.step), jnp.asarray(coefficients))
+        return Spline(np.asarray(self.start), np.asarray(self.step), np.asarray(coefficients))
 
     def fit(self, values: Floats) -> Floats:
         """Coefficients (n, k) of the least-squares fit to values (times, k)."""
@@ -160,6 +172,8 @@ class Normal:
 
     def solve_shifted(self, shift: float) -> Floats:
         """Solve with `shift` added to the diagonal."""
+        import scipy.linalg  # only those who solve need it
+
         band = self.band.copy()
         band[0] += shift
         return np.asarray(scipy.linalg.solveh_banded(band, self.right, lower=True, check_finite=False))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from gbeam import motion
-from gbeam.analysis.study.case import Motion
 from gbeam.motion import Profile
 from gbeam.motion.bases.flight import body_rates
 from gbeam.motion.bases.record import Conditioning, FlightRecord, Rates, read_flight
@@ -16,7 +15,7 @@ from gbeam.scenario.schema.motion import Record
 
 def flights_and_hubs(
     parts: Collector, scenario: schema.Environments
-) -> tuple[dict[str, Motion], list[motion.PiecewiseLinear]]:
+) -> tuple[dict[str, motion.Motion], list[motion.PiecewiseLinear]]:
     """Build the motions that need no other, by name; and the records that were read for them.
 
     Parameters
@@ -25,26 +24,26 @@ def flights_and_hubs(
         Takes the errors; a motion that has one is left out.
     scenario : Environments
     """
-    built: dict[str, Motion | None] = {}
+    built: dict[str, motion.Motion | None] = {}
     records: list[motion.PiecewiseLinear] = []
-    for name, it in scenario.motion.items():
+    for name, table in scenario.motion.items():
         where = f"motion.{name}"
-        if isinstance(it, schema.Hub):
-            built[name] = _hub(parts, where, it)
-        elif isinstance(it, schema.Flight):
-            if it.record is not None:
-                record = parts.attempt(where, _record, it.record)
+        if isinstance(table, schema.Hub):
+            built[name] = _hub(parts, where, table)
+        elif isinstance(table, schema.Flight):
+            if table.record is not None:
+                record = parts.attempt(where, _record, table.record)
                 records += [record.acceleration] if record is not None else []
-                built[name] = None if record is None else _recorded(record, it.smoothing)
+                built[name] = None if record is None else _recorded(record, table.smoothing)
             else:
-                acceleration = components(parts, f"{where}.acceleration", it.acceleration)
-                built[name] = None if acceleration is None else motion.Flight(_rounded(acceleration, it.smoothing))
-    return {name: it for name, it in built.items() if it is not None}, records
+                load = components(parts, f"{where}.acceleration", table.acceleration)
+                built[name] = None if load is None else motion.Flight(acceleration=_rounded(load, table.smoothing))
+    return {name: one for name, one in built.items() if one is not None}, records
 
 
 def centrifuges(
-    parts: Collector, scenario: schema.Environments, others: dict[str, Motion], span: tuple[float, float]
-) -> dict[str, Motion]:
+    parts: Collector, scenario: schema.Environments, others: dict[str, motion.Motion], span: tuple[float, float]
+) -> dict[str, motion.Motion]:
     """Build the motions that track a flight, by name.
 
     Parameters
@@ -57,32 +56,41 @@ def centrifuges(
     span : tuple of float
         First and last time, s.
     """
-    built: dict[str, Motion] = {}
-    for name, it in scenario.motion.items():
-        if not isinstance(it, schema.Centrifuge):
+    built: dict[str, motion.Motion] = {}
+    for name, table in scenario.motion.items():
+        if not isinstance(table, schema.Centrifuge):
             continue
-        flight = others.get(it.tracks)
+        flight = others.get(table.tracks)
         if isinstance(flight, motion.Flight):
-            centrifuge = parts.attempt(f"motion.{name}", centrifuge_of, it, flight.acceleration, span)
+            centrifuge = parts.attempt(f"motion.{name}", centrifuge_of, table, flight, span)
             built |= {} if centrifuge is None else {name: centrifuge}
     return built
 
 
-def centrifuge_of(it: schema.Centrifuge, load: Profile, span: tuple[float, float]) -> motion.Centrifuge:
-    """Build one centrifuge for the load that it tracks, over a span, s; InputError if it cannot."""
-    machine = None if it.machine is None else motion.MACHINES[it.machine]
-    arm = it.arm if it.arm is not None or machine is None else machine.arm
-    assert arm is not None  # the schema sees to it
-    target = motion.build_target(
-        load, span=span, idle=it.idle, smoothing=it.smoothing, gravity=it.gravity, arm=arm, clip=it.clip,
-        spin_up=it.spin_up,
-    )  # fmt: skip
-    sign = 1 if it.mounting == "upright" else -1
-    limits = _limits(it.limits, machine.limits if machine else motion.MachineLimits())
-    return motion.Centrifuge(target, arm, it.control_point, it.inverse, it.gravity, sign, limits, it.start)
+def centrifuge_of(
+    table: schema.Centrifuge, flight: motion.Flight, span: tuple[float, float]
+) -> motion.Centrifuge:
+    """Build one centrifuge for the flight that it tracks, over a span, s; InputError if it cannot."""
+    machine = None if table.machine is None else motion.machines[table.machine]
+    example = motion.MachineLimits() if machine is None else machine.limits
+    return motion.Centrifuge(
+        flight,
+        arm=machine.arm if table.arm is None and machine is not None else table.arm,
+        control_point=table.control_point,
+        inverse=table.inverse,
+        limits=_limits(table.limits, example),
+        gravity=table.gravity,
+        idle=table.idle,
+        smoothing=table.smoothing,
+        mounting=table.mounting,
+        start=table.start,
+        spin_up=table.spin_up,
+        clip=table.clip,
+        span=span,
+    )
 
 
-def _limits(it: schema.Limits, example: motion.MachineLimits) -> motion.MachineLimits:
+def _limits(table: schema.Limits, example: motion.MachineLimits) -> motion.MachineLimits:
     """The limits that are given, and the example machine's where none is."""
 
     def axis(given: schema.AxisLimit, otherwise: motion.AxisLimit) -> motion.AxisLimit:
@@ -93,27 +101,34 @@ def _limits(it: schema.Limits, example: motion.MachineLimits) -> motion.MachineL
         )))  # fmt: skip
 
     return motion.MachineLimits(
-        axis(it.axis1, example.axis1),
-        axis(it.axis2, example.axis2),
-        axis(it.axis3, example.axis3),
-        example.inertia if it.inertia is None else it.inertia,
-        example.power if it.power is None else it.power,
+        axis(table.axis1, example.axis1),
+        axis(table.axis2, example.axis2),
+        axis(table.axis3, example.axis3),
+        example.inertia if table.inertia is None else table.inertia,
+        example.power if table.power is None else table.power,
     )
 
 
-def _hub(parts: Collector, where: str, table: schema.Hub) -> Motion | None:
+def _hub(parts: Collector, where: str, table: schema.Hub) -> motion.Motion | None:
     given = {name: getattr(table, name) for name in ("rate", "torque") if getattr(table, name) is not None}
-    profiles = {name: _profile(parts, f"{where}.{name}", profile) for name, profile in given.items()}
-    if None in profiles.values():
+    driven = {name: _profile(parts, f"{where}.{name}", profile) for name, profile in given.items()}
+    if None in driven.values():
         return None
     return parts.attempt(
-        where, motion.Hub, radius=table.radius, inertia=table.inertia, **profiles, pointing=table.pointing,
-        setting_angle=table.setting_angle, gravity=table.gravity, stiffness=table.stiffness or 0.0,
+        where,
+        motion.Hub,
+        radius=table.radius,
+        inertia=table.inertia,
+        **driven,
+        pointing=table.pointing,
+        setting_angle=table.setting_angle,
+        gravity=table.gravity,
+        stiffness=table.stiffness or 0.0,
         damping=table.damping or 0.0,
-    )  # fmt: skip
+    )
 
 
-def components(parts: Collector, where: str, it: Any) -> Profile | None:
+def components(parts: Collector, where: str, table: Any) -> Profile | None:
     """Build the vector profile of a table with x, y and z, each a profile, a constant quantity or left out.
 
     Parameters
@@ -122,47 +137,54 @@ def components(parts: Collector, where: str, it: Any) -> Profile | None:
         Takes the errors.
     where : str
         Place of the table in the scenario.
-    it : table of the schema
+    table : table of the schema
     """
-    given = {axis: getattr(it, axis) for axis in "xyz" if getattr(it, axis) is not None}
+    given = {axis: getattr(table, axis) for axis in "xyz" if getattr(table, axis) is not None}
     built = {axis: _profile(parts, f"{where}.{axis}", profile) for axis, profile in given.items()}
-    return None if None in built.values() else motion.stack(**built)
+    return None if None in built.values() else motion.vector(**built)
 
 
-def _profile(parts: Collector, where: str, it: Any) -> Profile | None:
-    """Build one profile; `it` is any of the schema's, of any quantity."""
+def _profile(parts: Collector, where: str, table: Any) -> Profile | None:
+    """Build one profile from any of the schema's, of any quantity."""
     profile: Profile | None
-    if isinstance(it, float):
-        return parts.attempt(where, motion.constant, it)
-    match it:
+    if isinstance(table, float):
+        return parts.attempt(where, motion.constant, table)
+    match table:
         case schema.Constant():
-            profile = parts.attempt(where, motion.constant, it.level)
+            profile = parts.attempt(where, motion.constant, table.level)
         case schema.Trapezoid():
-            profile = parts.attempt(where, motion.trapezoid, it.level, it.jerk, it.start, it.hold)
+            profile = parts.attempt(
+                where, motion.trapezoid, table.level, jerk=table.jerk, start=table.start, hold=table.hold
+            )
         case schema.SmoothStep():
-            profile = parts.attempt(where, motion.SmoothStep, it.level, it.duration, it.start)
+            profile = parts.attempt(where, motion.SmoothStep, table.level, table.duration, table.start)
         case schema.Sine():
-            profile = parts.attempt(where, motion.Sine, it.amplitude, it.duration)
+            profile = parts.attempt(where, motion.Sine, table.amplitude, table.duration)
         case schema.Listed():
-            profile = parts.attempt(where, motion.tabulated, it.times, it.values)
+            profile = parts.attempt(where, motion.tabulated, table.times, table.values)
         case _:
-            terms = [_profile(parts, f"{where}.terms[{i}]", term) for i, term in enumerate(it.terms)]
+            terms = [_profile(parts, f"{where}.terms[{i}]", term) for i, term in enumerate(table.terms)]
             sound = tuple(term for term in terms if term is not None)
             profile = motion.Sum(sound) if len(sound) == len(terms) else None
-    return None if profile is None else _rounded(profile, it.smoothing)
+    return None if profile is None else _rounded(profile, table.smoothing)
 
 
-def _record(it: Record) -> FlightRecord:
+def _record(table: Record) -> FlightRecord:
     rates = None
-    if it.p is not None and it.q is not None and it.r is not None and it.rate_unit is not None:
-        rates = Rates(it.p, it.q, it.r, it.rate_unit)
-    conditioning = Conditioning(it.cutoff, it.resample, it.despike, it.skip_checks)
-    return read_flight(it.file, it.time, it.x, it.y, it.z, it.unit, rates=rates, conditioning=conditioning)
+    if table.p is not None and table.q is not None and table.r is not None and table.rate_unit is not None:
+        rates = Rates(table.p, table.q, table.r, table.rate_unit)
+    conditioning = Conditioning(table.cutoff, table.resample, table.despike, table.skip_checks)
+    return read_flight(
+        table.file, table.time, table.x, table.y, table.z, table.unit, rates=rates, conditioning=conditioning
+    )
 
 
 def _recorded(record: FlightRecord, smoothing: float) -> motion.Flight:
-    rates = None if record.rates is None else body_rates(record.rates, smoothing)
-    return motion.Flight(_rounded(record.acceleration, smoothing), rates, record.notes)
+    return motion.Flight(
+        acceleration=_rounded(record.acceleration, smoothing),
+        rates=None if record.rates is None else body_rates(record.rates, smoothing),
+        notes=record.notes,
+    )
 
 
 def _rounded(profile: Profile, width: float) -> Profile:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import equinox as eqx
 import numpy as np
-from jaxtyping import Array
 
 from gbeam.motion import Axes, Centrifuge, axis_history
 from gbeam.motion.centrifuge.limits import usage
-from gbeam.numerics.batching import in_blocks
 from gbeam.results.response import AxesResult, Commands, Floats, LimitUse, MachinePlan
 
 _GRID, _MOST = 2e-3, 50_000  # s between the times of the result; most of them
@@ -16,46 +13,36 @@ _USED_UP = 0.99  # share of a limit
 _FINE = 1e-3  # s: the angle of axis 1 is integrated on times no further apart
 
 
-@eqx.filter_jit
-def _states(motion: Centrifuge, time: Array) -> tuple[Axes, Array, Array, Array, Array]:
-    axes, jerk = motion.axes_and_jerks(time)
-    return axes, jerk, motion.reference(time), motion.actual_by(axes), motion.not_followed(time)
-
-
-@eqx.filter_jit
-def _only_axes(motion: Centrifuge, time: Array) -> Axes:
-    return motion.axes(time)
-
-
 def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
     """What a centrifuge does at given times (s, ascending), with its limits and where it cannot follow."""
-    axes, jerk, wanted, achieved, held = in_blocks(_states, motion, time)
+    axes, jerk = motion.axes_and_jerks(time)
+    reference, actual, not_followed = motion.reference(time), motion.actual_by(axes), motion.not_followed(time)
     angle, rate, acceleration = _columns(axes, time)
     limits = usage(time, rate, acceleration, jerk, motion.limits)
     return AxesResult(
         angle=angle,
         rate=rate,
         acceleration=acceleration,
-        reference=wanted,
-        actual=achieved,
-        not_followed=held,
+        reference=reference,
+        actual=actual,
+        not_followed=not_followed,
         episodes=tuple((e.start, e.end, e.reason) for e in motion.episodes()),
         limits=limits,
         shortfalls=motion.shortfalls(),
         control_point=float(motion.control_point),
         warnings=(
-            *_broken_promise(motion, time, wanted, np.asarray(achieved - wanted), held, limits),
+            *_broken_promise(motion, time, reference, actual - reference, not_followed, limits),
             *_short_spin_up(motion, limits),
         ),
     )
 
 
 def _broken_promise(
-    motion: Centrifuge, time: Floats, wanted: Floats, error: Floats, held: Floats, limits: tuple[LimitUse, ...]
+    motion: Centrifuge, time: Floats, reference: Floats, error: Floats, not_followed: Floats, limits: tuple[LimitUse, ...]
 ) -> tuple[str, ...]:
     """Say where the load is followed worse than the inverse promises; nothing where it is not."""
     size = np.linalg.norm(error, axis=1)
-    share = np.where(held, 0.0, size / np.maximum(np.linalg.norm(wanted, axis=1), 1e-12))
+    share = np.where(not_followed, 0.0, size / np.maximum(np.linalg.norm(reference, axis=1), 1e-12))
     worst = int(np.argmax(share))
     if not share[worst] > motion.inverse.within:
         return ()
@@ -69,7 +56,8 @@ def _broken_promise(
 
 def _short_spin_up(motion: Centrifuge, limits: tuple[LimitUse, ...]) -> tuple[str, ...]:
     """Say how long a spin-up the arm's limits need, which no inverse knows; nothing where it is long enough."""
-    first, ready, width = float(motion.target.span[0]), float(motion.target.ready), 2 * float(motion.target.reach)
+    first, ready = float(motion.target.span[0]), float(motion.target.ready)
+    width = 2 * float(motion.target.half_width)
     # Over the spin-up's length T the arm's acceleration and power go with 1/T, its jerk with 1/T².
     short = [
         use.share if use.quantity != "jerk" else np.sqrt(use.share)
@@ -114,7 +102,7 @@ def commands(motion: Centrifuge, sample: float) -> Commands:
     between = int(np.ceil(sample / _FINE))  # axis 1's angle is an integral: finer than the samples
     count = int(np.floor((last - first) / sample * (1 + 1e-12)))
     time = np.asarray(first + sample / between * np.arange(count * between + 1), dtype=np.float64)
-    columns = _columns(in_blocks(_only_axes, motion, time), time)
+    columns = _columns(motion.axes(time), time)
     return Commands(sample, time[::between], *(column[::between] for column in columns))
 
 

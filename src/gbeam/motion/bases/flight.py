@@ -2,71 +2,88 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
-import equinox as eqx
-import jax.numpy as jnp
-from jaxtyping import Array, ArrayLike, Float
-
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import assign, record, static
+from gbeam.errors import InputError
 from gbeam.motion.bases.base import Base
-from gbeam.motion.profiles.piecewise import PiecewiseLinear, constant
-from gbeam.motion.profiles.profile import Profile, Stack, smoothed
-from gbeam.numerics.time_derivative import with_rate
+from gbeam.motion.profiles.combine import as_profile, merged_breaks, vector
+from gbeam.motion.profiles.piecewise import PiecewiseLinear
+from gbeam.motion.profiles.profile import Profile, smoothed
 
 
-def stack(x: Profile | None = None, y: Profile | None = None, z: Profile | None = None) -> Stack:
-    """Return the vector profile of three scalar ones; a component left out is zero.
-
-    Parameters
-    ----------
-    x, y, z : Profile or None
-        Components in base axes, of one unit.
-    """
-    none = constant(0.0)
-    return Stack((x or none, y or none, z or none))
-
-
-class Flight(eqx.Module):
+@record
+class Flight:
     """A base in flight: in translation (ω = α = 0), or turning at given body rates.
 
     Parameters
     ----------
-    acceleration : Profile
-        Vector profile: acceleration, or specific force, of the root in base axes, m/s².
+    x, y, z : Profile or float, optional
+        Components of the root's acceleration, or specific force, in base axes, m/s²; one left out is zero.
+    acceleration : Profile, optional
+        The same as one vector profile, such as a record, in place of x, y and z.
     rates : Profile, optional
         Vector profile: angular velocity in base axes, rad/s, without corners; α is its derivative, since the rate of a
         vector ω is the same seen from its own axes.
     notes : tuple of str
         What was done to the record; they become warnings of the response.
+
+    Raises
+    ------
+    InputError
+        If components and vector are given, or neither, or one has the other's shape.
     """
 
     kind: ClassVar[str] = "flight"
     acceleration: Profile
-    rates: Profile | None = None
-    notes: tuple[str, ...] = eqx.field(static=True, default=())
+    rates: Profile | None
+    notes: tuple[str, ...] = static()
 
-    def base(self, t: ArrayLike) -> Base:
-        """Motion of the base at times `t` (s, any shape)."""
-        a_WO_B = self.acceleration(t)
-        if self.rates is None:
-            return Base(a_WO_B, jnp.zeros_like(a_WO_B), jnp.zeros_like(a_WO_B))
-        return Base(a_WO_B, *with_rate(self.rates, jnp.asarray(t, dtype=float)))
+    def __init__(
+        self,
+        x: Profile | Any | None = None,
+        y: Profile | Any | None = None,
+        z: Profile | Any | None = None,
+        *,
+        acceleration: Profile | Any | None = None,
+        rates: Profile | Any | None = None,
+        notes: tuple[str, ...] = (),
+    ) -> None:
+        given = [name for name, value in (("x", x), ("y", y), ("z", z)) if value is not None]
+        if acceleration is None and not given:
+            raise InputError("acceleration", "is missing", "give x, y or z, or acceleration")
+        if acceleration is not None and given:
+            raise InputError(given[0], "is given beside acceleration", "keep the components or the vector, not both")
+        load = vector(x, y, z) if acceleration is None else as_profile("acceleration", acceleration, 3)
+        assign(
+            self,
+            acceleration=load,
+            rates=None if rates is None else as_profile("rates", rates, 3),
+            notes=tuple(notes),
+        )
 
     @property
     def free(self) -> bool:
         """False: the motion is prescribed."""
         return False
 
+    def base(self, t: Any) -> Base:
+        """Motion of the base at times `t` (s, any shape)."""
+        a_WO_B = self.acceleration(t)
+        if self.rates is None:
+            none = namespace(a_WO_B).zeros_like(a_WO_B)
+            return Base(a_WO_B, none, none)
+        return Base(a_WO_B, *self.rates.derivatives(t))
+
+    @property
+    def breaks(self) -> Any:
+        """Times at which an integrator should stop and start afresh, s, shape (b,)."""
+        return self.acceleration.breaks if self.rates is None else merged_breaks(self.acceleration, self.rates)
+
     def over(self, start: float, end: float) -> Self:
         """The flight itself: it needs no preparation."""
         return self
-
-    @property
-    def breaks(self) -> Float[Array, " b"]:
-        """Times at which an integrator should stop and start afresh, s."""
-        if self.rates is None:
-            return self.acceleration.breaks
-        return jnp.sort(jnp.concatenate([self.acceleration.breaks, self.rates.breaks]))
 
 
 def body_rates(recorded: PiecewiseLinear, smoothing: float = 0.0) -> Profile:

@@ -6,15 +6,14 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from gbeam.arrays.namespace import as_array, namespace
-from gbeam.arrays.tree import record, static
+from gbeam.arrays.namespace import as_array, is_traced, namespace
+from gbeam.arrays.tree import assign, record, static
 from gbeam.checks import positive
 from gbeam.errors import InputError
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.mount import Mount
-from gbeam.motion.profiles.piecewise import constant
+from gbeam.motion.profiles.combine import as_profile
 from gbeam.motion.profiles.profile import Profile
-from gbeam.numerics.time_derivative import with_rate
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 _STRIDE = 0.01  # s, between the times at which the angle is stored: Gauss's rule is exact to rounding from there
@@ -82,26 +81,23 @@ class Hub:
         damping = as_array(positive("damping", damping, "N m s/rad", zero=True))
         free = rate is None and inertia is not None
         for name, value in (("stiffness", stiffness), ("damping", damping)):
-            if not free and not (namespace(value) is np and value == 0):
-                beside = " beside rate" if rate is not None else ""
+            if not free and (is_traced(value) or value != 0):
                 fix = f"leave out {name}, or give inertia and no rate"
-                raise InputError(name, f"is given{beside}, and the hub is not free to turn", fix)
+                raise InputError(name, "is given, and the hub is not free to turn", fix)
         mount = Mount(radius, pointing, setting_angle, gravity)
-        values: dict[str, Any] = {
-            "mount": mount,
-            "rate": None if free else _profile(rate),
-            "inertia": None if inertia is None else as_array(positive("inertia", inertia, "kg m²")),
-            "torque": _profile(torque) if free else None,
-            "stiffness": stiffness,
-            "damping": damping,
-            "free": free,
-        }  # fmt: skip
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
+        assign(
+            self,
+            mount=mount,
+            rate=None if free else as_profile("rate", 0.0 if rate is None else rate),
+            inertia=None if inertia is None else as_array(positive("inertia", inertia, "kg m²")),
+            torque=as_profile("torque", 0.0 if torque is None else torque) if free else None,
+            stiffness=stiffness,
+            damping=damping,
+            free=free,
+        )
         # Gravity turns in base axes with the hub: only then does the motion of the base need the angle.
         times, angles = self._angles() if gravity is not None and not free else (np.zeros(1), np.zeros(1))
-        object.__setattr__(self, "times", times)
-        object.__setattr__(self, "angles", angles)
+        assign(self, times=times, angles=angles)
 
     @property
     def radius(self) -> Any:
@@ -110,7 +106,7 @@ class Hub:
 
     def base(self, t: Any) -> Base:
         """Motion of the base at times `t` (s, any shape): a_O = (−rΩ², r dΩ/dt, 0) in hub axes."""
-        rate, acceleration = with_rate(self._prescribed(), t)
+        rate, acceleration = self._prescribed().derivatives(t)
         return self.mount.base(0.0 if self.mount.gravity is None else self.angle(t), rate, acceleration)
 
     def angle(self, t: Any) -> Any:
@@ -151,8 +147,3 @@ class Hub:
         values = self._prescribed()(start[..., None] + half * (1 + _POINTS))
         return (half * _WEIGHTS * values).sum(axis=-1)
 
-
-def _profile(value: Any | None) -> Profile:
-    if isinstance(value, Profile):
-        return value
-    return constant(0.0 if value is None else value)

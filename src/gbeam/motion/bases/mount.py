@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import as_array, namespace
-from gbeam.arrays.tree import record
+from gbeam.arrays.namespace import as_array, is_traced, namespace
+from gbeam.arrays.tree import assign, record
 from gbeam.checks import finite, positive
 from gbeam.errors import InputError
 from gbeam.motion.bases.base import Base
@@ -48,17 +48,19 @@ class Mount:
         angle = finite("setting_angle", setting_angle)
         if gravity is not None:
             gravity = as_array(gravity)
-            concrete = namespace(gravity) is np
-            if gravity.shape != (3,) or (concrete and not np.isfinite(gravity).all()):
+            if gravity.shape != (3,) or (not is_traced(gravity) and not np.isfinite(np.asarray(gravity)).all()):
                 fix = "give three finite components, along x, y and z of the hub"
                 raise InputError("gravity", f"is {gravity!r}", fix)
         xp = namespace(angle)
         c, s, one, none = xp.cos(angle), xp.sin(angle), xp.ones(()), xp.zeros(())
         about_x = xp.stack([xp.stack([one, none, none]), xp.stack([none, c, -s]), xp.stack([none, s, c])])
         about_z = np.diag([1.0, 1.0, 1.0] if pointing == "outward" else [-1.0, -1.0, 1.0])
-        object.__setattr__(self, "radius", as_array(positive("radius", radius, "m", zero=True)))
-        object.__setattr__(self, "R_HB", about_z @ about_x)
-        object.__setattr__(self, "gravity", gravity)
+        assign(
+            self,
+            radius=as_array(positive("radius", radius, "m", zero=True)),
+            R_HB=about_z @ about_x,
+            gravity=gravity,
+        )
 
     def base(self, angle: Any, rate: Any, acceleration: Any) -> Base:
         """Motion of the base, specific force where gravity acts, at angles, rates and accelerations of one shape."""

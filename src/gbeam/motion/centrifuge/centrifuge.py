@@ -2,148 +2,217 @@
 
 from __future__ import annotations
 
+import copy
 import difflib
-from dataclasses import dataclass, replace
-from typing import ClassVar, Self
+from collections.abc import Iterable
+from typing import Any, ClassVar, Self
 
-import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, ArrayLike, Bool, Float
-from numpy.typing import NDArray
 
+from gbeam.arrays.namespace import as_array, namespace
+from gbeam.arrays.tree import assign, record, static
 from gbeam.checks import positive
 from gbeam.errors import InputError
 from gbeam.motion.bases.base import Base
+from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
+from gbeam.motion.bases.flight import Flight
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse
 from gbeam.motion.centrifuge.inverses.registry import INVERSES
-from gbeam.motion.centrifuge.kinematics import Axes, forward, moved
+from gbeam.motion.centrifuge.kinematics import Axes, control_point_load, forward, moved
 from gbeam.motion.centrifuge.limits import Limits, MachineLimits, usage
-from gbeam.motion.centrifuge.spin_up import Start, build_start
+from gbeam.motion.centrifuge.machines import Machine
+from gbeam.motion.centrifuge.spin_up import STARTS, Start, build_start
+from gbeam.motion.centrifuge.target.build import build_target
 from gbeam.motion.centrifuge.target.reachability import shortfalls
 from gbeam.motion.centrifuge.target.target import Episode, Target
 from gbeam.motion.profiles.profile import sampled
-from gbeam.numerics.batching import in_blocks
-from gbeam.numerics.time_derivative import with_rate
 from gbeam.results.response import LimitUse, Shortfall
 
+MOUNTINGS = {"upright": 1.0, "inverted": -1.0}
 _GRID, _MOST = 1e-3, 200_000  # s between the times at which limits are looked at; most of them
 
 
-class Centrifuge(eqx.Module):
-    """A beam on a three-axis centrifuge whose axes reproduce a target at the control point.
+@record
+class Course:
+    """What a centrifuge does over one span of time: its target, the inverse solved for it, how it gets under way."""
+
+    target: Target
+    inverse: Inverse
+    start: Start
+
+
+@record
+class Centrifuge:
+    """A beam on a three-axis centrifuge whose axes reproduce a flight's load at the control point.
+
+    The target and the axis motions belong to a span of time: `over` prepares them, as every analysis does for its own
+    times; with `span` they are there at once. What the axes do is known only then.
 
     Parameters
     ----------
-    target : Target
-        From :func:`gbeam.motion.build_target`.
+    flight : Flight
+        Whose load is tracked.
     arm : float
-        R, from axis 1 to the control point, m.
+        R, from axis 1 to the control point, m; left out, that of the Machine given as `limits`.
     control_point : float
         x_c, from the root along the beam to the point where axes 2 and 3 meet, m.
     inverse : str
         A key of :data:`gbeam.motion.INVERSES`: ``quasi-static``, ``flat``, ``exact`` or ``planned``.
+    limits : MachineLimits or Machine, optional
+        ``planned`` keeps them, the other inverses only report. A Machine, such as one of
+        :data:`gbeam.motion.machines`, also gives its idle level where that is left out.
     gravity : bool
-        As the target was built.
-    sign : int
-        +1 or −1: which of the two mountings of the specimen in the gimbals.
-    limits : MachineLimits, optional
-        Of the machine; ``planned`` keeps them, the others only report.
+        The flight's load is specific force, and gravity is there on the machine.
+    idle : float, optional
+        Load below which the target is held up to this magnitude, m/s².
+    smoothing : float or None
+        Width of the kernel that rounds the target's corners, s; None or 0 leaves them.
+    mounting : str
+        ``upright`` or ``inverted``: which of the two mountings of the specimen in the gimbals.
     start : str
         ``idle``: the arm turns from the first instant. ``rest`` or ``pre-yawed``: it spins up from standstill while the
-        target waits, see :mod:`gbeam.motion.centrifuge.spin_up`; the target is then built with a `spin_up`.
+        target waits, over the time `spin_up`; see :mod:`gbeam.motion.centrifuge.spin_up`.
+    spin_up : float, optional
+        Time from standstill until the load is followed, s.
+    clip : bool
+        Whether to carry on with a held target where the gimbals cannot reach; to give `idle` does so too.
+    span : tuple of float, optional
+        First and last time to prepare for, s.
 
     Raises
     ------
     InputError
-        If a number is impossible, the inverse unknown, or it cannot follow the target's corners.
+        If a number is impossible or a name unknown; when the target is built, also if the load cannot be followed.
     """
 
     kind: ClassVar[str] = "centrifuge"
-    target: Target
+    flight: Flight
     geometry: Geometry
-    inverse: Inverse
+    control_point: Any
     limits: Limits
-    start: Start
-    control_point: Float[Array, ""]
+    method: str = static()
+    beginning: str = static()
+    idle: Any
+    smoothing: Any
+    spin_up: Any
+    clip: bool = static()
+    course: Course | None
+    _latest: ClassVar[Any] = None
 
     def __init__(
         self,
-        target: Target,
-        arm: float,
-        control_point: float,
-        inverse: str,
-        gravity: bool,
-        sign: int = 1,
-        limits: MachineLimits | None = None,
+        flight: Flight,
+        *,
+        arm: Any | None = None,
+        control_point: Any,
+        inverse: str = "flat",
+        limits: MachineLimits | Machine | None = None,
+        gravity: bool = False,
+        idle: Any | None = None,
+        smoothing: Any | None = 0.06,
+        mounting: str = "upright",
         start: str = "idle",
+        spin_up: Any | None = None,
+        clip: bool = False,
+        span: tuple[float, float] | None = None,
     ) -> None:
-        if inverse not in INVERSES:
-            close = difflib.get_close_matches(str(inverse), INVERSES, n=1)
-            guess = f"did you mean {close[0]!r}? " if close else ""
-            raise InputError("inverse", f"is {inverse!r}", f"{guess}choose one of {', '.join(INVERSES)}")
-        if sign not in (1, -1):
-            raise InputError("sign", f"is {sign!r}", "give 1 or -1")
-        if gravity != bool(target.gravity > 0):
-            raise InputError("gravity", f"is {gravity}, unlike the target's", "build both with the same")
-        method = INVERSES[inverse]
-        if not target.rounded and (target.turns or not method.follows_corners):
-            raise InputError(
-                "smoothing", f"is missing: {inverse} cannot follow this load's corners", 'give "60 ms" or so'
-            )
-        self.target = target
-        self.geometry = Geometry(
-            jnp.asarray(positive("arm", arm, "m"), dtype=float),
-            target.gravity,
-            jnp.asarray(sign, dtype=float),
+        if not isinstance(flight, Flight):
+            raise InputError("flight", f"is of type {type(flight).__name__}", "give the Flight whose load is tracked")
+        for name, value, choices in (
+            ("inverse", inverse, INVERSES), ("mounting", mounting, MOUNTINGS), ("start", start, STARTS),
+        ):  # fmt: skip
+            _choose(name, value, choices)
+        if (start == "idle") != (spin_up is None):
+            raise InputError("spin_up", f"does not go with start = {start}", "give both start and spin_up, or neither")
+        if isinstance(limits, Machine):
+            arm, idle = limits.arm if arm is None else arm, limits.idle if idle is None else idle
+            limits = limits.limits
+        if arm is None:
+            raise InputError("arm", "is missing", "give the arm's length, or a machine as limits")
+        radius = as_array(positive("arm", arm, "m"))
+        assign(
+            self,
+            flight=flight,
+            geometry=Geometry(radius, STANDARD_GRAVITY if gravity else 0.0, np.asarray(MOUNTINGS[mounting])),
+            control_point=as_array(positive("control_point", control_point, "m", zero=True)),
+            limits=Limits(limits),
+            method=inverse,
+            beginning=start,
+            idle=None if idle is None else positive("idle", idle, "m/s²"),
+            smoothing=None if smoothing is None else positive("smoothing", smoothing, "s", zero=True),
+            spin_up=None if spin_up is None else positive("spin_up", spin_up, "s"),
+            clip=bool(clip),
+            course=None,
         )
-        self.limits = Limits(limits)
-        self.start = build_start(start, target, self.geometry)
-        self.inverse = method.build(target, self.geometry, self.limits)
-        self.control_point = jnp.asarray(positive("control_point", control_point, "m", zero=True), dtype=float)
+        if span is not None:
+            assign(self, course=self._prepared(*span))
 
-    def axes(self, t: ArrayLike) -> Axes:
-        """States of the three axes at times `t` (s); :func:`axis_history` unwraps the angles."""
+    @property
+    def free(self) -> bool:
+        """False: the motion is prescribed."""
+        return False
 
-        def pose(when: Array) -> tuple[Array, Array, Array]:
-            return self.start.pose(self.inverse, self.target.load, when)
+    def over(self, start: float, end: float) -> Self:
+        """The machine with its target and axis motions prepared for times from `start` to `end`, s.
 
-        now = jnp.asarray(t, dtype=float)
-        (at, rate), (_, acceleration) = with_rate(lambda when: with_rate(pose, when), now)
-        return Axes(
-            rate1=at[0], acceleration1=rate[0],
-            angle2=at[1], rate2=rate[1], acceleration2=acceleration[1],
-            angle3=at[2], rate3=rate[2], acceleration3=acceleration[2],
-        )  # fmt: skip
+        It is itself if it is prepared for these times already; the last one prepared is kept.
 
-    def axes_and_jerks(self, t: ArrayLike) -> tuple[Axes, Float[Array, "*t 3"]]:
-        """States of the axes and their jerks (rad/s³) at times `t` (s), from the closed forms."""
-        axes, rate = with_rate(self.axes, jnp.asarray(t, dtype=float))
-        return axes, jnp.stack([rate.acceleration1, rate.acceleration2, rate.acceleration3], axis=-1)
+        Raises
+        ------
+        InputError
+            If the load cannot be followed there, or the inverse cannot follow its corners.
+        """
+        slack = 1e-9 * (end - start)
+        for known in (self, self._latest):
+            if known is None or known.course is None:
+                continue
+            first, last = known.course.target.span
+            exact = abs(start - first) <= slack and abs(end - last) <= slack
+            if exact or (known is self and first - slack <= start and end <= last + slack):
+                return known
+        prepared = self._changed(course=self._prepared(start, end))
+        assign(self, _latest=prepared)
+        return prepared
 
-    def base(self, t: ArrayLike) -> Base:
+    def at(self, control_point: Any) -> Self:
+        """The same axis motions with another control point, m from the root."""
+        return self._changed(control_point=as_array(positive("control_point", control_point, "m", zero=True)))
+
+    def base(self, t: Any) -> Base:
         """Motion of the root at times `t` (s, any shape)."""
         here = forward(self.axes(t), self.geometry.arm, self.geometry.gravity)
-        return moved(here, self.control_point * jnp.array([-1.0, 0.0, 0.0]))
+        return moved(here, self.control_point * np.array([-1.0, 0.0, 0.0]))
 
-    def reference(self, t: ArrayLike) -> Float[Array, "... 3"]:
-        """Load wanted at the control point at times `t` (s), base axes, m/s²."""
-        return self.start.load(self.target.load, jnp.asarray(t, dtype=float))
+    def axes(self, t: Any) -> Axes:
+        """States of the three axes at times `t` (s); :func:`gbeam.motion.axis_history` unwraps the angles."""
+        first, second, third = self._derivatives(t, 2)
+        return Axes(*first[:2], *second, *third)
 
-    def actual(self, t: ArrayLike) -> Float[Array, "... 3"]:
-        """Load that the axes make at the control point at times `t` (s), base axes, m/s²."""
+    def axes_and_jerks(self, t: Any) -> tuple[Axes, Any]:
+        """States of the axes and their jerks (..., 3) rad/s³ at times `t` (s), from the closed forms."""
+        first, second, third = self._derivatives(t, 3)
+        jerks = first[2], second[3], third[3]
+        return Axes(*first[:2], *second[:3], *third[:3]), namespace(*jerks).stack(jerks, axis=-1)
+
+    def reference(self, t: Any) -> Any:
+        """Load to be made at the control point at times `t` (s), base axes, m/s², shape (..., 3)."""
+        course = self._ready()
+        return course.start.load(course.target.load, as_array(t))
+
+    def actual(self, t: Any) -> Any:
+        """Load that the axes make at the control point at times `t` (s), base axes, m/s², shape (..., 3)."""
         return self.actual_by(self.axes(t))
 
-    def actual_by(self, axes: Axes) -> Float[Array, "... 3"]:
-        """Load that given states of the axes make at the control point, base axes, m/s²."""
-        return forward(axes, self.geometry.arm, self.geometry.gravity).a_WO_B
+    def actual_by(self, axes: Axes) -> Any:
+        """Load that given states of the axes make at the control point, base axes, m/s², shape (..., 3)."""
+        return control_point_load(axes, self.geometry.arm, self.geometry.gravity)
 
-    def tracking_error(self, t: ArrayLike) -> Float[Array, "... 3"]:
-        """Achieved less wanted at times `t` (s), base axes, m/s²."""
+    def tracking_error(self, t: Any) -> Any:
+        """Actual load less the reference at times `t` (s), base axes, m/s², shape (..., 3)."""
         return self.actual(t) - self.reference(t)
 
-    def not_followed(self, t: ArrayLike) -> Bool[Array, "*t"]:
-        """Tell at which times `t` (s) what is wanted is not the flight's load."""
+    def not_followed(self, t: Any) -> Any:
+        """Tell at which times `t` (s) the reference is not the flight's load."""
         return self.target.not_followed(t)
 
     def episodes(self) -> list[Episode]:
@@ -154,7 +223,7 @@ class Centrifuge(eqx.Module):
         """What the motion uses of the machine's limits, over the target's span."""
         first, last = (float(end) for end in self.target.span)
         time = sampled(first, last, max(_GRID, (last - first) / _MOST))
-        axes, jerk = in_blocks(_states, self, time)
+        axes, jerk = self.axes_and_jerks(time)
         rate = np.stack([axes.rate1, axes.rate2, axes.rate3], axis=1)
         acceleration = np.stack([axes.acceleration1, axes.acceleration2, axes.acceleration3], axis=1)
         return usage(time, rate, acceleration, jerk, self.limits)
@@ -164,60 +233,53 @@ class Centrifuge(eqx.Module):
         return shortfalls(self.target, float(self.geometry.arm))
 
     @property
-    def free(self) -> bool:
-        """False: the motion is prescribed."""
-        return False
-
-    def over(self, start: float, end: float) -> Self:
-        """The centrifuge itself: it is prepared for its target's span."""
-        return self
+    def target(self) -> Target:
+        """The load to be made, over the span that the machine is prepared for."""
+        return self._ready().target
 
     @property
-    def breaks(self) -> Float[Array, " b"]:
-        """Times at which an integrator should stop and start afresh, s."""
+    def inverse(self) -> Inverse:
+        """What makes axis motions of the target, likewise."""
+        return self._ready().inverse
+
+    @property
+    def breaks(self) -> Any:
+        """Times at which an integrator should stop and start afresh, s, shape (b,)."""
         return self.target.load.breaks
 
+    def _ready(self) -> Course:
+        if self.course is None:
+            raise InputError("span", "is missing: the target belongs to a span of time", "give span, or use over(...)")
+        return self.course
 
-@eqx.filter_jit
-def _states(machine: Centrifuge, t: Array) -> tuple[Axes, Array]:
-    return machine.axes_and_jerks(t)
+    def _prepared(self, start: float, end: float) -> Course:
+        gravity, method = self.geometry.gravity > 0, INVERSES[self.method]
+        target = build_target(
+            self.flight.acceleration, span=(start, end), idle=self.idle, smoothing=self.smoothing, gravity=gravity,
+            arm=self.geometry.arm, clip=self.clip, spin_up=self.spin_up,
+        )  # fmt: skip
+        if not target.rounded and (target.turns or not method.follows_corners):
+            problem = f"is missing: {self.method} cannot follow this load's corners"
+            raise InputError("smoothing", problem, 'give "60 ms" or so')
+        beginning = build_start(self.beginning, target, self.geometry)
+        return Course(target, method.build(target, self.geometry, self.limits), beginning)
+
+    def _changed(self, **fields: Any) -> Self:
+        other = copy.copy(self)
+        assign(other, _latest=None, **fields)
+        return other
+
+    def _derivatives(self, t: Any, order: int) -> tuple[tuple[Any, ...], ...]:
+        """Of the rate of axis 1 and of the angles of axes 2 and 3 at times `t` (s), each up to `order`."""
+        course = self._ready()
+        pose = course.start.pose(course.inverse, course.target.load, as_array(t), order)
+        return tuple(series.derivatives() for series in pose)
 
 
-@dataclass(frozen=True)
-class AxisHistory:
-    """Axis motions over a time grid.
-
-    Parameters
-    ----------
-    time : array, shape (n,)
-        s.
-    angle1 : array, shape (n,)
-        Angle of axis 1, rad, from zero at the first time.
-    axes : Axes
-        The other states, arrays of shape (n,), angles without jumps.
-    """
-
-    time: NDArray[np.float64]
-    angle1: NDArray[np.float64]
-    axes: Axes
-
-
-def axis_history(axes: Axes, times: ArrayLike) -> AxisHistory:
-    """Unwrap the angles of axes 2 and 3 and integrate that of axis 1.
-
-    Parameters
-    ----------
-    axes : Axes
-        At `times`.
-    times : array_like, shape (n,)
-        s, ascending, fine enough that no axis turns by half a revolution between two.
-    """
-    time = np.asarray(times, dtype=float)
-    step, rate, acceleration = np.diff(time), np.asarray(axes.rate1), np.asarray(axes.acceleration1)
-    # The trapezium rule with its end correction: of fourth order, since the slopes are known.
-    turned = step * (rate[1:] + rate[:-1]) / 2 - step**2 * np.diff(acceleration) / 12
-    return AxisHistory(
-        time=time,
-        angle1=np.append(0.0, np.cumsum(turned)),
-        axes=replace(axes, angle2=jnp.asarray(np.unwrap(axes.angle2)), angle3=jnp.asarray(np.unwrap(axes.angle3))),
-    )
+def _choose(where: str, given: str, choices: Iterable[str]) -> None:
+    """Raise InputError unless the name is one of the choices."""
+    names = tuple(choices)
+    if given not in names:
+        close = difflib.get_close_matches(str(given), names, n=1)
+        guess = f"did you mean {close[0]!r}? " if close else ""
+        raise InputError(where, f"is {given!r}", f"{guess}choose one of {', '.join(names)}")

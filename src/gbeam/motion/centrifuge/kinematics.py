@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-import equinox as eqx
-import jax.numpy as jnp
-from jaxtyping import Array, ArrayLike, Float
+from dataclasses import dataclass, replace
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record
 from gbeam.motion.bases.base import Base
+from gbeam.numerics.quadrature import cumulative
 
 
-class Axes(eqx.Module):
+@record
+class Axes:
     """States of the three axes; every field an array of the shape of time, angles in rad.
 
     Axis 1 turns the arm about the vertical Z; its angle is the integral of its rate and moves nothing but
@@ -24,17 +30,17 @@ class Axes(eqx.Module):
     angle3, rate3, acceleration3 : array
     """
 
-    rate1: Float[Array, "*t"]
-    acceleration1: Float[Array, "*t"]
-    angle2: Float[Array, "*t"]
-    rate2: Float[Array, "*t"]
-    acceleration2: Float[Array, "*t"]
-    angle3: Float[Array, "*t"]
-    rate3: Float[Array, "*t"]
-    acceleration3: Float[Array, "*t"]
+    rate1: Any
+    acceleration1: Any
+    angle2: Any
+    rate2: Any
+    acceleration2: Any
+    angle3: Any
+    rate3: Any
+    acceleration3: Any
 
 
-def forward(axes: Axes, arm: Float[Array, ""] | float, gravity: Float[Array, ""] | float) -> Base:
+def forward(axes: Axes, arm: Any, gravity: Any) -> Base:
     """Motion of the specimen at the control point C, where the axes 2 and 3 meet.
 
     Parameters
@@ -56,27 +62,35 @@ def forward(axes: Axes, arm: Float[Array, ""] | float, gravity: Float[Array, ""]
     a2, and the base axes are e1 = b1, e2 = cos θ3 b2 + sin θ3 Z, e3 = −sin θ3 b2 + cos θ3 Z. The paper's
     control point lies "at the intersection of axes 1 and 2", which are parallel: 2 and 3 are meant.
     """
-    sin2, cos2 = jnp.sin(axes.angle2), jnp.cos(axes.angle2)
-    sin3, cos3 = jnp.sin(axes.angle3), jnp.cos(axes.angle3)
+    xp = namespace(axes.rate1, axes.angle2, axes.angle3, arm)
+    sin3, cos3 = xp.sin(axes.angle3), xp.cos(axes.angle3)
     yaw, dyaw = axes.rate1 + axes.rate2, axes.acceleration1 + axes.acceleration2
+    w_WB_B = xp.stack([axes.rate3 + 0.0 * yaw, yaw * sin3, yaw * cos3], axis=-1)
+    alpha_WB_B = xp.stack(
+        [
+            axes.acceleration3 + 0.0 * yaw,
+            dyaw * sin3 + yaw * axes.rate3 * cos3,
+            dyaw * cos3 - yaw * axes.rate3 * sin3,
+        ],
+        axis=-1,
+    )
+    return Base(control_point_load(axes, arm, gravity), w_WB_B, alpha_WB_B)
+
+
+def control_point_load(axes: Axes, arm: Any, gravity: Any) -> Any:
+    """Acceleration of C, or the specific force there, (..., 3) m/s², base axes; see :func:`forward`.
+
+    It depends on four states only: ω1, dω1/dt, θ2 and θ3.
+    """
+    xp = namespace(axes.rate1, axes.angle2, axes.angle3, arm)
+    sin2, cos2, sin3, cos3 = xp.sin(axes.angle2), xp.cos(axes.angle2), xp.sin(axes.angle3), xp.cos(axes.angle3)
     radial, tangential = -arm * axes.rate1**2, arm * axes.acceleration1
     along = radial * cos2 + tangential * sin2
     across = -radial * sin2 + tangential * cos2
-    return Base(
-        jnp.stack([along, across * cos3 + gravity * sin3, -across * sin3 + gravity * cos3], axis=-1),
-        jnp.stack([axes.rate3, yaw * sin3, yaw * cos3], axis=-1),
-        jnp.stack(
-            [
-                axes.acceleration3,
-                dyaw * sin3 + yaw * axes.rate3 * cos3,
-                dyaw * cos3 - yaw * axes.rate3 * sin3,
-            ],
-            axis=-1,
-        ),
-    )
+    return xp.stack([along, across * cos3 + gravity * sin3, -across * sin3 + gravity * cos3], axis=-1)
 
 
-def moved(base: Base, offset: ArrayLike) -> Base:
+def moved(base: Base, offset: Any) -> Base:
     """Return the motion at another point of the same rigid base: a + α × r + ω × (ω × r).
 
     Parameters
@@ -85,6 +99,41 @@ def moved(base: Base, offset: ArrayLike) -> Base:
     offset : array, shape (3,)
         r, from the point of `base` to the new one, base axes, m.
     """
-    r = jnp.broadcast_to(jnp.asarray(offset, dtype=float), base.w_WB_B.shape)
-    turning = jnp.cross(base.alpha_WB_B, r) + jnp.cross(base.w_WB_B, jnp.cross(base.w_WB_B, r))
+    xp = namespace(base.a_WO_B, base.w_WB_B, offset)
+    r = xp.broadcast_to(xp.asarray(offset, dtype=float), base.w_WB_B.shape)
+    turning = xp.cross(base.alpha_WB_B, r) + xp.cross(base.w_WB_B, xp.cross(base.w_WB_B, r))
     return Base(base.a_WO_B + turning, base.w_WB_B, base.alpha_WB_B)
+
+
+@dataclass(frozen=True)
+class AxisHistory:
+    """Axis motions over a time grid.
+
+    Parameters
+    ----------
+    time : array, shape (n,)
+        s.
+    angle1 : array, shape (n,)
+        Angle of axis 1, rad, from zero at the first time.
+    axes : Axes
+        The other states, arrays of shape (n,), angles without jumps.
+    """
+
+    time: NDArray[np.float64]
+    angle1: NDArray[np.float64]
+    axes: Axes
+
+
+def axis_history(axes: Axes, times: Any) -> AxisHistory:
+    """Unwrap the angles of axes 2 and 3 and integrate that of axis 1.
+
+    Parameters
+    ----------
+    axes : Axes
+        At `times`.
+    times : array_like, shape (n,)
+        s, ascending, fine enough that no axis turns by half a revolution between two.
+    """
+    time = np.asarray(times, dtype=float)
+    angle1 = cumulative(time, np.asarray(axes.rate1), np.asarray(axes.acceleration1))
+    return AxisHistory(time, angle1, replace(axes, angle2=np.unwrap(axes.angle2), angle3=np.unwrap(axes.angle3)))

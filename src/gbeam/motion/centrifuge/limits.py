@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
-import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
 from numpy.typing import NDArray
 
-import gbeam.arrays.jax_setup  # noqa: F401
+from gbeam.arrays.tree import assign, record
 from gbeam.checks import positive
 from gbeam.errors import InputError
 from gbeam.results.response import LimitUse
@@ -53,7 +51,8 @@ class MachineLimits:
         return self.axis1, self.axis2, self.axis3
 
 
-class Limits(eqx.Module):
+@record
+class Limits:
     """The same as arrays: infinite where nothing is given.
 
     Parameters
@@ -71,26 +70,29 @@ class Limits(eqx.Module):
         If a limit is not positive, or a power is given without an inertia.
     """
 
-    axes: Float[Array, "3 3"]
-    inertia: Float[Array, ""]
-    power: Float[Array, ""]
+    axes: Any
+    inertia: Any
+    power: Any
 
     def __init__(self, given: MachineLimits | None = None) -> None:
-        it = MachineLimits() if given is None else given
-        if it.power is not None and it.inertia is None:
+        machine = MachineLimits() if given is None else given
+        if machine.power is not None and machine.inertia is None:
             raise InputError("limits.power", "is given without the inertia", 'add inertia = "2000 kg m^2" of the arm')
 
         def limit(where: str, value: float | None, unit: str) -> float:
-            return np.inf if value is None else positive(f"limits.{where}", value, unit)
+            return np.inf if value is None else float(positive(f"limits.{where}", value, unit))
 
         rows = [
-            [limit(f"axis{i + 1}.{name}", getattr(axis, name), unit) for i, axis in enumerate(it.axes)]
+            [limit(f"axis{i + 1}.{name}", getattr(axis, name), unit) for i, axis in enumerate(machine.axes)]
             for name, unit in QUANTITIES.items()
         ]
-        inertia = 0.0 if it.inertia is None else positive("limits.inertia", it.inertia, "kg m²")
-        self.axes = jnp.asarray(rows)
-        self.inertia = jnp.asarray(inertia, dtype=float)
-        self.power = jnp.asarray(limit("power", it.power, "W"), dtype=float)
+        inertia = 0.0 if machine.inertia is None else float(positive("limits.inertia", machine.inertia, "kg m²"))
+        assign(
+            self,
+            axes=np.asarray(rows),
+            inertia=np.asarray(inertia),
+            power=np.asarray(limit("power", machine.power, "W")),
+        )
 
 
 def usage(
@@ -116,15 +118,15 @@ def usage(
         Rate, acceleration and jerk of each axis, whether limited or not; then the arm's power if its inertia is known.
     """
     allowed = np.asarray(limits.axes)
-    found = [
+    uses = [
         _use(f"axis {axis + 1}", name, unit, time, values[:, axis], float(allowed[row, axis]))
         for axis in range(3)
         for row, ((name, unit), values) in enumerate(zip(QUANTITIES.items(), (rate, acceleration, jerk), strict=True))
     ]
     if limits.inertia > 0:
         power = float(limits.inertia) * rate[:, 0] * acceleration[:, 0]
-        found.append(_use("arm", "power", "W", time, power, float(limits.power)))
-    return tuple(found)
+        uses.append(_use("arm", "power", "W", time, power, float(limits.power)))
+    return tuple(uses)
 
 
 def _use(

@@ -1,4 +1,4 @@
-"""Example machines, to plan with before the limits of one's own are at hand. They are nobody's data sheet.
+"""Example machines, to plan with before the limits of one's own are at hand. They are no real machine's data sheet.
 
 What is published is the arm and, roughly, the load and its onset; the gimbals' limits are assumed throughout, and
 `source` says which is which.
@@ -10,16 +10,31 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gbeam.motion.bases.record import STANDARD_GRAVITY
+from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
 from gbeam.motion.centrifuge.limits import AxisLimit, MachineLimits
+
+
+_IDLE = 1.4 * STANDARD_GRAVITY  # the baseline from which human centrifuges start their profiles, assumed for all
 
 
 @dataclass(frozen=True)
 class Machine:
-    """An example: its arm in m, its limits, and where they come from."""
+    """An example machine.
+
+    Parameters
+    ----------
+    arm : float
+        From axis 1 to the control point, m.
+    limits : MachineLimits
+    idle : float
+        Load at which it idles, below which a target is held, m/s².
+    source : str
+        Where the numbers come from.
+    """
 
     arm: float
     limits: MachineLimits
+    idle: float
     source: str
 
 
@@ -31,10 +46,10 @@ def _example(arm: float, load_g0: float, onset_g0_per_s: float, gimbal: AxisLimi
     rate = np.sqrt(load_g0 * STANDARD_GRAVITY / arm)
     acceleration = onset_g0_per_s * STANDARD_GRAVITY / (2 * np.sqrt(arm * 1.5 * STANDARD_GRAVITY))
     first = AxisLimit(float(rate), float(acceleration), float(10 * acceleration))
-    return Machine(arm, MachineLimits(first, gimbal, gimbal), source)
+    return Machine(arm, MachineLimits(first, gimbal, gimbal), _IDLE, source)
 
 
-MACHINES: dict[str, Machine] = {
+machines: dict[str, Machine] = {
     "human-7.6m": _example(
         7.6,
         12.0,

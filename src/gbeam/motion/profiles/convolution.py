@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
-import jax.numpy as jnp
+from math import factorial
+from typing import Any
+
 import numpy as np
-from jaxtyping import Array, ArrayLike, Float
 from numpy.typing import NDArray
 
-from gbeam.motion.profiles.hann import hann
+from gbeam.arrays.namespace import as_array, namespace
+from gbeam.arrays.tree import assign, record
+from gbeam.motion.profiles.hann import hann_orders
 from gbeam.motion.profiles.profile import Profile, sampled
+from gbeam.numerics.series import Series
 
 # On one panel the integrand is a smooth curve times one period of a cosine: 20 points leave only rounding.
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 
+@record
 class Convolved(Profile):
     """A profile convolved with the Hann kernel of width W.
 
     The panels end at the profile's breaks, wherever these lie in the window of abs(σ − t) < W/2, so that each
-    integrand is smooth and the derivatives by `jax.jvp` (the nodes move with t) are as accurate as the value.
+    integrand is smooth. Their other ends, and so the nodes, move with t: a node is a series of first order in time,
+    the integrand one of any order, and the derivatives are as accurate as the value.
 
     Parameters
     ----------
@@ -29,25 +35,29 @@ class Convolved(Profile):
     """
 
     profile: Profile
-    width: Float[Array, ""]
+    width: Any
 
-    def __init__(self, profile: Profile, width: float) -> None:
-        self.profile, self.width = profile, jnp.asarray(width, dtype=float)
+    def __post_init__(self) -> None:
+        assign(self, width=as_array(self.width))
 
-    def __call__(self, t: ArrayLike) -> Float[Array, "*t"]:
-        """Value at times `t` (s)."""
-        now = jnp.asarray(t, dtype=float)
-        low, high = now[..., None] - self.width / 2, now[..., None] + self.width / 2
-        ends = jnp.concatenate([low, jnp.clip(self.profile.breaks, low, high), high], axis=-1)
-        middle, half = (ends[..., 1:] + ends[..., :-1]) / 2, jnp.diff(ends) / 2
-        shape = (*now.shape, -1)
-        at = (middle[..., None] + half[..., None] * _POINTS).reshape(shape)
-        weight = (half[..., None] * _WEIGHTS).reshape(shape) * hann(2, (now[..., None] - at) / self.width) / self.width
-        values = self.profile(at)
-        return jnp.sum(weight.reshape(weight.shape + (1,) * (values.ndim - at.ndim)) * values, axis=now.ndim)
+    def series(self, t: Any, order: int) -> Series:
+        """Value and derivatives at times `t` (s)."""
+        now, breaks, width = as_array(t), self.profile.breaks, self.width
+        xp = namespace(now, breaks, width)
+        low, high = now[..., None] - width / 2, now[..., None] + width / 2
+        one, fixed = xp.ones_like(low), (breaks > low) & (breaks < high)
+        at, weight = _panels(xp, xp.concatenate([low, xp.clip(breaks, low, high), high], axis=-1))
+        speed, widening = _panels(xp, xp.concatenate([one, xp.where(fixed, 0.0, 1.0), one], axis=-1))
+        inner = self.profile.series(at, order)
+        axes = inner.value.ndim - at.ndim
+        values = Series(tuple(beside(speed**k, axes) * c for k, c in enumerate(inner.coefficients)))
+        orders = hann_orders(2, 2 + order, (now[..., None] - at) / width)
+        kernel = Series(tuple(((1 - speed) / width) ** k * h / factorial(k) for k, h in enumerate(orders)))
+        weighted = Series.of([weight / width, widening / width], order) * kernel
+        return (weighted.each(lambda c: beside(c, axes)) * values).each(lambda c: c.sum(axis=now.ndim))
 
     @property
-    def breaks(self) -> Float[Array, " b"]:
+    def breaks(self) -> Any:
         """None: the third derivative is continuous."""
         return self.profile.breaks[:0]
 
@@ -57,6 +67,19 @@ class Convolved(Profile):
         inner = self.profile.knots(step)
         return sampled(inner[0] - half, inner[-1] + half, step)
 
-    def smoothed(self, width: float) -> Profile:
+    def smoothed(self, width: Any) -> Profile:
         """Smoothed once more."""
         return Convolved(self, width)
+
+
+def _panels(xp: Any, ends: Any) -> tuple[Any, Any]:
+    """Gauss's points and weights of the panels between ends (..., p + 1), along one last axis; linear in the ends."""
+    middle, half = (ends[..., 1:] + ends[..., :-1]) / 2, xp.diff(ends) / 2
+    points = middle[..., None] + half[..., None] * _POINTS
+    shape = (*ends.shape[:-1], points.shape[-2] * points.shape[-1])
+    return points.reshape(shape), (half[..., None] * _WEIGHTS).reshape(shape)
+
+
+def beside(array: Any, axes: int) -> Any:
+    """Append `axes` trailing axes of length one."""
+    return array.reshape(array.shape + (1,) * axes)

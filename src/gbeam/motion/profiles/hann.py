@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from functools import partial
+from functools import cache, partial
+from math import pi
+from typing import Any
 
-import jax
-import jax.numpy as jnp
-from jaxtyping import Array, Float
+import numpy as np
 
-import gbeam.arrays.jax_setup  # noqa: F401
+from gbeam.arrays.namespace import as_array, is_jax
+from gbeam.numerics.series import Series, compose
 
-TURN = 2 * jnp.pi
+TURN = 2 * pi
 
 
-@partial(jax.custom_jvp, nondiff_argnums=(0,))
-def hann(order: int, x: Float[Array, "*t"]) -> Float[Array, "*t"]:
+def hann(order: int, x: Any) -> Any:
     """Return the `order`-th derivative of the rounded ramp of unit width at `x`.
 
     The rounded ramp is max(x, 0) convolved with the Hann kernel k(x) = 1 + cos 2πx on abs(x) < 1/2, whose
@@ -24,7 +24,7 @@ def hann(order: int, x: Float[Array, "*t"]) -> Float[Array, "*t"]:
     Parameters
     ----------
     order : int
-        0 or more; derivatives by `jax.jvp` raise it by one, so they are exact and free of ties at ±1/2.
+        0 or more; JAX's derivatives raise it by one, so they are exact and free of ties at ±1/2.
     x : array, any shape
         Dimensionless: time over the width.
 
@@ -32,32 +32,69 @@ def hann(order: int, x: Float[Array, "*t"]) -> Float[Array, "*t"]:
     -------
     array, shape of `x`
     """
-    u = jnp.clip(x, -0.5, 0.5)
-    if order == 0:
-        return (u + 0.5) ** 2 / 2 - (1 + jnp.cos(TURN * u)) / TURN**2 + jnp.maximum(x - 0.5, 0.0)
-    if order == 1:
-        return u + 0.5 + jnp.sin(TURN * u) / TURN
-    if order == 2:
-        return 1 + jnp.cos(TURN * u)
-    wave = (jnp.cos, jnp.sin)[order % 2](TURN * u)
-    sign = 1.0 if order % 4 in (1, 2) else -1.0
-    return jnp.where(jnp.abs(x) < 0.5, sign * TURN ** (order - 2) * wave, 0.0)
+    x = as_array(x)
+    return _differentiable()(order, x) if is_jax(x) else hann_orders(order, order, x)[0]
 
 
-@hann.defjvp
-def _hann_jvp(order, primals, tangents):  # type: ignore[no-untyped-def]
-    (x,), (dx,) = primals, tangents
-    return hann(order, x), hann(order + 1, x) * dx
+def hann_orders(first: int, last: int, x: Any) -> list[Any]:
+    """The derivatives of orders `first` to `last` at `x`, which share their sine and cosine."""
+    if is_jax(x):
+        return [hann(order, x) for order in range(first, last + 1)]  # its compiler shares them
+    return _orders(np, first, last, x)
 
 
-@jax.jit
-def soft_floor(value: Float[Array, "*t"], floor: Array | float, band: Array | float) -> Float[Array, "*t"]:
+def _orders(xp: Any, first: int, last: int, x: Any) -> list[Any]:
+    u = xp.clip(x, -0.5, 0.5)
+    orders = range(first, last + 1)
+    # Orders 0 and 2 need no sine, order 1 no cosine.
+    sine = xp.sin(TURN * u) if 1 in orders or last > 2 else 0.0
+    cosine = xp.cos(TURN * u) if (first, last) != (1, 1) else 0.0
+    inside = xp.abs(x) < 0.5 if last > 2 else True
+    values = []
+    for order in orders:
+        match order:
+            case 0:
+                value = (u + 0.5) ** 2 / 2 - (1 + cosine) / TURN**2 + xp.maximum(x - 0.5, 0.0)
+            case 1:
+                value = u + 0.5 + sine / TURN
+            case 2:
+                value = 1 + cosine
+            case _:
+                sign = 1.0 if order % 4 in (1, 2) else -1.0
+                value = xp.where(inside, sign * TURN ** (order - 2) * (cosine, sine)[order % 2], 0.0)
+        values.append(value)
+    return values
+
+
+@cache
+def _differentiable() -> Any:
+    """`hann` for JAX: the derivative of one order is the next."""
+    import jax
+    import jax.numpy as jnp
+
+    import gbeam.arrays.jax_setup  # noqa: F401
+
+    @partial(jax.custom_jvp, nondiff_argnums=(0,))
+    def ramp(order: int, x: Any) -> Any:
+        return _orders(jnp, order, order, x)[0]
+
+    @ramp.defjvp
+    def _(order: int, primals: Any, tangents: Any) -> Any:
+        (x,), (dx,) = primals, tangents
+        return ramp(order, x), ramp(order + 1, x) * dx
+
+    return ramp
+
+
+def soft_floor(value: Any, floor: Any, band: Any) -> Any:
     """Return a three times differentiable max(value, floor).
 
     Parameters
     ----------
-    value : array, any shape
+    value : array or Series, any shape
     floor, band : float
         In the unit of `value`: the result is `floor` below floor − band/2 and `value` above floor + band/2.
     """
-    return floor + band * hann(0, (value - floor) / band)
+    x = (value - floor) / band
+    ramp = compose(hann_orders(0, x.order, x.value), x) if isinstance(x, Series) else hann(0, x)
+    return ramp * band + floor

@@ -2,30 +2,22 @@
 
 from __future__ import annotations
 
-import equinox as eqx
-import jax.numpy as jnp
+from typing import Any
+
 import numpy as np
-from jaxtyping import Array, Float
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from gbeam.checks import positive
+from gbeam.arrays.namespace import as_array, is_traced, namespace
+from gbeam.arrays.tree import assign, record, static
+from gbeam.checks import finite, positive
 from gbeam.errors import InputError
-from gbeam.motion.profiles.convolution import Convolved
-from gbeam.motion.profiles.hann import hann
+from gbeam.motion.profiles.convolution import Convolved, beside
+from gbeam.motion.profiles.hann import hann_orders
 from gbeam.motion.profiles.profile import Profile, sampled
+from gbeam.numerics.series import Series
 
 
-def finite(where: str, value: float) -> float:
-    """Return `value` as a float, or say that it is not a finite number."""
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise InputError(where, f"is {value!r}", "give a number") from None
-    if not np.isfinite(number):
-        raise InputError(where, f"is {number}", "give a finite value")
-    return number
-
-
+@record
 class PiecewiseLinear(Profile):
     """Straight between knots, constant before the first and after the last.
 
@@ -42,117 +34,128 @@ class PiecewiseLinear(Profile):
         If the shapes differ, a number is not finite or the times do not increase.
     """
 
-    times: Float[Array, " k"]
-    values: Float[Array, " k *v"]
-    slopes: Float[Array, " k1 *v"]  # of the k + 1 segments, the outer two level
+    times: Any
+    values: Any
+    slopes: Any  # of the k + 1 segments, the outer two level, (k + 1,) or (k + 1, 3)
 
-    def __init__(self, times: ArrayLike, values: ArrayLike) -> None:
-        t = np.atleast_1d(np.asarray(times, dtype=float))
-        v = np.atleast_1d(np.asarray(values, dtype=float))
+    def __init__(self, times: Any, values: Any) -> None:
+        t, v = (array[None] if array.ndim == 0 else array for array in (as_array(times), as_array(values)))
         if t.ndim != 1 or t.size == 0:
             raise InputError("times", f"has shape {t.shape}", "give a list of one time or more")
         if len(v) != len(t):
             raise InputError("values", f"has {len(v)} entries for {len(t)} times", "give one value per time")
         for name, array in (("times", t), ("values", v)):
-            bad = np.flatnonzero(~np.isfinite(array.reshape(len(t), -1)).all(axis=1))
-            if bad.size:
-                raise InputError(f"{name}[{bad[0]}]", "is not finite", "give a finite number")
-        back = np.flatnonzero(np.diff(t) <= 0)
-        if back.size:
-            i = int(back[0])
-            raise InputError(
-                f"times[{i + 1}]",
-                f"is {t[i + 1]:g} s, after {t[i]:g} s",
-                "list times in strictly increasing order",
-            )
-        level = np.zeros((1, *v.shape[1:]))
-        rise = np.diff(v, axis=0) / np.diff(t).reshape(-1, *[1] * (v.ndim - 1))
-        self.times, self.values = jnp.asarray(t), jnp.asarray(v)
-        self.slopes = jnp.asarray(np.concatenate([level, rise, level]))
+            _refuse_infinite(name, array)
+        if not is_traced(t):
+            _refuse_unordered(np.asarray(t))
+        xp = namespace(t, v)
+        level = xp.zeros((1, *v.shape[1:]))
+        rise = xp.diff(v, axis=0) / beside(xp.diff(t), v.ndim - 1)
+        assign(self, times=t, values=v, slopes=xp.concatenate([level, rise, level]))
 
-    def __call__(self, t: ArrayLike) -> Float[Array, "*t"]:
-        """Value at times `t` (s)."""
-        now = jnp.asarray(t, dtype=float)
-        return _line(self, now, jnp.searchsorted(self.times, now, side="right"))
+    def series(self, t: Any, order: int) -> Series:
+        """Value and slope at times `t` (s)."""
+        now = as_array(t)
+        xp = namespace(now, self.times)
+        return _line(self, now, xp.searchsorted(xp.asarray(self.times), now, side="right"), order)
 
     @property
-    def breaks(self) -> Float[Array, " k"]:
-        """Times of the knots, s."""
+    def breaks(self) -> Any:
+        """Times of the knots, s, shape (k,)."""
         return self.times
 
     def knots(self, step: float) -> NDArray[np.float64]:
         """Times of the knots, s, whatever the `step`."""
         return np.asarray(self.times)
 
-    def smoothed(self, width: float) -> Profile:
+    def smoothed(self, width: Any) -> Profile:
         """Closed form: the straight pieces, with a rounded ramp at each knot near by."""
         return SmoothedPiecewiseLinear(self, width)
 
 
-def _line(table: PiecewiseLinear, t: Float[Array, "*t"], segment: Array) -> Float[Array, "*t"]:
-    """Value at `t` of the straight line through `segment` (0 before the first knot, k after the last)."""
-    start = jnp.maximum(segment - 1, 0)  # anchored in its own segment: no sum of slopes to lose digits in
-    since = t - table.times[start]
-    return table.values[start] + table.slopes[segment] * _beside(since, table.values.ndim - 1)
+def _refuse_infinite(name: str, array: Any) -> None:
+    if is_traced(array):
+        return
+    bad = np.flatnonzero(~np.isfinite(np.asarray(array).reshape(len(array), -1)).all(axis=1))
+    if bad.size:
+        raise InputError(f"{name}[{bad[0]}]", "is not finite", "give a finite number")
 
 
-def _beside(array: Array, axes: int) -> Array:
-    """Append `axes` trailing axes of length one."""
-    return array.reshape(array.shape + (1,) * axes)
+def _refuse_unordered(times: NDArray[np.float64]) -> None:
+    back = np.flatnonzero(np.diff(times) <= 0)
+    if back.size:
+        i = int(back[0])
+        problem = f"is {times[i + 1]:g} s, after {times[i]:g} s"
+        raise InputError(f"times[{i + 1}]", problem, "list times in strictly increasing order")
 
 
+def _line(table: PiecewiseLinear, t: Any, segment: Any, order: int) -> Series:
+    """Value and slope at `t` of the straight line through `segment` (0 before the first knot, k after the last)."""
+    xp = namespace(t, segment, table.times, table.values)
+    times, values, slopes = (xp.asarray(array) for array in (table.times, table.values, table.slopes))
+    start = xp.maximum(segment - 1, 0)  # anchored in its own segment: no sum of slopes to lose digits in
+    slope = slopes[segment]
+    return Series.of([values[start] + slope * beside(t - times[start], values.ndim - 1), slope], order)
+
+
+@record
 class SmoothedPiecewiseLinear(Profile):
     """Convolution of a piecewise-linear profile with the Hann kernel, exact and three times differentiable.
 
     Notes
     -----
     With Δ_i the change of slope at knot t_i, f(t) = line(t) + Σ Δ_i W h((t − t_i)/W), where `line` is the
-    segment at t − W/2 prolonged, h the rounded ramp (:func:`gbeam.motion.hann.hann`) and the sum runs over
+    segment at t − W/2 prolonged, h the rounded ramp (:func:`gbeam.motion.profiles.hann.hann`) and the sum runs over
     the knots within W/2 of t: later ones have not acted yet, earlier ones are in `line`. So the cost does
     not grow with the table.
     """
 
     table: PiecewiseLinear
-    bends: Float[Array, " k1 *v"]  # change of slope at each knot, and a zero for indices past the end
-    times: Float[Array, " k1"]
-    width: Float[Array, ""]
-    count: int = eqx.field(static=True)  # most knots that one window can hold
+    bends: Any  # change of slope at each knot, and a zero for indices past the end, (k + 1,) or (k + 1, 3)
+    times: Any  # of the knots, the last twice, (k + 1,)
+    width: Any
+    count: int = static()  # most knots that one window can hold
 
-    def __init__(self, table: PiecewiseLinear, width: float) -> None:
-        t = np.asarray(table.times)
-        slopes = np.asarray(table.slopes)
-        ends = np.searchsorted(t, t + width, side="right")
-        self.table, self.width = table, jnp.asarray(width, dtype=float)
-        self.bends = jnp.asarray(np.concatenate([np.diff(slopes, axis=0), np.zeros_like(slopes[:1])]))
-        self.times = jnp.asarray(np.append(t, t[-1]))
-        # One more, since t − W/2 is rounded; then rounded up, so that widths share their programs.
-        self.count = 8 * -(-(int(np.max(ends - np.arange(t.size))) + 1) // 8)
+    def __init__(self, table: PiecewiseLinear, width: Any) -> None:
+        t, slopes, width = table.times, table.slopes, as_array(width)
+        xp = namespace(t, slopes)
+        count = t.size
+        if not is_traced(t, width):
+            ends = np.searchsorted(t, t + width, side="right")
+            # One more, since t − W/2 is rounded; then rounded up, so that widths share their programs.
+            count = 8 * -(-(int(np.max(ends - np.arange(t.size))) + 1) // 8)
+        bends = xp.concatenate([xp.diff(slopes, axis=0), xp.zeros_like(slopes[:1])])
+        assign(self, table=table, bends=bends, times=xp.append(t, t[-1]), width=width, count=count)
 
-    def __call__(self, t: ArrayLike) -> Float[Array, "*t"]:
-        """Value at times `t` (s)."""
-        now = jnp.asarray(t, dtype=float)
-        first = jnp.searchsorted(self.table.times, now - self.width / 2, side="right")
-        near = jnp.minimum(first[..., None] + jnp.arange(self.count), self.table.times.size)
-        bent = self.width * hann(0, (now[..., None] - self.times[near]) / self.width)
-        rounded = jnp.sum(_beside(bent, self.bends.ndim - 1) * self.bends[near], axis=now.ndim)
-        return _line(self.table, now, first) + rounded
+    def series(self, t: Any, order: int) -> Series:
+        """Value and derivatives at times `t` (s)."""
+        now = as_array(t)
+        xp = namespace(now, self.times, self.bends, self.width)
+        times, bends = xp.asarray(self.times), xp.asarray(self.bends)
+        first = xp.searchsorted(times[:-1], now - self.width / 2, side="right")
+        near = xp.minimum(first[..., None] + np.arange(self.count), times.size - 1)
+        ramps = hann_orders(0, order, (now[..., None] - times[near]) / self.width)
+        bent = bends[near]
+        subscripts = "...j,...jv->...v" if bends.ndim > 1 else "...j,...j->..."
+        rounded = [xp.einsum(subscripts, ramp, bent) * self.width ** (1 - k) for k, ramp in enumerate(ramps)]
+        return _line(self.table, now, first, order) + Series.of(rounded, order)
 
     @property
-    def breaks(self) -> Float[Array, " b"]:
+    def breaks(self) -> Any:
         """None: the third derivative is continuous."""
         return self.times[:0]
 
     def knots(self, step: float) -> NDArray[np.float64]:
         """Times, s, no further apart than `step` within half a width of the table's knots."""
-        reach = float(self.width) / 2
-        return sampled(float(self.times[0]) - reach, float(self.times[-1]) + reach, step)
+        half = float(self.width) / 2
+        return sampled(float(self.times[0]) - half, float(self.times[-1]) + half, step)
 
-    def smoothed(self, width: float) -> Profile:
+    def smoothed(self, width: Any) -> Profile:
         """Smoothed once more, by quadrature."""
         return Convolved(self, width)
 
 
-def constant(value: ArrayLike) -> PiecewiseLinear:
+def constant(value: Any) -> PiecewiseLinear:
     """Return a constant profile.
 
     Parameters
@@ -164,13 +167,13 @@ def constant(value: ArrayLike) -> PiecewiseLinear:
     InputError
         If a number is not finite.
     """
-    number = np.asarray(value, dtype=float)
-    if not np.isfinite(number).all():
+    number = as_array(value)
+    if not is_traced(number) and not np.isfinite(np.asarray(number)).all():
         raise InputError("value", f"is {value!r}", "give a finite value")
     return PiecewiseLinear([0.0], number[None])
 
 
-def trapezoid(level: float, jerk: float, start: float, hold: float) -> PiecewiseLinear:
+def trapezoid(level: Any, *, jerk: Any, start: Any = 0.0, hold: Any) -> PiecewiseLinear:
     """Return a ramp from zero, a plateau and the same ramp down.
 
     Parameters
@@ -189,17 +192,23 @@ def trapezoid(level: float, jerk: float, start: float, hold: float) -> Piecewise
     InputError
         If the level is zero or a number is impossible.
     """
-    height, begin = finite("level", level), finite("start", start)
-    if height == 0:
+    height, begin, slope = finite("level", level), finite("start", start), positive("jerk", jerk, "per second")
+    plateau = positive("hold", hold, "s", zero=True)
+    if not is_traced(height) and height == 0:
         raise InputError("level", "is 0", "give a plateau other than zero, or a constant profile of value 0")
-    rise = abs(height) / positive("jerk", jerk, "per second")
-    times = begin + np.cumsum([0.0, rise, positive("hold", hold, "s", zero=True), rise])
-    corners = np.array([0.0, height, height, 0.0])
-    distinct = np.append(True, np.diff(times) > 0)  # a triangle has three corners
+    rise = abs(height) / slope
+    xp = namespace(height, begin, rise, plateau)
+    times = begin + xp.cumsum(xp.stack([0.0 * rise, rise, plateau + 0.0 * rise, rise]))
+    corners = xp.asarray([0.0, 1.0, 1.0, 0.0]) * height
+    if is_traced(times):
+        triangle = not is_traced(plateau) and plateau == 0
+        distinct = np.array([True, True, not triangle, True])
+    else:
+        distinct = np.append(True, np.diff(np.asarray(times)) > 0)  # a triangle has three corners
     return PiecewiseLinear(times[distinct], corners[distinct])
 
 
-def tabulated(times: ArrayLike, values: ArrayLike) -> PiecewiseLinear:
+def tabulated(times: Any, values: Any) -> PiecewiseLinear:
     """Return a profile through points, straight between them and constant beyond the ends.
 
     Parameters

@@ -1,45 +1,54 @@
-"""What a profile is: a quantity prescribed over time; and the two ways of combining profiles."""
+"""What a profile is: a quantity prescribed over time, with its derivatives; its smoothing."""
 
 from __future__ import annotations
 
-from abc import abstractmethod
+from abc import ABC, abstractmethod
+from typing import Any
 
-import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, ArrayLike, Float
 from numpy.typing import NDArray
 
-import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.checks import positive
-from gbeam.errors import InputError
+from gbeam.numerics.series import Series
 
 
-class Profile(eqx.Module):
-    """A scalar or vector given over time; elementwise in time, it can be traced, mapped and differentiated.
+class Profile(ABC):
+    """A scalar or vector given over time, with its time derivatives in closed form.
 
-    Its arrays are leaves: two scenarios that differ in numbers only share one compiled function.
+    NumPy arrays in, NumPy arrays out; JAX arrays and tracers pass, in the times as in the profile's own values, which
+    are the leaves of a pytree: profiles can be traced, mapped and differentiated with respect to them.
     """
 
     @abstractmethod
-    def __call__(self, t: ArrayLike) -> Float[Array, "*t"]:
+    def series(self, t: Any, order: int) -> Series:
+        """Value and time derivatives up to `order` at times `t` (s): of the shape of `t`, with a last 3 for a vector.
+
+        Where a derivative jumps, it is the one from the right.
+        """
+
+    def __call__(self, t: Any) -> Any:
         """Value at times `t` (s, any shape): of the shape of `t`, with a trailing 3 for a vector."""
+        return self.series(t, 0).value
+
+    def derivatives(self, t: Any, order: int = 1) -> tuple[Any, ...]:
+        """Value and time derivatives up to `order` at times `t` (s), each like the value."""
+        return self.series(t, order).derivatives()
 
     @property
     @abstractmethod
-    def breaks(self) -> Float[Array, " b"]:
-        """Times (s, ascending) at which a derivative jumps; empty if the third is continuous."""
+    def breaks(self) -> Any:
+        """Times (s, ascending) at which a derivative jumps, shape (b,); empty if the third is continuous."""
 
     @abstractmethod
     def knots(self, step: float) -> NDArray[np.float64]:
         """Times (s, ascending) between which the profile is straight, or which are `step` apart at most."""
 
     @abstractmethod
-    def smoothed(self, width: float) -> Profile:
+    def smoothed(self, width: Any) -> Profile:
         """The profile convolved with the Hann kernel (1 + cos 2πt/W)/W on abs(t) < W/2, W = `width` s."""
 
 
-def smoothed(profile: Profile, width: float) -> Profile:
+def smoothed(profile: Profile, width: Any) -> Profile:
     """Round the corners of a profile: its convolution with a Hann kernel, three times differentiable.
 
     Parameters
@@ -64,65 +73,3 @@ def smoothed(profile: Profile, width: float) -> Profile:
 def sampled(start: float, end: float, step: float) -> NDArray[np.float64]:
     """Evenly spaced times from `start` to `end`, s, no further apart than `step`."""
     return np.linspace(start, end, int(np.ceil((end - start) / step)) + 1)
-
-
-class Sum(Profile):
-    """Sum of profiles of the same unit.
-
-    Parameters
-    ----------
-    parts : tuple of Profile
-        One or more, all scalar or all vectors.
-
-    Raises
-    ------
-    InputError
-        If there is no part.
-    """
-
-    parts: tuple[Profile, ...]
-
-    def __check_init__(self) -> None:
-        if not self.parts:
-            raise InputError("parts", "is empty", "list one profile or more")
-
-    def __call__(self, t: ArrayLike) -> Float[Array, "*t"]:
-        """Value at times `t` (s)."""
-        return jnp.sum(jnp.stack([part(t) for part in self.parts]), axis=0)
-
-    @property
-    def breaks(self) -> Float[Array, " b"]:
-        """Times of the parts' jumps, s."""
-        return jnp.sort(jnp.concatenate([part.breaks for part in self.parts]))
-
-    def knots(self, step: float) -> NDArray[np.float64]:
-        """Union of the parts' knots, s."""
-        return np.unique(np.concatenate([part.knots(step) for part in self.parts]))
-
-    def smoothed(self, width: float) -> Profile:
-        """Convolution is linear: the sum of the smoothed parts."""
-        return Sum(tuple(part.smoothed(width) for part in self.parts))
-
-
-class Stack(Profile):
-    """A vector profile made of three scalar ones; see :func:`stack`."""
-
-    parts: tuple[Profile, Profile, Profile]
-
-    def __call__(self, t: ArrayLike) -> Float[Array, "... 3"]:
-        """Vector at times `t` (s)."""
-        return jnp.stack([part(t) for part in self.parts], axis=-1)
-
-    @property
-    def breaks(self) -> Float[Array, " b"]:
-        """Times of the components' jumps, s."""
-        return jnp.sort(jnp.concatenate([part.breaks for part in self.parts]))
-
-    def knots(self, step: float) -> NDArray[np.float64]:
-        """Union of the components' knots, s."""
-        return np.unique(np.concatenate([part.knots(step) for part in self.parts]))
-
-    def smoothed(self, width: float) -> Profile:
-        """Component by component."""
-        x, y, z = (part.smoothed(width) for part in self.parts)
-        return Stack((x, y, z))

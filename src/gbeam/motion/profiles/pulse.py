@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-import jax.numpy as jnp
+from typing import Any
+
 import numpy as np
-from jaxtyping import Array, ArrayLike, Float
 from numpy.typing import NDArray
 
-from gbeam.checks import positive
+from gbeam.arrays.namespace import as_array, namespace
+from gbeam.arrays.tree import assign, record
+from gbeam.checks import finite, positive
 from gbeam.motion.profiles.convolution import Convolved
-from gbeam.motion.profiles.hann import hann
-from gbeam.motion.profiles.piecewise import finite
+from gbeam.motion.profiles.hann import TURN, hann_orders
 from gbeam.motion.profiles.profile import Profile, sampled
+from gbeam.numerics.series import Series
 
 
+@record
 class SmoothStep(Profile):
     """Slew from zero to a level: level/T (t − T/2π sin 2πt/T) for 0 < t < T, the level after.  # 2009 (43)
 
@@ -32,34 +35,40 @@ class SmoothStep(Profile):
         If a number is impossible.
     """
 
-    level: Float[Array, ""]
-    duration: Float[Array, ""]
-    start: Float[Array, ""]
+    level: Any
+    duration: Any
+    start: Any = 0.0
 
-    def __init__(self, level: float, duration: float, start: float = 0.0) -> None:
-        self.level = jnp.asarray(finite("level", level), dtype=float)
-        self.duration = jnp.asarray(positive("duration", duration, "s"), dtype=float)
-        self.start = jnp.asarray(finite("start", start), dtype=float)
+    def __post_init__(self) -> None:
+        assign(
+            self,
+            level=as_array(finite("level", self.level)),
+            duration=as_array(positive("duration", self.duration, "s")),
+            start=as_array(finite("start", self.start)),
+        )
 
-    def __call__(self, t: ArrayLike) -> Float[Array, "*t"]:
-        """Value at times `t` (s)."""
-        phase = (jnp.asarray(t, dtype=float) - self.start) / self.duration
-        return self.level * hann(1, phase - 0.5)  # 2009 (43) is a step rounded by a Hann kernel of width T
+    def series(self, t: Any, order: int) -> Series:
+        """Value and derivatives at times `t` (s)."""
+        phase = (as_array(t) - self.start) / self.duration
+        # 2009 (43) is a step rounded by a Hann kernel of width T.
+        orders = hann_orders(1, 1 + order, phase - 0.5)
+        return Series.of([self.level * h / self.duration**k for k, h in enumerate(orders)], order)
 
     @property
-    def breaks(self) -> Float[Array, " 2"]:
-        """Start and end, s: the third derivative jumps there."""
-        return self.start + self.duration * jnp.arange(2.0)
+    def breaks(self) -> Any:
+        """Start and end, s, shape (2,): the third derivative jumps there."""
+        return self.start + self.duration * np.arange(2.0)
 
     def knots(self, step: float) -> NDArray[np.float64]:
         """Times over the slew, s, no further apart than `step`."""
         return sampled(float(self.start), float(self.start + self.duration), step)
 
-    def smoothed(self, width: float) -> Profile:
+    def smoothed(self, width: Any) -> Profile:
         """By quadrature."""
         return Convolved(self, width)
 
 
+@record
 class Sine(Profile):
     """One period of a sine: amplitude sin 2πt/T for 0 <= t <= T, zero before and after.  # 2009 (44)
 
@@ -78,30 +87,36 @@ class Sine(Profile):
         If a number is impossible.
     """
 
-    amplitude: Float[Array, ""]
-    duration: Float[Array, ""]
-    start: Float[Array, ""]
+    amplitude: Any
+    duration: Any
+    start: Any = 0.0
 
-    def __init__(self, amplitude: float, duration: float, start: float = 0.0) -> None:
-        self.amplitude = jnp.asarray(finite("amplitude", amplitude), dtype=float)
-        self.duration = jnp.asarray(positive("duration", duration, "s"), dtype=float)
-        self.start = jnp.asarray(finite("start", start), dtype=float)
+    def __post_init__(self) -> None:
+        assign(
+            self,
+            amplitude=as_array(finite("amplitude", self.amplitude)),
+            duration=as_array(positive("duration", self.duration, "s")),
+            start=as_array(finite("start", self.start)),
+        )
 
-    def __call__(self, t: ArrayLike) -> Float[Array, "*t"]:
-        """Value at times `t` (s)."""
-        phase = (jnp.asarray(t, dtype=float) - self.start) / self.duration
-        wave = self.amplitude * jnp.sin(2 * jnp.pi * phase)
-        return jnp.where((phase >= 0) & (phase < 1), wave, 0.0)
+    def series(self, t: Any, order: int) -> Series:
+        """Value and derivatives at times `t` (s)."""
+        phase = (as_array(t) - self.start) / self.duration
+        xp = namespace(phase, self.amplitude)
+        size = xp.where((phase >= 0) & (phase < 1), self.amplitude, 0.0)
+        sine, cosine = xp.sin(TURN * phase), xp.cos(TURN * phase) if order else 0.0
+        waves = (sine, cosine, -sine, -cosine)
+        return Series.of([size * (TURN / self.duration) ** k * waves[k % 4] for k in range(order + 1)], order)
 
     @property
-    def breaks(self) -> Float[Array, " 2"]:
-        """Start and end, s: corners."""
-        return self.start + self.duration * jnp.arange(2.0)
+    def breaks(self) -> Any:
+        """Start and end, s, shape (2,): corners."""
+        return self.start + self.duration * np.arange(2.0)
 
     def knots(self, step: float) -> NDArray[np.float64]:
         """Times over the pulse, s, no further apart than `step`."""
         return sampled(float(self.start), float(self.start + self.duration), step)
 
-    def smoothed(self, width: float) -> Profile:
+    def smoothed(self, width: Any) -> Profile:
         """By quadrature."""
         return Convolved(self, width)

@@ -1,27 +1,25 @@
 """Which axis angles make a given load: the inverse of the three-axis centrifuge (Zhang 2020, corrected).
 
-An inverse maps a target (the load wanted at the control point, over time) to the arm's rate and the two
-gimbal angles; their rates follow by differentiation. Here are those in closed form; `methods` names all.
+An inverse maps a target (the reference load at the control point, over time) to the arm's rate and the two gimbal
+angles, as series in time, so that their rates come with them. Here are those in closed form; `registry` names all.
 """
 
 from __future__ import annotations
 
 import math
-from abc import abstractmethod
-from typing import ClassVar
+from abc import ABC, abstractmethod
+from typing import Any, ClassVar
 
-import equinox as eqx
-import jax
-import jax.numpy as jnp
-from jaxtyping import Array, Float
-
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record, static
 from gbeam.motion.profiles.profile import Profile
-from gbeam.numerics.time_derivative import with_rate
+from gbeam.numerics.series import Series, arctan2, power, sqrt, square, where
 
-Pose = tuple[Float[Array, "*t"], Float[Array, "*t"], Float[Array, "*t"]]  # ω1, θ2, θ3
+Pose = tuple[Series, Series, Series]  # ω1, θ2, θ3
 
 
-class Geometry(eqx.Module):
+@record
+class Geometry:
     """What an inverse knows of the machine.
 
     Parameters
@@ -34,13 +32,13 @@ class Geometry(eqx.Module):
         +1 or −1: which of the two mountings of the specimen in the gimbals.
     """
 
-    arm: Float[Array, ""]
-    gravity: Float[Array, ""]
-    sign: Float[Array, ""]
+    arm: Any
+    gravity: float = static()
+    sign: Any = 1.0
 
 
-class Inverse(eqx.Module):
-    """Axis motion for a target; elementwise in time and differentiable by nested `jax.jvp`.
+class Inverse(ABC):
+    """Axis motion for a target.
 
     Each says what it promises: `within`, the largest tracking error as a fraction of the load where the target is not
     held (infinite where it promises nothing), and `unless`, why it may be more and what helps.
@@ -50,70 +48,86 @@ class Inverse(eqx.Module):
     unless: ClassVar[str]
 
     @abstractmethod
-    def __call__(self, target: Profile, t: Float[Array, "*t"]) -> Pose:
-        """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s)."""
+    def pose(self, target: Profile, t: Any, order: int) -> Pose:
+        """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s), with derivatives up to `order`."""
 
 
-def speed(load: Float[Array, "... 3"], geometry: Geometry) -> Float[Array, "*t"]:
+def speed(load: Series, geometry: Geometry) -> Series:
     """Rate of axis 1 whose centripetal acceleration is the horizontal load: ω1 = sqrt(H/R), H² = f² − γ²."""
-    horizontal2 = jnp.sum(load**2, axis=-1) - geometry.gravity**2
-    return (horizontal2 / geometry.arm**2) ** 0.25
+    return power((square(load) - geometry.gravity**2) / geometry.arm**2, 0.25)
 
 
-def gimbals(
-    load: Float[Array, "... 3"], lag: Float[Array, "*t"], geometry: Geometry
-) -> tuple[Float[Array, "*t"], Float[Array, "*t"]]:
+def across_beam(load: Series, geometry: Geometry) -> Series:
+    """B2 = ±sqrt(f_y² + f_z² − γ²), the horizontal load across the beam, m/s²; zero, with no rates, where it is none.
+
+    Parameters
+    ----------
+    load : Series, shape (..., 3)
+        At the control point, base axes, m/s².
+    """
+    horizontal2 = square(load[..., 1:]) - geometry.gravity**2
+    bent = horizontal2.value > 0
+    return where(bent, geometry.sign * sqrt(where(bent, horizontal2, 1.0)), 0.0)
+
+
+def gimbals(load: Series, lag: Series | float, geometry: Geometry) -> tuple[Series, Series]:
     """Angles of axes 2 and 3 that put the load where the specimen wants it.
 
     Parameters
     ----------
-    load : array, shape (..., 3)
-        Wanted at the control point, base axes, m/s².
-    lag : array, shape (...)
+    load : Series, shape (..., 3)
+        Reference at the control point, base axes, m/s².
+    lag : Series, shape (...), or zero
         δ, rad: the angle by which the horizontal load trails the inward radius.
 
     Returns
     -------
-    tuple of two arrays, shape (...)
+    tuple of two Series, shape (...)
         θ2 = π − δ − atan2(B2, f_x) and θ3 = atan2(γ, B2) − atan2(f_z, f_y), B2 = ±sqrt(f_y² + f_z² − γ²).
 
     Notes
     -----
-    A load along the beam leaves θ3 open: it is then zero. The inner `where` keep the derivatives finite
-    there.
+    A load along the beam leaves θ3 open: it is then zero.
     """
     fx, fy, fz = load[..., 0], load[..., 1], load[..., 2]
-    horizontal2 = fy**2 + fz**2 - geometry.gravity**2
-    bent = horizontal2 > 0
-    across = geometry.sign * jnp.sqrt(jnp.where(bent, horizontal2, 1.0))
-    roll = jnp.arctan2(geometry.gravity, across) - jnp.arctan2(jnp.where(bent, fz, 0.0), jnp.where(bent, fy, across))
-    return jnp.pi - lag - jnp.arctan2(jnp.where(bent, across, 0.0), fx), roll
+    across = across_beam(load, geometry)
+    bent = across.value != 0
+    xp = namespace(across.value)
+    ahead = where(bent, across, xp.ones_like(across.value))
+    gravity = Series.of([geometry.gravity + 0.0 * across.value], across.order)
+    roll = arctan2(gravity, ahead) - arctan2(where(bent, fz, gravity.value), where(bent, fy, ahead.value))
+    return math.pi - lag - arctan2(across, fx), roll
 
 
+@record
 class QuasiStatic(Inverse):
     """The arm's tangential acceleration is ignored: an error of R dω1/dt square to the load."""
 
-    within, unless = math.inf, ""
+    within: ClassVar[float] = math.inf
+    unless: ClassVar[str] = ""
     geometry: Geometry
 
-    def __call__(self, target: Profile, t: Float[Array, "*t"]) -> Pose:
+    def pose(self, target: Profile, t: Any, order: int) -> Pose:
         """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s)."""
-        load = target(t)
-        return speed(load, self.geometry), *gimbals(load, jnp.zeros_like(t), self.geometry)
+        load = target.series(t, order)
+        return speed(load, self.geometry), *gimbals(load, 0.0, self.geometry)
 
 
+@record
 class Flat(Inverse):
     """Yaw makes up for the tangential acceleration: δ = atan((dω1/dt)/ω1²).
 
-    The horizontal load has the wanted direction at all times; its size is high by sqrt(1 + tan²δ),
+    The horizontal load has the reference's direction at all times; its size is high by sqrt(1 + tan²δ),
     about δ²/2.
     """
 
-    within, unless = math.inf, ""
+    within: ClassVar[float] = math.inf
+    unless: ClassVar[str] = ""
     geometry: Geometry
 
-    def __call__(self, target: Profile, t: Float[Array, "*t"]) -> Pose:
+    def pose(self, target: Profile, t: Any, order: int) -> Pose:
         """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s)."""
-        load, dload = with_rate(target, t)
-        rate, drate = jax.jvp(lambda f: speed(f, self.geometry), (load,), (dload,))
-        return rate, *gimbals(load, jnp.arctan(drate / rate**2), self.geometry)
+        load = target.series(t, order + 1)
+        rate = speed(load, self.geometry)
+        lag = arctan2(rate.rate(), rate * rate)
+        return rate.truncated(order), *gimbals(load.truncated(order), lag, self.geometry)

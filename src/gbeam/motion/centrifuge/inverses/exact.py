@@ -9,24 +9,24 @@ yawed ahead of the record as if the load had been rising before. A spline is lai
 
 from __future__ import annotations
 
-import equinox as eqx
-import jax.numpy as jnp
+from typing import Any, ClassVar
+
 import numpy as np
-from jaxtyping import Array, Float
 from numpy.typing import NDArray
 
+from gbeam.arrays.tree import record
 from gbeam.errors import InputError
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse, Pose, gimbals
 from gbeam.motion.centrifuge.target.reachability import sharp_turns, size_and_rates
 from gbeam.motion.centrifuge.target.target import Target
 from gbeam.motion.profiles.profile import Profile
-from gbeam.numerics.batching import in_blocks
 from gbeam.numerics.bspline import Grid, Normal, Spline
+from gbeam.numerics.series import sin_cos, sqrt, square
 
 # Of the horizontal load: refined until this is reached. The third derivative of a rounded record jumps wherever a knot
 # enters the kernel, and the collocation is of third order there; on a smooth load it is far better.
 TRACKING = 1e-7
-ACCEPTED = 1e-4  # what is still a solution, and is told
+ACCEPTED = 1e-4  # what is still a solution, with a warning
 _STEPS = (8e-3, 4e-3, 2e-3, 1e-3, 5e-4)  # s between knots
 _MOST = 60_000  # pieces
 _POINTS = np.array([0.5 - np.sqrt(3) / 6, 0.5 + np.sqrt(3) / 6])
@@ -35,21 +35,22 @@ _SMOOTH = 1e-4  # weight of the third derivative at the ends: of all solutions t
 Floats = NDArray[np.float64]
 
 
+@record
 class Exact(Inverse):
     """The lag δ as a spline, the arm's rate sqrt(A cos δ)."""
 
-    within, unless = (
-        TRACKING,
-        "the load turns faster there than the finest knots of the solution resolve; a wider smoothing helps",
+    within: ClassVar[float] = TRACKING
+    unless: ClassVar[str] = (
+        "the load turns faster there than the finest knots of the solution resolve; a wider smoothing helps"
     )
     geometry: Geometry
     lag: Spline
 
-    def __call__(self, target: Profile, t: Float[Array, "*t"]) -> Pose:
+    def pose(self, target: Profile, t: Any, order: int) -> Pose:
         """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s)."""
-        load, lag = target(t), self.lag(t)[..., 0]
-        horizontal2 = jnp.sum(load**2, axis=-1) - self.geometry.gravity**2
-        rate = jnp.sqrt(jnp.sqrt(horizontal2) / self.geometry.arm * jnp.cos(lag))
+        load, lag = target.series(t, order), self.lag.series(t, order)[..., 0]
+        horizontal = sqrt(square(load) - self.geometry.gravity**2)
+        rate = sqrt(horizontal / self.geometry.arm * sin_cos(lag)[1])
         return rate, *gimbals(load, lag, self.geometry)
 
 
@@ -79,7 +80,7 @@ def exact(target: Target, geometry: Geometry) -> Exact:
 
 def _solve(grid: Grid, target: Target, geometry: Geometry) -> tuple[Floats, Floats]:
     """Coefficients of the lag, and the tracking error at the collocation points over the horizontal load."""
-    size, rate, _ = in_blocks(_size, (target.load, geometry), grid.time)
+    size, rate, _ = size_and_rates(target.load, geometry.gravity, grid.time)
     a, growth = size / float(geometry.arm), rate / size
     value, slope = grid.weights(0), grid.weights(1)
     # The slow solution to first order, which is flat's.
@@ -121,9 +122,6 @@ def _solve(grid: Grid, target: Target, geometry: Geometry) -> tuple[Floats, Floa
     return c, error(lag, residual)
 
 
-_size = eqx.filter_jit(lambda it, t: size_and_rates(it[0], it[1].gravity, t))
-
-
 def _refusal(target: Target, geometry: Geometry, grid: Grid, errors: Floats) -> InputError:
     """Name the place and the smoothing that would do."""
     turns = sharp_turns(target, float(geometry.arm))
@@ -131,7 +129,7 @@ def _refusal(target: Target, geometry: Geometry, grid: Grid, errors: Floats) -> 
         at = grid.time[int(np.argmax(np.where(np.isfinite(errors), errors, 0.0)))]
         problem = f"is too small for the exact inverse: no smooth motion follows the load about {at:.3f} s"
         return InputError("smoothing", problem, 'give more, or inverse = "planned" or "flat"')
-    worst = max((it for it, _ in turns), key=lambda it: it.reference / it.possible)
+    worst = max((turn for turn, _ in turns), key=lambda turn: turn.reference / turn.possible)
     widths = [width for _, width in turns if width is not None]
     wider = f'give "{np.ceil(1e3 * max(widths)):.0f} ms" or more, or ' if len(widths) == len(turns) else "give "
     return InputError(

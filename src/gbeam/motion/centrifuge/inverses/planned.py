@@ -2,32 +2,29 @@
 
 The three axes are quintic splines. Their coefficients minimise
 
-    ∫ w |a_C − wanted|²/g0² + ease of the motion  dt    within every limit,
+    ∫ w |a_C − reference|²/g0² + ease of the motion  dt    within every limit,
 
 where w is small while the target is held anyway and the last term, too small to be seen in the load, picks the gentlest
 of equally good motions. Limits are kept between the knots too, by the hull of the splines. Every row acts on six
 neighbouring coefficients of the axes, so the normal equations are banded and a minute's record takes seconds. Standing
-still keeps every limit: a plan always exists, and how well it follows the load is told with it. The minimum is the one
+still keeps every limit: a plan always exists, and it comes with how well it follows the load. The minimum is the one
 near the plan without limits; where limits leave little of that, a motion of another kind may be better. A spin-up has
 its own course, which is not planned.
 """
 
 from __future__ import annotations
 
-import equinox as eqx
-import jax
-import jax.numpy as jnp
+from typing import Any, ClassVar
+
 import numpy as np
-from jaxtyping import Array, Float
 from numpy.typing import NDArray
 
-from gbeam.motion.bases.record import STANDARD_GRAVITY
+from gbeam.arrays.tree import record
+from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
 from gbeam.motion.centrifuge.inverses.closed_form import Flat, Geometry, Inverse, Pose, QuasiStatic
-from gbeam.motion.centrifuge.kinematics import Axes, forward
 from gbeam.motion.centrifuge.limits import Limits
 from gbeam.motion.centrifuge.target.target import Target
 from gbeam.motion.profiles.profile import Profile
-from gbeam.numerics.batching import in_blocks
 from gbeam.numerics.bspline import PIECE, Grid, Normal, Spline
 from gbeam.numerics.interior_point import minimise
 
@@ -42,31 +39,36 @@ _ACROSS = 3 * PIECE  # coefficients that one piece depends on
 Floats = NDArray[np.float64]
 
 
+@record
 class Planned(Inverse):
-    """ω1, θ2 and θ3 as splines, found in advance for one target."""
+    """ω1, θ2 and θ3 as splines, solved for in advance for one target."""
 
-    within, unless = 0.01, "no motion near by does better"
+    within: ClassVar[float] = 0.01
+    unless: ClassVar[str] = "no motion near by does better"
     axes: Spline
 
-    def __call__(self, target: Profile, t: Float[Array, "*t"]) -> Pose:
+    def pose(self, target: Profile, t: Any, order: int) -> Pose:
         """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s)."""
-        at = self.axes(t)
-        return at[..., 0], at[..., 1], at[..., 2]
+        axes = self.axes.series(t, order)
+        return axes[..., 0], axes[..., 1], axes[..., 2]
 
 
 def planned(target: Target, geometry: Geometry, limits: Limits) -> Planned:
     """Plan the axes, starting from those of the flat inverse."""
     first, last = (float(end) for end in target.span)
-    step = float(np.clip(2 * float(target.reach) / _PER_WIDTH, _FINEST, _COARSEST))
+    step = float(np.clip(2 * target.half_width / _PER_WIDTH, _FINEST, _COARSEST))
     grid = Grid(first, last, step, _POINTS)
-    starts = Flat(geometry), QuasiStatic(geometry)
-    poses, wanted, held = in_blocks(_start, (target, starts), grid.time)
-    weight = np.sqrt(np.where(held, HELD, 1.0))
+    starts = [inverse.pose(target.load, grid.time, 0) for inverse in (Flat(geometry), QuasiStatic(geometry))]
+    reference, not_followed = target.load(grid.time), target.not_followed(grid.time)
+    weight = np.sqrt(np.where(not_followed, HELD, 1.0))
     # Without limits first, and of several starts the best: far from what the arm can do, flat's is a poor one.
-    free = _Tracking(grid, geometry, Limits(), wanted, weight)
-    tried = [minimise(free, grid.fit(np.column_stack([rate, *np.unwrap(angles)]))) for rate, *angles in poses]
+    free = _Tracking(grid, geometry, Limits(), reference, weight)
+    tried = [
+        minimise(free, grid.fit(np.column_stack([rate.value, *(np.unwrap(angle.value) for angle in angles)])))
+        for rate, *angles in starts
+    ]
     c, _ = min(tried, key=lambda each: each[1])
-    within = _Tracking(grid, geometry, limits, wanted, weight)
+    within = _Tracking(grid, geometry, limits, reference, weight)
     if within.most(c) > 1:
         c, _ = minimise(within, c)
         # What a search that ended early still exceeds: the same motion about the same angles, smaller.
@@ -75,21 +77,15 @@ def planned(target: Target, geometry: Geometry, limits: Limits) -> Planned:
     return Planned(grid.spline(c))
 
 
-@eqx.filter_jit
-def _start(it: tuple[Target, tuple[Inverse, ...]], t: Array) -> tuple[list[Pose], Array, Array]:
-    target, starts = it
-    return [inverse(target.load, t) for inverse in starts], target.load(t), target.not_followed(t)
-
-
 class _Tracking:
-    """The cost of a motion and the shares of the limits that it uses; a :class:`gbeam.motion.interior.Problem`.
+    """The cost of a motion and the shares of the limits that it uses; a :class:`gbeam.numerics.interior_point.Problem`.
 
     The load depends on four states: the arm's rate and acceleration and the angles of the gimbals. Each is the product
     of a row and the coefficients around it, the same rows in every piece.
     """
 
-    def __init__(self, grid: Grid, geometry: Geometry, limits: Limits, wanted: Floats, weight: Floats) -> None:
-        self.grid, self.geometry, self.columns = grid, geometry, (wanted, weight)
+    def __init__(self, grid: Grid, geometry: Geometry, limits: Limits, reference: Floats, weight: Floats) -> None:
+        self.grid, self.geometry, self.reference, self.weight = grid, geometry, reference, weight
         orders = np.stack([grid.weights(order)[: _POINTS.size] for order in range(4)])
         state = np.stack([_row(orders[k], axis) for k, axis in ((0, 0), (1, 0), (0, 1), (0, 2))], axis=1)
         self.state = state.reshape(-1, _ACROSS)  # (points · states, 18)
@@ -109,7 +105,7 @@ class _Tracking:
     def cost(self, c: Floats) -> float:
         """Half the sum of squares."""
         near = self.grid.windows(c)
-        residual = in_blocks(_residuals, self.geometry, self._states(near), *self.columns)
+        residual = self._residual(self._states(near))
         return float(np.sum(residual**2) + np.sum(near @ self.ease * near)) / 2
 
     def shares(self, c: Floats) -> Floats:
@@ -126,7 +122,7 @@ class _Tracking:
         """Take the derivatives of the residuals and of the power with respect to the states."""
         self.near = self.grid.windows(c)
         state = self._states(self.near)
-        residual, slope = in_blocks(_linearised, self.geometry, state, *self.columns)
+        residual, slope = self._residual(state), self._slope(state)
         across = slope.swapaxes(1, 2)
         self.square, self.slope = across @ slope, (across @ residual[..., None])[..., 0]
         self.power = self.per_power * np.stack([state[:, 1], state[:, 0], *np.zeros((2, len(state)))], axis=1)
@@ -155,6 +151,41 @@ class _Tracking:
         of_hull = (near @ self.hull.T).ravel()
         return np.append(of_hull, np.sum(self.power * self._states(near), axis=1)) if self.per_power else of_hull
 
+    def _residual(self, state: Floats) -> Floats:
+        """Weighted tracking error, (times, 3), in g0."""
+        radial, tangential, sin2, cos2, sin3, cos3 = self._parts(state)
+        across = tangential * cos2 - radial * sin2
+        load = np.stack(
+            [
+                radial * cos2 + tangential * sin2,
+                across * cos3 + self.geometry.gravity * sin3,
+                self.geometry.gravity * cos3 - across * sin3,
+            ],
+            axis=-1,
+        )
+        return (self.weight / STANDARD_GRAVITY)[:, None] * (load - self.reference)
+
+    def _slope(self, state: Floats) -> Floats:
+        """Its derivatives with respect to the states, (times, 3, 4): of the load of `control_point_load`."""
+        arm, gravity = float(self.geometry.arm), self.geometry.gravity
+        radial, tangential, sin2, cos2, sin3, cos3 = self._parts(state)
+        along, across = radial * cos2 + tangential * sin2, tangential * cos2 - radial * sin2
+        none, by_rate = np.zeros_like(along), -2 * arm * state[:, 0]
+        # By ω1, dω1/dt and θ2 of what is along the beam and across it; θ3 turns what is across it.
+        d_along = np.stack([by_rate * cos2, arm * sin2, across, none])
+        d_across = np.stack([-by_rate * sin2, arm * cos2, -along, none])
+        turned = across * sin3 - gravity * cos3, across * cos3 + gravity * sin3
+        slope = np.stack([d_along, d_across * cos3, -d_across * sin3])
+        slope[1, 3], slope[2, 3] = -turned[0], -turned[1]
+        return (self.weight / STANDARD_GRAVITY)[:, None, None] * slope.transpose(2, 0, 1)
+
+    def _parts(self, state: Floats) -> tuple[Floats, ...]:
+        """Radial and tangential acceleration of C, sines and cosines of θ2 and θ3."""
+        arm, (rate1, acceleration1, angle2, angle3) = float(self.geometry.arm), state.T
+        return (
+            -arm * rate1**2, arm * acceleration1, np.sin(angle2), np.cos(angle2), np.sin(angle3), np.cos(angle3),
+        )  # fmt: skip
+
     def _states(self, near: Floats) -> Floats:
         """States at the points, (times, 4)."""
         return np.asarray((near @ self.state.T).reshape(-1, 4))
@@ -165,14 +196,3 @@ def _row(weights: Floats, axis: int) -> Floats:
     rows = np.zeros((len(weights), PIECE, 3))
     rows[:, :, axis] = weights
     return rows.reshape(-1, _ACROSS)
-
-
-def _one(geometry: Geometry, state: Float[Array, " 4"], wanted: Array, weight: Array) -> Float[Array, " 3"]:
-    (rate1, acceleration1, angle2, angle3), none = state, jnp.zeros(())
-    axes = Axes(rate1, acceleration1, angle2, none, none, angle3, none, none)
-    return weight * (forward(axes, geometry.arm, geometry.gravity).a_WO_B - wanted) / STANDARD_GRAVITY
-
-
-_each = jax.vmap(_one, (None, 0, 0, 0))
-_residuals = eqx.filter_jit(_each)
-_linearised = eqx.filter_jit(lambda *it: (_each(*it), jax.vmap(jax.jacfwd(_one, 1), (None, 0, 0, 0))(*it)))

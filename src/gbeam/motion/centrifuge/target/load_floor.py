@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-import jax.numpy as jnp
+from typing import Any
+
 import numpy as np
-from jaxtyping import Array, ArrayLike, Float
 from numpy.typing import NDArray
 
+from gbeam.arrays.namespace import as_array, is_traced
+from gbeam.arrays.tree import assign, record
 from gbeam.motion.profiles.convolution import Convolved
 from gbeam.motion.profiles.hann import soft_floor
 from gbeam.motion.profiles.profile import Profile
+from gbeam.numerics.series import Series, sqrt, square, stack, where
 
 
-class Lifted(Profile):
+@record
+class LoadFloor(Profile):
     """A load kept above a floor across the beam, so that the gimbals stay clear of their singular attitude.
 
     Rounding and bridging can cut below what each knot keeps. Where the load across the beam is above
@@ -22,24 +26,30 @@ class Lifted(Profile):
     ----------
     load : Profile
         Vector, m/s².
-    floor, band : array
-        m/s²; see :func:`gbeam.motion.hann.soft_floor`.
+    floor, band : float
+        m/s²; see :func:`gbeam.motion.profiles.hann.soft_floor`.
     """
 
     load: Profile
-    floor: Float[Array, ""]
-    band: Float[Array, ""]
+    floor: Any
+    band: Any
 
-    def __call__(self, t: ArrayLike) -> Float[Array, "... 3"]:
+    def __post_init__(self) -> None:
+        assign(self, floor=as_array(self.floor), band=as_array(self.band))
+
+    def series(self, t: Any, order: int) -> Series:
         """Load at times `t` (s), m/s²."""
-        load = self.load(t)
-        size2 = jnp.sum(load[..., 1:] ** 2, axis=-1, keepdims=True)
-        size = jnp.sqrt(jnp.where(size2 > 0, size2, 1.0))  # sqrt has no derivative at zero
+        load = self.load.series(t, order)
+        size2 = square(load[..., 1:])
+        free = size2.value > (self.floor + self.band / 2) ** 2
+        if not is_traced(free) and free.all():
+            return load
+        size = sqrt(where(size2.value > 0, size2, 1.0))  # the root has no derivative at zero
         lift = soft_floor(size, self.floor, self.band) / size
-        return load * jnp.concatenate([jnp.ones_like(lift), lift, lift], axis=-1)
+        return load * stack([0.0 * lift + 1.0, lift, lift])
 
     @property
-    def breaks(self) -> Float[Array, " b"]:
+    def breaks(self) -> Any:
         """Those of the load, s."""
         return self.load.breaks
 
@@ -47,6 +57,6 @@ class Lifted(Profile):
         """Those of the load, s."""
         return self.load.knots(step)
 
-    def smoothed(self, width: float) -> Profile:
+    def smoothed(self, width: Any) -> Profile:
         """By quadrature."""
         return Convolved(self, width)

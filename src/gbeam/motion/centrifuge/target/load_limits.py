@@ -1,6 +1,6 @@
 """Where a centrifuge cannot follow: loads below idle, and loads across the beam that gravity alone exceeds.
 
-All on knots (numpy, when a target is built); vectors in base axes, m/s².
+All on knots, when a target is built; vectors in base axes, m/s².
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.errors import InputError
-from gbeam.motion.bases.record import STANDARD_GRAVITY
+from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
 from gbeam.motion.profiles.hann import soft_floor
 
 Floats = NDArray[np.float64]
@@ -18,7 +18,7 @@ Flags = NDArray[np.bool_]
 IDLE_BAND = 0.1  # of idle: how softly the hold sets in
 UNTOUCHED = 1 + IDLE_BAND / 2  # times idle: a larger load is not raised
 UNDIRECTED = 0.05  # of idle: a smaller load has no direction worth following
-REACH = 1.05 * STANDARD_GRAVITY  # least load across the beam to be asked of the gimbals where gravity acts
+MIN_TRANSVERSE_LOAD = 1.05 * STANDARD_GRAVITY  # least load across the beam that the gimbals make where gravity acts
 OPPOSED = 0.1  # two unit vectors whose chord passes this near to zero count as opposite
 
 
@@ -65,7 +65,7 @@ def keep_in_reach(times: Floats, load: Floats) -> tuple[Floats, Flags]:
 
     The beam stays horizontal, so that gravity always acts across it: no attitude gives less than one g
     there, and near one g the gimbals would have to turn infinitely fast. Such knots get the straight line
-    between the reachable ones either side, pushed out to `REACH` where it cuts below; the component along
+    between the reachable ones either side, pushed out to `MIN_TRANSVERSE_LOAD` where it cuts below; the component along
     the beam is kept.
 
     Returns
@@ -78,29 +78,29 @@ def keep_in_reach(times: Floats, load: Floats) -> tuple[Floats, Flags]:
         If no knot can be reached, or the load across the beam reverses through zero.
     """
     across = load[:, 1:]
-    reachable = np.linalg.norm(across, axis=1) >= REACH
+    reachable = np.linalg.norm(across, axis=1) >= MIN_TRANSVERSE_LOAD
     if not reachable.any():
         raise InputError(
             "tracks",
-            f"never loads the beam across by {REACH / STANDARD_GRAVITY:g} g, and gravity alone is 1 g",
+            f"never loads the beam across by {MIN_TRANSVERSE_LOAD / STANDARD_GRAVITY:g} g, and gravity alone is 1 g",
             'set idle = "1.4 g" or more, or gravity = false',
         )
     bridged = _between(times, across, reachable)
     refuse_reversal(times, bridged, OPPOSED * STANDARD_GRAVITY)
     size = np.linalg.norm(bridged, axis=1)
-    pushed = bridged * (np.maximum(size, REACH) / size)[:, None]
+    pushed = bridged * (np.maximum(size, MIN_TRANSVERSE_LOAD) / size)[:, None]
     return np.where(reachable[:, None], load, np.column_stack([load[:, 0], pushed])), ~reachable
 
 
 def refuse_far(times: Floats, load: Floats, far: Flags) -> None:
-    """Raise InputError: the load leaves the gimbals' reach, and nobody asked to carry on with a held one."""
+    """Raise InputError: the load leaves the gimbals' reach, and a held one was not allowed."""
     across = np.linalg.norm(load[:, 1:], axis=1) / STANDARD_GRAVITY
     worst = int(np.argmin(across))
     wrong = np.flatnonzero(far)
     raise InputError(
         "tracks",
         f"loads the beam across by {across[worst]:.3g} g only at {times[worst]:.3f} s; where gravity acts the gimbals "
-        f"reach {REACH / STANDARD_GRAVITY:g} g or more (out of reach from {times[wrong[0]]:.3f} s, "
+        f"reach {MIN_TRANSVERSE_LOAD / STANDARD_GRAVITY:g} g or more (out of reach from {times[wrong[0]]:.3f} s, "
         f"last at {times[wrong[-1]]:.3f} s)",
         'set idle = "1.4 g", or clip = true to carry on with a held target there, '
         f"or add {missing_across(across[worst] * STANDARD_GRAVITY)} across the beam",
@@ -109,7 +109,7 @@ def refuse_far(times: Floats, load: Floats, far: Flags) -> None:
 
 def missing_across(load: float) -> str:
     """What a load across the beam, m/s², lacks to be in reach; rounded up, so that adding it does."""
-    return f"{np.ceil(100 * (REACH - load) / STANDARD_GRAVITY - 1e-6) / 100:g} g"
+    return f"{np.ceil(100 * (MIN_TRANSVERSE_LOAD - load) / STANDARD_GRAVITY - 1e-6) / 100:g} g"
 
 
 def refuse_reversal(times: Floats, points: Floats, least: float) -> None:

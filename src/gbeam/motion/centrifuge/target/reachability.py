@@ -3,32 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
-import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
 from numpy.typing import NDArray
 
-from gbeam.motion.bases.record import STANDARD_GRAVITY
-from gbeam.motion.centrifuge.target.load_limits import REACH, UNTOUCHED, missing_across
-from gbeam.motion.centrifuge.target.required_smoothing import widths_that_do
-from gbeam.motion.centrifuge.target.target import LEAST_IDLE, Target
+from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
+from gbeam.motion.centrifuge.target.build import LEAST_IDLE
+from gbeam.motion.centrifuge.target.load_limits import MIN_TRANSVERSE_LOAD, UNTOUCHED, missing_across
+from gbeam.motion.centrifuge.target.required_smoothing import required_smoothing
+from gbeam.motion.centrifuge.target.target import Target
 from gbeam.motion.profiles.profile import Profile, sampled
-from gbeam.numerics.batching import in_blocks
-from gbeam.numerics.time_derivative import with_rate
+from gbeam.numerics.intervals import joined, true_runs
+from gbeam.numerics.series import sqrt, square, where
 from gbeam.results.response import Shortfall
 
+TOO_SHARP = "too sharp for the arm"
 _GRID = 0.002  # s
-_JOINED = 0.1  # s: two stretches of one kind nearer than this are told as one
+_JOINED = 0.1  # s: two stretches of one kind nearer than this are reported as one
 _ROUNDING = 1e-6
 
 Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 def shortfalls(target: Target, arm: float) -> tuple[Shortfall, ...]:
-    """Find where the flight's load is below idle, across the beam below gravity, or turns too sharply.
+    """List where the flight's load is below idle, across the beam below gravity, or turns too sharply.
 
     Parameters
     ----------
@@ -37,18 +36,21 @@ def shortfalls(target: Target, arm: float) -> tuple[Shortfall, ...]:
         R, m.
     """
     time = _times(target)
-    flight, _, _ = in_blocks(_seen, target, time)
+    flight = np.asarray(target.flight(time))
     idle, gravity = float(target.idle), float(target.gravity)
-    found = [it for it, _ in sharp_turns(target, arm)]
+    stretches = [shortfall for shortfall, _ in sharp_turns(target, arm)]
     total, across = np.linalg.norm(flight, axis=-1), np.linalg.norm(flight[:, 1:], axis=-1)
-    found += _below(time, total, idle, "below idle", lambda run: _idle_remedy(total[run], across[run], gravity))
+    stretches += _below(time, total, idle, "below idle", lambda run: _idle_remedy(total[run], across[run], gravity))
     if gravity:
-        found += _below(time, across, REACH, "across below gravity", lambda run: _across_remedy(np.min(across[run])))
-    return tuple(sorted(found, key=lambda it: it.start))
+        least = MIN_TRANSVERSE_LOAD
+        stretches += _below(
+            time, across, least, "across below gravity", lambda run: _across_remedy(np.min(across[run]))
+        )
+    return tuple(sorted(stretches, key=lambda stretch: stretch.start))
 
 
 def sharp_turns(target: Target, arm: float) -> list[tuple[Shortfall, float | None]]:
-    """Find where the load turns too sharply, and the smoothing, s, that would do; None where none does.
+    """List where the load turns too sharply, with the smoothing, s, that is enough; None where none is.
 
     theory.md A1: at a maximum, and at the corner before a plateau, the horizontal load a can be followed without a jump
     of the yaw rate only where −ä <= a²/R. A corner of slope change j rounded over T has −ä = 2j/T, and a straight
@@ -56,13 +58,16 @@ def sharp_turns(target: Target, arm: float) -> list[tuple[Shortfall, float | Non
     somewhat more can be followed, and axis 2 pays: 2.3 times the acceleration for 1.3 times the turn.
     """
     time = _times(target)
-    flight, (size, _, turn), held = in_blocks(_seen, target, time)
-    allowed, total = size**2 / arm, np.linalg.norm(flight, axis=-1)
-    runs = _runs((-turn > allowed * (1 + _ROUNDING)) & ~held, time)
+    size, _, turn = size_and_rates(target.load, target.gravity, time)
+    not_followed = np.asarray(target.not_followed(time))
+    allowed = size**2 / arm
+    runs = joined(true_runs((-turn > allowed * (1 + _ROUNDING)) & ~not_followed), time, _JOINED)
     if not runs:
         return []
-    widths = widths_that_do(target.corners, float(target.gravity), arm, time, held, runs, 2 * float(target.reach))
-    remedies = [_sharp_remedy(it, float(np.max(total[run]))) for it, run in zip(widths, runs, strict=True)]
+    gravity, width = float(target.gravity), 2 * float(target.half_width)
+    widths = required_smoothing(target.corners, gravity, arm, time, not_followed, runs, width)
+    total = np.linalg.norm(target.flight(time), axis=-1)
+    remedies = [_sharp_remedy(wide, float(np.max(total[run]))) for wide, run in zip(widths, runs, strict=True)]
     return list(zip(_too_sharp(time, -turn, allowed, runs, remedies), widths, strict=True))
 
 
@@ -70,77 +75,54 @@ def _times(target: Target) -> Floats:
     return sampled(float(target.ready), float(target.span[1]), _GRID)
 
 
-@eqx.filter_jit
-def _seen(target: Target, time: Array) -> tuple[Array, tuple[Array, Array, Array], Array]:
-    """The flight's load; size of the horizontal target with two rates; whether it is held."""
-    return target.flight(time), size_and_rates(target.load, target.gravity, time), target.not_followed(time)
-
-
-def size_and_rates(
-    load: Profile, gravity: Float[Array, ""], time: Float[Array, "*t"]
-) -> tuple[Float[Array, "*t"], Float[Array, "*t"], Float[Array, "*t"]]:
-    """Horizontal load H = sqrt(f² − γ²), m/s², with its first and second time derivatives."""
-
-    def size(t: Array) -> Array:
-        return jnp.sqrt(jnp.maximum(jnp.sum(load(t) ** 2, axis=-1) - gravity**2, 1e-12))
-
-    (value, rate), (_, second) = with_rate(lambda t: with_rate(size, t), time)
+def size_and_rates(load: Profile, gravity: float, time: Any) -> tuple[Any, Any, Any]:
+    """Horizontal load H = sqrt(f² − γ²), m/s², with its first and second time derivatives, each of the shape of time."""
+    horizontal2 = square(load.series(time, 2)) - gravity**2
+    size = sqrt(where(horizontal2.value > 1e-12, horizontal2, 1e-12))
+    value, rate, second = size.derivatives()
     return value, rate, second
 
 
 def _idle_remedy(total: Floats, across: Floats, gravity: float) -> str:
-    """What would let loads below idle, m/s², be followed."""
+    """What makes loads below idle, m/s², trackable."""
     least = np.floor(100 * np.min(total) / UNTOUCHED / STANDARD_GRAVITY) / 100
     if least >= (LEAST_IDLE if gravity else 0.02):
         return f'idle = "{least:.2f} g" or less would follow it'
     if not gravity:
         return "no machine follows a load so near to zero: it is held"
-    if np.min(across) >= REACH:
+    if np.min(across) >= MIN_TRANSVERSE_LOAD:
         return "without idle it would be followed"
-    return f"no machine follows a load below {REACH / STANDARD_GRAVITY:g} g across the beam: it is held"
+    return f"no machine follows a load below {MIN_TRANSVERSE_LOAD / STANDARD_GRAVITY:g} g across the beam: it is held"
 
 
 def _sharp_remedy(width: float | None, load: float) -> str:
-    """What would let a turn be followed, or held: the smoothing, s, that does, if any; the largest load then, m/s²."""
+    """What makes a turn trackable, or holds it: the smoothing, s, that is enough, if any; the largest load then, m/s²."""
     if width is not None:
-        return f'smoothing = "{np.ceil(1e3 * width):.0f} ms" or more would let it'
-    return (
-        f'no smoothing lets it; idle = "{np.ceil(100 * load / UNTOUCHED / STANDARD_GRAVITY) / 100:.2f} g" would hold it'
-    )
+        return f'smoothing = "{np.ceil(1e3 * width):.0f} ms" or more is trackable'
+    idle = np.ceil(100 * load / UNTOUCHED / STANDARD_GRAVITY) / 100
+    return f'no smoothing makes it trackable; idle = "{idle:.2f} g" would hold it'
 
 
 def _across_remedy(least: float) -> str:
-    reach = REACH / STANDARD_GRAVITY
-    return f"add {missing_across(least)} across the beam, or track a part of the flight with {reach:g} g there"
-
-
-def _runs(flags: Flags, time: Floats) -> list[slice]:
-    """Stretches of true flags, those nearer than _JOINED as one."""
-    edges = np.diff(flags.astype(int), prepend=0, append=0)
-    runs: list[slice] = []
-    for start, stop in zip(np.flatnonzero(edges > 0), np.flatnonzero(edges < 0), strict=True):
-        if runs and time[start] - time[runs[-1].stop - 1] < _JOINED:
-            runs[-1] = slice(runs[-1].start, int(stop))
-        else:
-            runs.append(slice(int(start), int(stop)))
-    return runs
+    reachable = MIN_TRANSVERSE_LOAD / STANDARD_GRAVITY
+    return f"add {missing_across(least)} across the beam, or track a part of the flight with {reachable:g} g there"
 
 
 def _below(time: Floats, load: Floats, least: float, reason: str, remedy: Callable[[slice], str]) -> list[Shortfall]:
-    found = []
-    for run in _runs(load < least * (1 - _ROUNDING), time):
+    stretches = []
+    for run in joined(true_runs(load < least * (1 - _ROUNDING)), time, _JOINED):
         worst = run.start + int(np.argmin(load[run]))
-        wanted, possible = load[worst] / STANDARD_GRAVITY, least / STANDARD_GRAVITY
+        reference, possible = load[worst] / STANDARD_GRAVITY, least / STANDARD_GRAVITY
         start, end, when = float(time[run.start]), float(time[run.stop - 1]), float(time[worst])
-        found.append(Shortfall(start, end, reason, when, float(wanted), float(possible), "g", remedy(run)))
-    return found
+        stretches.append(Shortfall(start, end, reason, when, float(reference), float(possible), "g", remedy(run)))
+    return stretches
 
 
 def _too_sharp(time: Floats, turn: Floats, allowed: Floats, runs: list[slice], remedies: list[str]) -> list[Shortfall]:
-    found = []
+    stretches = []
     for run, remedy in zip(runs, remedies, strict=True):
         worst = run.start + int(np.argmax(turn[run] / allowed[run]))
         start, end, when = float(time[run.start]), float(time[run.stop - 1]), float(time[worst])
-        wanted, possible = float(turn[worst]), float(allowed[worst])
-        found.append(Shortfall(start, end, "turns sharply", when, wanted, possible, "m/s^4", remedy))
-    return found
+        reference, possible = float(turn[worst]), float(allowed[worst])
+        stretches.append(Shortfall(start, end, TOO_SHARP, when, reference, possible, "m/s^4", remedy))
+    return stretches

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import equinox as eqx
 import numpy as np
-from jaxtyping import Array, Float
 from numpy.typing import NDArray
 
 from gbeam.motion.profiles.profile import Profile
-from gbeam.numerics.batching import in_blocks
 
 _WIDEST, _LADDER = 3.0, 1.05  # s; ratio of two widths tried one after the other
 _LEAST = 0.01  # s: the first width tried where there is no smoothing
@@ -21,8 +18,8 @@ Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
-def widths_that_do(
-    corners: Profile, gravity: float, arm: float, time: Floats, held: Flags, runs: Sequence[slice], width: float
+def required_smoothing(
+    corners: Profile, gravity: float, arm: float, time: Floats, not_followed: Flags, runs: Sequence[slice], width: float
 ) -> list[float | None]:
     """For each stretch of times, the smallest smoothing with which nothing in it turns too sharply for the arm.
 
@@ -35,7 +32,7 @@ def widths_that_do(
         The load before its corners are rounded, m/s².
     gravity, arm : float
         γ, m/s², and R, m.
-    time, held : arrays, shape (t,)
+    time, not_followed : arrays, shape (t,)
         Even times, s, and whether the target is held at them.
     runs : sequence of slice
         Stretches of `time`.
@@ -49,28 +46,24 @@ def widths_that_do(
     """
     step = min(float(time[1] - time[0]), max(width, _LEAST) / _PER_WIDTH)
     times = np.arange(time[0] - _WIDEST / 2, time[-1] + _WIDEST / 2, step)
-    spectrum = np.fft.rfft(in_blocks(_values, corners, times), axis=0)
-    held_before = np.append(0, np.cumsum(np.interp(times, time, held.astype(float)) > 0))
+    spectrum = np.fft.rfft(corners(times), axis=0)
+    held_until = np.append(0, np.cumsum(np.interp(times, time, not_followed.astype(float)) > 0))
     ends = [(float(time[run.start]), float(time[run.stop - 1])) for run in runs]
-    found: list[float | None] = [None] * len(runs)
+    widths: list[float | None] = [None] * len(runs)
     wide = max(width, _LEAST / _LADDER) * _LADDER
     index = np.arange(times.size)
     offset = np.minimum(index, times.size - index) * step
-    while None in found and wide <= _WIDEST:
+    while None in widths and wide <= _WIDEST:
         kernel = np.where(offset < wide / 2, 1 + np.cos(2 * np.pi * offset / wide), 0.0)
         load = np.fft.irfft(spectrum * np.fft.rfft(kernel / kernel.sum())[:, None], times.size, axis=0)
         size = np.sqrt(np.maximum(np.sum(load**2, axis=1) - gravity**2, 1e-12))
         turn = -np.gradient(np.gradient(size, step), step)
         more = int((wide - width) / 2 / step)  # a held knot acts as far as half the kernel reaches
-        is_held = held_before[np.minimum(index + more + 1, index[-1])] > held_before[np.maximum(index - more, 0)]
+        is_held = held_until[np.minimum(index + more + 1, index[-1])] > held_until[np.maximum(index - more, 0)]
         sharp = times[(turn > size**2 / arm * (1 + _ROUNDING)) & ~is_held]
         for i, (start, end) in enumerate(ends):
-            if found[i] is None and not np.any((sharp > start - wide / 2) & (sharp < end + wide / 2)):
-                found[i] = wide
+            if widths[i] is None and not np.any((sharp > start - wide / 2) & (sharp < end + wide / 2)):
+                widths[i] = wide
         wide *= _LADDER
-    return found
+    return widths
 
-
-@eqx.filter_jit
-def _values(profile: Profile, time: Float[Array, "*t"]) -> Float[Array, "... 3"]:
-    return profile(time)

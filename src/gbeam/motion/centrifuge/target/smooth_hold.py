@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import jax.numpy as jnp
+from itertools import pairwise
+
 import numpy as np
-import scipy.sparse
-import scipy.sparse.linalg
 from numpy.typing import NDArray
 
 from gbeam.motion.centrifuge.target.load_limits import OPPOSED, nearest_to_zero
 from gbeam.motion.profiles.hann import soft_floor
+from gbeam.numerics.intervals import true_runs
 
 BAND = 0.1  # of a floor: how softly it sets in
 
@@ -19,22 +19,20 @@ Flags = NDArray[np.bool_]
 
 def without_gaps(times: Floats, held: Flags, shortest: float) -> Flags:
     """Join held runs of knots that less than `shortest` seconds part: so short a visit to the flight's load is none."""
-    joined = held.copy()
-    edges = np.diff(held.astype(int))
-    ends, starts = np.flatnonzero(edges < 0) + 1, np.flatnonzero(edges > 0) + 1
-    for end in ends:
-        following = starts[starts > end]
-        if following.size and times[following[0]] - times[end] < shortest:
-            joined[end : following[0]] = True
-    return joined
+    filled = held.copy()
+    runs = true_runs(held)
+    for run, following in pairwise(runs):
+        if times[following.start] - times[run.stop] < shortest:
+            filled[run.stop : following.start] = True
+    return filled
 
 
-def settle(times: Floats, load: Floats, held: Flags, period: float, idle: float, reach: float) -> Floats:
+def smooth_hold(times: Floats, load: Floats, held: Flags, period: float, idle: float, floor: float) -> Floats:
     """Replace held knots by a path whose direction and size change no faster than the arm can follow.
 
     Direction and size z each minimise ∫ |z − load's|² + (P/2π)⁶ |z'''|² dt with the knots that are not held fixed:
     changes that take less than the period P are left out, and the path leaves and meets the flight's load without a
-    corner. The size stays above `idle`, and the load across the beam above `reach`.
+    corner. The size stays above `idle`, and the load across the beam above `floor`.
 
     Parameters
     ----------
@@ -45,7 +43,7 @@ def settle(times: Floats, load: Floats, held: Flags, period: float, idle: float,
     held : array of bool, shape (k,)
     period : float
         P, s.
-    idle, reach : float
+    idle, floor : float
         m/s².
     """
     if held.all() or times.size < 5:
@@ -53,25 +51,25 @@ def settle(times: Floats, load: Floats, held: Flags, period: float, idle: float,
     size = np.linalg.norm(load, axis=1)
     path = _smooth(times, np.column_stack([load / size[:, None], size]), held, period)
     direction = path[:, :3] / np.linalg.norm(path[:, :3], axis=1)[:, None]
-    gentle = direction * np.asarray(soft_floor(jnp.asarray(path[:, 3]), idle, BAND * idle))[:, None]
-    if reach > 0:
+    gentle = direction * soft_floor(path[:, 3], idle, BAND * idle)[:, None]
+    if floor > 0:
         across = np.linalg.norm(gentle[:, 1:], axis=1)
-        gentle[:, 1:] *= (np.asarray(soft_floor(jnp.asarray(across), reach, BAND * reach)) / np.maximum(across, 1e-9))[
-            :, None
-        ]
-    settled = np.where(held[:, None], gentle, load)
+        gentle[:, 1:] *= (soft_floor(across, floor, BAND * floor) / np.maximum(across, 1e-9))[:, None]
+    smooth = np.where(held[:, None], gentle, load)
     # Between steep slopes so smooth a path may overshoot through zero, where the load itself does not go.
-    part, least = (slice(1, 3), 2 * OPPOSED * reach) if reach > 0 else (slice(0, 3), 2 * OPPOSED * idle)
-    edges = np.diff(held.astype(int), prepend=0, append=0)
-    for start, stop in zip(np.flatnonzero(edges > 0), np.flatnonzero(edges < 0), strict=True):
-        around = slice(max(start - 1, 0), stop + 1)
-        if nearest_to_zero(times[around], settled[around, part])[1] < least:
-            settled[start:stop] = load[start:stop]
-    return settled
+    part, least = (slice(1, 3), 2 * OPPOSED * floor) if floor > 0 else (slice(0, 3), 2 * OPPOSED * idle)
+    for run in true_runs(held):
+        around = slice(max(run.start - 1, 0), run.stop + 1)
+        if nearest_to_zero(times[around], smooth[around, part])[1] < least:
+            smooth[run] = load[run]
+    return smooth
 
 
 def _smooth(times: Floats, values: Floats, free: Flags, period: float) -> Floats:
     """Minimise the penalised distance over the free knots, columns at once."""
+    import scipy.sparse  # only a load that is held needs it
+    import scipy.sparse.linalg
+
     # Third divided differences on four knots each: 6 f[t0, t1, t2, t3] is the third derivative.
     rows = times.size - 3
     node = np.stack([times[i : rows + i] for i in range(4)], axis=1)

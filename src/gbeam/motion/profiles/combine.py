@@ -1,0 +1,138 @@
+"""Profiles of profiles: sums, vectors made of components, and numbers that stand for constants."""
+
+from __future__ import annotations
+
+from functools import reduce
+from operator import add
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record
+from gbeam.errors import InputError
+from gbeam.motion.profiles.piecewise import constant
+from gbeam.motion.profiles.profile import Profile
+from gbeam.numerics.series import Series, stack
+
+
+@record
+class Sum(Profile):
+    """Sum of profiles of the same unit.
+
+    Parameters
+    ----------
+    parts : tuple of Profile
+        One or more, all scalar or all vectors.
+
+    Raises
+    ------
+    InputError
+        If there is no part.
+    """
+
+    parts: tuple[Profile, ...]
+
+    def __post_init__(self) -> None:
+        if not self.parts:
+            raise InputError("parts", "is empty", "list one profile or more")
+
+    def series(self, t: Any, order: int) -> Series:
+        """Sum of the parts' at times `t` (s)."""
+        return reduce(add, (part.series(t, order) for part in self.parts))
+
+    @property
+    def breaks(self) -> Any:
+        """Times of the parts' jumps, s."""
+        return merged_breaks(*self.parts)
+
+    def knots(self, step: float) -> NDArray[np.float64]:
+        """Union of the parts' knots, s."""
+        return np.unique(np.concatenate([part.knots(step) for part in self.parts]))
+
+    def smoothed(self, width: Any) -> Profile:
+        """Convolution is linear: the sum of the smoothed parts."""
+        return Sum(tuple(part.smoothed(width) for part in self.parts))
+
+
+@record
+class Vector(Profile):
+    """A vector profile made of three scalar ones; see :func:`vector`."""
+
+    parts: tuple[Profile, Profile, Profile]
+
+    def series(self, t: Any, order: int) -> Series:
+        """Vector at times `t` (s)."""
+        return stack([part.series(t, order) for part in self.parts])
+
+    @property
+    def breaks(self) -> Any:
+        """Times of the components' jumps, s."""
+        return merged_breaks(*self.parts)
+
+    def knots(self, step: float) -> NDArray[np.float64]:
+        """Union of the components' knots, s."""
+        return np.unique(np.concatenate([part.knots(step) for part in self.parts]))
+
+    def smoothed(self, width: Any) -> Profile:
+        """Component by component."""
+        x, y, z = (part.smoothed(width) for part in self.parts)
+        return Vector((x, y, z))
+
+
+def vector(x: Any | None = None, y: Any | None = None, z: Any | None = None) -> Vector:
+    """Return the vector profile of three components; one left out is zero.
+
+    Parameters
+    ----------
+    x, y, z : Profile or float, optional
+        Scalars in base axes, of one unit.
+
+    Raises
+    ------
+    InputError
+        If a component is no scalar.
+    """
+    parts = [as_profile(name, 0.0 if given is None else given) for name, given in (("x", x), ("y", y), ("z", z))]
+    return Vector((parts[0], parts[1], parts[2]))
+
+
+def as_profile(where: str, given: Any, components: int = 1) -> Profile:
+    """The profile itself, or the constant one of a number or of three.
+
+    Parameters
+    ----------
+    where : str
+        Name of the argument.
+    given : Profile, float or array_like
+    components : int
+        1 for a scalar, 3 for a vector.
+
+    Raises
+    ------
+    InputError
+        If it is neither, or has the other shape.
+    """
+    if isinstance(given, Profile):
+        profile = given
+    else:
+        try:
+            profile = constant(given)
+        except InputError as error:
+            raise InputError(where, error.problem, error.fix) from None
+        except (TypeError, ValueError):
+            raise InputError(where, f"is {given!r}", "give a profile or a number") from None
+    shape = np.shape(profile(0.0))
+    if shape != (() if components == 1 else (components,)):
+        what = "a scalar" if shape == () else "a vector" if shape == (3,) else f"an array of shape {shape}"
+        fix = "give a scalar; a vector goes by name, acceleration = ..." if components == 1 else "give x, y and z"
+        raise InputError(where, f"is {what}", fix)
+    return profile
+
+
+def merged_breaks(*profiles: Profile) -> Any:
+    """Times of all the profiles' jumps, ascending, s."""
+    breaks = [profile.breaks for profile in profiles]
+    xp = namespace(*breaks)
+    return xp.sort(xp.concatenate(breaks))

@@ -1,0 +1,173 @@
+"""Truncated Taylor series in time: a value with its time derivatives, carried through arithmetic.
+
+A series holds f⁽ᵏ⁾(t)/k! for k = 0 ... order at every time of an array; sums, products, quotients, roots and angles of
+series are those of the functions, exact to rounding (Griewank and Walther, Evaluating Derivatives, 2008, chapter 13).
+NumPy or JAX arrays; two series of different orders give one of the lower.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import factorial
+from typing import Any, ClassVar
+
+from gbeam.arrays.namespace import as_array, namespace
+from gbeam.arrays.tree import record
+
+
+@record
+class Series:
+    """Coefficients f, f', f''/2, ... : arrays of one shape, that of time with trailing axes for vectors."""
+
+    __array_ufunc__: ClassVar[None] = None  # NumPy's arrays leave arithmetic with a series to it
+    coefficients: tuple[Any, ...]
+
+    @classmethod
+    def variable(cls, t: Any, order: int) -> Series:
+        """Time itself at times `t` (s)."""
+        now = as_array(t)
+        xp = namespace(now)
+        return cls.of([now, xp.ones_like(now)], order)
+
+    @classmethod
+    def of(cls, derivatives: Sequence[Any], order: int) -> Series:
+        """From the value and the derivatives; those left out are zero."""
+        xp = namespace(*derivatives)
+        given = [value / factorial(k) if k > 1 else value for k, value in enumerate(derivatives[: order + 1])]
+        return cls((*given, *[xp.zeros_like(derivatives[0])] * (order + 1 - len(given))))
+
+    @property
+    def order(self) -> int:
+        """Of the highest derivative."""
+        return len(self.coefficients) - 1
+
+    @property
+    def value(self) -> Any:
+        """The function itself."""
+        return self.coefficients[0]
+
+    def derivatives(self) -> tuple[Any, ...]:
+        """The function and its derivatives, up to the order."""
+        return tuple(c * factorial(k) if k > 1 else c for k, c in enumerate(self.coefficients))
+
+    def rate(self) -> Series:
+        """The derivative, of one order less."""
+        return Series(tuple(k * c if k > 1 else c for k, c in enumerate(self.coefficients) if k > 0))
+
+    def truncated(self, order: int) -> Series:
+        """The same up to a lower order."""
+        return Series(self.coefficients[: order + 1])
+
+    def each(self, function: Callable[[Any], Any]) -> Series:
+        """A linear function that knows no time, of every coefficient."""
+        return Series(tuple(function(c) for c in self.coefficients))
+
+    def __getitem__(self, index: Any) -> Series:
+        return self.each(lambda c: c[index])
+
+    def __neg__(self) -> Series:
+        return self.each(lambda c: -c)
+
+    def __add__(self, other: Any) -> Series:
+        if isinstance(other, Series):
+            return Series(tuple(a + b for a, b in zip(self.coefficients, other.coefficients, strict=False)))
+        return Series((self.value + other, *self.coefficients[1:]))
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Any) -> Series:
+        return self + -other
+
+    def __rsub__(self, other: Any) -> Series:
+        return -self + other
+
+    def __mul__(self, other: Any) -> Series:
+        if not isinstance(other, Series):
+            return self.each(lambda c: c * other)
+        a, b = self.coefficients, other.coefficients
+        return Series(tuple(sum(a[j] * b[k - j] for j in range(k + 1)) for k in range(min(len(a), len(b)))))
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Series:
+        if not isinstance(other, Series):
+            return self.each(lambda c: c / other)
+        a, b, quotient = self.coefficients, other.coefficients, list[Any]()
+        for k in range(min(len(a), len(b))):
+            quotient.append((a[k] - sum(b[j] * quotient[k - j] for j in range(1, k + 1))) / b[0])
+        return Series(tuple(quotient))
+
+    def __pow__(self, exponent: int) -> Series:
+        """A whole power, one or more."""
+        half = self if exponent == 1 else self ** (exponent // 2)
+        return half if exponent == 1 else half * half if exponent % 2 == 0 else half * half * self
+
+
+def power(base: Series, exponent: float) -> Series:
+    """A real power of a positive series."""
+    a = base.coefficients
+    result = [a[0] ** exponent]
+    for k in range(1, len(a)):
+        terms = (((exponent + 1) * j - k) * a[j] * result[k - j] for j in range(1, k + 1))
+        result.append(sum(terms) / (k * a[0]))
+    return Series(tuple(result))
+
+
+def sqrt(square: Series) -> Series:
+    """Square root of a positive series."""
+    a = square.coefficients
+    root = [namespace(a[0]).sqrt(a[0])]
+    for k in range(1, len(a)):
+        root.append((a[k] - sum(root[j] * root[k - j] for j in range(1, k))) / (2 * root[0]))
+    return Series(tuple(root))
+
+
+def sin_cos(angle: Series) -> tuple[Series, Series]:
+    """Sine and cosine."""
+    a = angle.coefficients
+    xp = namespace(a[0])
+    sine, cosine = [xp.sin(a[0])], [xp.cos(a[0])]
+    for k in range(1, len(a)):
+        sine.append(sum(j * a[j] * cosine[k - j] for j in range(1, k + 1)) / k)
+        cosine.append(-sum(j * a[j] * sine[k - j] for j in range(1, k + 1)) / k)
+    return Series(tuple(sine)), Series(tuple(cosine))
+
+
+def arctan2(y: Series, x: Series) -> Series:
+    """Angle of the point (x, y), which must not be the origin; from −π to π."""
+    xp = namespace(y.value, x.value)
+    value = xp.arctan2(y.value, x.value)
+    if y.order == 0 or x.order == 0:
+        return Series((value,))
+    rate = (x * y.rate() - y * x.rate()) / (x * x + y * y)
+    return Series((value, *(c / (k + 1) for k, c in enumerate(rate.coefficients))))
+
+
+def where(condition: Any, chosen: Series | Any, other: Series | Any) -> Series:
+    """One series where a condition on each time holds, another elsewhere; either may be a constant."""
+    a, b = (s.coefficients if isinstance(s, Series) else None for s in (chosen, other))
+    length = min(len(c) for c in (a, b) if c is not None)
+    a, b = (c or (s, *[0.0] * length) for c, s in ((a, chosen), (b, other)))
+    xp = namespace(condition, a[0], b[0])
+    return Series(tuple(xp.where(condition, a[k], b[k]) for k in range(length)))
+
+
+def stack(parts: Sequence[Series]) -> Series:
+    """A vector of its components, along a new last axis."""
+    xp = namespace(*(part.value for part in parts))
+    orders = zip(*(part.coefficients for part in parts), strict=False)
+    return Series(tuple(xp.stack(xp.broadcast_arrays(*each), axis=-1) for each in orders))
+
+
+def square(vector: Series) -> Series:
+    """Squared length of a vector, along its last axis."""
+    return (vector * vector).each(lambda c: c.sum(axis=-1))
+
+
+def compose(derivatives: Sequence[Any], inner: Series) -> Series:
+    """A function of a series, given its value and its derivatives up to the order, with respect to `inner`, there."""
+    away = Series((0.0 * inner.value, *inner.coefficients[1:]))
+    result = Series.of([derivatives[inner.order] / factorial(inner.order)], inner.order)
+    for k in range(inner.order - 1, -1, -1):
+        result = result * away + derivatives[k] / factorial(k)
+    return result
