@@ -26,9 +26,9 @@ def test_wrong_command_line(arguments: list[str], gbeam: Call) -> None:
     answer = gbeam(*arguments)
     assert answer.status == 2 and answer.out == ""
     assert answer.err.startswith("gbeam: ") and answer.err.count("\n") == 1
-    told = gbeam(*arguments, "--json")
-    assert told.status == 2
-    assert told.json["error"][0]["message"] in told.err
+    repeated = gbeam(*arguments, "--json")
+    assert repeated.status == 2
+    assert repeated.json["error"][0]["message"] in repeated.err
 
 
 @pytest.mark.parametrize("verb", ["run", "check"])

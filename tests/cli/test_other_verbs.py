@@ -16,15 +16,16 @@ import pytest
 from gbeam.cli import VERBS
 
 Call = Callable[..., Any]
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def test_check(fast: Path, gbeam: Call) -> None:
-    told = gbeam("check", fast, "--json").json
-    assert told["beam"]["mass"] == pytest.approx(2700 * 0.3 * 0.02 * 0.004)
+    facts = gbeam("check", fast, "--json").json
+    assert facts["beam"]["mass"] == pytest.approx(2700 * 0.3 * 0.02 * 0.004)
     # β₁² √(EI/ρA) / 2π L² of a cantilever
-    assert told["modes"][0] == {"frequency": pytest.approx(36.56, rel=1e-3), "direction": "z"}
-    assert told["motions"] == {"flight": {"kind": "flight"}, "spin": {"kind": "centrifuge", "tracks": "flight"}}
-    assert told["response"]["duration"] == 0.5
+    assert facts["modes"][0] == {"frequency": pytest.approx(36.56, rel=1e-3), "direction": "z"}
+    assert facts["motions"] == {"flight": {"kind": "flight"}, "spin": {"kind": "centrifuge", "tracks": "flight"}}
+    assert facts["response"]["duration"] == 0.5
     text = gbeam("check", fast).out
     assert "0.0648 kg" in text and "36.56 (z)" in text and "spin: centrifuge that tracks flight" in text
     assert not Path("out").exists()
@@ -65,10 +66,8 @@ def test_every_verb_has_help(verb: str, gbeam: Call) -> None:
     answer = gbeam(verb, "--help")
     assert answer.status == 0
     name = verb.replace("-", "_")
-    told = " ".join(
-        getattr(import_module(f"gbeam.cli.verbs.{name}"), name).__doc__.partition("Parameters\n")[0].split()
-    )
-    assert told in " ".join(answer.out.split())
+    docstring = getattr(import_module(f"gbeam.cli.verbs.{name}"), name).__doc__
+    assert " ".join(docstring.partition("Parameters\n")[0].split()) in " ".join(answer.out.split())
 
 
 def spent() -> float:
@@ -77,17 +76,38 @@ def spent() -> float:
     return used.ru_utime + used.ru_stime
 
 
-def test_help_is_light() -> None:
-    heavy = ("jax", "xarray", "matplotlib", "pint", "pydantic", "scipy")
+def imported(heavy: tuple[str, ...], *arguments: object) -> tuple[list[str], str]:
+    """Which of some modules a call of the command line imports in a process of its own; and what it prints."""
     code = (
-        "import sys; from gbeam.cli import main; status = main(['--help']);"
-        f"print([it for it in {heavy} if it in sys.modules], file=sys.stderr); sys.exit(status)"
+        "import sys; from gbeam.cli import main; status = main(sys.argv[1:]);"
+        f"print(*[name for name in {heavy} if name in sys.modules], file=sys.stderr); sys.exit(status)"
     )
+    command = [sys.executable, "-c", code, *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    return done.stderr.split(), done.stdout
+
+
+def test_help_is_light() -> None:
     seconds = []  # of processor time: the wall's belong to whatever else runs
     for _ in range(3):
         start = spent()
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        heavy, out = imported(("jax", "xarray", "matplotlib", "pint", "pydantic", "scipy"), "--help")
         seconds.append(spent() - start)
-    assert done.stderr.strip() == "[]"
-    assert all(verb in done.stdout for verb in VERBS)
+    assert heavy == []
+    assert all(verb in out for verb in VERBS)
     assert min(seconds) < 0.5
+
+
+NOT_FOR_READING = ("jax", "equinox", "diffrax", "xarray", "matplotlib", "pandas", "pint", "rich", "tree_sitter")
+
+
+@pytest.mark.parametrize("name", ["f16_8g_turn", "hubbeam2009_slew_3"])
+def test_check_is_light(name: str) -> None:
+    heavy, out = imported(NOT_FOR_READING, "check", EXAMPLES / f"{name}.toml")
+    assert heavy == [] and out.endswith("Scenario valid.\n")
+
+
+@pytest.mark.parametrize("verb", ["static", "modes", "campbell", "critical-speed", "linearize"])
+def test_linear_models_need_no_jax(verb: str) -> None:
+    heavy, out = imported(NOT_FOR_READING, verb, EXAMPLES / "hubbeam2009_slew_3.toml", "--json")
+    assert heavy == [] and json.loads(out)["outcome"] == "done"

@@ -89,3 +89,23 @@ Outputs = Annotated[str | None, Parameter(name="--outputs", help='Only these, "t
 Speed = Annotated[
     str | None, Parameter(help='Such as "60 rpm"; by default from rest to the largest rate of the motion.')
 ]
+
+# Of place.
+Measure = Annotated[
+    str,
+    Parameter(help='root-shear, root-moment, vibration or tip; or a weighted sum, "tip=1, root-moment=0.5".'),
+]
+CentrifugeName = Annotated[str | None, Parameter(help="Which centrifuge, where the scenario has several.")]
+Widths = Annotated[
+    tuple[str, ...],
+    Parameter(
+        name="--smoothing",
+        negative="",
+        show_default=False,
+        help='Width of the kernel to keep, "60 ms"; given twice, the search goes from the one to the other. Without it '
+        "from a quarter to four times the scenario's.",
+    ),
+]
+Check = Annotated[
+    bool, Parameter(name="--proof", negative="--no-proof", help="Check the answer by simulation with the model.")
+]

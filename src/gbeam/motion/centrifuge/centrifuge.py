@@ -178,6 +178,27 @@ class Centrifuge:
         """The same axis motions with another control point, m from the root."""
         return self._changed(control_point=as_array(positive("control_point", control_point, "m", zero=True)))
 
+    def altered(self, *, mounting: str, smoothing: Any) -> Self:
+        """The same machine with a mounting and a width of smoothing, s; prepared for the same times, if it is.
+
+        Raises
+        ------
+        InputError
+            As for a new one.
+        """
+        _choose("mounting", mounting, MOUNTINGS)
+        other = self._changed(
+            geometry=Geometry(self.geometry.arm, self.geometry.gravity, np.asarray(MOUNTINGS[mounting])),
+            smoothing=positive("smoothing", smoothing, "s", zero=True),
+            course=None,
+        )
+        return other if self.course is None else other.over(*map(float, self.target.span))
+
+    @property
+    def mounting(self) -> str:
+        """upright or inverted."""
+        return next(name for name, sign in MOUNTINGS.items() if sign == self.geometry.sign)
+
     def base(self, t: Any) -> Base:
         """Motion of the root at times `t` (s, any shape)."""
         here = forward(self.axes(t), self.geometry.arm, self.geometry.gravity)

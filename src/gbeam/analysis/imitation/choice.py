@@ -1,0 +1,45 @@
+"""What a placement may choose beside the control point: mounting and width of smoothing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from gbeam.analysis.imitation.place import Choice
+from gbeam.errors import InputError
+from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge
+from gbeam.numerics.bounded_search import coarse
+
+_FACTOR = 4.0  # of the centrifuge's own smoothing, either way
+
+
+def choice_of(centrifuge: Centrifuge, smoothing: Sequence[float] = (), *, limited: bool = True) -> Choice:
+    """Both mountings of a centrifuge, its own first, and widths of smoothing.
+
+    Parameters
+    ----------
+    centrifuge : Centrifuge
+        Prepared for the times that are looked at.
+    smoothing : sequence of float
+        Width of the kernel to keep, s, or the two ends of a range; without it from a quarter to four times the
+        centrifuge's own.
+    limited : bool
+        Whether the machine's limits must be kept.
+
+    Raises
+    ------
+    InputError
+        If there are more than two widths, or one of two is not positive.
+    """
+    if len(smoothing) > 2:
+        raise InputError("smoothing", f"is given {len(smoothing)} times", "give one width, or the ends of a range")
+    if len(smoothing) == 2 and min(smoothing) <= 0:
+        raise InputError("smoothing", f"is {min(smoothing):g} s", "give two positive widths")
+    own = float(centrifuge.smoothing or 0.0)
+    ends = sorted(smoothing) or [own / _FACTOR, own * _FACTOR]
+    widths = coarse(ends[0], ends[-1])
+
+    def make(mounting: str, width: float) -> Centrifuge:
+        return centrifuge.altered(mounting=mounting, smoothing=width)
+
+    others = tuple(name for name in MOUNTINGS if name != centrifuge.mounting)
+    return Choice(make, (centrifuge.mounting, *others), widths, len(widths) > 1, limited)

@@ -1,0 +1,39 @@
+"""The command line called as a user does, in this process."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import pytest
+
+from gbeam.cli import main
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a call of the command line gave."""
+
+    status: int
+    out: str
+    err: str
+
+    @property
+    def json(self) -> Any:
+        """Stdout as the one JSON object that it has to be."""
+        return json.loads(self.out)
+
+
+@pytest.fixture
+def gbeam(capsys: pytest.CaptureFixture[str]) -> Callable[..., Answer]:
+    """Call the command line with its arguments."""
+
+    def call(*arguments: object) -> Answer:
+        status = main([str(argument) for argument in arguments])
+        captured = capsys.readouterr()
+        assert "Traceback" not in captured.err
+        return Answer(status, captured.out, captured.err)
+
+    return call
