@@ -1,24 +1,21 @@
 """Structural time integration; knows nothing of beams.
 
-A system says which acceleration makes its equations hold; a scheme turns that into steps; the driver runs them in
-chunks of fixed length, so that one compiled program serves every duration and step.
+A scheme is data: which combinations of the last state its stages start from, and what their accelerations add. Linear
+equations become one affine map a step, found for many steps at once; nonlinear ones a fixed number of corrections with
+a Jacobian per chunk, checked afterwards.
 """
 
 from gbeam.integrate.adaptive import integrate_adaptively
-from gbeam.integrate.driver import Trajectory, evaluate, integrate
-from gbeam.integrate.gauss import Gauss4
-from gbeam.integrate.stepper import OneStep, generalized_alpha, hht, newmark
-from gbeam.integrate.system import LinearSystem, NonlinearSystem, State, System
+from gbeam.integrate.driver import Trajectory, integrate
+from gbeam.integrate.equations import LinearEquations, NonlinearEquations
+from gbeam.integrate.schemes import Scheme, gauss, generalized_alpha, hht, newmark
 
 __all__ = [
-    "Gauss4",
-    "LinearSystem",
-    "NonlinearSystem",
-    "OneStep",
-    "State",
-    "System",
+    "LinearEquations",
+    "NonlinearEquations",
+    "Scheme",
     "Trajectory",
-    "evaluate",
+    "gauss",
     "generalized_alpha",
     "hht",
     "integrate",

@@ -1,57 +1,20 @@
-"""Adaptive integration by diffrax, for any system."""
+"""Adaptive integration by diffrax, for any equations."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
-import equinox as eqx
-import jax
-import jax.numpy as jnp
 import numpy as np
 
 from gbeam.integrate.driver import Floats, Trajectory
-from gbeam.integrate.system import State, System
-
-
-def _rates(t: Any, y: tuple[Any, Any], system: System) -> tuple[Any, Any]:
-    q, qd = y
-    inputs = jax.tree.map(lambda x: x[0], system.inputs(jnp.atleast_1d(t)))
-    qdd, _, _ = system.acceleration(q, qd, 0.0, 0.0, inputs, jnp.zeros_like(q), system.blank(q.shape[0]))
-    return qd, qdd
-
-
-@eqx.filter_jit
-def _solve(system: System, state: State, times: Any, tolerance: Any, jumps: Any) -> Any:
-    import diffrax  # here: it takes half a second, and few runs need it
-
-    controller = diffrax.ClipStepSizeController(
-        diffrax.PIDController(
-            rtol=tolerance, atol=tolerance * 1e-3, dtmin=1e-10 * (times[-1] - times[0]), force_dtmin=False
-        ),
-        jump_ts=jumps,
-    )
-    solution = diffrax.diffeqsolve(
-        diffrax.ODETerm(_rates),
-        diffrax.Kvaerno5(),
-        times[0],
-        times[-1],
-        None,
-        (state.q, state.qd),
-        system,
-        saveat=diffrax.SaveAt(ts=times),
-        stepsize_controller=controller,
-        max_steps=2_000_000,
-        throw=False,
-    )
-    q, qd = solution.ys
-    qdd = jax.vmap(lambda t, q, qd: _rates(t, (q, qd), system)[1])(times, q, qd)
-    return q, qd, qdd, solution.result == diffrax.RESULTS.successful
+from gbeam.integrate.equations import LinearEquations, NonlinearEquations
 
 
 def integrate_adaptively(
-    system: System,
-    state: State,
+    equations: LinearEquations | NonlinearEquations,
+    q: Any,
+    qd: Any,
     times: Floats,
     *,
     tolerance: float = 1e-8,
@@ -62,10 +25,10 @@ def integrate_adaptively(
 
     Parameters
     ----------
-    system : System
-    state : State
-        Initial q and q̇.
-    times : (t,) where the result is wanted, s, ascending
+    equations : LinearEquations or NonlinearEquations
+    q, qd : (n,)
+        Initial state.
+    times : (t,) where the result is put out, s, ascending
     tolerance : float
         Relative error per step; the absolute one is a thousandth of it.
     jumps : (k,), optional
@@ -73,12 +36,69 @@ def integrate_adaptively(
     stop : callable, optional
         As :func:`gbeam.integrate.integrate` takes it.
     """
+    import diffrax  # here: it takes half a second, and few runs need it
+    import jax
+    import jax.numpy as jnp
+
+    import gbeam.arrays.jax_setup  # noqa: F401
+
+    acceleration = _acceleration(equations)
+
+    def rates(t: Any, y: tuple[Any, Any], _: Any) -> tuple[Any, Any]:
+        return y[1], acceleration(t, *y)
+
     inside = np.asarray([] if jumps is None else jumps, dtype=float)
     inside = np.unique(inside[(inside > times[0]) & (inside < times[-1])])
-    q, qd, qdd, ok = _solve(system, state, jnp.asarray(times), tolerance, jnp.asarray(inside) if inside.size else None)
-    q, qd, qdd = (np.asarray(x) for x in (q, qd, qdd))
+
+    @jax.jit
+    def solve(q: Any, qd: Any) -> Any:
+        span = times[-1] - times[0]
+        controller = diffrax.ClipStepSizeController(
+            diffrax.PIDController(rtol=tolerance, atol=tolerance * 1e-3, dtmin=1e-10 * span, force_dtmin=False),
+            jump_ts=jnp.asarray(inside) if inside.size else None,
+        )
+        solution = diffrax.diffeqsolve(
+            diffrax.ODETerm(rates),
+            diffrax.Kvaerno5(),
+            times[0],
+            times[-1],
+            None,
+            (q, qd),
+            saveat=diffrax.SaveAt(ts=jnp.asarray(times)),
+            stepsize_controller=controller,
+            max_steps=2_000_000,
+            throw=False,
+        )
+        q, qd = solution.ys
+        return q, qd, jax.vmap(acceleration)(jnp.asarray(times), q, qd), solution.result == diffrax.RESULTS.successful
+
+    q, qd, qdd, ok = (np.asarray(x) for x in solve(jnp.asarray(q, dtype=float), jnp.asarray(qd, dtype=float)))
     good = np.isfinite(q).all(axis=1)
     valid = len(times) if good.all() else int(np.argmin(good))
     last = None if stop is None else stop(q[:valid])
     converged, valid = bool(ok) and valid == len(times), valid if last is None else last
     return Trajectory(times[:valid], q[:valid], qd[:valid], qdd[:valid], converged, last is not None)
+
+
+def _acceleration(equations: LinearEquations | NonlinearEquations) -> Callable[[Any, Any, Any], Any]:
+    """q̈ at a time and state; the drive is evaluated inside the program."""
+    import jax
+    import jax.numpy as jnp
+
+    def inputs(t: Any) -> Any:
+        return equations.drive(jnp.atleast_1d(t))
+
+    if isinstance(equations, LinearEquations):
+
+        def linear(t: Any, q: Any, qd: Any) -> Any:
+            c, k, f = (x[0] for x in equations.matrices(inputs(t)))
+            return jnp.linalg.solve(equations.mass, f - k @ q - c @ qd)
+
+        return linear
+
+    from gbeam.integrate.newton import accelerations
+
+    def nonlinear(t: Any, q: Any, qd: Any) -> Any:
+        return accelerations(equations.residual, q, qd, jax.tree.map(lambda x: x[0], inputs(t)))
+
+    return nonlinear

@@ -1,23 +1,23 @@
-"""Run a scheme over a time span, in compiled chunks of fixed length."""
+"""Run a scheme over a time span, chunk by chunk."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import Any
 
-import equinox as eqx
-import jax
-import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.integrate.gauss import Gauss4
-from gbeam.integrate.stepper import OneStep
-from gbeam.integrate.system import LinearSystem, NonlinearSystem, State, System
+from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.integrate import linear
+from gbeam.integrate.equations import Drive, LinearEquations, NonlinearEquations
+from gbeam.integrate.schemes import Scheme
 
-CHUNK = 1000  # steps per compiled call: long enough to hide the call, short enough for progress and an early stop
+CHUNK = 200  # steps per compiled call, and per look at whether to stop
+_LINEAR_CHUNK = 500  # steps whose maps are found at once: as many as stay in a cache
 Floats = NDArray[np.float64]
+Piece = tuple[Any, Any, Any, Any]  # q, q̇, q̈ (k, n), and which of the steps were solved (k,)
 
 
 @dataclass(frozen=True)
@@ -29,47 +29,24 @@ class Trajectory:
     time : (t,) s
     q, qd, qdd : (t, n)
     converged : bool
-        False where the acceleration could not be found in the step after the last time.
+        False where the acceleration could not be computed in the step after the last time.
     stopped : bool
         Whether the caller's condition stopped it.
     """
 
     time: Floats
-    q: Floats
-    qd: Floats
-    qdd: Floats
+    q: Any
+    qd: Any
+    qdd: Any
     converged: bool = True
     stopped: bool = False
 
 
-@eqx.filter_jit
-def evaluate(drive: Callable[[Any], Any], t: Any) -> Any:
-    """What drives a system at times t: the one compiled form of it, so give CHUNK times."""
-    return drive(t)
-
-
-@eqx.filter_jit
-def _begin(system: System, scheme: OneStep | Gauss4, state: State, inputs: Any) -> Any:
-    return scheme.start(system, state, inputs)
-
-
-@eqx.filter_jit
-def _chunk(system: System, scheme: OneStep | Gauss4, state: State, inputs: tuple[Any, ...], h: Any) -> Any:
-    """CHUNK steps with the inputs at the scheme's offsets in each."""
-
-    def step(carry: tuple[State, Any], at: tuple[Any, ...]) -> Any:
-        state, fine = carry
-        new, ok = scheme.step(system, state, h, at)
-        return (new, fine & ok), (new.q, new.qd, new.qdd, fine & ok)
-
-    (state, _), history = jax.lax.scan(step, (state, jnp.array(True)), inputs)
-    return state, history
-
-
 def integrate(
-    system: LinearSystem | NonlinearSystem,
-    scheme: OneStep | Gauss4,
-    state: State,
+    equations: LinearEquations | NonlinearEquations,
+    scheme: Scheme,
+    q: Any,
+    qd: Any,
     *,
     step: float,
     count: int,
@@ -81,10 +58,10 @@ def integrate(
 
     Parameters
     ----------
-    system : LinearSystem or NonlinearSystem
-    scheme : OneStep or Gauss4
-    state : State
-        Initial q and q̇; the accelerations are found.
+    equations : LinearEquations or NonlinearEquations
+    scheme : Scheme
+    q, qd : (n,)
+        Initial state; the accelerations follow from the equations.
     step : float
         s.
     count : int
@@ -98,31 +75,93 @@ def integrate(
     Returns
     -------
     Trajectory
-        Of count + 1 times; fewer where a step failed, a value was not finite, or `stop` said so.
+        Of count + 1 times; fewer where a step failed, a value was not finite, or `stop` said so. Traced equations are
+        run to the end without a look at their values: a step that fails leaves NaN.
     """
-    # Apart from its drive a system is the same for every environment, and so is its compiled program.
-    drive, system = system.drive, replace(system, drive=None)  # type: ignore[arg-type]
-    first = evaluate(drive, jnp.asarray(np.full(CHUNK, start)))
-    state, ok = _begin(system, scheme, state, jax.tree.map(lambda x: x[0], first))
-    pieces: list[tuple[Floats, ...]] = [tuple(np.asarray(x)[None] for x in state[:3])]
-    converged, stopped, done = bool(ok), False, 0
-    while converged and not stopped and done < count:
-        # Times are products, not sums, so that they do not drift.
-        number = done + np.arange(CHUNK)
-        inputs = tuple(evaluate(drive, jnp.asarray(start + (number + c) * step)) for c in scheme.offsets)
-        state, history = _chunk(system, scheme, state, inputs, jnp.asarray(step))
-        wanted = min(CHUNK, count - done)
-        q, qd, qdd, good = (np.asarray(x)[:wanted] for x in history)
-        good = good & np.isfinite(qdd).all(axis=1)
-        valid = wanted if good.all() else int(np.argmin(good))
-        converged = valid == wanted
-        last = None if stop is None or valid == 0 else stop(q[:valid])
-        stopped = last is not None
-        valid = valid if last is None else last
-        pieces.append((q[:valid], qd[:valid], qdd[:valid]))
-        done += valid
+    run = _linear if isinstance(equations, LinearEquations) else _nonlinear
+    pieces: list[tuple[Any, ...]] = []
+    converged, stopped, done = True, False, 0
+    for *piece, solved in run(equations, scheme, q, qd, start, step, count):  # type: ignore[arg-type]
+        if not is_jax(piece[0]):
+            good = solved & np.isfinite(piece[2]).all(axis=1)
+            valid = len(good) if good.all() else int(np.argmin(good))
+            converged = valid == len(good)
+            last = None if stop is None or valid == 0 or not pieces else stop(piece[0][:valid])
+            stopped = last is not None
+            piece = [x[: valid if last is None else last] for x in piece]
+        pieces.append(tuple(piece))
+        done += len(piece[0]) if len(pieces) > 1 else 0
         if progress is not None:
             progress(done / count)
-    q, qd, qdd = (np.concatenate(p) for p in zip(*pieces, strict=True))
-    time = np.asarray(start + step * np.arange(len(q)), dtype=np.float64)
-    return Trajectory(time, q, qd, qdd, converged, stopped)
+        if stopped or not converged:
+            break
+    columns = [namespace(part[0]).concatenate(part) for part in zip(*pieces, strict=True)]
+    time = np.asarray(start + step * np.arange(len(columns[0])), dtype=np.float64)
+    return Trajectory(time, *columns, converged, stopped)
+
+
+def _times(start: float, step: float, count: int, size: int) -> Iterator[Floats]:
+    """Times at the beginning of the steps of each chunk: products, not sums, so that they do not drift."""
+    for done in range(0, count, size):
+        yield np.asarray(start + step * np.arange(done, min(done + size, count)), dtype=np.float64)
+
+
+def _linear(
+    equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, start: float, step: float, count: int
+) -> Iterator[Piece]:
+    tableau = scheme.tableau(step)
+    z, qdd = linear.start(equations, tableau, start, q, qd)
+    traced = is_jax(qdd)
+    yield *(namespace(qdd).asarray(x)[None] for x in (q, qd, qdd)), np.array([True])
+    for times in _times(start, step, count, count if traced else _LINEAR_CHUNK):
+        z, piece = linear.chunk(equations, scheme, tableau, z, times, step)
+        yield *piece, np.ones(len(times), dtype=bool)
+
+
+def _nonlinear(
+    equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, start: float, step: float, count: int
+) -> Iterator[Piece]:
+    import jax
+    import jax.numpy as jnp
+
+    from gbeam.integrate import newton
+
+    tableau, residual = scheme.tableau(step), equations.residual
+    first = jax.tree.map(lambda x: x[0], equations.drive(np.array([start])))
+    q, qd = jnp.asarray(q, dtype=float), jnp.asarray(qd, dtype=float)
+    qdd = newton.accelerations(residual, q, qd, first)
+    traced = isinstance(qdd, jax.core.Tracer)
+    read = (lambda x: x) if traced else np.asarray
+    yield *(read(x)[None] for x in (q, qd, qdd)), np.array([True])
+    x = jnp.broadcast_to(qdd, (len(scheme.offsets), len(q)))
+    carry = newton.Carry(jnp.asarray(tableau.first) @ jnp.stack([q, qd, qdd]), x, x, qdd)
+    shape = (-1, newton.PER_JACOBIAN)
+    for times in _times(start, step, count, CHUNK):
+        wanted = len(times)
+        # Steps beyond the end fill the last chunk, so that one program serves every duration.
+        padded = times[0] + step * np.arange(CHUNK)
+        at = _stage_inputs(equations.drive, scheme, padded, step)
+        by_chunk = jax.tree.map(lambda leaf: leaf.reshape(*shape, *leaf.shape[1:]), at)
+        after, (*piece, size) = newton.quick(residual, tableau, carry, *by_chunk, ends=scheme.ends)
+        piece = [read(values.reshape(CHUNK, -1))[:wanted] for values in piece]
+        if traced:
+            fine = jnp.max(size.ravel()[:wanted]) <= newton.ACCEPTED
+            piece = [jnp.where(fine, values, jnp.nan) for values in piece]
+            solved = np.ones(wanted, dtype=bool)
+        elif np.all(np.asarray(size).ravel()[:wanted] <= newton.ACCEPTED):  # NaN is not
+            solved = np.ones(wanted, dtype=bool)
+        else:
+            after, (*piece, ok) = newton.safe(residual, tableau, carry, *at, ends=scheme.ends)
+            piece, solved = [np.asarray(values)[:wanted] for values in piece], np.asarray(ok)[:wanted]
+        carry = after
+        yield *piece, solved
+
+
+def _stage_inputs(drive: Drive, scheme: Scheme, times: Floats, step: float) -> tuple[Any, Any]:
+    """Inputs at the stages, arrays (t, s, ...), and at the ends of the steps, (t, ...)."""
+    import jax
+
+    stages = [drive(times + offset * step) for offset in scheme.offsets]
+    together = jax.tree.map(lambda *leaves: namespace(*leaves).stack(leaves, axis=1), *stages)
+    end = stages[-1] if scheme.ends else drive(times + step)
+    return together, end

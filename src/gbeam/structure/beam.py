@@ -1,109 +1,20 @@
-"""What the structure is: material, point masses, beam (its section: section.py). SI units; checked where built."""
+"""The beam: its section and material along the length, what it carries and how it is held. SI; checked where built."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gbeam.arrays.namespace import is_jax
 from gbeam.checks import positive
 from gbeam.errors import InputError
+from gbeam.structure.bodies import PointMass
 from gbeam.structure.loads import Load
+from gbeam.structure.material import Material
 from gbeam.structure.section import Section
 from gbeam.structure.support import Root
-
-Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Material:
-    """Linear elastic material.
-
-    Parameters
-    ----------
-    density : float
-        Mass per volume, kg/m³.
-    youngs_modulus : float
-        Pa.
-
-    Raises
-    ------
-    InputError
-        If a value is not positive and finite.
-    """
-
-    density: float
-    youngs_modulus: float
-
-    def __post_init__(self) -> None:
-        positive("density", self.density, "kg/m³")
-        positive("youngs_modulus", self.youngs_modulus, "Pa")
-
-
-@dataclass(frozen=True)
-class PointMass:
-    """A mass, or a small rigid body, fixed to the beam.
-
-    Parameters
-    ----------
-    at : float
-        Position from the root, m.
-    mass : float
-        kg.
-    inertia : tuple of float
-        Principal moments of inertia about its centre, axes of the section (x, y, z), kg m²; zero for a point.
-    offset : tuple of float
-        Centre of mass from the beam's axis, in axes of the section, m.
-
-    Raises
-    ------
-    InputError
-        If a value is impossible, or the moments break the triangle inequality of a rigid body.
-    """
-
-    at: float
-    mass: float
-    inertia: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        positive("at", self.at, "m", zero=True)
-        positive("mass", self.mass, "kg", zero=True)
-        for name, values in (("inertia", self.inertia), ("offset", self.offset)):
-            if len(values) != 3 or not all(math.isfinite(v) for v in values):
-                raise InputError(name, f"is {values!r}", "give three finite values, along x, y and z")
-        for axis, value in zip("xyz", self.inertia, strict=True):
-            positive(f"inertia.{axis}", value, "kg m²", zero=True)
-        if any(self.inertia) and self.mass == 0:
-            raise InputError("mass", "is 0 kg with a moment of inertia", "give the body its mass")
-        if min(self.second_moments) < -1e-12 * max(self.inertia):
-            raise InputError(
-                "inertia",
-                f"is {self.inertia!r} kg m²",
-                "no moment of a rigid body exceeds the sum of the other two",
-            )
-
-    @property
-    def second_moments(self) -> tuple[float, float, float]:
-        """∫x² dm, ∫y² dm, ∫z² dm about the centre, kg m²."""
-        jx, jy, jz = self.inertia
-        return (jy + jz - jx) / 2, (jz + jx - jy) / 2, (jx + jy - jz) / 2
-
-    def particles(self) -> tuple[Array, Array]:
-        """Equivalent particles: masses (p,) kg and positions (p, 3) m from the beam's axis, in section axes.
-
-        Six particles at ±sqrt(3 S_i/m) along the principal axes have the body's mass, centre and inertia, so that a
-        rigid body needs no energy of its own; without inertia one particle is enough.
-        """
-        centre = np.array(self.offset)
-        if not any(self.inertia):
-            return np.array([self.mass]), centre[None]
-        reach = np.sqrt(3 * np.maximum(self.second_moments, 0) / self.mass)
-        arms = np.diag(reach)
-        return np.full(6, self.mass / 6), centre + np.concatenate([arms, -arms])
 
 
 @dataclass(frozen=True)
@@ -158,6 +69,8 @@ class Beam:
                 f"start at the root, 0 m, and end at the tip, {self.length:g} m",
             )
         ratios = self.damping_ratio
+        if is_jax(ratios):
+            return
         if not isinstance(ratios, (int, float)):
             object.__setattr__(self, "damping_ratio", tuple(float(z) for z in ratios))
         for i, ratio in enumerate(np.atleast_1d(np.asarray(self.damping_ratio, dtype=float))):

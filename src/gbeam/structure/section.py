@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.tree import record
 from gbeam.checks import positive
 from gbeam.errors import InputError
 
@@ -16,18 +19,18 @@ Array = NDArray[np.float64]
 
 
 def rectangle(width: Array, thickness: Array) -> tuple[Array, ...]:
-    """Area, I_y, I_z, outer fibres along y and z of a rectangle: width along y, thickness along z."""
+    """Area, I_y, I_z, extreme fibres along y and z of a rectangle: width along y, thickness along z."""
     return width * thickness, width * thickness**3 / 12, thickness * width**3 / 12, width / 2, thickness / 2
 
 
 def circle(diameter: Array) -> tuple[Array, ...]:
-    """Area, I_y, I_z, outer fibres of a solid circle."""
+    """Area, I_y, I_z, extreme fibres of a solid circle."""
     inertia = np.pi * diameter**4 / 64
     return np.pi * diameter**2 / 4, inertia, inertia, diameter / 2, diameter / 2
 
 
 def tube(diameter: Array, wall: Array) -> tuple[Array, ...]:
-    """Area, I_y, I_z, outer fibres of a round tube: outer diameter and wall thickness."""
+    """Area, I_y, I_z, extreme fibres of a round tube: outer diameter and wall thickness."""
     inner = diameter - 2 * wall
     inertia = np.pi * (diameter**4 - inner**4) / 64
     return np.pi * (diameter**2 - inner**2) / 4, inertia, inertia, diameter / 2, diameter / 2
@@ -40,8 +43,8 @@ def general(
     extreme_fibre_y: Array | None = None,
     extreme_fibre_z: Array | None = None,
 ) -> tuple[Array, ...]:
-    """Area and second moments as given; the outer fibres, if unknown, are NaN (no stress can be told)."""
-    unknown = np.full_like(area, np.nan)
+    """Area and second moments as given; the extreme fibres, if unknown, are NaN (no stress is known)."""
+    unknown = namespace(area).full_like(area, np.nan)
     return (
         area,
         inertia_y,
@@ -49,6 +52,13 @@ def general(
         unknown if extreme_fibre_y is None else extreme_fibre_y,
         unknown if extreme_fibre_z is None else extreme_fibre_z,
     )
+
+
+def _listed(value: Any) -> tuple[Any, ...]:
+    """Values of a dimension, one per station; JAX's stay what they are."""
+    if is_jax(value):
+        return tuple(value) if value.ndim else (value,)
+    return tuple(float(x) for x in np.atleast_1d(np.asarray(value, dtype=float)))
 
 
 Rule = Callable[..., tuple[Array, ...]]
@@ -82,7 +92,7 @@ class Section:
     """
 
     shape: str
-    dimensions: dict[str, tuple[float, ...]]
+    dimensions: dict[str, tuple[Any, ...]]
     stations: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
@@ -119,7 +129,7 @@ class Section:
             raise InputError("stations", "holds a value that is not finite", "give finite positions in m")
         if self.shape == "tube":
             for outer, wall in zip(self.dimensions["diameter"], self.dimensions["wall"], strict=True):
-                if 2 * wall > outer:
+                if not (is_jax(outer) or is_jax(wall)) and 2 * wall > outer:
                     raise InputError("wall", f"is {wall:g} m", f"at most half the diameter {outer:g} m")
 
     @classmethod
@@ -141,10 +151,10 @@ class Section:
             If the shape, a dimension or a station is impossible.
         """
         at = tuple(float(x) for x in np.atleast_1d(np.asarray(stations, dtype=float)))
-        values: dict[str, tuple[float, ...]] = {}
+        values: dict[str, tuple[Any, ...]] = {}
         for name, value in dimensions.items():
             if value is not None:
-                listed = tuple(float(x) for x in np.atleast_1d(np.asarray(value, dtype=float)))
+                listed = _listed(value)
                 values[name] = listed * len(at) if len(listed) == 1 and at else listed
         return cls(shape, values, at)
 
@@ -173,7 +183,7 @@ class Section:
         extreme_fibre_y: ArrayLike | None = None,
         extreme_fibre_z: ArrayLike | None = None,
     ) -> Section:
-        """Any section: `area` m², second moments I_y and I_z m⁴, outer fibres along y and z m (for stress)."""
+        """Any section: `area` m², second moments I_y and I_z m⁴, extreme fibres along y and z m (for stress)."""
         return cls.of(
             "general",
             stations,
@@ -185,19 +195,20 @@ class Section:
         )
 
     def at(self, x: ArrayLike) -> SectionValues:
-        """Area, second moments and outer fibres at positions `x`, m (any shape)."""
+        """Area, second moments and extreme fibres at positions `x`, m (any shape)."""
         where = np.asarray(x, dtype=float)
         rule = SHAPES[self.shape][0]
+        xp = namespace(*self.dimensions.values(), *(v[0] for v in self.dimensions.values()))
         if self.stations:
-            here = {k: np.interp(where, self.stations, v) for k, v in self.dimensions.items()}
+            local = {k: xp.interp(where, np.asarray(self.stations), xp.asarray(v)) for k, v in self.dimensions.items()}
         else:
-            here = {k: np.full(where.shape, v[0]) for k, v in self.dimensions.items()}
-        return SectionValues(*rule(**here))
+            local = {k: v[0] + xp.zeros(where.shape) for k, v in self.dimensions.items()}
+        return SectionValues(*rule(**local))
 
 
-@dataclass(frozen=True)
+@record
 class SectionValues:
-    """Section properties at positions: area m², inertia_y and inertia_z m⁴, outer fibres along y and z m."""
+    """Section properties at positions: area m², inertia_y and inertia_z m⁴, extreme fibres along y and z m."""
 
     area: Array
     inertia_y: Array

@@ -2,43 +2,88 @@
 
 from __future__ import annotations
 
-import equinox as eqx
-import jax
-import jax.numpy as jnp
+from typing import Any
+
 import numpy as np
-from jaxtyping import Array
+import scipy.linalg
 
-import gbeam.arrays.jax_setup  # noqa: F401
-from gbeam.mechanics.equations import Coefficients
-from gbeam.results.response import BaseHistory, Floats
+from gbeam.mechanics.equations.linear import Coefficients
+from gbeam.results.response import BaseMotion
+
+Array = Any
+_BLOCK = 2000  # times whose stiffness is looked at together
 
 
-@eqx.filter_jit
-def lowest_stiffness(coefficients: Coefficients, a_WO_B: Array, w_WB_B: Array, alpha_WB_B: Array) -> Array:
-    """Lowest eigenvalue of K, M-normalised, at base motions (t, 3): negative where K is not positive definite, rad²/s².
+def first_loss(coefficients: Coefficients, time: Array, base: BaseMotion) -> tuple[float, float] | None:
+    """First time at which K loses definiteness and the base's rate there, rad/s; None if it never does.
+
+    Between the samples the lowest eigenvalue is interpolated. Only the times that can matter are looked at: K loses
+    definiteness when what the base's motion takes exceeds the elastic stiffness, and the sizes of the terms, each
+    measured against that stiffness once, bound it from above.
+    """
+    doubtful = np.flatnonzero(_bound(coefficients, base) >= 1.0)
+    for i in range(0, len(doubtful), _BLOCK):
+        block = doubtful[i : i + _BLOCK]
+        if _all_definite(coefficients, base, block):
+            continue
+        lost = np.flatnonzero(lowest_over_time(coefficients, base, block) < 0)
+        if lost.size:
+            return _between(coefficients, time, base, int(block[lost[0]]))
+    return None
+
+
+def _scale(c: Coefficients) -> Array:
+    """L⁻¹ with K_e = L Lᵀ: what measures a stiffness against the elastic one."""
+    return np.linalg.inv(np.linalg.cholesky(c.stiffness))
+
+
+def _bound(c: Coefficients, base: BaseMotion) -> Array:
+    """An upper bound of what the base's motion takes of the elastic stiffness, (t,)."""
+    scale = _scale(c)
+
+    def taken(k: Array) -> float:
+        """The largest share that a unit of the term can take, in either sense."""
+        return float(np.abs(scipy.linalg.eigvalsh(scale @ (k + k.T) @ scale.T / 2)).max())
+
+    w, a, alpha = base.w_WB_B, base.a_WO_B, base.alpha_WB_B
+    total = np.zeros(len(w))
+    for i in range(3):
+        total += np.abs(a[:, i]) * taken(c.k_a[i]) + np.abs(alpha[:, i]) * taken(c.k_al[i])
+        total += w[:, i] ** 2 * max(-float(scipy.linalg.eigvalsh(scale @ c.k_ww[i, i] @ scale.T)[0]), 0.0)
+        for j in range(i):
+            total += 2 * np.abs(w[:, i] * w[:, j]) * taken(c.k_ww[i, j])
+    return total
+
+
+def _symmetric(c: Coefficients, base: BaseMotion, times: Array) -> Array:
+    """Twice the symmetric part of K at some of the times, (t, n, n)."""
+    _, k, _ = c.at(base.a_WO_B[times], base.w_WB_B[times], base.alpha_WB_B[times])
+    return k + np.swapaxes(k, -1, -2)
+
+
+def _all_definite(c: Coefficients, base: BaseMotion, times: Array) -> bool:
+    """Whether K is positive definite at all of the times: by factors, which cost a tenth of the eigenvalues."""
+    try:
+        np.linalg.cholesky(_symmetric(c, base, times))
+    except np.linalg.LinAlgError:
+        return False
+    return True
+
+
+def lowest_over_time(c: Coefficients, base: BaseMotion, times: Array) -> Array:
+    """Lowest eigenvalue of K, M-normalised, at some of the times: negative where K is not positive definite, rad²/s².
 
     The antisymmetric part of K, from the angular acceleration, stores no energy and is left out.
     """
-    scale = jnp.linalg.inv(jnp.linalg.cholesky(coefficients.mass))
-
-    def lowest(a: Array, w: Array, al: Array) -> Array:
-        _, k, _ = coefficients.at(a, w, al)
-        return jnp.linalg.eigvalsh(scale @ (k + k.T) @ scale.T / 2)[0]
-
-    return jax.vmap(lowest)(a_WO_B, w_WB_B, alpha_WB_B)
+    scale = np.linalg.inv(np.linalg.cholesky(c.mass))
+    return np.linalg.eigvalsh(scale @ _symmetric(c, base, times) @ scale.T / 2)[..., 0]
 
 
-def first_loss(coefficients: Coefficients, time: Floats, base: BaseHistory) -> tuple[float, float] | None:
-    """First time at which K loses definiteness and the base's rate there, rad/s; None if it never does.
-
-    Found between the samples by interpolating the lowest eigenvalue.
-    """
-    lowest = np.asarray(lowest_stiffness(coefficients, *map(jnp.asarray, (base.a_WO_B, base.w_WB_B, base.alpha_WB_B))))
-    lost = np.flatnonzero(lowest < 0)
-    if not lost.size:
-        return None
-    i, rate = int(lost[0]), np.linalg.norm(base.w_WB_B, axis=1)
+def _between(c: Coefficients, time: Array, base: BaseMotion, i: int) -> tuple[float, float]:
+    """Where between the samples i − 1 and i the lowest eigenvalue is zero."""
+    rate = np.linalg.norm(base.w_WB_B, axis=1)
     if i == 0:
         return float(time[0]), float(rate[0])
-    share = lowest[i - 1] / (lowest[i - 1] - lowest[i])
+    before, after = lowest_over_time(c, base, np.array([i - 1, i]))
+    share = before / (before - after)
     return float(time[i - 1] + share * (time[i] - time[i - 1])), float(rate[i - 1] + share * (rate[i] - rate[i - 1]))

@@ -2,59 +2,36 @@
 
 from __future__ import annotations
 
-import equinox as eqx
-import jax
-import jax.numpy as jnp
+from typing import Any, NamedTuple
+
 import numpy as np
-from jaxtyping import Array
+import scipy.linalg
 
-import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.errors import ComputationError
-from gbeam.mechanics.assembly import Structure
-from gbeam.mechanics.equations import Coefficients, Damped, coefficients, on_prescribed_base
-from gbeam.mechanics.field import Coordinates
-from gbeam.motion import Base
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.bases.base import Base
+
+Array = Any
 
 
-@eqx.filter_jit
-def _newton(system: Damped, base: Base, share: Array, q: Array) -> tuple[Array, Array, Array]:
-    """Solve at a share of all loads: accelerations and what is applied by the share, rates by its root.
+class Equilibrium(NamedTuple):
+    """Coordinates (n,) at which the beam rests, and whether its stiffness there is positive definite."""
 
-    Coordinates, whether they were found, and the tangent stiffness there.
+    q: Array
+    stable: bool
+
+
+def lowest_stiffness(mass: Array, stiffness: Array) -> tuple[float, Array]:
+    """Lowest eigenvalue of the symmetric part of K in the measure of M, rad²/s², and its mode (n,).
+
+    The antisymmetric part, from an angular acceleration, stores no energy and is left out.
     """
-    loaded = system if system.applied is None else system.under(share * system.applied)
-
-    def residual(q: Array) -> Array:
-        o = jnp.zeros_like(q)
-        return on_prescribed_base(
-            loaded, q, o, o, share * base.a_WO_B, jnp.sqrt(share) * base.w_WB_B, share * base.alpha_WB_B
-        )
-
-    def iterate(carry: tuple[Array, Array, Array, Array]) -> tuple[Array, Array, Array, Array]:
-        q, _, count, _ = carry
-        stiffness = jax.jacfwd(residual)(q)
-        correction = jnp.linalg.solve(stiffness, residual(q))
-        return q - correction, jnp.max(jnp.abs(correction)), count + 1, stiffness
-
-    def go_on(carry: tuple[Array, Array, Array, Array]) -> Array:
-        q, size, count, _ = carry
-        return (size > 1e-13 + 1e-12 * jnp.max(jnp.abs(q))) & (count < 30)
-
-    unknown = jnp.zeros((len(q), len(q)))
-    q, _, count, stiffness = jax.lax.while_loop(go_on, iterate, (q, jnp.array(jnp.inf), jnp.array(0), unknown))
-    return q, (count < 30) & jnp.all(jnp.isfinite(q)), stiffness
+    value, mode = scipy.linalg.eigh((stiffness + stiffness.T) / 2, (mass + mass.T) / 2, subset_by_index=(0, 0))
+    return float(value[0]), mode[:, 0]
 
 
-@eqx.filter_jit
-def _direct(constants: Coefficients, base: Base, applied: Array | None) -> tuple[Array, Array]:
-    _, stiffness, load = constants.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, applied)
-    return jnp.linalg.solve(stiffness, load), stiffness
-
-
-def equilibrium(structure: Structure, base: Base, time: float | None = None) -> Coordinates:
-    """Coordinates at which the beam rests relative to a base whose motion is frozen, under its loads.
-
-    Stable or not: see :func:`settled`.
+def solve_equilibrium(structure: Structure, base: Base, time: float | None = None) -> Equilibrium:
+    """Coordinates at which the beam rests relative to a base whose motion is frozen, under its loads, stable or not.
 
     A linear model's equations are solved at once; others by Newton's method, along a path of growing load where one
     stride fails.
@@ -66,41 +43,53 @@ def equilibrium(structure: Structure, base: Base, time: float | None = None) -> 
         Of one time: arrays (3,).
     time : float, optional
         Time at which the beam's loads are taken, s; without, those that the structure has, of time zero or of its
-        :meth:`~gbeam.model.Structure.at_time`.
+        :meth:`~gbeam.Structure.at_time`.
 
     Returns
     -------
-    q : (n,)
+    Equilibrium
 
     Raises
     ------
     ComputationError
         ``not converged``, with the share of the load that was reached.
     """
-    return settled(structure, base, time)[0]
+    values = structure.load_values if time is None else structure.at_time(time).load_values
+    if not structure.linear:
+        return _along_a_path(structure, base, values)
+    c = structure.coefficients
+    _, stiffness, force = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)
+    if structure.traced:
+        import jax.numpy as jnp
+
+        return Equilibrium(jnp.linalg.solve(stiffness, force), True)
+    try:
+        q = np.linalg.solve(stiffness, force)
+    except np.linalg.LinAlgError:
+        q = np.full(len(force), np.nan)
+    if np.isfinite(q).all():
+        return Equilibrium(q, lowest_stiffness(c.mass, stiffness)[0] > 0)
+    raise ComputationError(
+        "not converged",
+        f"no relative equilibrium: the stiffness is singular, or the base's motion not finite; "
+        f"the rate is {_rate(base):.4g} rad/s",
+    )
 
 
-def settled(structure: Structure, base: Base, time: float | None = None) -> tuple[Coordinates, bool]:
-    """The equilibrium, and whether it is stable: the symmetric part of its tangent stiffness positive definite.
+def _along_a_path(structure: Structure, base: Base, values: Array | None) -> Equilibrium:
+    """Newton's method from the straight beam; where one stride fails, along a path of growing load."""
+    from gbeam.analysis.equilibrium.newton import newton
 
-    Parameters and errors as for :func:`equilibrium`.
-    """
-    system = structure.system if time is None else structure.at_time(time).system
-    if structure.linear:
-        q, stiffness = _direct(coefficients(structure.system), base, system.applied)
-        if bool(jnp.all(jnp.isfinite(q))):
-            return q, _definite(stiffness)
-        raise ComputationError(
-            "not converged",
-            f"no relative equilibrium: the stiffness is singular, or the base's motion not finite; "
-            f"the rate is {_rate(base):.4g} rad/s",
-        )
-    q, reached, stride = jnp.zeros(structure.size), 0.0, 1.0
+    equations = structure.equations
+    q, reached, stride, stiffness = np.zeros(structure.size), 0.0, 1.0, structure.coefficients.stiffness
+    if structure.traced:
+        found, _, _ = newton(equations, base, values, 1.0, q)
+        return Equilibrium(found, True)
     while reached < 1.0:
         attempt = min(reached + stride, 1.0)
-        found, ok, stiffness = _newton(system, base, jnp.asarray(attempt), q)
+        found, ok, tangent = newton(equations, base, values, attempt, q)
         if bool(ok):
-            q, reached = found, attempt
+            q, stiffness, reached = np.asarray(found), np.asarray(tangent), attempt
         else:
             stride /= 4
             if stride < 1e-4:
@@ -109,11 +98,7 @@ def settled(structure: Structure, base: Base, time: float | None = None) -> tupl
                     f"no relative equilibrium beyond {reached:.4g} of the load: the beam buckles or diverges there; "
                     f"the rate is {_rate(base):.4g} rad/s",
                 )
-    return q, _definite(stiffness)
-
-
-def _definite(stiffness: Array) -> bool:
-    return bool(jnp.linalg.eigvalsh(stiffness + stiffness.T)[0] > 0)
+    return Equilibrium(q, bool(np.linalg.eigvalsh(stiffness + stiffness.T)[0] > 0))
 
 
 def _rate(base: Base) -> float:

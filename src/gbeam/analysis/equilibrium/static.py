@@ -2,48 +2,43 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
-import scipy.linalg
 
-from gbeam.analysis.equilibrium.operating_point import OperatingPoint, linear_matrices, operating_point
-from gbeam.analysis.response.problem import history_of
-from gbeam.analysis.response.section_forces import about_the_hub, section_loads
-from gbeam.analysis.study.case import Motion
-from gbeam.analysis.vibration.modal import frozen
-from gbeam.mechanics.assembly import Structure
-from gbeam.results.modal import Deflection
-from gbeam.results.section_forces import Loads
-from gbeam.structure.beam import Beam
-
-
-def lowest_stiffness_at(mass: np.ndarray, stiffness: np.ndarray) -> tuple[float, np.ndarray]:
-    """Lowest eigenvalue of the symmetric part of K in the measure of M, rad²/s², and its mode (n,)."""
-    value, mode = scipy.linalg.eigh((stiffness + stiffness.T) / 2, (mass + mass.T) / 2, subset_by_index=(0, 0))
-    return float(value[0]), mode[:, 0]
-
-
-def beam_block(point: OperatingPoint) -> tuple[np.ndarray, np.ndarray]:
-    """M and K of the beam's own coordinates about an operating point."""
-    linear, i = linear_matrices(point), point.first
-    return linear.mass[i:, i:], linear.stiffness[i:, i:]
+from gbeam.analysis.equilibrium.equilibrium import lowest_stiffness
+from gbeam.analysis.equilibrium.operating_point import OperatingPoint, beam_block, on_base, operating_point
+from gbeam.analysis.response.section_forces import section_forces
+from gbeam.errors import InputError
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.bases.base import Base
+from gbeam.motion.protocol import Motion
+from gbeam.results.equilibrium import Deflection
+from gbeam.results.response import BaseMotion
 
 
 def static(
-    structure: Structure, motion: Motion, time: float, *, name: str = "", beam: Beam | None = None
+    structure: Structure,
+    motion: Motion | None = None,
+    time: float = 0.0,
+    *,
+    acceleration: Sequence[float] | None = None,
+    name: str = "",
 ) -> Deflection:
-    """Where the beam rests relative to a base whose motion is frozen at a time.
+    """Where the beam rests relative to a base whose motion is frozen at a time, and what its sections carry.
 
     Parameters
     ----------
     structure : Structure
-        From :func:`gbeam.assemble`; the shape is told at its stations.
-    motion : Flight, Centrifuge, HubRate or HubTorque
+        From :func:`gbeam.assemble`; shape and loads are given at its stations.
+    motion : Flight, Centrifuge or Hub, optional
+        Without one the base is at rest, or accelerates as given.
     time : float
         s.
+    acceleration : (3,), optional
+        In place of a motion: acceleration of the root, or specific force, base axes, m/s².
     name : str
         For the result.
-    beam : Beam, optional
-        The one that the structure was assembled from: with it the loads along the beam are told.
 
     Returns
     -------
@@ -51,28 +46,40 @@ def static(
 
     Raises
     ------
+    InputError
+        If both a motion and an acceleration are given.
     ComputationError
         ``not converged``: the beam buckles or diverges before the whole load is on.
     """
-    point = operating_point(structure, motion, time)
-    lowest, _ = lowest_stiffness_at(*beam_block(point))
+    if acceleration is None:
+        point = operating_point(structure, motion, time)
+    elif motion is not None:
+        raise InputError("acceleration", "is given beside a motion", "give one of them")
+    else:
+        a = np.asarray(acceleration, dtype=float)
+        if a.shape != (3,) or not np.isfinite(a).all():
+            raise InputError("acceleration", f"is {acceleration!r}", "give three finite components, x, y and z, in m/s²")
+        point = on_base(structure.at_time(time), Base(a, np.zeros(3), np.zeros(3)))
+    return deflection_at(structure, point, motion, time, name)
+
+
+def deflection_at(
+    structure: Structure, point: OperatingPoint, motion: Motion | None, time: float, name: str = ""
+) -> Deflection:
+    """The deflection at an operating point."""
+    lowest, _ = lowest_stiffness(*beam_block(point))
+    base, q = point.frozen, np.asarray(point.q)
+    over_time = BaseMotion(*(x[None] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
+    still = np.zeros((1, structure.size))
     return Deflection(
         motion=name,
         model=structure.kind,
         time=time,
-        base=frozen(point.base),
+        base=base,
         stations=np.asarray(structure.stations),
-        displacement=np.asarray(structure.displacement(point.q)),
-        q=np.asarray(point.q),
-        strain_energy=float(structure.system.energy.potential(point.q)),
+        displacement=np.asarray(structure.displacement(q)),
+        q=q,
+        strain_energy=float(structure.strain_energy(q)),
         stable=lowest > 0,
-        loads=None if beam is None else _carried(structure, beam, motion, point, time),
+        loads=section_forces(structure, over_time, q[None], still, still, np.array([time]), motion=motion),
     )
-
-
-def _carried(structure: Structure, beam: Beam, motion: Motion, point: OperatingPoint, time: float) -> Loads:
-    """Loads along the beam at rest, and about the hub's axis if there is one."""
-    base = history_of(point.base)
-    q = np.asarray(point.q)[None]
-    loads = section_loads(structure, beam, base, q, 0 * q, 0 * q, np.array([time]))
-    return about_the_hub(loads, motion, base.alpha_WB_B)

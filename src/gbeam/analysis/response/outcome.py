@@ -8,12 +8,13 @@ import numpy as np
 
 from gbeam.analysis.equilibrium.definiteness import first_loss
 from gbeam.analysis.response.problem import Problem
-from gbeam.analysis.study.case import ResponseSettings
-from gbeam.integrate import Trajectory
-from gbeam.mechanics.assembly import Structure
-from gbeam.mechanics.equations import coefficients
-from gbeam.mechanics.field import ExactField, RootedField
-from gbeam.results.response import BaseHistory, Floats, Peaks
+from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.integrate.driver import Trajectory
+from gbeam.mechanics.fields.exact import ExactField
+from gbeam.mechanics.fields.rooted import RootedField
+from gbeam.mechanics.structure import Structure
+from gbeam.results.response import BaseMotion, Peaks
+from gbeam.results.result import Floats
 
 _NEAR = np.radians(160.0)  # of the pole at 180 degrees
 
@@ -23,7 +24,7 @@ def describe(
     problem: Problem,
     settings: ResponseSettings,
     trajectory: Trajectory,
-    base: BaseHistory,
+    base: BaseMotion,
     peaks: Peaks,
     time: Floats,
     q: Floats,
@@ -38,10 +39,7 @@ def describe(
     error : float
         Estimated, as a fraction of the tip's largest displacement.
     """
-    constants = problem.coefficients
-    if constants is None and structure.linear:
-        constants = coefficients(structure.system)
-    loss = None if constants is None else first_loss(constants, time, base)
+    loss = first_loss(structure.coefficients, time, base) if structure.linear else None
     lost = (
         ""
         if loss is None
@@ -69,7 +67,7 @@ def describe(
     elif not problem.stable:
         warnings.append(
             "the run starts from an equilibrium that is not stable, which no beam would keep: its stiffness is not "
-            "positive definite; `gbeam critical-speed` tells where that begins"
+            "positive definite; `gbeam critical-speed` finds where that begins"
         )
     share = float(peaks.max_abs[1:].max() / structure.length)
     if structure.kind != "exact" and share > 0.1:

@@ -6,52 +6,34 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-import equinox as eqx
-import jax
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array
 
-import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.analysis.imitation.plan import axes_result
 from gbeam.analysis.response.outcome import describe
-from gbeam.analysis.response.problem import Problem, history_of, problem_of
+from gbeam.analysis.response.problem import Problem, problem_of
+from gbeam.analysis.response.section_forces import influence, section_forces
+from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import difference, first_step, refine, scheme_of
-from gbeam.analysis.study.case import Motion, ResponseSettings
-from gbeam.integrate import (
-    Trajectory,
-    evaluate,
-    integrate,
-    integrate_adaptively,
-)
-from gbeam.mechanics.assembly import Structure, rest_modes
-from gbeam.mechanics.energy import rest_matrices
-from gbeam.motion import Centrifuge, HubRate, HubTorque
-from gbeam.numerics.batching import in_blocks
-from gbeam.numerics.time_derivative import with_rate
-from gbeam.results.response import BaseHistory, Floats, HubResult, Peaks, Response
+from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.errors import InputError
+from gbeam.integrate.adaptive import integrate_adaptively
+from gbeam.integrate.driver import Trajectory, integrate
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.protocol import Motion
+from gbeam.results.response import BaseMotion, HubResult, Peaks, Response
+from gbeam.results.result import Floats
 
-
-@eqx.filter_jit
-def _displacement(structure: Structure, q: Any) -> Array:
-    return jax.vmap(structure.displacement)(q)
-
-
-def displacement(structure: Structure, q: Floats) -> Floats:
-    """Displacements of the stations, (t, s, 3) m, from coordinates (t, n); in blocks of one compiled shape."""
-    block = 4096
-    padded = np.concatenate([q, np.repeat(q[-1:], -len(q) % block, axis=0)])
-    pieces = [np.asarray(_displacement(structure, part)) for part in np.split(padded, len(padded) // block)]
-    return np.concatenate(pieces)[: len(q)]
+Array = Any
 
 
 def simulate(
     structure: Structure,
     motion: Motion,
-    settings: ResponseSettings,
+    settings: ResponseSettings | None = None,
     *,
     name: str = "",
     progress: Callable[[str, float], None] | None = None,
+    **options: Any,
 ) -> Response:
     """Compute the response of a beam in one environment.
 
@@ -61,8 +43,9 @@ def simulate(
     ----------
     structure : Structure
         From :func:`gbeam.assemble`.
-    motion : Flight, Centrifuge, HubRate or HubTorque
-    settings : ResponseSettings
+    motion : Flight, Centrifuge or Hub
+    settings : ResponseSettings, optional
+        Or what it is made of, by keyword: ``simulate(structure, motion, duration=10.0)``.
     name : str
         For the result.
     progress : callable, optional
@@ -71,67 +54,113 @@ def simulate(
     Returns
     -------
     Response
-        Its outcome is ``done``, ``diverged`` (the displacement left what the model can mean) or ``not converged``
-        (Newton's method failed).
+        With the loads along the beam. Its outcome is ``done``, ``diverged`` (the displacement left what the model can
+        mean) or ``not converged`` (Newton's method failed). Where JAX traces the structure or the motion, its arrays
+        are traced: their derivatives are those of the discrete solution; there is no error estimate, and a step that
+        fails leaves NaN.
 
     Raises
     ------
     InputError
-        If the integrator cannot run this model.
+        If the integrator cannot run this model, settings are given twice, or a traced run has no step.
     ComputationError
         If there is no relative equilibrium to start from.
     """
+    if settings is None:
+        settings = _settings(options)
+    elif options:
+        raise InputError(next(iter(options)), "is given beside settings", "give one of them")
+    motion = motion.over(settings.start, settings.start + settings.duration)
     problem = problem_of(structure, motion, settings.start)
+    if is_jax(problem.q):
+        return _traced(structure, motion, settings, problem, name)
     coarse = first_step(structure, settings)
 
     def too_far(y: Floats) -> int | None:
         """A projected field means nothing once it moves by the beam's length."""
         if structure.kind == "exact":
             return None
-        moved = np.abs(displacement(structure, y[:, problem.first :])).max(axis=(1, 2))
+        moved = np.abs(structure.displacement(y[:, problem.first :])).max(axis=(1, 2))
         return int(np.argmax(moved > structure.length)) + 1 if moved.max() > structure.length else None
 
     def run(step: float, what: str) -> Trajectory:
         report = None if progress is None else (lambda share: progress(what, share))
-        return integrate(
-            problem.system,
-            scheme,
-            problem.state,
-            step=step,
-            count=round(settings.duration / step),
-            start=settings.start,
-            stop=too_far,
-            progress=report,
-        )
+        return _integrated(problem, settings, step, stop=too_far, progress=report)
 
     def tip(trajectory: Trajectory) -> Floats:
-        return displacement(structure, trajectory.q[:, problem.first :])[:, -1]
+        return np.asarray(structure.displacement(trajectory.q[:, problem.first :])[:, -1])
 
-    error = math.nan
     if settings.integrator == "adaptive":
-        times = np.asarray(settings.start + coarse * np.arange(round(settings.duration / coarse) + 1), dtype=np.float64)
-        jumps = np.asarray(motion.breaks)
-        if structure.history is not None:
-            jumps = np.append(jumps, np.asarray(structure.history.breaks))
-
-        def adapt(tolerance: float) -> Trajectory:
-            return integrate_adaptively(
-                problem.system, problem.state, times, tolerance=tolerance, jumps=jumps, stop=too_far
-            )
-
-        loose, trajectory = adapt(settings.tolerance * 1e-2), adapt(settings.tolerance * 1e-3)
-        step, error = math.nan, difference(tip(loose), tip(trajectory), 1)
+        trajectory, step, error = _adapted(structure, motion, problem, settings, coarse, too_far, tip)
+    elif settings.step is not None:
+        order = scheme_of(settings).order
+        step = settings.duration / max(1, round(settings.duration / settings.step))
+        trajectory, check = run(step, "integrating"), run(step / 2, "checking with half the step")
+        error = difference(tip(trajectory), tip(check), 2) * 2**order / (2**order - 1)
     else:
-        scheme = scheme_of(settings)
-        if settings.step is not None:
-            step = settings.duration / max(1, round(settings.duration / settings.step))
-            trajectory, check = run(step, "integrating"), run(step / 2, "checking with half the step")
-            gain = 2**scheme.order
-            error = difference(tip(trajectory), tip(check), 2) * gain / (gain - 1)
-        else:
-            trajectory, step, error = refine(run, tip, coarse, scheme.order, settings)
+        trajectory, step, error = refine(run, tip, coarse, scheme_of(settings).order, settings)
+    # An automatic step is the coarse one halved: its stride brings every motion of a study back to the same times.
+    stride = 1 if settings.step is not None or math.isnan(step) else round(coarse / step)
+    return _result(structure, motion, settings, problem, trajectory, name, step, error, stride)
 
-    return _result(structure, motion, settings, problem, trajectory, name, step, error, coarse)
+
+def _settings(options: dict[str, Any]) -> ResponseSettings:
+    try:
+        return ResponseSettings(**options)
+    except TypeError as error:
+        fields = ", ".join(ResponseSettings.__dataclass_fields__)
+        raise InputError("simulate", f"cannot be called so ({error})", f"give duration, and any of {fields}") from None
+
+
+def _integrated(problem: Problem, settings: ResponseSettings, step: float, **how: Any) -> Trajectory:
+    xp = namespace(problem.q)
+    return integrate(
+        problem.equations,
+        scheme_of(settings),
+        problem.q,
+        xp.zeros_like(problem.q),
+        step=step,
+        count=round(settings.duration / step),
+        start=settings.start,
+        **how,
+    )
+
+
+def _adapted(
+    structure: Structure,
+    motion: Motion,
+    problem: Problem,
+    settings: ResponseSettings,
+    coarse: float,
+    stop: Callable[[Floats], int | None],
+    tip: Callable[[Trajectory], Floats],
+) -> tuple[Trajectory, float, float]:
+    """With error control, twice: the difference of two tolerances is the estimate."""
+    count = round(settings.duration / coarse)
+    times = np.asarray(settings.start + coarse * np.arange(count + 1), dtype=np.float64)
+    jumps = np.asarray(motion.breaks)
+    if structure.history is not None:
+        jumps = np.append(jumps, structure.history.breaks)
+
+    def adapt(tolerance: float) -> Trajectory:
+        still = np.zeros_like(problem.q)
+        return integrate_adaptively(
+            problem.equations, problem.q, still, times, tolerance=tolerance, jumps=jumps, stop=stop
+        )
+
+    loose, trajectory = adapt(settings.tolerance * 1e-2), adapt(settings.tolerance * 1e-3)
+    return trajectory, math.nan, difference(tip(loose), tip(trajectory), 1)
+
+
+def _traced(
+    structure: Structure, motion: Motion, settings: ResponseSettings, problem: Problem, name: str
+) -> Response:
+    """A run whose values JAX traces: of a given step, without a look at them."""
+    if settings.step is None or settings.integrator == "adaptive":
+        raise InputError("step", "is automatic, and a traced run has no numbers to choose it by", "give a step, s")
+    step = settings.duration / max(1, round(settings.duration / settings.step))
+    trajectory = _integrated(problem, settings, step)
+    return _result(structure, motion, settings, problem, trajectory, name, step, math.nan, 1)
 
 
 def _result(
@@ -143,35 +172,33 @@ def _result(
     name: str,
     step: float,
     error: float,
-    coarse: float,
+    stride: int,
 ) -> Response:
-    """Sample a trajectory on the coarse grid, which all motions of a study share, and describe it."""
+    """Sample a trajectory on the coarse grid and describe it."""
+    traced = is_jax(trajectory.q)
     beam = slice(problem.first, None)
-    fine = displacement(structure, trajectory.q[:, beam])
+    fine = structure.displacement(trajectory.q[:, beam])
     peaks = _peaks(trajectory.time, fine[:, -1], settings.residual_from)
-    # An automatic step is the coarse one halved: its stride brings every motion back to the same times.
-    stride = 1 if settings.step is not None or math.isnan(step) else round(coarse / step)
     keep = slice(None, None, stride)
     time, q, qd, qdd = (x[keep] for x in (trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd))
-    if isinstance(motion, HubTorque):
-        base, free = _free_hub(motion, time, q, qd, qdd)
-        hub: HubResult | None = free
-        environment = "hub"
-    else:
-        there, _ = in_blocks(evaluate, problem.system.drive, time)
-        base = history_of(there)
-        hub = _given_hub(motion, time) if isinstance(motion, HubRate) else None
-        environment = type(motion).__name__.lower() if hub is None else "hub"
-    told = describe(structure, problem, settings, trajectory, base, peaks, time, q[:, beam], error)
-    outcome, message, warnings = told
-    axes = axes_result(motion, time) if isinstance(motion, Centrifuge) else None
+    base, hub = _moving(motion, time, q, qd, qdd)
+    loads = section_forces(structure, base, q[:, beam], qd[:, beam], qdd[:, beam], time, motion=motion)
+    if hub is not None and not motion.free and loads is not None and loads.drive_torque is not None:
+        hub = HubResult(hub.angle, hub.rate, hub.acceleration, loads.drive_torque)
+    axes = None if traced or motion.kind != "centrifuge" else axes_result(motion, time)  # type: ignore[arg-type]
+    outcome, message, warnings = "done", "", tuple(f"record: {note}" for note in getattr(motion, "notes", ()))
+    if not traced:
+        outcome, message, own = describe(
+            structure, problem, settings, trajectory, base, peaks, time, q[:, beam], error
+        )
+        warnings = own + (() if axes is None else axes.warnings) + warnings
     return Response(
         name=name,
-        environment=environment,
+        environment=motion.kind,
         model=structure.kind,
         outcome=outcome,
         message=message,
-        warnings=warnings if axes is None else warnings + axes.warnings,
+        warnings=warnings,
         time=time,
         stations=np.asarray(structure.stations),
         displacement=fine[keep],
@@ -187,29 +214,33 @@ def _result(
         hub=hub,
         axes=axes,
         qdd=qdd[:, beam],
-        frequencies=rest_modes(*rest_matrices(structure.system.energy))[0],
+        frequencies=structure.rest[0],
+        loads=loads,
+        influence=influence(structure) if motion.kind == "centrifuge" and not traced else None,
     )
 
 
-def _peaks(time: Floats, tip: Floats, residual_from: float | None) -> Peaks:
-    size = np.abs(tip)
+def _peaks(time: Floats, tip: Array, residual_from: float | None) -> Peaks:
+    xp = namespace(tip)
+    size = xp.abs(tip)
     residual = np.full(3, np.nan)
     if residual_from is not None and time[-1] > residual_from:
         after = tip[time >= residual_from]
         residual = (after.max(axis=0) - after.min(axis=0)) / 2
-    return Peaks(size.max(axis=0), time[size.argmax(axis=0)], residual)
+    return Peaks(size.max(axis=0), xp.asarray(time)[size.argmax(axis=0)], residual)
 
 
-def _free_hub(motion: HubTorque, time: Floats, y: Floats, yd: Floats, ydd: Floats) -> tuple[BaseHistory, HubResult]:
-    rate, acceleration = yd[:, 0], ydd[:, 0]
-    hub = HubResult(y[:, 0], rate, acceleration, np.asarray(motion.torque(jnp.asarray(time))))
-    there = motion.mount.base(*(jnp.asarray(x) for x in (y[:, 0], rate, acceleration)))
-    return history_of(there), hub
-
-
-def _given_hub(motion: HubRate, time: Floats) -> HubResult:
-    rate, acceleration = (np.asarray(x) for x in with_rate(motion.rate, jnp.asarray(time)))
-    # The trapezium rule with its end correction, since the slopes are known.
-    h = np.diff(time)
-    turned = h * (rate[1:] + rate[:-1]) / 2 - h**2 * np.diff(acceleration) / 12
-    return HubResult(np.append(0.0, np.cumsum(turned)), rate, acceleration, np.full_like(rate, np.nan))
+def _moving(motion: Any, time: Floats, y: Array, yd: Array, ydd: Array) -> tuple[BaseMotion, HubResult | None]:
+    """Motion of the root over time, and of the hub if there is one."""
+    hub = None
+    if motion.free:
+        angle, rate, acceleration = y[:, 0], yd[:, 0], ydd[:, 0]
+        base = motion.mount.base(angle, rate, acceleration)
+        hub = HubResult(angle, rate, acceleration, motion.torque(time))
+    else:
+        base = motion.base(time)
+        if motion.kind == "hub":
+            axis = motion.mount.R_HB[2]
+            unknown = np.full(len(time), np.nan)
+            hub = HubResult(motion.angle(time), base.w_WB_B @ axis, base.alpha_WB_B @ axis, unknown)
+    return BaseMotion(base.a_WO_B, base.w_WB_B, base.alpha_WB_B), hub

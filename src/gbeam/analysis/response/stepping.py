@@ -1,4 +1,4 @@
-"""Which scheme, and which step: halved until the error that two runs tell is within the tolerance."""
+"""Which scheme, and which step: halved until the error estimated from two runs is within the tolerance."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from collections.abc import Callable
 
 import numpy as np
 
-from gbeam.analysis.study.case import ResponseSettings
+from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.errors import InputError
-from gbeam.integrate import Gauss4, OneStep, Trajectory, generalized_alpha, hht, newmark
-from gbeam.mechanics.assembly import Structure, rest_modes
-from gbeam.mechanics.energy import rest_matrices
-from gbeam.results.response import Floats
+from gbeam.integrate.driver import Trajectory
+from gbeam.integrate.schemes import Scheme, gauss, generalized_alpha, hht, newmark
+from gbeam.mechanics.structure import Structure
+from gbeam.results.result import Floats
 
 MAX_STEPS = 4_000_000
 
 
-def scheme_of(settings: ResponseSettings) -> OneStep | Gauss4:
+def scheme_of(settings: ResponseSettings) -> Scheme:
     """The integration scheme that the settings name."""
     match settings.integrator:
         case "newmark":
@@ -27,7 +27,7 @@ def scheme_of(settings: ResponseSettings) -> OneStep | Gauss4:
         case "generalized-alpha":
             return generalized_alpha(**{"rho_inf": 0.9, **settings.parameters})
         case "gauss":
-            return Gauss4()
+            return gauss()
     raise InputError(
         "response.integrator",
         f"is {settings.integrator!r}",
@@ -37,9 +37,8 @@ def scheme_of(settings: ResponseSettings) -> OneStep | Gauss4:
 
 def first_step(structure: Structure, settings: ResponseSettings) -> float:
     """Step of the results, s: an even number over the duration, at least 500 and 40 to the lowest period."""
-    frequency, _ = rest_modes(*rest_matrices(structure.system.energy))
-    wanted = min(2 * math.pi / frequency[0] / 40, settings.duration / 500)
-    return settings.duration / (2 * math.ceil(settings.duration / wanted / 2))
+    largest = min(2 * math.pi / float(structure.rest[0][0]) / 40, settings.duration / 500)
+    return settings.duration / (2 * math.ceil(settings.duration / largest / 2))
 
 
 def difference(coarse: Floats, fine: Floats, ratio: int) -> float:
@@ -71,8 +70,8 @@ def refine(
         if (error <= settings.tolerance and whole) or (not whole and not (old.converged and not old.stopped)):
             return new, step, error
         # Jump to the step that the order promises, at most 16 times finer.
-        wanted = math.ceil(math.log2(max(error / settings.tolerance, 2.0)) / order) if math.isfinite(error) else 1
-        ratio = 2 ** min(max(wanted, 1), 4)
+        halvings = math.ceil(math.log2(max(error / settings.tolerance, 2.0)) / order) if math.isfinite(error) else 1
+        ratio = 2 ** min(max(halvings, 1), 4)
         if settings.duration / step * ratio > MAX_STEPS:
             return new, step, error
         old = new

@@ -5,42 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from gbeam.mechanics.assembly import Model
-from gbeam.motion import Centrifuge, Flight, HubRate, HubTorque
+from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.mechanics.models import Model
+from gbeam.motion.protocol import Motion
 from gbeam.structure.beam import Beam
-
-Motion = Flight | Centrifuge | HubRate | HubTorque
-
-
-@dataclass(frozen=True)
-class ResponseSettings:
-    """How a response over time is computed.
-
-    Parameters
-    ----------
-    duration : float
-        s.
-    start : float
-        Initial time, s.
-    step : float or None
-        s; None for an automatic one.
-    integrator : str
-        newmark, hht, generalized-alpha, gauss or adaptive.
-    parameters : mapping of str to float
-        The integrator's own: beta and gamma; alpha; rho_inf.
-    tolerance : float
-        Relative error at which the automatic step stops refining.
-    residual_from : float or None
-        Time from which the residual vibration is measured, s.
-    """
-
-    duration: float
-    start: float = 0.0
-    step: float | None = None
-    integrator: str = "newmark"
-    parameters: Mapping[str, float] = field(default_factory=dict)
-    tolerance: float = 1e-4
-    residual_from: float | None = None
 
 
 @dataclass(frozen=True)
@@ -54,9 +22,9 @@ class Case:
     model : Model
     motions : mapping of str to motion
         By name, in the scenario's order.
+    response : ResponseSettings
     tracks : mapping of str to str
         Name of the flight that each centrifuge tracks.
-    response : ResponseSettings
     stations : tuple of float
         Positions of output from the root besides the tip, m.
     """

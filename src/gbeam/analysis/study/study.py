@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 from gbeam.analysis.imitation.comparison import compare
-from gbeam.analysis.response.section_forces import influence, internal_loads
 from gbeam.analysis.response.simulation import simulate
-from gbeam.analysis.study.case import Case, Motion
+from gbeam.analysis.study.case import Case
 from gbeam.errors import ComputationError, InputError
-from gbeam.mechanics.assembly import Structure, assemble
-from gbeam.motion import Centrifuge, Flight
-from gbeam.results.response import Failure, Response, Study
+from gbeam.mechanics.assembly import assemble
+from gbeam.mechanics.structure import Structure
+from gbeam.results.response import Response
+from gbeam.results.study import Failure, Study
 
 
 def structure_of(case: Case) -> Structure:
@@ -53,8 +52,7 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
             if progress is not None:
                 progress(f"{name}: {what}", share)
 
-        response = simulate(structure, motion, case.response, name=name, progress=report)
-        return _with_loads(structure, case, motion, response)
+        return simulate(structure, motion, case.response, name=name, progress=report)
 
     responses: dict[str, Response] = {}
     failures: dict[str, Failure] = {}
@@ -72,11 +70,3 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
         if {flight, name} <= responses.keys() and responses[flight].outcome == responses[name].outcome == "done"
     )
     return Study(case.title, responses, comparisons, failures)
-
-
-def _with_loads(structure: Structure, case: Case, motion: Motion, response: Response) -> Response:
-    """Add what the sections carry, and on a centrifuge what its mismatch can do."""
-    loads = internal_loads(structure, case.beam, response, motion)
-    notes = tuple(f"record: {note}" for note in motion.notes) if isinstance(motion, Flight) else ()
-    response = replace(response, warnings=response.warnings + notes)
-    return replace(response, loads=loads, influence=influence(structure) if isinstance(motion, Centrifuge) else None)

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from gbeam.mechanics.basis import Families, Family, Quadrature, Shapes
+from gbeam.mechanics.fields.basis import Families, Family, Quadrature, Shapes
 from gbeam.structure.beam import Beam
 
 Array = NDArray[np.float64]
@@ -28,7 +28,7 @@ def _family(rule: Quadrature, nodal: Array, length: float, *, axial: bool) -> Fa
         first, here = rule.cumulative(x), rule.interpolation(x)
         if not axial:
             return Shapes(first @ slope, first @ nodal, here @ nodal)
-        # The second derivative of a bar's shape is asked for by nobody.
+        # No model needs the second derivative of a bar's shape.
         return Shapes(first @ nodal, here @ nodal, np.full((len(x), nodal.shape[1]), np.nan))
 
     return shapes

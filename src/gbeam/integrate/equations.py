@@ -1,0 +1,45 @@
+"""Equations of motion as an integrator sees them: linear with matrices over time, or a residual."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+Array = Any
+Drive = Callable[[Array], Any]  # times (t,) -> what drives the equations there, arrays with that leading axis
+
+
+@dataclass(frozen=True)
+class LinearEquations:
+    """M q̈ + C(t) q̇ + K(t) q = F(t).
+
+    Parameters
+    ----------
+    mass : (n, n)
+    matrices : callable
+        Inputs at times (t,) -> C (t, n, n), K (t, n, n), F (t, n).
+    drive : callable
+        Times (t,) s -> inputs.
+    """
+
+    mass: Array
+    matrices: Callable[[Any], tuple[Array, Array, Array]]
+    drive: Drive
+
+
+@dataclass(frozen=True)
+class NonlinearEquations:
+    """r(q, q̇, q̈; inputs(t)) = 0, linear in q̈.
+
+    Parameters
+    ----------
+    residual : callable record
+        (q, q̇, q̈, inputs at one time) -> (n,); its arrays are arguments of the compiled program, so that equations of
+        equal sizes share one.
+    drive : callable
+        Times (t,) s -> inputs.
+    """
+
+    residual: Any
+    drive: Drive

@@ -1,0 +1,177 @@
+"""Integration schemes as data: Newmark, HHT-α, generalised-α, and the two-stage Gauss method.
+
+A step carries z, m vectors of n numbers (for Gauss q and q̇). Its s stages solve the equations of motion for their
+accelerations x at positions and velocities
+
+    q_i = Σ w_q[i, k] z_k + Σ c_q[i, j] x_j,    v_i = Σ w_v[i, k] z_k + Σ c_v[i, j] x_j,
+
+and the next z is g z + d x. The one-step family has the form of Arnold and Brüls (2007): the equations hold exactly at
+the end of each step, and a second acceleration a carries the weights, (1−α_m) a₊ + α_m a = (1−α_f) q̈₊ + α_f q̈. That is
+the classical scheme for linear systems and second order for configuration-dependent mass as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.arrays.tree import record
+from gbeam.errors import InputError
+
+Floats = NDArray[np.float64]
+
+
+@record
+class Tableau:
+    """A scheme at one length of step; see the module.
+
+    Parameters
+    ----------
+    w_q, w_v : (s, m)
+    c_q, c_v : (s, s)
+    g : (m, m)
+    d : (m, s)
+    first : (m, 3)
+        The first z of the initial q, q̇, q̈.
+    """
+
+    w_q: Floats
+    w_v: Floats
+    c_q: Floats
+    c_v: Floats
+    g: Floats
+    d: Floats
+    first: Floats
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """An integration scheme.
+
+    Parameters
+    ----------
+    name : str
+    order : int
+    offsets : tuple of float
+        Times of the stages in a step, in steps.
+    tableau : callable
+        Of the length of a step, s.
+    """
+
+    name: str
+    order: int
+    offsets: tuple[float, ...]
+    tableau: Callable[[float], Tableau]
+
+    @property
+    def ends(self) -> bool:
+        """Whether the last stage is the end of the step; else z begins with the q and q̇ of the end."""
+        return self.offsets[-1] == 1.0
+
+
+def _one_step(name: str, alpha_m: float, alpha_f: float, beta: float, gamma: float) -> Scheme:
+    """The one-step family: weights of the old acceleration and forces (Chung and Hulbert 1993), Newmark's parameters."""
+    share = (1 - alpha_f) / (1 - alpha_m)
+
+    def tableau(h: float) -> Tableau:
+        # z = (q*, v*, c): what the stage starts from, and the share c of the new a that is known before.
+        q, v, c, x = np.eye(4)
+        a = c + share * x
+        q_new, v_new = q + h**2 * beta * share * x, v + h * gamma * share * x
+        carried = (alpha_f * x - alpha_m * a) / (1 - alpha_m)
+        rows = np.stack(
+            [
+                q_new + h * v_new + h**2 * ((0.5 - beta) * a + beta * carried),
+                v_new + h * ((1 - gamma) * a + gamma * carried),
+                carried,
+            ]
+        )
+        known = (alpha_f - alpha_m) / (1 - alpha_m)
+        first = np.array(
+            [
+                [1.0, h, h**2 * ((0.5 - beta) + beta * known)],
+                [0.0, 1.0, h * ((1 - gamma) + gamma * known)],
+                [0.0, 0.0, known],
+            ]
+        )
+        # Newmark's scheme carries nothing.
+        m = 3 if alpha_m or alpha_f else 2
+        return Tableau(
+            w_q=np.eye(1, m),
+            w_v=np.eye(1, m, k=1),
+            c_q=np.array([[h**2 * beta * share]]),
+            c_v=np.array([[h * gamma * share]]),
+            g=rows[:m, :m],
+            d=rows[:m, 3:],
+            first=first[:m],
+        )
+
+    return Scheme(name, 2, (1.0,), tableau)
+
+
+def newmark(beta: float = 0.25, gamma: float = 0.5) -> Scheme:
+    """Newmark (1959); the defaults are the average acceleration: no damping, unconditionally stable.
+
+    Raises
+    ------
+    InputError
+        If the parameters make the scheme unstable.
+    """
+    if not (gamma >= 0.5 and 2 * beta >= gamma):
+        raise InputError(
+            "beta",
+            f"is {beta:g} with gamma {gamma:g}",
+            "2 beta >= gamma >= 1/2 is stable at every step; try 0.25 and 0.5",
+        )
+    return _one_step("newmark", 0.0, 0.0, beta, gamma)
+
+
+def hht(alpha: float) -> Scheme:
+    """Hilber, Hughes and Taylor (1977): alpha from −1/3 to 0, more damping the lower.
+
+    Raises
+    ------
+    InputError
+        If alpha lies beyond.
+    """
+    if not -1 / 3 <= alpha <= 0:
+        raise InputError("alpha", f"is {alpha:g}", "give a value from -1/3 to 0")
+    return _one_step("hht", 0.0, -alpha, (1 - alpha) ** 2 / 4, 0.5 - alpha)
+
+
+def generalized_alpha(rho_inf: float) -> Scheme:
+    """Chung and Hulbert (1993): spectral radius rho_inf at infinite frequency, 0 (most damping) to 1.
+
+    Raises
+    ------
+    InputError
+        If rho_inf lies beyond.
+    """
+    if not 0 <= rho_inf <= 1:
+        raise InputError("rho_inf", f"is {rho_inf:g}", "give a value from 0 to 1")
+    alpha_m, alpha_f = (2 * rho_inf - 1) / (rho_inf + 1), rho_inf / (rho_inf + 1)
+    gamma = 0.5 - alpha_m + alpha_f
+    return _one_step("generalized-alpha", alpha_m, alpha_f, (gamma + 0.5) ** 2 / 4, gamma)
+
+
+def gauss() -> Scheme:
+    """The two-stage Gauss method: order 4, no damping, unconditionally stable (Hairer, Nørsett and Wanner, II.7)."""
+    root = 3**0.5 / 6
+    a = np.array([[0.25, 0.25 - root], [0.25 + root, 0.25]])
+    c = np.array([0.5 - root, 0.5 + root])
+
+    def tableau(h: float) -> Tableau:
+        return Tableau(
+            w_q=np.stack([np.ones(2), h * c], axis=1),
+            w_v=np.array([[0.0, 1.0], [0.0, 1.0]]),
+            c_q=h**2 * (a @ a),
+            c_v=h * a,
+            g=np.array([[1.0, h], [0.0, 1.0]]),
+            d=np.stack([h**2 * 0.5 * (1 - c), np.full(2, 0.5 * h)]),
+            first=np.eye(2, 3),
+        )
+
+    return Scheme("gauss", 4, (float(c[0]), float(c[1])), tableau)

@@ -1,0 +1,79 @@
+"""Modal damping of a structure on a base at rest."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+
+from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.errors import InputError
+
+Array = Any
+
+
+def rest_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
+    """Circular frequencies (n,) rad/s, ascending, and mass-normalised modes (n, n) of a structure on a base at rest."""
+    if namespace(mass, stiffness) is np:
+        square, modes = scipy.linalg.eigh(stiffness, mass)
+        return np.sqrt(np.maximum(square, 0)), modes
+    import jax.numpy as jnp
+
+    scale = jnp.linalg.inv(jnp.linalg.cholesky(mass))
+    square, modes = jnp.linalg.eigh(scale @ stiffness @ scale.T)
+    return jnp.sqrt(jnp.maximum(square, 0)), scale.T @ modes
+
+
+def damping_matrix(ratio: Any, mass: Array, stiffness: Array) -> Array:
+    """Modal damping matrix M Φ diag(2ζω) Φᵀ M, (n, n).
+
+    Parameters
+    ----------
+    ratio : float, or a sequence of one per mode, ascending in frequency
+
+    Raises
+    ------
+    InputError
+        If a list of ratios does not fit the number of modes.
+    """
+    n = mass.shape[0]
+    if np.ndim(ratio) and len(ratio) != n:
+        raise InputError(
+            "damping_ratio",
+            f"lists {len(ratio)} values for the {n} modes of the model",
+            f"give one value for all, or {n}, ascending in frequency",
+        )
+    xp = namespace(ratio, mass, stiffness)
+    if not is_jax(ratio) and not np.any(ratio):
+        return xp.zeros((n, n))
+    if xp is not np and np.ndim(ratio) == 0:
+        # With one ratio for all, 2ζ M √(M⁻¹K): a function of matrices that has a derivative where frequencies meet.
+        return 2 * ratio * _weighted_root(mass, stiffness)
+    frequency, modes = rest_modes(mass, stiffness)
+    weighted = mass @ modes
+    return (weighted * (2 * xp.asarray(ratio) * frequency)) @ weighted.T
+
+
+def _weighted_root(mass: Array, stiffness: Array) -> Array:
+    """M Φ diag(ω) Φᵀ M = L √(L⁻¹KL⁻ᵀ) Lᵀ with M = LLᵀ, differentiable also at equal frequencies."""
+    import jax
+    import jax.numpy as jnp
+
+    @jax.custom_jvp
+    def root(a: Array) -> Array:
+        value, vector = jnp.linalg.eigh(a)
+        return (vector * jnp.sqrt(jnp.maximum(value, 0))) @ vector.T
+
+    @root.defjvp
+    def _(primals: tuple[Array], tangents: tuple[Array]) -> tuple[Array, Array]:
+        (a,), (da,) = primals, tangents
+        value, vector = jnp.linalg.eigh(a)
+        size = jnp.sqrt(jnp.maximum(value, 0))
+        # X dX + dX X = dA, in the eigenvectors of A.
+        change = (vector.T @ da @ vector) / (size[:, None] + size[None, :])
+        return (vector * size) @ vector.T, vector @ change @ vector.T
+
+    low = jnp.linalg.cholesky(mass)
+    inverse = jnp.linalg.inv(low)
+    return low @ root(inverse @ stiffness @ inverse.T) @ low.T

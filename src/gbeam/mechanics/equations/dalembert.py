@@ -1,0 +1,147 @@
+"""The equations of a complete model (CFOAM, exact): D'Alembert's sum over the particles of its field, by JAX.
+
+Σ m (∂r/∂q)·a + ∂U/∂q + C q̇ = Q, a = a_O + α × r + ω × (ω × r) + 2 ω × ṙ + r̈: one pull-back of the particles' inertia
+forces along their places. On a free hub the moment of the same forces about the axis is the hub's row.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+
+import gbeam.arrays.jax_setup  # noqa: F401
+from gbeam.arrays.tree import record
+from gbeam.mechanics.equations.hub import Ground
+from gbeam.mechanics.equations.virtual_work import LoadWork
+from gbeam.mechanics.inertia import Elasticity, Inertia
+from gbeam.motion.bases.base import Base
+
+Array = Any
+
+
+@record
+class Complete:
+    """The equations of a complete model.
+
+    Parameters
+    ----------
+    inertia : Inertia
+    elasticity : Elasticity
+    damping : (n, n)
+    work : LoadWork or None
+    """
+
+    inertia: Inertia
+    elasticity: Elasticity
+    damping: Array
+    work: LoadWork | None
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return int(self.damping.shape[0])
+
+    def strain_energy(self, q: Array) -> Array:
+        """U, J."""
+        return self.elasticity.energy(q)
+
+    def residual(
+        self,
+        q: Array,
+        qd: Array,
+        qdd: Array,
+        a_WO_B: Array,
+        w_WB_B: Array,
+        alpha_WB_B: Array,
+        load_values: Array | None = None,
+    ) -> Array:
+        """Residual on a base whose motion is given, (n,); zero where the equations hold.
+
+        Parameters
+        ----------
+        q, qd, qdd : (n,) coordinates and their rates
+        a_WO_B : (3,) acceleration of the root, or specific force a − g, base axes, m/s²
+        w_WB_B, alpha_WB_B : (3,) angular velocity and acceleration of the base, base axes, rad/s, rad/s²
+        load_values : (loads, 6), optional
+        """
+        force, pull_back, _ = self._inertia_forces(q, qd, qdd, a_WO_B, w_WB_B, alpha_WB_B)
+        (along,) = pull_back(force)
+        return along + self._inside(q, qd) - self._generalised(q, load_values)[6:]
+
+    def _inertia_forces(
+        self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array
+    ) -> tuple[Array, Any, Array]:
+        """m a of the particles, (k, 3) N; the pull-back to the coordinates; the places, (k, 3) m."""
+        place = self.inertia.positions
+        r, pull_back = jax.vjp(place, q)
+
+        def moving(q: Array, qd: Array) -> Array:
+            return jax.jvp(place, (q,), (qd,))[1]
+
+        rd, rdd = jax.jvp(moving, (q, qd), (qd, qdd))
+        # Cross products with one vector are products with its matrix: smaller programs than jnp.cross.
+        acceleration = a + r @ (_cross(alpha) + _cross(w) @ _cross(w)).T + 2 * rd @ _cross(w).T + rdd
+        return self.inertia.mass[:, None] * acceleration, pull_back, r
+
+    def _inside(self, q: Array, qd: Array) -> Array:
+        return jax.grad(self.elasticity.energy)(q) + self.damping @ qd
+
+    def _generalised(self, q: Array, load_values: Array | None) -> Array:
+        if self.work is None or load_values is None:
+            return jnp.zeros(6 + self.size)
+        return self.work.generalised(q, load_values)
+
+
+def _cross(w: Array) -> Array:
+    """The matrix [w]×."""
+    o = jnp.zeros(())
+    return jnp.stack([jnp.stack([o, -w[2], w[1]]), jnp.stack([w[2], o, -w[0]]), jnp.stack([-w[1], w[0], o])])
+
+
+@record
+class CompleteHub:
+    """The equations of a free hub with a complete model on its rim, y = (θ, q).
+
+    Parameters
+    ----------
+    system : Complete
+    mount : gbeam.motion.Mount
+    ground : Ground
+    """
+
+    system: Complete
+    mount: Any
+    ground: Ground
+
+    def base(self, y: Array, yd: Array, ydd: Array) -> Base:
+        """Motion of the root; specific force where gravity acts."""
+        return self.mount.base(y[0], yd[0], ydd[0])
+
+    def residual(self, y: Array, yd: Array, ydd: Array, torque: Array, load_values: Array | None = None) -> Array:
+        """Residual (n + 1,) of hub and beam under a torque on the hub, N m, and load components (loads, 6)."""
+        q, qd, qdd = y[1:], yd[1:], ydd[1:]
+        base = self.base(y, yd, ydd)
+        force, pull_back, r = self.system._inertia_forces(
+            q, qd, qdd, base.a_WO_B, base.w_WB_B, base.alpha_WB_B
+        )
+        (along,) = pull_back(force)
+        forces = self.system._generalised(q, load_values)
+        about = jnp.sum(self._levers(r) * force)
+        turning = self.ground.torque(y[0], yd[0], ydd[0]) + about - torque - self._twist() @ forces[:6]
+        return jnp.concatenate([turning[None], along + self.system._inside(q, qd) - forces[6:]])
+
+    def momentum(self, y: Array, yd: Array) -> Array:
+        """Angular momentum of hub and beam about the axis, N m s."""
+        r, rd = jax.jvp(self.system.inertia.positions, (y[1:],), (yd[1:],))
+        lever = self._levers(r)
+        velocity = lever * yd[0] + rd
+        return self.ground.inertia * yd[0] + jnp.sum(self.system.inertia.mass[:, None] * lever * velocity)
+
+    def _levers(self, r: Array) -> Array:
+        """e × (r_O + r), (k, 3) m."""
+        return (r + self.mount.radius * self.mount.R_HB[0]) @ _cross(jnp.asarray(self.mount.R_HB)[2]).T
+
+    def _twist(self) -> Array:
+        return jnp.concatenate([self.mount.radius * jnp.asarray(self.mount.R_HB)[1], jnp.asarray(self.mount.R_HB)[2]])

@@ -1,0 +1,222 @@
+"""The equations of a linear model: constant coefficients, plain sums over the particles.
+
+A particle k of mass m sits at r = r0 + J q + ½ q H q in base axes. D'Alembert's sum Σ m (∂r/∂q)·a over the particles,
+a = a_O + α × r + ω × (ω × r) + 2 ω × ṙ + r̈, kept to first order in (q, q̇, q̈), is
+
+    M q̈ + (C + ω·G) q̇ + (K + ωω:K_ww + α·K_al + a_O·K_a) q = ωω:F_ww + α·F_al + a_O·F_a + loads.
+
+For a model whose places end there (TLAM, FOAM, SFOAM) that is the whole truth; for a complete one the linearisation
+about the straight beam. Nothing here knows a beam: a structure may say its masses, places and their first derivatives,
+and in place of the second ones its geometric stiffness under unit inertial loads.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record
+from gbeam.mechanics.fields.taylor import EPSILON, Places
+
+Array = Any
+
+
+@record
+class Geometric:
+    """Σ m H weighted with unit inertial loads: what second derivatives of the places add to the stiffness.
+
+    It is the geometric stiffness at the static stress of each load.
+
+    Parameters
+    ----------
+    a : (3, n, n)
+        Of an acceleration of 1 m/s² along each base axis: Σ m H·e.
+    al : (3, n, n)
+        Of an angular acceleration of 1 rad/s² about each: Σ m H·(e × r0).
+    ww : (3, 3, n, n)
+        Of each pair of angular velocities, symmetric in them: Σ m H·(e_i × (e_j × r0)), symmetrised.
+    """
+
+    a: Array
+    al: Array
+    ww: Array
+
+
+@record
+class LoadTerms:
+    """Generalised forces of unit components of loads to first order in q: constant + slope q.
+
+    Rows are the resultant force and moment about the root, base axes, then the forces on the coordinates.
+
+    Parameters
+    ----------
+    constant : (loads, 6, 6 + n)
+    slope : (loads, 6, 6 + n, n)
+    """
+
+    constant: Array
+    slope: Array
+
+    def generalised(self, q: Array, values: Array) -> Array:
+        """Resultant at the root and forces on the coordinates under load components (loads, 6), (6 + n,)."""
+        xp = namespace(self.constant, q, values)
+        return xp.einsum("li,lij->j", values, self.constant + self.slope @ q)
+
+
+@record
+class Coefficients:
+    """Constant coefficients of a linear model; 2020 (16), (20)–(22); 2009 (24)–(34).
+
+    Parameters
+    ----------
+    mass, damping, stiffness : (n, n)
+    gyroscopic : (3, n, n)
+    k_ww, k_al, k_a : (3, 3, n, n), (3, n, n), (3, n, n)
+        k_ww symmetric in its first two axes, as f_ww is.
+    f_ww, f_al, f_a : (3, 3, n), (3, n), (3, n)
+    rigid : (10,)
+        Of the straight structure: mass kg, first moment Σ m r0 (3) kg m, second moments Σ m r0 r0ᵀ xx, yy, zz, xy, yz,
+        zx kg m².
+    loads : LoadTerms or None
+    """
+
+    mass: Array
+    damping: Array
+    stiffness: Array
+    gyroscopic: Array
+    k_ww: Array
+    k_al: Array
+    k_a: Array
+    f_ww: Array
+    f_al: Array
+    f_a: Array
+    rigid: Array
+    loads: LoadTerms | None = None
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return int(self.mass.shape[0])
+
+    def at(
+        self, a_WO_B: Array, w_WB_B: Array, alpha_WB_B: Array, load_values: Array | None = None
+    ) -> tuple[Array, Array, Array]:
+        """C + G, K and F, (..., n, n) and (..., n), at base motions (..., 3) under load components (..., loads, 6)."""
+        xp = namespace(self.mass, a_WO_B, w_WB_B, load_values)
+        w2 = w_WB_B[..., :, None] * w_WB_B[..., None, :]
+
+        def term(values: Array, constants: Array, axes: int) -> Array:
+            # One matrix product over all times: contraction of the leading axes.
+            flat = xp.reshape(values, (*values.shape[: values.ndim - axes], -1))
+            return xp.reshape(
+                flat @ xp.reshape(constants, (flat.shape[-1], -1)), (*flat.shape[:-1], *constants.shape[axes:])
+            )
+
+        velocity = self.damping + term(w_WB_B, self.gyroscopic, 1)
+        stiffness = self.stiffness + term(w2, self.k_ww, 2) + term(alpha_WB_B, self.k_al, 1)
+        stiffness = stiffness + term(a_WO_B, self.k_a, 1)
+        force = term(w2, self.f_ww, 2) + term(alpha_WB_B, self.f_al, 1) + term(a_WO_B, self.f_a, 1)
+        if load_values is not None and self.loads is not None:
+            stiffness = stiffness - term(load_values, self.loads.slope[:, :, 6:], 2)
+            force = force + term(load_values, self.loads.constant[:, :, 6:], 2)
+        return velocity, stiffness, force
+
+    def residual(
+        self,
+        q: Array,
+        qd: Array,
+        qdd: Array,
+        a_WO_B: Array,
+        w_WB_B: Array,
+        alpha_WB_B: Array,
+        load_values: Array | None = None,
+    ) -> Array:
+        """Residual on a base whose motion is given, (n,); zero where the equations hold."""
+        velocity, stiffness, force = self.at(a_WO_B, w_WB_B, alpha_WB_B, load_values)
+        return self.mass @ qdd + velocity @ qd + stiffness @ q - force
+
+    def strain_energy(self, q: Array) -> Array:
+        """½ qᵀKq, J."""
+        return 0.5 * q @ self.stiffness @ q
+
+    def damped(self, damping: Array) -> Coefficients:
+        """The same coefficients with another damping matrix."""
+        return replace(self, damping=damping)
+
+
+def coefficients(
+    mass: Array,
+    places: Places,
+    stiffness: Array,
+    *,
+    damping: Array | None = None,
+    geometric: Geometric | None = None,
+    loads: LoadTerms | None = None,
+) -> Coefficients:
+    """Sum the coefficients of a linear model over its particles.
+
+    Parameters
+    ----------
+    mass : (k,)
+        Of the particles, kg.
+    places : Places
+        Of the particles; of the second derivatives nothing is read where `geometric` is given.
+    stiffness : (n, n)
+        Elastic.
+    damping : (n, n), optional
+        Zero by default.
+    geometric : Geometric, optional
+        In place of the second derivatives of the places.
+    loads : LoadTerms, optional
+    """
+    xp = namespace(mass, places.r0, places.first, stiffness)
+    r0, first = places.r0, places.first
+    axes, n = r0.shape[1], first.shape[2]
+    # Products of shapes for each pair of directions, (3, 3, n, n): one matrix product.
+    rows = xp.reshape(first, (-1, axes * n))
+    pairs = xp.reshape(rows.T @ (mass[:, None] * rows), (axes, n, axes, n))
+    pairs = xp.moveaxis(pairs, 2, 1)
+    weighted = mass[:, None] * r0
+    sums, moments = xp.einsum("k,kai->ai", mass, first), xp.einsum("kb,kai->abi", weighted, first)
+    extra = _geometric(xp, mass, weighted, places) if geometric is None else geometric
+    second = weighted.T @ r0
+    rigid = xp.stack(
+        [mass.sum(), *weighted.sum(axis=0), *(second[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)))]
+    )
+    zero = xp.zeros((n, n))
+    return Coefficients(
+        mass=xp.einsum("aaij->ij", pairs),
+        damping=zero if damping is None else damping,
+        stiffness=stiffness,
+        gyroscopic=2 * _once(xp, pairs),
+        k_ww=_twice(xp, pairs) + extra.ww,
+        k_al=_once(xp, pairs) + extra.al,
+        k_a=extra.a,
+        f_ww=-_twice(xp, moments),
+        f_al=-_once(xp, moments),
+        f_a=-sums,
+        rigid=rigid,
+        loads=loads,
+    )
+
+
+def _geometric(xp: Any, mass: Array, weighted: Array, places: Places) -> Geometric:
+    """Σ m H weighted with unit inertial loads."""
+    points, axes, n, _ = places.second.shape
+    flat = xp.reshape(places.second, (points, -1))
+    shaped = (-1, axes, n, n)
+    of_place = xp.swapaxes(xp.reshape(weighted.T @ flat, shaped), 0, 1)  # Σ m H_a r0_b
+    return Geometric(xp.reshape(mass @ flat, shaped[1:]), _once(xp, of_place), _twice(xp, of_place))
+
+
+def _twice(xp: Any, x: Array) -> Array:
+    """a·(ω × (ω × b)) = (a·ω)(b·ω) − a·b ω², symmetric in the two rates, of products x[a, b, ...]."""
+    trace = xp.einsum("aa...->...", x)
+    ones = xp.reshape(xp.eye(3), (3, 3) + (1,) * (x.ndim - 2))
+    return 0.5 * (x + xp.swapaxes(x, 0, 1)) - ones * trace
+
+
+def _once(xp: Any, x: Array) -> Array:
+    """a·(α × b) of products x[a, b, ...]: along the axes of α."""
+    return xp.tensordot(xp.asarray(EPSILON), x, axes=((0, 2), (0, 1)))

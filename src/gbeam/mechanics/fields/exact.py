@@ -1,0 +1,155 @@
+"""The geometrically exact field."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record, static
+from gbeam.mechanics.fields.basis import Families, Quadrature, polynomials
+from gbeam.mechanics.fields.rotation import (
+    Strains,
+    about_x,
+    block,
+    exponential_of,
+    one_minus_sinc,
+    rotation_matrix,
+)
+from gbeam.mechanics.fields.taylor import Places, Turns, exponential
+
+Array = Any
+
+
+@record
+class ExactField:
+    """The geometrically exact field r = ∫(1 + ε) R e₁ dσ, any rotation: R = exp[φ]× Rx(α).
+
+    ε and the rotation vector φ = (0, φ_y, φ_z) are sums of shapes. The twist α keeps the frame free of torsion
+    (κ_x = 0): the beam is stiff in torsion, which is out of scope. In one plane φ is the angle itself and has no limit;
+    out of plane the rotation vector has its pole where the tangent points straight back, |φ| = π. Angles at the points
+    are (points, n); what is at the quadrature nodes is (g, n).
+    """
+
+    angle_y: Array
+    angle_z: Array
+    node_angle_y: Array
+    node_angle_z: Array
+    node_strain: Array
+    node_slope_y: Array
+    node_slope_z: Array
+    cumulative: Array
+    planar: bool = static()
+
+    def position(self, q: Array) -> Array:
+        """Positions of the points of the axis at coordinates (..., n), (..., points, 3) m."""
+        xp = namespace(self.cumulative, q)
+        y, z = q @ self.node_angle_y.T, q @ self.node_angle_z.T
+        sinc, _, cosine = exponential_of(y**2 + z**2)
+        tangent = xp.stack([cosine, sinc * z, -sinc * y], axis=-1)
+        return self.cumulative @ ((1 + q @ self.node_strain.T)[..., None] * tangent)
+
+    def rotation(self, q: Array, at: Any = slice(None)) -> Array:
+        """Rotations of the sections `at` some points at coordinates (..., n), (..., points, 3, 3)."""
+        xp = namespace(self.cumulative, q)
+        y, z = q @ self.angle_y[at].T, q @ self.angle_z[at].T
+        arc = rotation_matrix(xp.stack([0 * y, y, z], axis=-1))
+        return arc if self.planar else arc @ about_x(self._twist_rate(q) @ self.cumulative[at].T)
+
+    def strains(self, q: Array) -> Strains:
+        """Axial strain and curvatures at the quadrature nodes, in the torsion-free frame."""
+        xp = namespace(self.cumulative, q)
+        slope_y, slope_z, strain = q @ self.node_slope_y.T, q @ self.node_slope_z.T, q @ self.node_strain.T
+        if self.planar:
+            return Strains(strain, slope_y, slope_z)
+        y, z = q @ self.node_angle_y.T, q @ self.node_angle_z.T
+        sinc, _, _ = exponential_of(y**2 + z**2)
+        # Curvature of exp[φ]×: sinc φ' + (1 − sinc)/φ² (φ·φ') φ − versine φ × φ', the last along x.
+        along = one_minus_sinc(y**2 + z**2) * (y * slope_y + z * slope_z)
+        bend_y, bend_z = sinc * slope_y + along * y, sinc * slope_z + along * z
+        nodes = self.node_strain.shape[0]
+        twist = self._twist_rate(q) @ self.cumulative[:nodes].T
+        c, s = xp.cos(twist), xp.sin(twist)
+        return Strains(strain, c * bend_y + s * bend_z, c * bend_z - s * bend_y)
+
+    def strain_slopes(self) -> Strains:
+        """Derivatives of the strains at the straight beam, (g, n) each."""
+        return Strains(self.node_strain, self.node_slope_y, self.node_slope_z)
+
+    def places(self) -> Places:
+        """Taylor polynomial of the positions: (1 + ε) (1 − ½ φ², φ_z, −φ_y), integrated."""
+        xp = namespace(self.cumulative, self.node_strain)
+        y, z, strain = self.node_angle_y, self.node_angle_z, self.node_strain
+        first = xp.stack([strain, z, -y], axis=1)
+        square = -0.5 * (xp.einsum("pi,pj->pij", y, y) + xp.einsum("pi,pj->pij", z, z))
+        second = xp.stack(
+            [square, xp.einsum("pi,pj->pij", strain, z), -xp.einsum("pi,pj->pij", strain, y)], axis=1
+        )
+        o = xp.zeros(self.cumulative.shape[0])
+        r0 = xp.stack([xp.sum(self.cumulative, axis=1), o, o], -1)
+        second = xp.einsum("pg,gaij->paij", self.cumulative, second + xp.swapaxes(second, -1, -2))
+        return Places(r0, xp.einsum("pg,gai->pai", self.cumulative, first), second)
+
+    def turns(self) -> Turns:
+        """Taylor polynomial of the rotations."""
+        xp = namespace(self.cumulative, self.node_strain)
+        first = xp.stack([0 * self.angle_y, self.angle_y, self.angle_z], axis=1)
+        points, n = self.angle_y.shape
+        second = xp.zeros((points, 3, n, n))
+        if not self.planar:
+            y, z = self.node_angle_y, self.node_angle_z
+            rate = 0.5 * (xp.einsum("pi,pj->pij", y, self.node_slope_z) - xp.einsum("pi,pj->pij", z, self.node_slope_y))
+            twist = xp.einsum("pg,gij->pij", self.cumulative, rate + xp.swapaxes(rate, -1, -2))
+            second = xp.stack([twist, 0 * twist, 0 * twist], axis=1)
+        return exponential(first, second)
+
+    def _twist_rate(self, q: Array) -> Array:
+        """α' = −κ_x of exp[φ]× at the nodes."""
+        y, z = q @ self.node_angle_y.T, q @ self.node_angle_z.T
+        _, versine, _ = exponential_of(y**2 + z**2)
+        return versine * (y * (q @ self.node_slope_z.T) - z * (q @ self.node_slope_y.T))
+
+
+def exact_field(
+    length: float,
+    rule: Quadrature,
+    x: np.ndarray,
+    counts: tuple[int, int, int],
+    families: Families | None = None,
+) -> ExactField:
+    """Build the geometrically exact field: axial slopes are its strains, bending slopes its rotations.
+
+    Parameters
+    ----------
+    length : beam length, m
+    rule : quadrature along the beam
+    x : (points,) positions where r is sampled, m; they start with the quadrature nodes
+    counts : numbers of strain shapes, and of rotation shapes for bending along y and along z
+    families : the shapes; polynomials unless given
+
+    Raises
+    ------
+    ValueError
+        If the points do not start with the quadrature nodes.
+    """
+    strain, along_y, along_z = counts
+    n, nodes = sum(counts), len(rule.node)
+    if not np.array_equal(x[:nodes], rule.node):
+        raise ValueError("the points of an exact field start with the quadrature nodes")
+    s, v, w = families or polynomials(length, counts)
+    shapes_v, shapes_w = v(x), w(x)
+    # Bending towards +z turns about −y.
+    about_y = [-block(f, strain + along_y, n) for f in (shapes_w.slope, shapes_w.curvature)]
+    about_z = [block(f, strain, n) for f in (shapes_v.slope, shapes_v.curvature)]
+    return ExactField(
+        angle_y=about_y[0],
+        angle_z=about_z[0],
+        node_angle_y=about_y[0][:nodes],
+        node_angle_z=about_z[0][:nodes],
+        node_strain=block(s(rule.node).slope, 0, n),
+        node_slope_y=about_y[1][:nodes],
+        node_slope_z=about_z[1][:nodes],
+        cumulative=rule.cumulative(x),
+        planar=along_y == 0 or along_z == 0,
+    )

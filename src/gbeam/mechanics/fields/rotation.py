@@ -1,0 +1,102 @@
+"""Rotation matrices of rotation vectors, smooth through zero; what the fields share."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from gbeam.arrays.namespace import namespace
+from gbeam.mechanics.fields.taylor import Places, Turns
+
+Array = Any
+
+
+class Strains(NamedTuple):
+    """What stores energy: axial strain, curvature about y and about z, 1/m, at the quadrature nodes, (g,) each.
+
+    `root` is the stretch of the root's springs, m or rad, (springs,); empty for a clamped root.
+    """
+
+    axial: Array
+    about_y: Array
+    about_z: Array
+    root: Array = np.zeros(0)
+
+
+class Field(Protocol):
+    """A displacement field sampled at the points it was built for."""
+
+    @property
+    def cumulative(self) -> Array:
+        """Weights (points, g) that integrate nodal values from the root to each point, m."""
+        ...
+
+    def position(self, q: Array) -> Array:
+        """Positions r of the points of the axis at coordinates (..., n), base axes, (..., points, 3) m."""
+        ...
+
+    def rotation(self, q: Array, at: Any = slice(None)) -> Array:
+        """Rotation matrices R_BS of the sections at all points, or `at` some, (..., points, 3, 3)."""
+        ...
+
+    def strains(self, q: Array) -> Strains:
+        """Strains that store energy, at the quadrature nodes."""
+        ...
+
+    def places(self) -> Places:
+        """Taylor polynomial of the positions at the straight beam."""
+        ...
+
+    def turns(self) -> Turns:
+        """Taylor polynomial of the rotations at the straight beam."""
+        ...
+
+    def strain_slopes(self) -> Strains:
+        """Derivatives of the strains at the straight beam, (g, n) each."""
+        ...
+
+
+def rotation_matrix(angle: Array) -> Array:
+    """Rotation matrices (..., 3, 3) of rotation vectors (..., 3)."""
+    xp = namespace(angle)
+    sinc, versine, _ = exponential_of(xp.sum(angle**2, axis=-1))
+    x, y, z = angle[..., 0], angle[..., 1], angle[..., 2]
+    o = xp.zeros_like(x)
+    skew = xp.stack([xp.stack([o, -z, y], -1), xp.stack([z, o, -x], -1), xp.stack([-y, x, o], -1)], -2)
+    return xp.eye(3) + sinc[..., None, None] * skew + versine[..., None, None] * (skew @ skew)
+
+
+def exponential_of(square: Array) -> tuple[Array, Array, Array]:
+    """sin φ/φ, (1 − cos φ)/φ² and cos φ of φ², smooth through zero."""
+    xp = namespace(square)
+    small = xp.abs(square) < 1e-4
+    theta = xp.sqrt(xp.where(small, 1.0, square))
+    sinc = xp.where(small, 1 - square / 6 * (1 - square / 20 * (1 - square / 42)), xp.sin(theta) / theta)
+    versine = xp.where(
+        small, 0.5 - square / 24 * (1 - square / 30 * (1 - square / 56)), (1 - xp.cos(theta)) / theta**2
+    )
+    return sinc, versine, 1 - square * versine
+
+
+def one_minus_sinc(square: Array) -> Array:
+    """(1 − sin φ/φ)/φ² of φ², smooth through zero."""
+    xp = namespace(square)
+    small = xp.abs(square) < 1e-2
+    theta = xp.sqrt(xp.where(small, 1.0, square))
+    series = (1 - square / 20 * (1 - square / 42 * (1 - square / 72 * (1 - square / 110)))) / 6
+    return xp.where(small, series, (1 - xp.sin(theta) / theta) / theta**2)
+
+
+def about_x(angle: Array) -> Array:
+    """Rotation matrices (..., 3, 3) about x."""
+    xp = namespace(angle)
+    c, s, o = xp.cos(angle), xp.sin(angle), xp.zeros_like(angle)
+    return xp.stack([xp.stack([o + 1, o, o], -1), xp.stack([o, c, -s], -1), xp.stack([o, s, c], -1)], -2)
+
+
+def block(shapes: np.ndarray, start: int, total: int) -> np.ndarray:
+    """Place (points, k) shape values in columns start … start + k of (points, total)."""
+    out = np.zeros((shapes.shape[0], total))
+    out[:, start : start + shapes.shape[1]] = shapes
+    return out

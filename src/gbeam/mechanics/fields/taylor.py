@@ -1,0 +1,103 @@
+"""Taylor polynomials at the straight beam of where points lie and how sections turn, to second order in q."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record
+
+
+@record
+class Places:
+    """Places r = r0 + J q + ½ q H q of points, base axes.
+
+    Parameters
+    ----------
+    r0 : (p, 3) m
+    first : (p, 3, n)
+        J, per coordinate.
+    second : (p, 3, n, n)
+        H, symmetric in its last two axes.
+    """
+
+    r0: Any
+    first: Any
+    second: Any
+
+    def __getitem__(self, chosen: Any) -> Places:
+        """The polynomials of some of the points."""
+        return Places(self.r0[chosen], self.first[chosen], self.second[chosen])
+
+    def slopes(self, q: Any) -> Any:
+        """∂r/∂q = J + H q at coordinates (..., n), (..., p, 3, n)."""
+        xp = namespace(self.first, q)
+        return self.first + xp.einsum("paij,...j->...pai", self.second, q)
+
+    def positions(self, q: Any) -> Any:
+        """Places at coordinates (..., n), (..., p, 3) m."""
+        xp = namespace(self.first, q)
+        linear = xp.einsum("pai,...i->...pa", self.first, q)
+        return self.r0 + linear + 0.5 * _quadratic(xp, self.second, q, q)
+
+    def paths(self, q: Any, qd: Any, qdd: Any) -> tuple[Any, Any, Any]:
+        """Places, velocities and accelerations relative to the base axes, (..., p, 3) each."""
+        xp = namespace(self.first, q)
+        slopes = self.slopes(q)
+        velocity, relative = (xp.einsum("...pai,...i->...pa", slopes, rate) for rate in (qd, qdd))
+        return self.positions(q), velocity, relative + _quadratic(xp, self.second, qd, qd)
+
+
+def _quadratic(xp: Any, second: Any, left: Any, right: Any) -> Any:
+    """Contraction of second derivatives (p, 3, n, n) with two vectors (..., n), (..., p, 3)."""
+    points, axes, n, _ = second.shape
+    half = xp.reshape(right @ xp.reshape(second, (-1, n)).T, (*right.shape[:-1], points, axes, n))
+    return xp.einsum("...pai,...i->...pa", half, left)
+
+
+@record
+class Turns:
+    """Rotation matrices R = 1 + R1 q + ½ q R2 q of sections, base axes.
+
+    Parameters
+    ----------
+    first : (p, 3, 3, n)
+    second : (p, 3, 3, n, n)
+    """
+
+    first: Any
+    second: Any
+
+    def __getitem__(self, chosen: Any) -> Turns:
+        """The polynomials of some of the sections."""
+        return Turns(self.first[chosen], self.second[chosen])
+
+    def after(self, other: Turns) -> Turns:
+        """The product R_self R_other."""
+        xp = namespace(self.first, other.first)
+        cross = xp.einsum("pabi,pbcj->pacij", self.first, other.first)
+        return Turns(self.first + other.first, self.second + other.second + cross + xp.swapaxes(cross, -1, -2))
+
+    def carry(self, places: Places, offset: Any) -> Places:
+        """Places of points that are fixed to the sections, `offset` (p, 3) m from `places`, section axes."""
+        xp = namespace(self.first, places.first, offset)
+        return Places(
+            places.r0 + offset,
+            places.first + xp.einsum("pabi,pb->pai", self.first, offset),
+            places.second + xp.einsum("pabij,pb->paij", self.second, offset),
+        )
+
+
+EPSILON = np.zeros((3, 3, 3))  # Levi-Civita's symbol
+EPSILON[0, 1, 2] = EPSILON[1, 2, 0] = EPSILON[2, 0, 1] = 1.0
+EPSILON[0, 2, 1] = EPSILON[2, 1, 0] = EPSILON[1, 0, 2] = -1.0
+
+
+def exponential(first: Any, second: Any) -> Turns:
+    """Turns exp[φ]× of rotation vectors φ = φ1 q + ½ q φ2 q, with `first` (p, 3, n) and `second` (p, 3, n, n)."""
+    xp = namespace(first, second)
+    skew, bend = -xp.einsum("abc,pci->pabi", EPSILON, first), -xp.einsum("abc,pcij->pabij", EPSILON, second)
+    square = xp.einsum("pabi,pbcj->pacij", skew, skew)  # ½ [φ]×²
+    return Turns(skew, bend + 0.5 * (square + xp.swapaxes(square, -1, -2)))

@@ -1,0 +1,74 @@
+"""What moves and what stretches: the particles of a displacement field, and its strain energy."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record
+from gbeam.mechanics.fields.rotation import Field, Strains
+from gbeam.mechanics.fields.taylor import Places
+
+Array = Any
+
+
+@record
+class Inertia:
+    """The particles of a field: the beam's quadrature points and the attached bodies.
+
+    Parameters
+    ----------
+    field : Field
+        Its points are the particles' stations.
+    station : (particles,) int
+        Index of each particle's point in the field.
+    mass : (particles,) kg
+    offset : (particles, 3) m, or None
+        From the beam's axis, section axes; None where all particles lie on the axis.
+    """
+
+    field: Field
+    station: Array
+    mass: Array
+    offset: Array | None
+
+    def positions(self, q: Array) -> Array:
+        """Positions of the particles at coordinates (..., n), base axes, (..., particles, 3) m."""
+        r = self.field.position(q)[..., self.station, :]
+        if self.offset is None:
+            return r
+        xp = namespace(r, self.offset)
+        return r + xp.einsum("...kij,kj->...ki", self.field.rotation(q, self.station), self.offset)
+
+    def places(self) -> Places:
+        """Taylor polynomial of the positions at the straight beam."""
+        axis = self.field.places()[self.station]
+        return axis if self.offset is None else self.field.turns()[self.station].carry(axis, self.offset)
+
+
+@record
+class Elasticity:
+    """The strain energy of a field, U = ½ ∫ EA ε² + EI_y κ_y² + EI_z κ_z² dx + ½ Σ k s² of the root's springs.
+
+    2009 (10); 2020 (8), corrected.
+
+    Parameters
+    ----------
+    field : Field
+    rigidity : Strains
+        EA N, EI_y and EI_z N m² times the quadrature weights, N m and N m³, (g,) each; the springs' stiffnesses.
+    """
+
+    field: Field
+    rigidity: Strains
+
+    def energy(self, q: Array) -> Array:
+        """Strain energy at coordinates (n,), J."""
+        parts = [(k * e**2).sum() for k, e in zip(self.rigidity, self.field.strains(q), strict=True)]
+        return 0.5 * (parts[0] + parts[1] + parts[2] + parts[3])
+
+    def stiffness(self) -> Array:
+        """Second derivatives of the energy at the straight beam, (n, n)."""
+        slopes = self.field.strain_slopes()
+        parts = [b.T @ (k[:, None] * b) for k, b in zip(self.rigidity, slopes, strict=True) if len(k)]
+        return sum(parts[1:], start=parts[0])

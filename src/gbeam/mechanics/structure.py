@@ -1,0 +1,222 @@
+"""What every analysis reads: a structure in its coordinates, with its equations, its places and what its sections are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gbeam.arrays.namespace import is_jax
+from gbeam.arrays.tree import record
+from gbeam.errors import InputError
+from gbeam.mechanics.damping import damping_matrix, rest_modes
+from gbeam.mechanics.equations.hub import FreeHub, free_hub, ground_of
+from gbeam.mechanics.equations.linear import Coefficients, Geometric, coefficients
+from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
+from gbeam.mechanics.fields.rotation import Field
+from gbeam.mechanics.fields.taylor import Places
+from gbeam.structure.section import SectionValues
+
+if TYPE_CHECKING:
+    from gbeam.mechanics.equations.dalembert import Complete, CompleteHub
+    from gbeam.mechanics.inertia import Elasticity, Inertia
+
+Array = Any
+
+
+@record
+class Sections:
+    """A beam's sections at its root and stations, and what lies outboard of each.
+
+    Parameters
+    ----------
+    values : SectionValues
+        Areas, second moments and extreme fibres, (s,) each.
+    mass : (s, particles) kg
+        Of the particles outboard of each section.
+    loaded : (s, loaded points)
+        1, or m of a load per length, outboard of each section.
+    """
+
+    values: SectionValues
+    mass: Array
+    loaded: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Structure:
+    """A structure in a model's coordinates; made by :func:`gbeam.assemble`, or of particles by :meth:`of_particles`.
+
+    Parameters
+    ----------
+    kind : str
+        The model's.
+    linear : bool
+        Whether the polynomial of the places is the whole model: equations linear on a prescribed base.
+    hub_force : bool
+        Whether a free hub feels Q_θ.
+    counts : (axial, along y, along z)
+        Numbers of shapes; the root's springs come after them.
+    length : float
+        m.
+    mass : (particles,) kg
+    places : Places
+        Of the particles, to second order.
+    stations : (s,) positions of output along the beam, m; the last is the tip
+    station_places : Places
+        Of the stations.
+    coefficients : Coefficients
+        Of the linear equations about the straight structure.
+    inertia, elasticity : Inertia and Elasticity, or None
+        Of a displacement field: particles and strain energy without truncation; None for a structure of particles.
+    field : Field or None
+        Its points are the quadrature nodes, the bodies, the loaded points and the stations.
+    first_station : int
+        Index of the first station among the field's points.
+    sections : Sections or None
+        None where the structure has none: no loads along it are computed.
+    history : LoadHistory or None
+        The loads over time.
+    work : LoadWork or None
+        Where they act on the field.
+    load_values : (loads, 6) or None
+        Components of the loads that static, modes and stability see: those of time zero, see :meth:`at_time`.
+    """
+
+    kind: str
+    linear: bool
+    hub_force: bool
+    counts: tuple[int, int, int]
+    length: float
+    mass: Array
+    places: Places
+    stations: Array
+    station_places: Places
+    coefficients: Coefficients
+    inertia: Inertia | None = None
+    elasticity: Elasticity | None = None
+    field: Field | None = None
+    first_station: int = 0
+    sections: Sections | None = None
+    history: LoadHistory | None = None
+    work: LoadWork | None = None
+    load_values: Array | None = None
+
+    @classmethod
+    def of_particles(
+        cls,
+        mass: Array,
+        r0: Array,
+        first: Array,
+        stiffness: Array,
+        *,
+        second: Array | None = None,
+        geometric: Geometric | None = None,
+        damping_ratio: Any = 0.0,
+        stations: Array | None = None,
+        kind: str = "particles",
+    ) -> Structure:
+        """A linear structure of any shape: particles with places, and an elastic stiffness.
+
+        Parameters
+        ----------
+        mass : (k,) kg
+        r0 : (k, 3) places at rest, base axes, m
+        first : (k, 3, n) first derivatives of the places, per coordinate
+        stiffness : (n, n)
+        second : (k, 3, n, n), optional
+            Second derivatives of the places; this or `geometric`.
+        geometric : Geometric, optional
+            Geometric stiffness at the static stress of unit inertial loads.
+        damping_ratio : float or sequence
+            Modal.
+        stations : (s,) int, optional
+            Indices of the particles whose displacement is put out, the "tip" last; by default the last particle.
+        kind : str
+            For results.
+
+        Raises
+        ------
+        InputError
+            If neither or both of `second` and `geometric` are given.
+        """
+        if (second is None) == (geometric is None):
+            raise InputError("second", "and geometric are one in place of the other", "give exactly one of them")
+        n = first.shape[-1]
+        places = Places(r0, first, np.zeros((*first.shape, n)) if second is None else second)
+        c = coefficients(mass, places, stiffness, geometric=geometric)
+        c = c.damped(damping_matrix(damping_ratio, c.mass, c.stiffness))
+        chosen = np.array([-1]) if stations is None else np.asarray(stations)
+        return cls(
+            kind=kind,
+            linear=True,
+            hub_force=True,
+            counts=(0, 0, 0),
+            length=float(np.ptp(np.asarray(r0)[:, 0])),
+            mass=mass,
+            places=places,
+            stations=np.asarray(r0)[chosen, 0],
+            station_places=places[chosen],
+            coefficients=c,
+        )
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return self.coefficients.size
+
+    @property
+    def traced(self) -> bool:
+        """Whether JAX traces its values, which then have no numbers to decide anything by."""
+        return is_jax(self.coefficients.mass)
+
+    @cached_property
+    def equations(self) -> Coefficients | Complete:
+        """The equations of motion on a prescribed base."""
+        if self.linear:
+            return self.coefficients
+        from gbeam.mechanics.equations.dalembert import Complete
+
+        assert self.inertia is not None and self.elasticity is not None
+        return Complete(self.inertia, self.elasticity, self.coefficients.damping, self.work)
+
+    def on_free_hub(self, hub: Any) -> FreeHub | CompleteHub:
+        """The equations with the angle of a free hub as one more coordinate.
+
+        Parameters
+        ----------
+        hub : gbeam.Hub
+        """
+        if self.linear:
+            return free_hub(self.coefficients, hub.mount, ground_of(hub), hub_force=self.hub_force)
+        from gbeam.mechanics.equations.dalembert import CompleteHub
+
+        return CompleteHub(self.equations, hub.mount, ground_of(hub))  # type: ignore[arg-type]
+
+    @cached_property
+    def rest(self) -> tuple[Array, Array]:
+        """Circular frequencies (n,) rad/s, ascending, and mass-normalised modes (n, n) on a base at rest."""
+        return rest_modes(self.coefficients.mass, self.coefficients.stiffness)
+
+    def at_time(self, time: float) -> Structure:
+        """The same structure with its loads frozen as they are at a time, s; static, modes and stability see those."""
+        return self if self.history is None else replace(self, load_values=self.history(np.asarray(float(time))))
+
+    @cached_property
+    def load_places(self) -> Places:
+        """Places of the loaded points, to second order."""
+        assert self.field is not None and self.work is not None
+        return self.field.places()[self.work.station]
+
+    def strain_energy(self, q: Array) -> Array:
+        """Strain energy at coordinates (n,), J."""
+        return self.equations.strain_energy(q)
+
+    def displacement(self, q: Array) -> Array:
+        """Displacement of the stations relative to the base axes at coordinates (..., n), (..., s, 3) m."""
+        if self.linear:
+            return self.station_places.positions(q) - self.station_places.r0
+        assert self.field is not None
+        return self.field.position(q)[..., self.first_station :, :] - self.station_places.r0
