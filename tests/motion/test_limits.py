@@ -20,7 +20,7 @@ from gbeam.motion import (
     vector,
 )  # fmt: skip
 from gbeam.motion.centrifuge.target.reachability import TOO_SHARP
-from gbeam.results.response import Shortfall
+from gbeam.results.machine import Shortfall
 
 G, R = STANDARD_GRAVITY, 3.3
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import scipy.optimize
 
 GRID = 5  # coarse points
 _RESOLUTION = 0.02  # of the number
@@ -30,11 +29,11 @@ def refine(evaluate: Evaluate, points: tuple[float, ...]) -> None:
     points : tuple of float
         Ascending, already evaluated: evaluating them again costs nothing.
     """
-    found = [evaluate(x) for x in points]
-    allowed = [i for i, (_, share) in enumerate(found) if share <= 1]
+    values = [evaluate(x) for x in points]
+    allowed = [i for i, (_, share) in enumerate(values) if share <= 1]
     if not allowed:
         return
-    best = min(allowed, key=lambda i: found[i][0])
+    best = min(allowed, key=lambda i: values[i][0])
 
     def edge(inside: float, outside: float) -> float:
         """The last number that is allowed on the way from `inside` to `outside`, by bisection of the ratio."""
@@ -48,11 +47,13 @@ def refine(evaluate: Evaluate, points: tuple[float, ...]) -> None:
     def neighbour(i: int) -> float:
         if not 0 <= i < len(points):
             return points[best]
-        return points[i] if found[i][1] <= 1 else edge(points[best], points[i])
+        return points[i] if values[i][1] <= 1 else edge(points[best], points[i])
 
     low, high = neighbour(best - 1), neighbour(best + 1)
     if high <= low * (1 + _RESOLUTION):
         return
+    import scipy.optimize
+
     scipy.optimize.minimize_scalar(
         lambda x: evaluate(float(np.exp(x)))[0],
         bounds=(np.log(low), np.log(high)),

@@ -67,9 +67,7 @@ def centrifuges(
     return built
 
 
-def centrifuge_of(
-    table: schema.Centrifuge, flight: motion.Flight, span: tuple[float, float]
-) -> motion.Centrifuge:
+def centrifuge_of(table: schema.Centrifuge, flight: motion.Flight, span: tuple[float, float]) -> motion.Centrifuge:
     """Build one centrifuge for the flight that it tracks, over a span, s; InputError if it cannot."""
     machine = None if table.machine is None else motion.machines[table.machine]
     example = motion.MachineLimits() if machine is None else machine.limits

@@ -2,35 +2,31 @@
 
 About the control point C the centrifuge adds Δa(x, t) = g(t)(x − x_c) to the load of the flight (2020 (4)), and the
 axis motions, so g, do not depend on where C lies in the specimen. Each measure of the response to Δa is then the size
-of A(t) − x_c B(t): two histories found once, and a convex function of x_c. Which mounting and width of smoothing give
-the best such point within the machine's limits is searched for, each with axis motions of its own.
+of A(t) − x_c B(t): two histories computed once, and a convex function of x_c. Which mounting and width of smoothing
+give the best such point within the machine's limits is searched for, each with axis motions of its own.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
 
-import equinox as eqx
-import jax
-import jax.numpy as jnp
 import numpy as np
-import scipy.optimize
 
 from gbeam.analysis.imitation.comparison import CUTOFF, compare
 from gbeam.analysis.imitation.place_measures import Answers, Histories
-from gbeam.analysis.response.section_forces import internal_loads
+from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
-from gbeam.analysis.study.case import ResponseSettings
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record
 from gbeam.errors import ComputationError, InputError
-from gbeam.mechanics.assembly import Structure
+from gbeam.mechanics.structure import Structure
 from gbeam.motion import Base, Centrifuge, Flight
 from gbeam.motion.centrifuge.limits import exceeded
 from gbeam.numerics.bounded_search import refine
 from gbeam.numerics.low_pass import low_pass
 from gbeam.results.placement import MEASURES, Candidate, Placement, Verification
-from gbeam.results.response import Response
-from gbeam.structure.beam import Beam
 
 EXCEEDED = "limits exceeded"  # an outcome
 
@@ -69,7 +65,7 @@ def place(
     *,
     current: Centrifuge,
     names: tuple[str, str] = ("flight", "centrifuge"),
-    beam: Beam | None = None,
+    check: bool = False,
 ) -> Placement:
     """Find the control point, mounting and smoothing that change a specimen's response least.
 
@@ -80,7 +76,7 @@ def place(
     choice : Choice
         Mountings and widths of smoothing.
     settings : ResponseSettings
-        Its span is what is looked at.
+        Whose span is judged.
     weights : mapping of str to float
         Measures to add up, each as a fraction of its peak in flight, across the beam: ``root-shear`` and
         ``root-moment`` (quasi-static), ``vibration`` (of the first mode, at the tip), ``tip`` (quasi-static
@@ -90,9 +86,8 @@ def place(
         The scenario's own: its control point is compared with.
     names : tuple of str
         Of flight and centrifuge.
-    beam : Beam, optional
-        With it the answer is proven by the model's own response, and so are the current control point and the middle
-        of the beam.
+    check : bool
+        Whether to check the answer, the current control point and the middle of the beam by simulation.
 
     Raises
     ------
@@ -102,54 +97,54 @@ def place(
         If every option exceeds the machine's limits (outcome ``limits exceeded``); it names the nearest.
     """
     check_weights(weights)
-    tried = _Tried(structure, flight, choice, settings, weights)
+    trials = _Trials(structure, flight, choice, settings, weights)
     for width in reversed(choice.widths):  # the widest first, see Answers
         for mounting in choice.mountings:
-            tried(mounting, width)
-    if not tried.found:
-        raise tried.reasons[0].within(f"motion.{names[1]}")
+            trials(mounting, width)
+    if not trials.evaluated:
+        raise trials.reasons[0].within(f"motion.{names[1]}")
     if choice.refined:
-        leader = tried.ranked()[0].option.mounting
-        refine(lambda width: tried(leader, width), choice.widths)
-    ranked = tried.ranked()
+        leader = trials.ranked()[0].candidate.mounting
+        refine(lambda width: trials(leader, width), choice.widths)
+    ranked = trials.ranked()
     best = ranked[0]
-    if best.option.exceeded and choice.limited:
-        broken = "; ".join(str(use) for use in best.option.exceeded)
+    if best.candidate.exceeded and choice.limited:
+        broken = "; ".join(str(use) for use in best.candidate.exceeded)
         raise ComputationError(
             EXCEEDED,
             f"motion.{names[1]}: none of {len(ranked)} options keeps the machine's limits; nearest comes "
-            f"{best.option.mounting}, {1e3 * best.option.smoothing:.4g} ms: {broken}; "
+            f"{best.candidate.mounting}, {1e3 * best.candidate.smoothing:.4g} ms: {broken}; "
             'try wider smoothing or inverse = "planned"',
         )
-    length, at = structure.length, best.option.control_point
+    length, at = structure.length, best.candidate.control_point
     places = {"best": at, "current": float(current.control_point), "middle": length / 2}
-    verifications = () if beam is None else _prove(structure, beam, flight, best.centrifuge, settings, places)
+    verifications = _verifications(structure, flight, best.centrifuge, settings, places) if check else ()
     return Placement(
         flight=names[0],
         centrifuge=names[1],
         weights=dict(weights),
         length=length,
-        best=best.option,
-        options=tuple(it.option for it in ranked),
+        best=best.candidate,
+        options=tuple(trial.candidate for trial in ranked),
         current=places["current"],
         values={name: {m: h.size(x, False) for m, h in best.histories.items()} for name, x in places.items()},
         verifications=verifications,
-        refused=tuple(tried.refused),
+        refused=tuple(trials.refused),
         widths=(choice.widths[0], choice.widths[-1]),
     )
 
 
 @dataclass(frozen=True)
-class _Found:
-    """An option with what it came from."""
+class _Evaluated:
+    """A candidate with what it came from."""
 
-    option: Candidate
+    candidate: Candidate
     histories: dict[str, Histories]
     centrifuge: Centrifuge
 
 
-class _Tried:
-    """The options tried so far; calling it tries one more."""
+class _Trials:
+    """The candidates evaluated so far; calling it evaluates one more."""
 
     def __init__(
         self,
@@ -161,38 +156,41 @@ class _Tried:
     ) -> None:
         self.answers, self.length, self.flight = Answers(structure, settings), structure.length, flight
         self.choice, self.weights = choice, weights
-        self.found: dict[tuple[str, float], _Found] = {}
+        self.span = settings.start, settings.start + settings.duration
+        self.evaluated: dict[tuple[str, float], _Evaluated] = {}
         self.refused: list[str] = []
         self.reasons: list[InputError] = []
 
     def __call__(self, mounting: str, width: float) -> tuple[float, float]:
         """Weighted measure at the best control point, and the largest share of a limit."""
-        if (mounting, width) not in self.found:
+        if (mounting, width) not in self.evaluated:
             try:
-                self.found[mounting, width] = self._option(mounting, width)
+                self.evaluated[mounting, width] = self._evaluate(mounting, width)
             except InputError as error:
                 self.refused.append(f"{mounting}, {1e3 * width:.4g} ms: {error}")
                 self.reasons.append(error)
                 return np.inf, np.inf
-        it = self.found[mounting, width].option
-        return it.total_error, it.share if self.choice.limited else 0.0
+        candidate = self.evaluated[mounting, width].candidate
+        return candidate.total_error, candidate.share if self.choice.limited else 0.0
 
-    def ranked(self) -> list[_Found]:
+    def ranked(self) -> list[_Evaluated]:
         """Best first; those that break limits last, by how much."""
 
-        def rank(it: _Found) -> tuple[float, float]:
+        def rank(trial: _Evaluated) -> tuple[float, float]:
             # Rounding must not choose between mirror images: then the scenario's own comes first.
-            excess = it.option.share if self.choice.limited and it.option.exceeded else 0.0
-            return excess, float(f"{it.option.total_error:.6g}")
+            excess = trial.candidate.share if self.choice.limited and trial.candidate.exceeded else 0.0
+            return excess, float(f"{trial.candidate.total_error:.6g}")
 
-        return sorted(self.found.values(), key=rank)
+        return sorted(self.evaluated.values(), key=rank)
 
-    def _option(self, mounting: str, width: float) -> _Found:
-        centrifuge = self.choice.make(mounting, width)
+    def _evaluate(self, mounting: str, width: float) -> _Evaluated:
+        import scipy.optimize
+
+        centrifuge = self.choice.make(mounting, width).over(*self.span)
         histories, accelerations = self.answers.histories(self.flight, centrifuge)
 
-        def size(at: float, whole: bool = False) -> float:
-            return sum(weight * histories[name].size(at, whole) for name, weight in self.weights.items())
+        def size(at: float, total: bool = False) -> float:
+            return sum(weight * histories[name].size(at, total) for name, weight in self.weights.items())
 
         least = scipy.optimize.minimize_scalar(
             size, bounds=(0, self.length), method="bounded", options={"xatol": 1e-7 * self.length}
@@ -200,7 +198,7 @@ class _Tried:
         at, uses = float(least.x), centrifuge.usage()
         share = max(use.share for use in uses)
         broken = exceeded(uses)
-        return _Found(
+        return _Evaluated(
             Candidate(mounting, width, at, size(at), size(at, True), accelerations, share, broken),
             histories,
             centrifuge,
@@ -218,46 +216,49 @@ def check_weights(weights: Mapping[str, float], where: str = "measure") -> None:
         raise InputError(where, "has no weight", "give one measure a weight above 0")
 
 
-class _Carried(eqx.Module):
+@record
+class _Carried:
     """A base in translation with the load that a centrifuge makes at its control point: no mismatch anywhere."""
 
+    kind: ClassVar[str] = "flight"
+    free: ClassVar[bool] = False
     centrifuge: Centrifuge
 
-    def base(self, t: jax.Array) -> Base:
+    def base(self, t: Any) -> Base:
         load = self.centrifuge.actual(t)
-        return Base(load, jnp.zeros_like(load), jnp.zeros_like(load))
+        none = namespace(load).zeros_like(load)
+        return Base(load, none, none)
 
     @property
-    def breaks(self) -> jax.Array:
+    def breaks(self) -> Any:
         return self.centrifuge.breaks
 
+    def over(self, start: float, end: float) -> Self:
+        return self
 
-def _prove(
+
+def _verifications(
     structure: Structure,
-    beam: Beam,
     flight: Flight,
     centrifuge: Centrifuge,
     settings: ResponseSettings,
     places: Mapping[str, float],
 ) -> tuple[Verification, ...]:
     """The model's own response at each control point against that in flight."""
-
-    def computed(motion: Flight | Centrifuge) -> Response:
-        response = simulate(structure, motion, settings)
-        return replace(response, loads=internal_loads(structure, beam, response))
-
-    there, verifications = computed(flight), []
-    carried = simulate(structure, _Carried(centrifuge), settings)  # type: ignore[arg-type]  # a motion like any other
-    step = float(there.time[1] - there.time[0])
-    cutoff = CUTOFF * float(there.frequencies[0]) / (2 * np.pi)
+    in_flight = simulate(structure, flight, settings)
+    carried = simulate(structure, _Carried(centrifuge), settings)
+    step = float(in_flight.time[1] - in_flight.time[0])
+    cutoff = CUTOFF * float(in_flight.frequencies[0]) / (2 * np.pi)
+    verifications = []
     for name, at in places.items():
-        here = computed(eqx.tree_at(lambda it: it.control_point, centrifuge, jnp.asarray(at)))
-        answer = compare(there, here)
-        swing = (here.tip - carried.tip)[:, 1:]
+        response = simulate(structure, centrifuge.at(at), settings)
+        comparison = compare(in_flight, response)
+        swing = (response.tip - carried.tip)[:, 1:]
         swing = swing - low_pass(swing, step, cutoff)
-        moment = np.nan if answer.root is None else float(answer.root.moment_difference[1:].max())
+        moment = np.nan if comparison.root is None else float(comparison.root.moment_difference[1:].max())
         apart, swung = (
-            float(np.linalg.norm(values[answer.covered], axis=1).max()) for values in (answer.difference[:, 1:], swing)
+            float(np.linalg.norm(values[comparison.covered], axis=1).max())
+            for values in (comparison.difference[:, 1:], swing)
         )
         verifications.append(Verification(name, at, apart, swung, moment))
     return tuple(verifications)

@@ -6,7 +6,8 @@ import numpy as np
 
 from gbeam.motion import Axes, Centrifuge, axis_history
 from gbeam.motion.centrifuge.limits import usage
-from gbeam.results.response import AxesResult, Commands, Floats, LimitUse, MachinePlan
+from gbeam.results.machine import AxesResult, Commands, LimitUse, MachinePlan
+from gbeam.results.result import Floats
 
 _GRID, _MOST = 2e-3, 50_000  # s between the times of the result; most of them
 _USED_UP = 0.99  # share of a limit
@@ -38,7 +39,12 @@ def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
 
 
 def _broken_promise(
-    motion: Centrifuge, time: Floats, reference: Floats, error: Floats, not_followed: Floats, limits: tuple[LimitUse, ...]
+    motion: Centrifuge,
+    time: Floats,
+    reference: Floats,
+    error: Floats,
+    not_followed: Floats,
+    limits: tuple[LimitUse, ...],
 ) -> tuple[str, ...]:
     """Say where the load is followed worse than the inverse promises; nothing where it is not."""
     size = np.linalg.norm(error, axis=1)

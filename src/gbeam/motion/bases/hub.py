@@ -146,4 +146,3 @@ class Hub:
         half = (end - start)[..., None] / 2
         values = self._prescribed()(start[..., None] + half * (1 + _POINTS))
         return (half * _WEIGHTS * values).sum(axis=-1)
-

@@ -26,7 +26,7 @@ from gbeam.motion.centrifuge.target.build import build_target
 from gbeam.motion.centrifuge.target.reachability import shortfalls
 from gbeam.motion.centrifuge.target.target import Episode, Target
 from gbeam.motion.profiles.profile import sampled
-from gbeam.results.response import LimitUse, Shortfall
+from gbeam.results.machine import LimitUse, Shortfall
 
 MOUNTINGS = {"upright": 1.0, "inverted": -1.0}
 _GRID, _MOST = 1e-3, 200_000  # s between the times at which limits are looked at; most of them

@@ -16,7 +16,7 @@ from gbeam.motion.centrifuge.target.target import Target
 from gbeam.motion.profiles.profile import Profile, sampled
 from gbeam.numerics.intervals import joined, true_runs
 from gbeam.numerics.series import sqrt, square, where
-from gbeam.results.response import Shortfall
+from gbeam.results.machine import Shortfall
 
 TOO_SHARP = "too sharp for the arm"
 _GRID = 0.002  # s
@@ -76,7 +76,7 @@ def _times(target: Target) -> Floats:
 
 
 def size_and_rates(load: Profile, gravity: float, time: Any) -> tuple[Any, Any, Any]:
-    """Horizontal load H = sqrt(f² − γ²), m/s², with its first and second time derivatives, each of the shape of time."""
+    """Horizontal load H = sqrt(f² − γ²), m/s², and its first two time derivatives, each of the shape of time."""
     horizontal2 = square(load.series(time, 2)) - gravity**2
     size = sqrt(where(horizontal2.value > 1e-12, horizontal2, 1e-12))
     value, rate, second = size.derivatives()
@@ -96,7 +96,7 @@ def _idle_remedy(total: Floats, across: Floats, gravity: float) -> str:
 
 
 def _sharp_remedy(width: float | None, load: float) -> str:
-    """What makes a turn trackable, or holds it: the smoothing, s, that is enough, if any; the largest load then, m/s²."""
+    """What makes a turn trackable: the smoothing, s, if one is enough; else the idle that holds the load, m/s²."""
     if width is not None:
         return f'smoothing = "{np.ceil(1e3 * width):.0f} ms" or more is trackable'
     idle = np.ceil(100 * load / UNTOUCHED / STANDARD_GRAVITY) / 100

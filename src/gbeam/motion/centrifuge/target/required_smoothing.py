@@ -66,4 +66,3 @@ def required_smoothing(
                 widths[i] = wide
         wide *= _LADDER
     return widths
-
