@@ -251,7 +251,7 @@ def _verifications(
     cutoff = CUTOFF * float(in_flight.frequencies[0]) / (2 * np.pi)
     verifications = []
     for name, at in places.items():
-        response = simulate(structure, centrifuge.at(at), settings)
+        response = simulate(structure, centrifuge.altered(control_point=at), settings)
         comparison = compare(in_flight, response)
         swing = (response.tip - carried.tip)[:, 1:]
         swing = swing - low_pass(swing, step, cutoff)

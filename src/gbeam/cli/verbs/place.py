@@ -61,7 +61,7 @@ def place(
             weights,
             current=current,
             names=(given.case.tracks[name], name),
-            beam=given.case.beam if check else None,
+            check=check,
         )
     facts = report.to_json(placement)
     write(out, "place", facts)

@@ -58,7 +58,7 @@ class Centrifuge:
         x_c, from the root along the beam to the point where axes 2 and 3 meet, m.
     inverse : str
         A key of :data:`gbeam.motion.INVERSES`: ``quasi-static``, ``flat``, ``exact`` or ``planned``.
-    limits : MachineLimits or Machine, optional
+    limits : MachineLimits, Machine or Limits, optional
         ``planned`` keeps them, the other inverses only report. A Machine, such as one of
         :data:`gbeam.motion.machines`, also gives its idle level where that is left out.
     gravity : bool
@@ -106,7 +106,7 @@ class Centrifuge:
         arm: Any | None = None,
         control_point: Any,
         inverse: str = "flat",
-        limits: MachineLimits | Machine | None = None,
+        limits: MachineLimits | Machine | Limits | None = None,
         gravity: bool = False,
         idle: Any | None = None,
         smoothing: Any | None = 0.06,
@@ -134,8 +134,8 @@ class Centrifuge:
             self,
             flight=flight,
             geometry=Geometry(radius, STANDARD_GRAVITY if gravity else 0.0, np.asarray(MOUNTINGS[mounting])),
-            control_point=as_array(positive("control_point", control_point, "m", zero=True)),
-            limits=Limits(limits),
+            control_point=_position(control_point),
+            limits=limits if isinstance(limits, Limits) else Limits(limits),
             method=inverse,
             beginning=start,
             idle=None if idle is None else positive("idle", idle, "m/s²"),
@@ -174,30 +174,29 @@ class Centrifuge:
         assign(self, _latest=prepared)
         return prepared
 
-    def at(self, control_point: Any) -> Self:
-        """The same axis motions with another control point, m from the root."""
-        return self._changed(control_point=as_array(positive("control_point", control_point, "m", zero=True)))
+    def altered(self, **changes: Any) -> Self:
+        """The machine with other arguments, by the constructor's names, prepared for the same times.
 
-    def altered(self, *, mounting: str, smoothing: Any) -> Self:
-        """The same machine with a mounting and a width of smoothing, s; prepared for the same times, if it is.
-
-        Raises
-        ------
-        InputError
-            As for a new one.
+        Another control point leaves the axis motions as they are.
         """
-        _choose("mounting", mounting, MOUNTINGS)
-        other = self._changed(
-            geometry=Geometry(self.geometry.arm, self.geometry.gravity, np.asarray(MOUNTINGS[mounting])),
-            smoothing=positive("smoothing", smoothing, "s", zero=True),
-            course=None,
-        )
-        return other if self.course is None else other.over(*map(float, self.target.span))
-
-    @property
-    def mounting(self) -> str:
-        """upright or inverted."""
-        return next(name for name, sign in MOUNTINGS.items() if sign == self.geometry.sign)
+        if changes.keys() == {"control_point"}:
+            return self._changed(control_point=_position(changes["control_point"]))
+        given: dict[str, Any] = {
+            "flight": self.flight,
+            "arm": self.geometry.arm,
+            "control_point": self.control_point,
+            "inverse": self.method,
+            "limits": self.limits,
+            "gravity": self.geometry.gravity > 0,
+            "idle": self.idle,
+            "smoothing": self.smoothing,
+            "mounting": self.mounting,
+            "start": self.beginning,
+            "spin_up": self.spin_up,
+            "clip": self.clip,
+            "span": None if self.course is None else self.course.target.span,
+        }
+        return type(self)(**{**given, **changes})
 
     def base(self, t: Any) -> Base:
         """Motion of the root at times `t` (s, any shape)."""
@@ -254,6 +253,11 @@ class Centrifuge:
         return shortfalls(self.target, float(self.geometry.arm))
 
     @property
+    def mounting(self) -> str:
+        """Which of the two mountings of the specimen in the gimbals."""
+        return next(name for name, sign in MOUNTINGS.items() if sign == self.geometry.sign)
+
+    @property
     def target(self) -> Target:
         """The load to be made, over the span that the machine is prepared for."""
         return self._ready().target
@@ -295,6 +299,10 @@ class Centrifuge:
         course = self._ready()
         pose = course.start.pose(course.inverse, course.target.load, as_array(t), order)
         return tuple(series.derivatives() for series in pose)
+
+
+def _position(control_point: Any) -> Any:
+    return as_array(positive("control_point", control_point, "m", zero=True))
 
 
 def _choose(where: str, given: str, choices: Iterable[str]) -> None:
