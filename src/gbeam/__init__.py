@@ -18,21 +18,24 @@ from gbeam.structure.section import Section
 from gbeam.structure.support import Root
 
 if TYPE_CHECKING:
-    from gbeam.analysis.control.linearization import Gauge, linearize
+    from gbeam.analysis.control.linearization import linearize
     from gbeam.analysis.control.nonlinear import nonlinear_system
     from gbeam.analysis.control.reduction import balanced_truncation, modal_truncation
-    from gbeam.analysis.control.state_space import StateSpace
-    from gbeam.analysis.equilibrium.equilibrium import equilibrium
+    from gbeam.results.state_space import Gauge, StateSpace
+    from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
     from gbeam.analysis.equilibrium.static import static
     from gbeam.analysis.imitation.comparison import compare
     from gbeam.analysis.response.simulation import simulate
-    from gbeam.analysis.study.case import Case, ResponseSettings
+    from gbeam.analysis.response.settings import ResponseSettings
+    from gbeam.analysis.study.case import Case
     from gbeam.analysis.study.model_study import compare_models
     from gbeam.analysis.study.study import study
     from gbeam.analysis.vibration.campbell import campbell
     from gbeam.analysis.vibration.modal import modes
     from gbeam.analysis.vibration.stability import buckling_acceleration, critical_speed, critical_speed_map
-    from gbeam.mechanics.assembly import Model, Structure, assemble
+    from gbeam.mechanics.assembly import assemble
+    from gbeam.mechanics.models import Model
+    from gbeam.mechanics.structure import Structure
     from gbeam.motion import (
         Centrifuge,
         Flight,
@@ -64,8 +67,8 @@ _HOMES = {
         "balanced_truncation",
         "modal_truncation",
     ),
-    "gbeam.analysis.control.state_space": ("StateSpace",),
-    "gbeam.analysis.equilibrium.equilibrium": ("equilibrium",),
+    "gbeam.results.state_space": ("Gauge", "StateSpace"),
+    "gbeam.analysis.equilibrium.equilibrium": ("solve_equilibrium",),
     "gbeam.analysis.equilibrium.static": ("static",),
     "gbeam.analysis.imitation.comparison": ("compare",),
     "gbeam.analysis.response.simulation": ("simulate",),
@@ -79,8 +82,11 @@ _HOMES = {
         "critical_speed",
         "critical_speed_map",
     ),
-    "gbeam.analysis.study.case": ("Case", "ResponseSettings"),
-    "gbeam.mechanics.assembly": ("Model", "Structure", "assemble"),
+    "gbeam.analysis.response.settings": ("ResponseSettings",),
+    "gbeam.analysis.study.case": ("Case",),
+    "gbeam.mechanics.assembly": ("assemble",),
+    "gbeam.mechanics.models": ("Model",),
+    "gbeam.mechanics.structure": ("Structure",),
     "gbeam.motion": (
         "Centrifuge",
         "Flight",
@@ -137,7 +143,7 @@ __all__ = [
     "critical_load",
     "critical_speed",
     "critical_speed_map",
-    "equilibrium",
+    "solve_equilibrium",
     "linearize",
     "load",
     "machines",

@@ -17,7 +17,7 @@ from gbeam.integrate.schemes import Scheme
 CHUNK = 200  # steps per compiled call, and per look at whether to stop
 _LINEAR_CHUNK = 500  # steps whose maps are found at once: as many as stay in a cache
 Floats = NDArray[np.float64]
-Piece = tuple[Any, Any, Any, Any]  # q, q̇, q̈ (k, n), and which of the steps were solved (k,)
+Piece = tuple[Any, ...]  # q, q̇, q̈ (k, n), and which of the steps were solved (k,)
 
 
 @dataclass(frozen=True)
@@ -95,9 +95,9 @@ def integrate(
             progress(done / count)
         if stopped or not converged:
             break
-    columns = [namespace(part[0]).concatenate(part) for part in zip(*pieces, strict=True)]
-    time = np.asarray(start + step * np.arange(len(columns[0])), dtype=np.float64)
-    return Trajectory(time, *columns, converged, stopped)
+    q, qd, qdd = (namespace(part[0]).concatenate(part) for part in zip(*pieces, strict=True))
+    time = np.asarray(start + step * np.arange(len(q)), dtype=np.float64)
+    return Trajectory(time, q, qd, qdd, converged, stopped)
 
 
 def _times(start: float, step: float, count: int, size: int) -> Iterator[Floats]:

@@ -132,9 +132,7 @@ def safe(residual: Any, t: Tableau, carry: Carry, inputs: Any, end_inputs: Any, 
 
         def iterate(state: tuple[Any, ...]) -> tuple[Any, ...]:
             x, inverse, size, _, count = state
-            renewed = jax.lax.cond(
-                count % 4 == 0, lambda x: jnp.linalg.inv(jax.jacfwd(flat)(x)), lambda _: inverse, x
-            )
+            renewed = jax.lax.cond(count % 4 == 0, lambda x: jnp.linalg.inv(jax.jacfwd(flat)(x)), lambda _: inverse, x)
             correction = renewed @ flat(x)
             x = x - correction
             return x, renewed, _size(correction, x), size, count + 1

@@ -73,7 +73,7 @@ class Scheme:
 
 
 def _one_step(name: str, alpha_m: float, alpha_f: float, beta: float, gamma: float) -> Scheme:
-    """The one-step family: weights of the old acceleration and forces (Chung and Hulbert 1993), Newmark's parameters."""
+    """The one-step family: weights of the old acceleration and forces (Chung and Hulbert), Newmark's parameters."""
     share = (1 - alpha_f) / (1 - alpha_m)
 
     def tableau(h: float) -> Tableau:

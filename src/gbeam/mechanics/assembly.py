@@ -129,9 +129,7 @@ def _inertia(beam: Beam, field: Field, rule: Quadrature) -> Inertia:
         offset.append(places)
     xp = namespace(*mass, *offset)
     off_axis = xp is not np or any(place.any() for place in offset)
-    return Inertia(
-        field, np.concatenate(station), xp.concatenate(mass), xp.concatenate(offset) if off_axis else None
-    )
+    return Inertia(field, np.concatenate(station), xp.concatenate(mass), xp.concatenate(offset) if off_axis else None)
 
 
 def _rigidity(beam: Beam, rule: Quadrature) -> Strains:
@@ -177,9 +175,7 @@ def _work(beam: Beam, field: Field, rule: Quadrature, first: int) -> LoadWork:
     )
 
 
-def _sections(
-    beam: Beam, at: Array, field: Field, inertia: Inertia, work: LoadWork | None, first: int
-) -> Sections:
+def _sections(beam: Beam, at: Array, field: Field, inertia: Inertia, work: LoadWork | None, first: int) -> Sections:
     """Sections at the root, on the base's side of its springs, and at the stations, with what is outboard of each."""
     until = np.asarray(field.cumulative)
     nodes = until.shape[1]

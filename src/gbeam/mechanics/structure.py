@@ -1,15 +1,15 @@
-"""What every analysis reads: a structure in its coordinates, with its equations, its places and what its sections are."""
+"""What every analysis reads: a structure in its coordinates, with its equations, its places and its sections."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gbeam.arrays.namespace import is_jax
-from gbeam.arrays.tree import record
+from gbeam.arrays.tree import record, static
 from gbeam.errors import InputError
 from gbeam.mechanics.damping import damping_matrix, rest_modes
 from gbeam.mechanics.equations.hub import FreeHub, free_hub, ground_of
@@ -45,7 +45,7 @@ class Sections:
     loaded: Array
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Structure:
     """A structure in a model's coordinates; made by :func:`gbeam.assemble`, or of particles by :meth:`of_particles`.
 
@@ -85,10 +85,10 @@ class Structure:
         Components of the loads that static, modes and stability see: those of time zero, see :meth:`at_time`.
     """
 
-    kind: str
-    linear: bool
-    hub_force: bool
-    counts: tuple[int, int, int]
+    kind: str = static()
+    linear: bool = static()
+    hub_force: bool = static()
+    counts: tuple[int, int, int] = static()
     length: float
     mass: Array
     places: Places
@@ -98,7 +98,7 @@ class Structure:
     inertia: Inertia | None = None
     elasticity: Elasticity | None = None
     field: Field | None = None
-    first_station: int = 0
+    first_station: int = static(default=0)
     sections: Sections | None = None
     history: LoadHistory | None = None
     work: LoadWork | None = None

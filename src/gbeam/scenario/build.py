@@ -13,8 +13,9 @@ from gbeam.scenario.load import load
 from gbeam.scenario.placing import placed
 
 if TYPE_CHECKING:
-    from gbeam.analysis.study.case import Case, ResponseSettings
-    from gbeam.mechanics.assembly import Model
+    from gbeam.analysis.response.settings import ResponseSettings
+    from gbeam.analysis.study.case import Case
+    from gbeam.mechanics.models import Model
     from gbeam.motion import Centrifuge, PiecewiseLinear
     from gbeam.structure.beam import Beam
     from gbeam.structure.loads import Load
@@ -150,7 +151,7 @@ def _load(parts: Collector, where: str, table: schema.Load) -> Load | None:
 
 
 def _model(parts: Collector, table: schema.Model) -> Model | None:
-    from gbeam.mechanics.assembly import Model
+    from gbeam.mechanics.models import Model
 
     return parts.attempt("model", Model, table.kind, table.modes.axial, table.modes.y, table.modes.z, table.shapes)
 
@@ -168,7 +169,7 @@ def _response(
 ) -> ResponseSettings | None:
     """Settings; `records` are what they cover, and without a duration the time that all do."""
     from gbeam import integrate
-    from gbeam.analysis.study.case import ResponseSettings
+    from gbeam.analysis.response.settings import ResponseSettings
 
     schemes: dict[str, Callable[..., object]] = {
         "newmark": integrate.newmark,

@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
+from typing import Any
 
-import equinox as eqx
-import jax
-import jax.numpy as jnp
 import numpy as np
 import scipy.linalg
-from jaxtyping import Array
 
-import gbeam.arrays.jax_setup  # noqa: F401
-from gbeam.analysis.control.state_space import Signal, StateSpace
 from gbeam.analysis.equilibrium.operating_point import (
     OperatingPoint,
     linear_matrices,
@@ -22,36 +17,26 @@ from gbeam.analysis.equilibrium.operating_point import (
     operating_point,
     steady_base,
 )
-from gbeam.analysis.response.section_forces import Outboard, cumulative_of, outboard_of, sections
-from gbeam.analysis.study.case import Motion
+from gbeam.analysis.response.section_forces import sections
 from gbeam.analysis.vibration.stability import hub_of
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record
 from gbeam.errors import InputError
-from gbeam.mechanics.assembly import Structure
-from gbeam.mechanics.field import RootedField
-from gbeam.motion import Centrifuge, HubRate, HubTorque
+from gbeam.mechanics.equations.residuals import OnBase, OnHub
+from gbeam.mechanics.fields.rooted import RootedField
+from gbeam.mechanics.structure import Sections, Structure
+from gbeam.motion.bases.base import Base
+from gbeam.motion.protocol import Motion
+from gbeam.numerics.complex_step import complex_step
+from gbeam.results.state_space import Gauge, Signal, StateSpace
 
+Array = Any
 BASE_RATES = tuple(Signal(f"base_rate_{i}", "rad/s") for i in "xyz")
 _NEAREST = 12  # quadrature nodes that a strain is interpolated from
 
 
-@dataclass(frozen=True)
-class Gauge:
-    """A strain gauge along the beam.
-
-    Parameters
-    ----------
-    at : float
-        Position from the root, m.
-    y, z : float
-        Where it sits in the section, m from the axis.
-    """
-
-    at: float
-    y: float = 0.0
-    z: float = 0.0
-
-
-class Outputs(eqx.Module):
+@record
+class Outputs:
     """What is measured, as a function of (y, ẏ, ÿ, u).
 
     Tip displacement relative to the base axes; tip acceleration, absolute, or specific force where gravity acts; moment
@@ -60,27 +45,46 @@ class Outputs(eqx.Module):
     """
 
     structure: Structure
-    point: OperatingPoint
-    outboard: Outboard
+    residual: OnBase | OnHub
+    ends: Sections
     weights: Array
     places: Array
 
     def __call__(self, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
         """Outputs (p,)."""
-        i, residual = self.point.first, self.point.residual
+        i = self.residual.first
         q, qd, qdd = y[i:], yd[i:], ydd[i:]
-        base, applied = residual.base(y, yd, ydd, u), residual.loaded(u).applied
-        _, moment, _, _, acceleration = sections(self.structure, self.outboard, base, q, qd, qdd, applied)
+        base, (_, values) = self.residual.base(y, yd, ydd, u), self.residual.unpack(u)
+        now = Base(*(x[None] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
+        loads = None if values is None else values[None]
+        _, moment, _, _, acceleration = sections(self.structure, self.ends, now, q[None], qd[None], qdd[None], loads)
+        assert self.structure.field is not None
         strains = self.structure.field.strains(q)
         axial, about_y, about_z = (self.weights @ e for e in strains[:3])
         strain = axial - self.places[:, 0] * about_z + self.places[:, 1] * about_y
-        hub = jnp.stack([y[0], yd[0]]) if i else jnp.zeros(0)
-        return jnp.concatenate([self.structure.displacement(q)[-1], acceleration[-1], -moment[0], strain, hub])
+        xp = namespace(y, acceleration)
+        hub = xp.stack([y[0], yd[0]]) if i else xp.zeros(0)
+        return xp.concatenate([self.structure.displacement(q)[-1], acceleration[0, -1], -moment[0, 0], strain, hub])
+
+    def stacked(self, z: Array) -> Array:
+        """The same of one vector (y, ẏ, ÿ, u)."""
+        n = self.structure.size + self.residual.first
+        return self(z[:n], z[n : 2 * n], z[2 * n : 3 * n], z[3 * n :])
+
+    def matrices(self, z: Array) -> tuple[Array, Array]:
+        """Values (p,) at one vector (y, ẏ, ÿ, u), and the derivatives with respect to it."""
+        if self.structure.linear:
+            return self.stacked(z), complex_step(self.stacked, z)
+        from gbeam.analysis.control.compiled import output_matrices
+
+        values, derivatives = output_matrices(self, z)
+        return np.asarray(values), np.asarray(derivatives)
 
 
 def _interpolation(structure: Structure, gauges: Sequence[Gauge]) -> Array:
     """Weights (gauges, nodes) that take nodal strains to the gauges."""
-    until = cumulative_of(structure)
+    assert structure.field is not None
+    until = np.asarray(structure.field.cumulative)
     nodes = until.sum(axis=1)[: until.shape[1]]
     weights = np.zeros((len(gauges), len(nodes)))
     for row, gauge in zip(weights, gauges, strict=True):
@@ -90,7 +94,7 @@ def _interpolation(structure: Structure, gauges: Sequence[Gauge]) -> Array:
         for k in near:
             others = near[near != k]
             row[k] = np.prod((gauge.at - nodes[others]) / (nodes[k] - nodes[others]))
-    return jnp.asarray(weights)
+    return weights
 
 
 def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
@@ -105,27 +109,25 @@ def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
         for way, unit, axis in (ways[i] for i in np.abs(springs).argmax(axis=0)):
             names.append((f"q_root_{way}_{axis}", unit))
     rates = [Signal("hub_rate" if name == "hub_angle" else f"rate_{name}", f"{unit}/s") for name, unit in names]
-    return tuple([Signal(*it) for it in names] + rates)
+    return tuple([Signal(*pair) for pair in names] + rates)
 
 
-def _acceleration(motion: Motion) -> str:
+def _acceleration(motion: Any) -> str:
     """What accelerations are where a motion goes: with gravity they are what accelerometers measure."""
-    if isinstance(motion, Centrifuge):
-        weighs = float(motion.geometry.gravity) > 0
-    else:
-        weighs = isinstance(motion, (HubRate, HubTorque)) and motion.mount.gravity is not None
+    weighs = motion.kind == "centrifuge" and float(motion.gravity) > 0
+    weighs = weighs or (motion.kind == "hub" and motion.mount.gravity is not None)
     return "specific_force" if weighs else "acceleration"
 
 
 def input_signals(structure: Structure, motion: Motion) -> tuple[Signal, ...]:
     """Names and units of the inputs: torque or base, then the components of each load on the beam."""
-    if isinstance(motion, HubTorque):
+    if motion.free:
         signals = [Signal("torque", "N m")]
     else:
         signals = [Signal(f"base_{_acceleration(motion)}_{i}", "m/s^2") for i in "xyz"]
         signals += [Signal(f"base_angular_acceleration_{i}", "rad/s^2") for i in "xyz"]
-    if structure.applied is not None:
-        counts = np.bincount(np.asarray(structure.applied.load))
+    if structure.work is not None:
+        counts = np.bincount(np.asarray(structure.work.load))
         for k, per in enumerate("/m" if points > 1 else "" for points in counts):
             signals += [Signal(f"load_{k + 1}_force_{i}", f"N{per}") for i in "xyz"]
             signals += [Signal(f"load_{k + 1}_moment_{i}", f"N m{per}") for i in "xyz"]
@@ -137,29 +139,17 @@ def output_signals(gauges: Sequence[Gauge], motion: Motion) -> tuple[Signal, ...
     kinds = (("tip", "m"), (f"tip_{_acceleration(motion)}", "m/s^2"), ("root_moment", "N m"))
     signals = [Signal(f"{name}_{i}", unit) for name, unit in kinds for i in "xyz"]
     signals += [Signal(f"strain_{k + 1}", "1") for k in range(len(gauges))]
-    free = isinstance(motion, HubTorque)
-    return tuple(signals + ([Signal("hub_angle", "rad"), Signal("hub_rate", "rad/s")] if free else []))
+    return tuple(signals + ([Signal("hub_angle", "rad"), Signal("hub_rate", "rad/s")] if motion.free else []))
 
 
 def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gauge]) -> Outputs:
     """What is measured at an operating point."""
-    places = jnp.asarray([[it.y, it.z] for it in gauges]).reshape(-1, 2)
-    every = outboard_of(structure)
-    ends = jnp.array([0, -1])  # root and tip
-    outboard = Outboard(every.points[-1:], every.mass[ends], every.loaded[ends])
-    return Outputs(structure, point, outboard, _interpolation(structure, gauges), places)
-
-
-@eqx.filter_jit
-def _output_matrices(outputs: Outputs) -> tuple[Array, ...]:
-    p = outputs.point
-    n, z = len(p.y), jnp.concatenate([p.y, p.yd, p.ydd, p.u])
-
-    def stacked(z: Array) -> Array:
-        return outputs(z[:n], z[n : 2 * n], z[2 * n : 3 * n], z[3 * n :])
-
-    d = jax.jacfwd(stacked)(z)
-    return stacked(z), d[:, :n], d[:, n : 2 * n], d[:, 2 * n : 3 * n], d[:, 3 * n :]
+    places = np.array([[gauge.y, gauge.z] for gauge in gauges]).reshape(-1, 2)
+    every = structure.sections
+    assert every is not None
+    ends = [0, -1]  # root and tip
+    outboard = replace(every, mass=every.mass[ends], loaded=every.loaded[ends])
+    return Outputs(structure, point.residual, outboard, _interpolation(structure, gauges), places)
 
 
 def linearize(
@@ -178,7 +168,7 @@ def linearize(
     Parameters
     ----------
     structure : Structure
-    motion : Flight, Centrifuge, HubRate or HubTorque
+    motion : Flight, Centrifuge or Hub
         A free hub has the torque as input; on any other base the root's acceleration (specific force where gravity
         acts, and then called so) and the angular acceleration are, in base axes. The components of each load on the
         beam are inputs too.
@@ -211,13 +201,15 @@ def linearize(
         point = operating_point(structure, motion, time, q, qd)
     else:
         hub = hub_of(motion, "a rate", "leave it out and give a time", name)
-        if isinstance(hub, HubTorque):
+        if hub.free:
             point = on_hub(structure, hub, rate, q=q, qd=qd)
         else:
             point = on_base(structure, steady_base(hub, rate), q, qd)
     linear = linear_matrices(point)
-    value, c_y, c_yd, c_ydd, c_u = (np.asarray(x) for x in _output_matrices(outputs_of(structure, point, gauges)))
     n = len(linear.mass)
+    outputs = outputs_of(structure, point, gauges)
+    value, d = outputs.matrices(np.concatenate([point.y, point.yd, point.ydd, point.u]))
+    c_y, c_yd, c_ydd, c_u = d[:, :n], d[:, n : 2 * n], d[:, 2 * n : 3 * n], d[:, 3 * n :]
     factor = scipy.linalg.lu_factor(linear.mass)
     k, c, b = (scipy.linalg.lu_solve(factor, x) for x in (linear.stiffness, linear.velocity, linear.inputs))
     zero = np.zeros((n, n))

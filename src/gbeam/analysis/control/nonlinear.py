@@ -5,39 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import equinox as eqx
-import jax
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array
 
-import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.analysis.control.linearization import (
     BASE_RATES,
-    Gauge,
-    Outputs,
     coordinate_signals,
     input_signals,
     output_signals,
     outputs_of,
 )
-from gbeam.analysis.control.state_space import import_control
-from gbeam.analysis.equilibrium.operating_point import on_base, on_hub
-from gbeam.analysis.study.case import Motion
-from gbeam.mechanics.assembly import Structure
-from gbeam.motion import Base, HubTorque
-
-
-@eqx.filter_jit
-def _rates(outputs: Outputs, x: Array, u: Array) -> tuple[Array, Array]:
-    """State's rate and outputs."""
-    residual, i = outputs.point.residual, outputs.point.first
-    n = len(outputs.point.y)
-    y, yd, rate = x[:n], x[n : 2 * n], x[2 * n :]
-    full = u if i else jnp.concatenate([u[:3], rate, u[3:]])
-    o = jnp.zeros(n)
-    ydd = jnp.linalg.solve(jax.jacfwd(residual, 2)(y, yd, o, full), -residual(y, yd, o, full))
-    return jnp.concatenate([yd, ydd, u[3:6] if not i else jnp.zeros(0)]), outputs(y, yd, ydd, full)
+from gbeam.analysis.equilibrium.operating_point import REST, on_base, on_hub
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.protocol import Motion
+from gbeam.results.state_space import Gauge, import_control
 
 
 def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[Gauge] = ()) -> Any:
@@ -49,7 +29,7 @@ def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[G
     Parameters
     ----------
     structure : Structure
-    motion : Flight, Centrifuge, HubRate or HubTorque
+    motion : Flight, Centrifuge or Hub
         Tells the kind of base only.
     gauges : sequence of Gauge
 
@@ -59,27 +39,26 @@ def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[G
         If python-control is not installed.
     """
     control = import_control()
-    rest = jnp.zeros(structure.size)
-    if isinstance(motion, HubTorque):
-        point = on_hub(structure, motion, 0.0, q=rest)
-        states = coordinate_signals(structure, 1)
+    from gbeam.analysis.control.compiled import rates
+
+    straight = np.zeros(structure.size)
+    if motion.free:
+        point, states = on_hub(structure, motion, 0.0, q=straight), coordinate_signals(structure, 1)
     else:
-        o = jnp.zeros(3)
-        point = on_base(structure, Base(o, o, o), rest)
-        states = coordinate_signals(structure, 0) + BASE_RATES
+        point, states = on_base(structure, REST, straight), coordinate_signals(structure, 0) + BASE_RATES
     outputs = outputs_of(structure, point, gauges)
 
     def update(t: float, x: Any, u: Any, params: Any) -> Any:
-        return np.asarray(_rates(outputs, jnp.asarray(x), jnp.asarray(u))[0])
+        return np.asarray(rates(outputs, np.asarray(x, dtype=float), np.asarray(u, dtype=float))[0])
 
     def measure(t: float, x: Any, u: Any, params: Any) -> Any:
-        return np.asarray(_rates(outputs, jnp.asarray(x), jnp.asarray(u))[1])
+        return np.asarray(rates(outputs, np.asarray(x, dtype=float), np.asarray(u, dtype=float))[1])
 
     return control.nlsys(
         update,
         measure,
-        states=[it.name for it in states],
-        inputs=[it.name for it in input_signals(structure, motion)],
-        outputs=[it.name for it in output_signals(gauges, motion)],
+        states=[signal.name for signal in states],
+        inputs=[signal.name for signal in input_signals(structure, motion)],
+        outputs=[signal.name for signal in output_signals(gauges, motion)],
         name=structure.kind,
     )

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import scipy.linalg
 
-from gbeam.analysis.control.state_space import Signal, StateSpace
 from gbeam.errors import InputError
-from gbeam.results.response import Floats
+from gbeam.results.result import Floats
+from gbeam.results.state_space import Signal, StateSpace
 
 Parts = tuple[StateSpace, StateSpace]
 RIGID = 1e-7  # of the largest eigenvalue: what is slower has none, as a free hub's angle

@@ -58,7 +58,9 @@ def static(
     else:
         a = np.asarray(acceleration, dtype=float)
         if a.shape != (3,) or not np.isfinite(a).all():
-            raise InputError("acceleration", f"is {acceleration!r}", "give three finite components, x, y and z, in m/s²")
+            raise InputError(
+                "acceleration", f"is {acceleration!r}", "give three finite components, x, y and z, in m/s²"
+            )
         point = on_base(structure.at_time(time), Base(a, np.zeros(3), np.zeros(3)))
     return deflection_at(structure, point, motion, time, name)
 

@@ -152,9 +152,7 @@ def _adapted(
     return trajectory, math.nan, difference(tip(loose), tip(trajectory), 1)
 
 
-def _traced(
-    structure: Structure, motion: Motion, settings: ResponseSettings, problem: Problem, name: str
-) -> Response:
+def _traced(structure: Structure, motion: Motion, settings: ResponseSettings, problem: Problem, name: str) -> Response:
     """A run whose values JAX traces: of a given step, without a look at them."""
     if settings.step is None or settings.integrator == "adaptive":
         raise InputError("step", "is automatic, and a traced run has no numbers to choose it by", "give a step, s")
@@ -188,9 +186,7 @@ def _result(
     axes = None if traced or motion.kind != "centrifuge" else axes_result(motion, time)  # type: ignore[arg-type]
     outcome, message, warnings = "done", "", tuple(f"record: {note}" for note in getattr(motion, "notes", ()))
     if not traced:
-        outcome, message, own = describe(
-            structure, problem, settings, trajectory, base, peaks, time, q[:, beam], error
-        )
+        outcome, message, own = describe(structure, problem, settings, trajectory, base, peaks, time, q[:, beam], error)
         warnings = own + (() if axes is None else axes.warnings) + warnings
     return Response(
         name=name,

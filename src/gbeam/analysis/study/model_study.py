@@ -11,13 +11,17 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
-from gbeam.analysis.response.simulation import displacement, simulate
-from gbeam.analysis.study.case import Case, Motion, ResponseSettings
+from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.simulation import simulate
+from gbeam.analysis.study.case import Case
 from gbeam.analysis.study.study import structure_of
 from gbeam.errors import ComputationError, InputError
-from gbeam.mechanics.assembly import KINDS, Model, Structure
-from gbeam.results.modal import ModelRow, ModelStudy
-from gbeam.results.response import Failure, Floats, Response
+from gbeam.mechanics.models import KINDS, Model
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.protocol import Motion
+from gbeam.results.response import Response
+from gbeam.results.result import Floats
+from gbeam.results.study import Failure, ModelRow, ModelStudy
 
 REFERENCE = "exact"
 CONVERGED = (3, 6)  # strain and rotation shapes at least of the reference five digits with them
@@ -130,7 +134,7 @@ def shape_tail(structure: Structure, response: Response) -> float:
         return 0.0
     without = q.copy()
     without[:, last] = 0
-    return float(np.abs(displacement(structure, without)[:, -1] - response.tip).max() / size)
+    return float(np.abs(structure.displacement(without)[:, -1] - response.tip).max() / size)
 
 
 def _timed(run: Callable[[], Response | Failure]) -> tuple[Response | Failure, float]:

@@ -11,14 +11,14 @@ from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq, linear_sum_assignment
 
 from gbeam.analysis.equilibrium.operating_point import linear_matrices, on_base, on_hub, steady_base
-from gbeam.analysis.study.case import Motion
 from gbeam.analysis.vibration.modal import modes_at
+from gbeam.analysis.vibration.speeds import largest_rate
 from gbeam.analysis.vibration.stability import critical_speed, hub_of
 from gbeam.errors import InputError
-from gbeam.mechanics.assembly import Structure
-from gbeam.motion import HubTorque
-from gbeam.results.modal import Campbell, Complex, Crossing
-from gbeam.results.response import Floats
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.protocol import Motion
+from gbeam.results.modal import Campbell, Crossing
+from gbeam.results.result import Complex, Floats
 
 CONFIDENT = 0.9  # a mode that resembles itself less from one speed to the next is looked at in between
 DEPTH = 8  # halvings of a step at most: what veers faster is a crossing to every eye
@@ -63,8 +63,9 @@ def campbell(
     structure: Structure,
     motion: Motion,
     *,
+    speeds: Sequence[float] | Floats | None = None,
     start: float = 0.0,
-    end: float,
+    end: float | None = None,
     count: int = 60,
     modes: int = 8,
     orders: Sequence[int] = (1, 2, 3, 4),
@@ -75,10 +76,12 @@ def campbell(
     Parameters
     ----------
     structure : Structure
-    motion : HubRate or HubTorque
+    motion : Hub
         Its own rate or torque is not used; a free hub turns with the beam.
+    speeds : (v,), optional
+        Rates of the hub to begin with, ascending, rad/s; in their place `start`, `end` and `count`.
     start, end : float
-        Range of the hub's rate, rad/s.
+        Range of the hub's rate, rad/s; the end by default the largest rate of the motion.
     count : int
         Number of intervals; the steps are halved where a mode is hard to recognise.
     modes : int
@@ -99,7 +102,11 @@ def campbell(
         If the motion has no hub, the range is empty, or no mode is to be followed.
     """
     hub = hub_of(motion, "a Campbell diagram", "ask `gbeam modes` for its frequencies at a time", name)
-    if not 0 <= start < end:
+    if speeds is None:
+        speeds = np.linspace(start, largest_rate(hub, name) if end is None else end, count + 1)
+    grid = np.asarray(speeds, dtype=float)
+    start, end = float(grid[0]), float(grid[-1])
+    if grid.ndim != 1 or len(grid) < 2 or not start >= 0 or not (np.diff(grid) > 0).all():
         raise InputError("to", f"is {end:g} rad/s, from {start:g} rad/s", "give a range of speeds that ascends from 0")
     if modes < 1:
         raise InputError("modes", f"is {modes}", "give 1 or more")
@@ -108,40 +115,37 @@ def campbell(
     last = end if lost.value is None or lost.value <= start else start + (lost.value - start) * (1 - 1e-6)
 
     def at(rate: float) -> _Speed:
-        if isinstance(hub, HubTorque):
-            point = on_hub(structure, hub, rate)
-        else:
-            point = on_base(structure, steady_base(hub, rate))
+        point = on_hub(structure, hub, rate) if hub.free else on_base(structure, steady_base(hub, rate))
         linear = linear_matrices(point)
         found = modes_at(structure, point, linear)
         beam = linear.mass[point.first :, point.first :]
         return _Speed(rate, found.frequency, found.damping_ratio, found.coordinates, beam, found.direction)
 
-    coarse = [at(float(rate)) for rate in np.linspace(start, last, count + 1)]
+    coarse = [at(float(rate)) for rate in start + (grid - start) * (last - start) / (end - start)]
     kept = min(modes, len(coarse[0].frequency))
-    speeds = coarse[:1]
+    followed = coarse[:1]
     for low, high in pairwise(coarse):
-        speeds += [*_fill(at, low, high, kept, DEPTH), high]
-    frequency, damping, alike = np.full((3, len(speeds), kept), np.nan)
+        followed += [*_fill(at, low, high, kept, DEPTH), high]
+    frequency, damping, alike = np.full((3, len(followed), kept), np.nan)
     track = np.arange(kept)
     index = [track]
-    for i, here in enumerate(speeds):
+    for i, here in enumerate(followed):
         if i == 0:
             value = np.ones(kept)
         else:
-            match, likeness = _paired(speeds[i - 1], here)
+            match, likeness = _paired(followed[i - 1], here)
             value = np.where(track >= 0, likeness[track], np.nan)
             track = np.where(track >= 0, match[track], -1)
             index.append(track)
         there = track >= 0
         frequency[i, there], damping[i, there] = here.frequency[track[there]], here.damping_ratio[track[there]]
         alike[i] = value
-    rates = np.array([it.rate for it in speeds])
+    rates = np.array([it.rate for it in followed])
     crossings = [
         crossing
         for k in range(kept)
         for order in orders
-        for crossing in _crossings(at, speeds, index, rates, frequency[:, k], k, order)
+        for crossing in _crossings(at, followed, index, rates, frequency[:, k], k, order)
     ]
     return Campbell(
         motion=name,

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import equinox as eqx
-import jax
+from typing import Any
+
 import numpy as np
 import scipy.linalg
-from jaxtyping import Array
 
-import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.analysis.equilibrium.operating_point import Linear, OperatingPoint, linear_matrices, operating_point
-from gbeam.analysis.study.case import Motion
-from gbeam.mechanics.assembly import Structure
-from gbeam.motion import Base
-from gbeam.results.modal import Complex, FrozenBase, Instability, Modes
-from gbeam.results.response import Floats
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.protocol import Motion
+from gbeam.results.modal import Instability, Modes
+from gbeam.results.result import Complex, Floats
 
 ZERO = 1e-11  # of the largest eigenvalue: a smaller one is rounding about zero
 # Of a mode's frequency: a base that speeds up, once frozen, feeds or drains a mode by 1e-7, and means nothing by it.
@@ -62,22 +59,20 @@ def eigenvalues(linear: Linear, *, gyroscopic: bool = True) -> tuple[Complex, Co
     return value, mode / weight
 
 
-@eqx.filter_jit
-def _sensitivity(structure: Structure, q: Array) -> tuple[Array, Array, Array]:
-    """How all points of the axis move with q, (points, 3, n); how the stations do; where the stations are."""
-    points = jax.jacfwd(structure.field.position)(q)
-    return points, points[structure.first_station :], structure.displacement(q)
+def _sensitivity(structure: Structure, q: Any) -> tuple[Floats, Floats]:
+    """How the particles move with q, (k, 3, n), and how the stations do, (s, 3, n)."""
+    if structure.linear:
+        return structure.places.slopes(q), structure.station_places.slopes(q)
+    from gbeam.mechanics.equations.compiled import slopes
+
+    particles, points = slopes(structure.inertia, q)
+    return np.asarray(particles), np.asarray(points)[structure.first_station :]
 
 
 def directions(structure: Structure, point: OperatingPoint, coordinates: Complex | Floats) -> tuple[str, ...]:
-    """Axis along which each mode (n, k) moves the beam's axis most."""
-    moved = np.asarray(_sensitivity(structure, point.q)[0]) @ coordinates
+    """Axis along which each mode (n, k) moves the structure most."""
+    moved = np.concatenate(_sensitivity(structure, point.q)) @ coordinates
     return tuple("xyz"[i] for i in np.abs(moved).max(axis=0).argmax(axis=0))
-
-
-def frozen(base: Base) -> FrozenBase:
-    """Base motion as a record."""
-    return FrozenBase(np.asarray(base.a_WO_B), np.asarray(base.w_WB_B), np.asarray(base.alpha_WB_B))
 
 
 def modes_at(
@@ -92,7 +87,7 @@ def modes_at(
     """Modes about an operating point; `linear` is its :func:`linear_matrices`, if known."""
     linear = linear_matrices(point) if linear is None else linear
     value, mode = eigenvalues(linear, gyroscopic=gyroscopic)
-    _, stations, equilibrium = (np.asarray(x) for x in _sensitivity(structure, point.q))
+    _, stations = _sensitivity(structure, point.q)
     size = np.abs(value).max()
     zero, real = np.abs(value) <= ZERO * size, np.abs(value.imag) <= ZERO * size
     beam = mode[point.first :]
@@ -112,14 +107,14 @@ def modes_at(
         motion=name,
         model=structure.kind,
         time=time,
-        base=frozen(point.base),
+        base=point.frozen,
         gyroscopic=gyroscopic,
         eigenvalue=oscillating,
         direction=direction,
         coordinates=coordinates.T,
         stations=np.asarray(structure.stations),
         shape=shape / np.where(largest == 0, 1, largest)[:, None, None],
-        equilibrium=equilibrium,
+        equilibrium=np.asarray(structure.displacement(point.q)),
         instabilities=tuple(
             [Instability("divergence", float(v.real), 0.0, d) for v, d in zip(growing, grows, strict=True)]
             + [
@@ -133,15 +128,23 @@ def modes_at(
     )
 
 
-def modes(structure: Structure, motion: Motion, time: float, *, gyroscopic: bool = True, name: str = "") -> Modes:
+def modes(
+    structure: Structure,
+    motion: Motion | None = None,
+    time: float = 0.0,
+    *,
+    gyroscopic: bool = True,
+    name: str = "",
+) -> Modes:
     """Small vibrations of the beam about its relative equilibrium on a base frozen at a time.
 
     Parameters
     ----------
     structure : Structure
-        From :func:`gbeam.assemble`; the shapes are told at its stations.
-    motion : Flight, Centrifuge, HubRate or HubTorque
-        A free hub turns with the beam: its angle is a coordinate, and its mode of zero frequency is left out.
+        From :func:`gbeam.assemble`; the shapes are given at its stations.
+    motion : Flight, Centrifuge or Hub, optional
+        Without one the base is at rest. A free hub turns with the beam: its angle is a coordinate, and its mode of zero
+        frequency is left out.
     time : float
         s.
     gyroscopic : bool

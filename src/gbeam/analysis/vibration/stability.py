@@ -12,53 +12,58 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array
 from scipy.optimize import brentq
 
-from gbeam.analysis.equilibrium.operating_point import Linear, OperatingPoint, linear_matrices, on_base, steady_base
-from gbeam.analysis.equilibrium.static import lowest_stiffness_at
-from gbeam.analysis.study.case import Motion
+from gbeam.analysis.equilibrium.equilibrium import lowest_stiffness
+from gbeam.analysis.equilibrium.operating_point import (
+    REST,
+    Linear,
+    OperatingPoint,
+    linear_matrices,
+    on_base,
+    steady_base,
+)
 from gbeam.analysis.vibration.modal import directions, eigenvalues, growth_limit, modes_at
 from gbeam.checks import positive
 from gbeam.errors import ComputationError, InputError
-from gbeam.mechanics.assembly import Model, Structure, assemble, rest_modes
-from gbeam.mechanics.energy import rest_matrices
-from gbeam.mechanics.equations import coefficients
-from gbeam.motion import Base, HubRate, HubTorque
-from gbeam.results.modal import Critical, CriticalMap
-from gbeam.structure.beam import Beam, PointMass
+from gbeam.mechanics.assembly import assemble
+from gbeam.mechanics.models import Model
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.bases.base import Base
+from gbeam.motion.bases.hub import Hub
+from gbeam.motion.protocol import Motion
+from gbeam.results.equilibrium import Critical, CriticalMap
+from gbeam.structure.beam import Beam
+from gbeam.structure.bodies import PointMass
 
 SCAN = 64  # points at which a loss is looked for before its root is closed in on
-REACH = 10.0  # of the lowest natural frequency: how far a search goes unless told
+SEARCH_FACTOR = 10.0  # of the lowest natural frequency: how far a search goes by default
 NOTHING = 1e-12  # of the beam's stiffness: loads that bring less are rounding about none
 UNSYMMETRIC = 1e-9  # of K: above it the loads follow the beam
 
 
-def hub_of(motion: Motion, what: str, instead: str, name: str = "") -> HubRate | HubTorque:
-    """Return `motion` if it is a hub's; else raise InputError with the verb that can answer."""
-    if isinstance(motion, (HubRate, HubTorque)):
+def hub_of(motion: Motion, what: str, instead: str, name: str = "") -> Hub:
+    """Return `motion` if it is a hub; else raise InputError with the verb that can answer."""
+    if isinstance(motion, Hub):
         return motion
-    kind = type(motion).__name__.lower()
     raise InputError(
         f"motion.{name}" if name else "motion",
-        f"is a {kind}, which has no hub to turn faster: {what} needs one",
+        f"is a {motion.kind}, which has no hub to turn faster: {what} needs one",
         instead,
     )
 
 
 def lowest_frequency(structure: Structure) -> float:
     """Lowest natural frequency of the beam on a base at rest, rad/s."""
-    return float(rest_modes(*rest_matrices(structure.system.energy))[0][0])
+    return float(structure.rest[0][0])
 
 
 def _margin(linear: Linear) -> float:
     """Positive while the equilibrium is stable, rad²/s²; its root is where it stops."""
     stiffness = linear.stiffness
     if np.abs(stiffness - stiffness.T).max() <= UNSYMMETRIC * np.abs(stiffness).max():
-        return lowest_stiffness_at(linear.mass, stiffness)[0]
+        return lowest_stiffness(linear.mass, stiffness)[0]
     value, _ = eigenvalues(linear)
     return float((growth_limit(value, np.abs(value).max()) - value.real).min())
 
@@ -107,9 +112,9 @@ def first_loss_along(
     first = int(lost[0])
     if first == 0:
         return answer(0.0, "divergence", "", "the beam is unstable before anything moves")
-    found = brentq(margin, grid[first - 1], grid[first], xtol=1e-11, rtol=4 * np.finfo(float).eps)
-    point = _point(*path(found)) or on_base(*path(float(grid[first - 1])))
-    beyond = _point(*path(found * (1 + 1e-5)))
+    root = brentq(margin, grid[first - 1], grid[first], xtol=1e-11, rtol=4 * np.finfo(float).eps)
+    point = _point(*path(root)) or on_base(*path(float(grid[first - 1])))
+    beyond = _point(*path(root * (1 + 1e-5)))
     if beyond is None:
         kind, direction = "no equilibrium", ""
     else:
@@ -117,10 +122,10 @@ def first_loss_along(
         kind, direction = (grown[0].kind, grown[0].direction) if grown else ("divergence", "")
     if kind == "divergence":
         linear = linear_matrices(point)
-        _, mode = lowest_stiffness_at(linear.mass, linear.stiffness)
+        _, mode = lowest_stiffness(linear.mass, linear.stiffness)
         direction = directions(structure, point, mode[:, None])[0]
-    told = f" along {direction}" if direction else ""
-    return answer(found, kind, direction, f"{structure.kind}: {kind}{told} at {found:.6g} {unit}")
+    along = f" along {direction}" if direction else ""
+    return answer(root, kind, direction, f"{structure.kind}: {kind}{along} at {root:.6g} {unit}")
 
 
 def critical_speed(structure: Structure, motion: Motion, *, upper: float | None = None, name: str = "") -> Critical:
@@ -129,7 +134,7 @@ def critical_speed(structure: Structure, motion: Motion, *, upper: float | None 
     Parameters
     ----------
     structure : Structure
-    motion : HubRate or HubTorque
+    motion : Hub
         Its own rate or torque is not used.
     upper : float, optional
         End of the search, rad/s; by default ten times the lowest natural frequency.
@@ -149,7 +154,7 @@ def critical_speed(structure: Structure, motion: Motion, *, upper: float | None 
     """
     instead = "ask `gbeam modes` for its frequencies at a time, or `gbeam static` for its shape"
     hub = hub_of(motion, "a critical speed", instead, name)
-    limit = REACH * lowest_frequency(structure) if upper is None else positive("to", upper, "rad/s")
+    limit = SEARCH_FACTOR * lowest_frequency(structure) if upper is None else positive("to", upper, "rad/s")
     return first_loss_along(lambda rate: (structure, steady_base(hub, rate)), limit, "hub rate", "rad/s")
 
 
@@ -169,7 +174,7 @@ def critical_speed_map(
     ----------
     beam : Beam
     model : Model
-    motion : HubRate or HubTorque
+    motion : Hub
     masses : (m,) kg
     positions : (p,) m from the root
     upper : float, optional
@@ -186,7 +191,7 @@ def critical_speed_map(
     InputError
         If the motion has no hub, or a mass or a position is impossible.
     """
-    limit = REACH * lowest_frequency(assemble(beam, model)) if upper is None else upper
+    limit = SEARCH_FACTOR * lowest_frequency(assemble(beam, model)) if upper is None else upper
     speed = np.full((len(masses), len(positions)), np.nan)
     for i, mass in enumerate(masses):
         for j, at in enumerate(positions):
@@ -212,11 +217,10 @@ def buckling_acceleration(structure: Structure, *, upper: float | None = None) -
     -------
     Critical
     """
-    o = jnp.zeros(3)
-    limit = REACH * lowest_frequency(structure) ** 2 * structure.length if upper is None else upper
+    limit = SEARCH_FACTOR * lowest_frequency(structure) ** 2 * structure.length if upper is None else upper
 
     def pushed(acceleration: float) -> tuple[Structure, Base]:
-        return structure, Base(jnp.array([acceleration, 0.0, 0.0]), o, o)
+        return structure, Base(np.array([acceleration, 0.0, 0.0]), np.zeros(3), np.zeros(3))
 
     return first_loss_along(pushed, limit, "acceleration along x", "m/s²")
 
@@ -244,27 +248,26 @@ def critical_load(structure: Structure, base: Base | None = None, *, upper: floa
     InputError
         If there is no load, or none acts at the time, or they change no stiffness.
     """
-    system, still = structure.system, Base(*[jnp.zeros(3)] * 3)
-    applied = system.applied
-    share = 0.0 if applied is None else _share(structure, applied)
-    if applied is None or share < NOTHING:
+    values = structure.load_values
+    share = 0.0 if values is None else _share(structure, values)
+    if values is None or share < NOTHING:
         fix = "add one, or give a time at which one acts; `gbeam critical-speed` can raise a hub's rate instead"
         raise InputError("beam.loads", "has none that acts", fix)
-    limit = REACH / share if upper is None else positive("to", upper, "times the loads")
+    limit = SEARCH_FACTOR / share if upper is None else positive("to", upper, "times the loads")
 
     def loaded(factor: float) -> tuple[Structure, Base]:
-        under = eqx.tree_at(lambda s: s.system, structure, system.under(factor * applied))
-        return under, still if base is None else base
+        return replace(structure, load_values=factor * values), REST if base is None else base
 
     return first_loss_along(loaded, limit, "load factor", "times the loads")
 
 
-def _share(structure: Structure, applied: Array) -> float:
+def _share(structure: Structure, values: np.ndarray) -> float:
     """Stiffness that the loads bring, over the beam's own."""
-    c = coefficients(structure.system)
-    assert c.k_p is not None and c.f_p is not None
-    scale = np.linalg.inv(np.linalg.cholesky(np.asarray(c.stiffness)))
-    size = np.linalg.norm(scale @ np.einsum("li,linm->nm", applied, c.k_p) @ scale.T, 2)
+    c = structure.coefficients
+    assert c.loads is not None
+    scale = np.linalg.inv(np.linalg.cholesky(c.stiffness))
+    brought = np.einsum("li,linm->nm", values, c.loads.slope[:, :, 6:])
+    size = np.linalg.norm(scale @ brought @ scale.T, 2)
     # Loads across the straight beam bring no stiffness to compare with: then what bends it by its own length.
-    bend = np.linalg.norm(np.linalg.solve(c.stiffness, np.einsum("li,lin->n", applied, c.f_p)))
+    bend = np.linalg.norm(np.linalg.solve(c.stiffness, np.einsum("li,lin->n", values, c.loads.constant[:, :, 6:])))
     return float(max(size, bend / structure.length))

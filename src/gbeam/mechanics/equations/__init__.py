@@ -1,1 +1,1 @@
-"""The equations of motion: D'Alembert's sum over particles, complete, or with the places' polynomial kept to first order."""
+"""The equations of motion: D'Alembert's sum over particles, complete or kept to first order in the coordinates."""

@@ -35,3 +35,9 @@ def paths(inertia: Any, q: Any, qd: Any, qdd: Any) -> Any:
         return particles, points, inertia.field.rotation(q)
 
     return jax.vmap(at)(q, qd, qdd)
+
+
+@jax.jit
+def slopes(inertia: Any, q: Any) -> Any:
+    """Derivatives with respect to q of the particles' places (k, 3, n) and of the field's points (p, 3, n)."""
+    return jax.jacfwd(lambda q: (inertia.positions(q), inertia.field.position(q)))(q)

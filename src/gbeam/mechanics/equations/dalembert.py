@@ -123,9 +123,7 @@ class CompleteHub:
         """Residual (n + 1,) of hub and beam under a torque on the hub, N m, and load components (loads, 6)."""
         q, qd, qdd = y[1:], yd[1:], ydd[1:]
         base = self.base(y, yd, ydd)
-        force, pull_back, r = self.system._inertia_forces(
-            q, qd, qdd, base.a_WO_B, base.w_WB_B, base.alpha_WB_B
-        )
+        force, pull_back, r = self.system._inertia_forces(q, qd, qdd, base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
         (along,) = pull_back(force)
         forces = self.system._generalised(q, load_values)
         about = jnp.sum(self._levers(r) * force)

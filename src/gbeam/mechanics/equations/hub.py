@@ -182,4 +182,3 @@ def free_hub(c: Coefficients, mount: Any, ground: Ground, *, hub_force: bool = T
 def ground_of(hub: Any) -> Ground:
     """The ground of a free hub of :mod:`gbeam.motion`."""
     return Ground(hub.inertia, hub.stiffness, hub.damping)
-

@@ -182,7 +182,11 @@ def coefficients(
     extra = _geometric(xp, mass, weighted, places) if geometric is None else geometric
     second = weighted.T @ r0
     rigid = xp.stack(
-        [mass.sum(), *weighted.sum(axis=0), *(second[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)))]
+        [
+            mass.sum(),
+            *weighted.sum(axis=0),
+            *(second[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))),
+        ]
     )
     zero = xp.zeros((n, n))
     return Coefficients(

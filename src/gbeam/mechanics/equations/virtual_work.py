@@ -80,9 +80,7 @@ class LoadWork:
             return xp.einsum(f"abd,{form}", xp.asarray(EPSILON), left, right)
 
         none = xp.zeros((points, 3, 3))
-        force = xp.concat(
-            [unit, cross(r0, unit, "pb,pcd->pca"), xp.einsum("pai,pca->pci", slope, unit)], axis=2
-        )
+        force = xp.concat([unit, cross(r0, unit, "pb,pcd->pca"), xp.einsum("pai,pca->pci", slope, unit)], axis=2)
         force_slope = xp.concat(
             [
                 turned,

@@ -1,1 +1,1 @@
-"""Displacement fields r(x; q) along the beam: shape functions, the projected field, the exact one, and a sprung root."""
+"""Displacement fields r(x; q) along the beam: shapes, the projected field, the exact one, a sprung root."""

@@ -83,9 +83,7 @@ class ExactField:
         y, z, strain = self.node_angle_y, self.node_angle_z, self.node_strain
         first = xp.stack([strain, z, -y], axis=1)
         square = -0.5 * (xp.einsum("pi,pj->pij", y, y) + xp.einsum("pi,pj->pij", z, z))
-        second = xp.stack(
-            [square, xp.einsum("pi,pj->pij", strain, z), -xp.einsum("pi,pj->pij", strain, y)], axis=1
-        )
+        second = xp.stack([square, xp.einsum("pi,pj->pij", strain, z), -xp.einsum("pi,pj->pij", strain, y)], axis=1)
         o = xp.zeros(self.cumulative.shape[0])
         r0 = xp.stack([xp.sum(self.cumulative, axis=1), o, o], -1)
         second = xp.einsum("pg,gaij->paij", self.cumulative, second + xp.swapaxes(second, -1, -2))

@@ -49,7 +49,7 @@ class ProjectedField:
         return xp.stack([along, q @ self.v.T, q @ self.w.T], axis=-1)
 
     def rotation(self, q: Array, at: Any = slice(None)) -> Array:
-        """Rotations of the sections `at` some points at coordinates (..., n), (..., points, 3, 3), right to second order.
+        """Rotations of the sections `at` some points at coordinates (..., n), (..., points, 3, 3), to second order.
 
         The sections follow the tangent, whose slopes the axial strain lessens, in a frame free of torsion.
         """

@@ -67,8 +67,8 @@ class RootedField:
         xp = namespace(self.x, self.inner.cumulative)
         springs = self.move.shape[1]
         inner = self.inner.strain_slopes()
-        padded = [xp.pad(part, ((0, 0), (0, springs))) for part in inner[:3]]
-        return Strains(*padded, xp.eye(springs, padded[0].shape[1], k=padded[0].shape[1] - springs))
+        axial, about_y, about_z = (xp.pad(part, ((0, 0), (0, springs))) for part in inner[:3])
+        return Strains(axial, about_y, about_z, xp.eye(springs, axial.shape[1], k=axial.shape[1] - springs))
 
     def places(self) -> Places:
         """Taylor polynomial of the positions."""

@@ -73,9 +73,7 @@ def exponential_of(square: Array) -> tuple[Array, Array, Array]:
     small = xp.abs(square) < 1e-4
     theta = xp.sqrt(xp.where(small, 1.0, square))
     sinc = xp.where(small, 1 - square / 6 * (1 - square / 20 * (1 - square / 42)), xp.sin(theta) / theta)
-    versine = xp.where(
-        small, 0.5 - square / 24 * (1 - square / 30 * (1 - square / 56)), (1 - xp.cos(theta)) / theta**2
-    )
+    versine = xp.where(small, 0.5 - square / 24 * (1 - square / 30 * (1 - square / 56)), (1 - xp.cos(theta)) / theta**2)
     return sinc, versine, 1 - square * versine
 
 

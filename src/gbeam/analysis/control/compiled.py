@@ -1,0 +1,30 @@
+"""Derivatives of outputs and rates of the state of a complete model: compiled once per size."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+
+import gbeam.arrays.jax_setup  # noqa: F401
+
+Array = Any
+
+
+@jax.jit
+def output_matrices(outputs: Any, z: Array) -> tuple[Array, Array]:
+    """Values (p,) of outputs at (y, ẏ, ÿ, u), and their derivatives."""
+    return outputs.stacked(z), jax.jacfwd(outputs.stacked)(z)
+
+
+@jax.jit
+def rates(outputs: Any, x: Array, u: Array) -> tuple[Array, Array]:
+    """Rate of the state (y, ẏ, and on a base that is not a free hub its angular velocity), and the outputs."""
+    residual, i = outputs.residual, outputs.residual.first
+    n = outputs.structure.size + i
+    y, yd, rate = x[:n], x[n : 2 * n], x[2 * n :]
+    full = u if i else jnp.concatenate([u[:3], rate, u[3:]])
+    inputs, o = residual.unpack(full), jnp.zeros(n)
+    ydd = jnp.linalg.solve(jax.jacfwd(residual, 2)(y, yd, o, inputs), -residual(y, yd, o, inputs))
+    return jnp.concatenate([yd, ydd, u[3:6] if not i else jnp.zeros(0)]), outputs(y, yd, ydd, full)
