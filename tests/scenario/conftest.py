@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from gbeam.analysis.study.study import structure_of
-from gbeam.scenario import Diagnostic, ScenarioError, build, loads, placing
+from gbeam.errors import InputError
+from gbeam.scenario import Diagnostic, ScenarioError, build, loads, placed
 
 from ..scenarios import EVERY_MOTION
 
@@ -27,9 +28,10 @@ def errors(tmp_path: Path) -> Callable[..., tuple[Diagnostic, ...]]:
         with pytest.raises(ScenarioError) as caught:
             scenario = loads(text, "s.toml", folder=tmp_path)
             assert building, "loads without an error"
-            case = build(scenario)
-            with placing(scenario):
-                structure_of(case)
+            try:
+                structure_of(build(scenario))
+            except InputError as error:
+                raise placed(scenario, [error]) from None
         assert str(caught.value) == "\n".join(map(str, caught.value.diagnostics))
         return caught.value.diagnostics
 

@@ -43,7 +43,8 @@ class Watch:
         columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
         bar = Progress(*columns, console=Console(stderr=True), transient=True)
         what, share = self._done
-        bar.add_task(what, completed=share, total=1.0 if share else None)
+        task = bar.add_task(what, total=1.0 if share else None)
+        bar.update(task, completed=share)
         bar.start()
         self._bar = bar
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gbeam.cli.outputs import refuse_unwritable
 from gbeam.errors import InputError
-from gbeam.scenario import Scenario, UnitError, argument, build, load, placing
+from gbeam.scenario import Scenario, UnitError, argument, build, load, placed
 
 if TYPE_CHECKING:
     from gbeam.analysis.study.case import Case
@@ -30,9 +30,21 @@ class Input:
     case: Case
     command: str
 
-    def placing(self) -> AbstractContextManager[None]:
-        """Give the InputErrors raised inside their place in the scenario file."""
-        return placing(self.scenario)
+    @contextmanager
+    def placing(self, **options: str) -> Iterator[None]:
+        """Give the InputErrors raised inside their place in the scenario file, or the option that they are about.
+
+        Parameters
+        ----------
+        **options
+            Option of the command line by the name of the argument that it sets.
+        """
+        try:
+            yield
+        except InputError as error:
+            if error.where in options:
+                raise InputError(options[error.where], error.problem, error.fix) from None
+            raise placed(self.scenario, [error]) from None
 
     def motion(self, name: str | None, *, hubs_only: bool = False) -> tuple[str, Motion]:
         """The motion of ``--motion``, and its name: without one the only one; with `hubs_only` the only hub.

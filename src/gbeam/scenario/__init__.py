@@ -6,7 +6,7 @@ explain and placing put every error at its line; template is for those who write
 
 from gbeam.scenario.build import build, build_machines, read_scenario
 from gbeam.scenario.load import load, load_environments, loads
-from gbeam.scenario.placing import placed, placing
+from gbeam.scenario.placing import placed
 from gbeam.scenario.schema import Environments, Scenario
 from gbeam.scenario.template import json_schema, template
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
@@ -26,7 +26,6 @@ __all__ = [
     "load_environments",
     "loads",
     "placed",
-    "placing",
     "quantity",
     "read_scenario",
     "template",

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from gbeam.errors import InputError
@@ -12,16 +11,7 @@ from gbeam.scenario.text.paths import parse_path
 
 if TYPE_CHECKING:
     from gbeam.scenario.schema import Environments
-    from gbeam.scenario.text.source import Source
-
-
-@contextmanager
-def placing(scenario: Environments) -> Iterator[None]:
-    """Turn an InputError raised inside into the ScenarioError with its place in the file."""
-    try:
-        yield
-    except InputError as error:
-        raise placed(scenario, [error]) from None
+    from gbeam.scenario.text.source import Mark, Source
 
 
 def placed(scenario: Environments, errors: Iterable[InputError]) -> ScenarioError:
@@ -41,5 +31,5 @@ def _diagnostic(source: Source | None, error: InputError) -> Diagnostic:
     if source is None:  # a scenario made without a text
         return Diagnostic("scenario", error.where, error.problem, error.fix)
     # "is given beside rate" is about the key, everything else about the value.
-    mark = "key" if error.problem.startswith("is given") else "value"
+    mark: Mark = "key" if error.problem.startswith("is given") else "value"
     return source.diagnostic(parse_path(error.where) or (), error.problem, error.fix, mark)

@@ -38,22 +38,19 @@ def campbell(
     folder = out if out is not None or json else Path("out") / scenario.stem
     given = read("campbell", scenario, overrides, folder)
     name, chosen = given.motion(motion, hubs_only=True)
-    for option, count, least in (("--modes", modes, 1), ("--orders", orders, 0)):
-        if count < least:
-            raise InputError(option, f"is {count}", f"give {least} or more")
-    if end is None and chosen.free:
-        raise InputError(
-            "--to", "is missing: the hub is driven by a torque", 'give the largest speed, such as "5 rad/s"'
-        )
     low = 0.0 if start is None else number("--from", start, "angular rate")
+    high = None if end is None else number("--to", end, "angular rate")
+    if orders < 0:
+        raise InputError("--orders", f"is {orders}", "give 0 or more")
+    if high is None and chosen.free:
+        fix = 'give the largest speed, such as "5 rad/s"'
+        raise InputError("--to", "is missing: the hub is driven by a torque", fix)
 
     from gbeam.analysis.study.study import structure_of
     from gbeam.analysis.vibration import campbell as analysis
-    from gbeam.analysis.vibration.speeds import largest_rate
     from gbeam.report.steady import campbell as report
 
-    with Watch(), given.placing():
-        high = largest_rate(chosen, name) if end is None else number("--to", end, "angular rate")
+    with Watch(), given.placing(to="--to", modes="--modes"):
         diagram = analysis.campbell(
             structure_of(given.case), chosen, start=low, end=high, modes=modes, orders=range(1, orders + 1), name=name
         )

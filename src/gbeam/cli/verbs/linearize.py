@@ -65,18 +65,15 @@ def linearize(
 
     with naming("--strain-at"):
         gauges = surface_gauges(given.case.beam, stations)
-    with Watch(), given.placing():
-        system = linearize(structure_of(given.case), chosen, time, rate=steady, gauges=gauges, name=name)
     hankel: Iterable[float] = ()
-    try:
+    options = {"order": "--balanced", "modes": "--modes", "inputs": "--inputs", "outputs": "--outputs"}
+    with Watch(), given.placing(**options):
+        system = linearize(structure_of(given.case), chosen, time, rate=steady, gauges=gauges, name=name)
         system = system.select(inputs=_names(inputs), outputs=_names(outputs))
         if modes is not None:
             system = modal_truncation(system, modes)
         elif balanced is not None:
             system, hankel = balanced_truncation(system, balanced)
-    except InputError as error:
-        option = "--balanced" if error.where == "order" else f"--{error.where}"
-        raise InputError(option, error.problem, error.fix) from None
     facts = report.to_json(system, gauges, hankel)
 
     def make(hidden: Path) -> None:

@@ -45,8 +45,11 @@ def static(
         from gbeam.plots.loads import plot_loads_along
         from gbeam.plots.static import plot_static
 
-        loaded = [each for each in deflections if each.loads is not None]
-        loads = {f"loads_{each.motion}": plot_loads_along(each, each.loads, title) for each in loaded}
+        loads = {
+            f"loads_{each.motion}": plot_loads_along(each, each.loads, title)
+            for each in deflections
+            if each.loads is not None
+        }
         return {"static": plot_static(deflections, title), **loads}
 
     write(out, "static", facts, figures)

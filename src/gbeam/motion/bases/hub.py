@@ -83,7 +83,8 @@ class Hub:
         for name, value in (("stiffness", stiffness), ("damping", damping)):
             if not free and (is_traced(value) or value != 0):
                 fix = f"leave out {name}, or give inertia and no rate"
-                raise InputError(name, "is given, and the hub is not free to turn", fix)
+                beside = " beside rate" if rate is not None else ""
+                raise InputError(name, f"is given{beside}, and the hub is not free to turn", fix)
         mount = Mount(radius, pointing, setting_angle, gravity)
         assign(
             self,
