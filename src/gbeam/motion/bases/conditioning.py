@@ -137,8 +137,6 @@ def filtered(time: Floats, values: Floats, cutoff: float | None, resample: float
     InputError
         If the cut-off is at or above half of either sampling rate, or fewer samples are asked for without a cut-off.
     """
-    import scipy.interpolate  # not needed by those who do not ask for it
-
     step = float(time[-1] - time[0]) / (len(time) - 1)
     if cutoff is not None:
         try:
@@ -155,6 +153,8 @@ def filtered(time: Floats, values: Floats, cutoff: float | None, resample: float
             + ("no cut-off" if cutoff is None else f"a cut-off of {cutoff:g} Hz"),
             f'add cutoff = "{0.4 * rate:g} Hz" or less: what is faster would come back as slow vibration',
         )
+    import scipy.interpolate  # half a second to import, which only a new rate needs
+
     fresh = time[0] + np.arange(int(np.floor((time[-1] - time[0]) * rate * (1 + 1e-12))) + 1) / rate
     fresh = np.minimum(fresh, time[-1])
     return fresh, np.asarray(scipy.interpolate.CubicSpline(time, values, axis=0)(fresh))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from gbeam.motion.centrifuge.target.load_limits import OPPOSED, nearest_to_zero
 from gbeam.motion.profiles.hann import soft_floor
+from gbeam.numerics.banded import solve_banded
 from gbeam.numerics.intervals import true_runs
 
 BAND = 0.1  # of a floor: how softly it sets in
@@ -67,21 +68,25 @@ def smooth_hold(times: Floats, load: Floats, held: Flags, period: float, idle: f
 
 def _smooth(times: Floats, values: Floats, free: Flags, period: float) -> Floats:
     """Minimise the penalised distance over the free knots, columns at once."""
-    import scipy.sparse  # only a load that is held needs it
-    import scipy.sparse.linalg
-
     # Third divided differences on four knots each: 6 f[t0, t1, t2, t3] is the third derivative.
     rows = times.size - 3
     node = np.stack([times[i : rows + i] for i in range(4)], axis=1)
     factors = np.stack(
         [6 / np.prod([node[:, i] - node[:, j] for j in range(4) if j != i], axis=0) for i in range(4)], axis=1
     )
-    third = scipy.sparse.diags_array(list(factors.T), offsets=list(range(4)), shape=(rows, times.size))
-    penalty = (period / (2 * np.pi)) ** 6 * third.T @ scipy.sparse.diags_array(node[:, 2] - node[:, 1]) @ third
-    width = np.gradient(times)
-    system = (scipy.sparse.diags_array(width) + penalty).tocsr()
-    inside, outside = np.flatnonzero(free), np.flatnonzero(~free)
-    right = width[inside, None] * values[inside] - system[inside][:, outside] @ values[outside]
-    path = values.copy()
-    path[inside] = scipy.sparse.linalg.spsolve(system[inside][:, inside].tocsc(), right)
-    return path
+    penalty = (period / (2 * np.pi)) ** 6 * (node[:, 2] - node[:, 1])
+    band, width = np.zeros((4, times.size)), np.gradient(times)
+    band[0] = width
+    for d in range(4):
+        for i in range(4 - d):
+            band[d, i : i + rows] += penalty * factors[:, i] * factors[:, i + d]
+    # The other knots keep their values: their rows become those of the unit matrix.
+    right = np.where(free[:, None], width[:, None] * values, values)
+    for d in range(1, 4):
+        above, below = slice(0, times.size - d), slice(d, times.size)
+        coupling = band[d, above]
+        right[below] -= np.where(free[below] & ~free[above], coupling, 0.0)[:, None] * values[above]
+        right[above] -= np.where(free[above] & ~free[below], coupling, 0.0)[:, None] * values[below]
+        band[d, above] = np.where(free[above] & free[below], coupling, 0.0)
+    band[0, ~free] = 1.0
+    return solve_banded(band, right)
