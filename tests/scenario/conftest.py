@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from gbeam.analysis.study.study import structure_of
 from gbeam.errors import InputError
 from gbeam.scenario import Diagnostic, ScenarioError, build, loads, placed
 
@@ -29,7 +28,7 @@ def errors(tmp_path: Path) -> Callable[..., tuple[Diagnostic, ...]]:
             scenario = loads(text, "s.toml", folder=tmp_path)
             assert building, "loads without an error"
             try:
-                structure_of(build(scenario))
+                build(scenario).assemble()
             except InputError as error:
                 raise placed(scenario, [error]) from None
         assert str(caught.value) == "\n".join(map(str, caught.value.diagnostics))

@@ -72,14 +72,8 @@ class Input:
 
     def structure(self) -> Structure:
         """The scenario's beam in its model, with stations all along it."""
-        from gbeam.mechanics.assembly import assemble
-
         length = self.case.beam.length
-        along = [length * i / (STATIONS - 1) for i in range(STATIONS)]
-        try:
-            return assemble(self.case.beam, self.case.model, along)
-        except InputError as error:
-            raise error.within("beam") from None
+        return self.case.assemble([length * i / (STATIONS - 1) for i in range(STATIONS)])
 
     def provenance(self) -> Provenance:
         """What a result file says about where it came from."""

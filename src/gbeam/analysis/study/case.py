@@ -5,8 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from numpy.typing import ArrayLike
+
 from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.errors import InputError
+from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.models import Model
+from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.structure.beam import Beam
 
@@ -36,3 +41,21 @@ class Case:
     response: ResponseSettings
     tracks: Mapping[str, str] = field(default_factory=dict)
     stations: tuple[float, ...] = ()
+
+    def assemble(self, stations: ArrayLike | None = None) -> Structure:
+        """Put the beam into its model.
+
+        Parameters
+        ----------
+        stations : (s,), optional
+            Positions of output from the root besides the tip, m; by default the case's own.
+
+        Raises
+        ------
+        InputError
+            If the beam does not fit its model, with its place in the scenario.
+        """
+        try:
+            return assemble(self.beam, self.model, self.stations if stations is None else stations)
+        except InputError as error:
+            raise error.within("response" if error.where.startswith("stations") else "beam") from None

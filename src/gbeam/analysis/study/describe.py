@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from gbeam.analysis.study.case import Case
-from gbeam.analysis.study.study import structure_of
 from gbeam.mechanics.fields.basis import quadrature
 from gbeam.results.description import Description
 
@@ -29,7 +28,7 @@ def describe(case: Case) -> Description:
     InputError
         If the beam does not fit its model, with its place in the scenario.
     """
-    structure, beam, settings = structure_of(case), case.beam, case.response
+    structure, beam, settings = case.assemble(), case.beam, case.response
     frequencies, modes = structure.rest
     # Which group of coordinates moves most says along which axis a mode bends.
     groups = np.repeat(("axial", "y", "z"), structure.counts)

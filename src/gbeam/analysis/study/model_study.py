@@ -14,7 +14,6 @@ from scipy.optimize import minimize_scalar
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.study.case import Case
-from gbeam.analysis.study.study import structure_of
 from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.models import KINDS, Model
 from gbeam.mechanics.structure import Structure
@@ -92,7 +91,7 @@ def compare_models(
 
 def _structure(case: Case, kind: str) -> Structure | Failure:
     try:
-        return structure_of(replace(case, model=counterpart(case.model, kind)))
+        return replace(case, model=counterpart(case.model, kind)).assemble()
     except InputError as error:
         return Failure("cannot", str(error))
 

@@ -7,19 +7,9 @@ from collections.abc import Callable
 from gbeam.analysis.imitation.comparison import compare
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.study.case import Case
-from gbeam.errors import ComputationError, InputError
-from gbeam.mechanics.assembly import assemble
-from gbeam.mechanics.structure import Structure
+from gbeam.errors import ComputationError
 from gbeam.results.response import Response
 from gbeam.results.study import Failure, Study
-
-
-def structure_of(case: Case) -> Structure:
-    """Put a case's beam into its model; an InputError names its place in the scenario."""
-    try:
-        return assemble(case.beam, case.model, case.stations)
-    except InputError as error:
-        raise error.within("response" if error.where.startswith("stations") else "beam") from None
 
 
 def study(case: Case, progress: Callable[[str, float], None] | None = None) -> Study:
@@ -28,7 +18,7 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
     Parameters
     ----------
     case : Case
-        From :func:`gbeam.build`, or made by hand.
+        From :func:`gbeam.read_scenario`, or made by hand.
     progress : callable, optional
         Called with what is being done and the fraction of it done.
 
@@ -43,7 +33,7 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
     ComputationError
         If no motion has a relative equilibrium to start from; the message names each.
     """
-    structure = structure_of(case)
+    structure = case.assemble()
 
     def answer(name: str) -> Response:
         motion = case.motions[name]

@@ -46,13 +46,12 @@ def campbell(
         fix = 'give the largest speed, such as "5 rad/s"'
         raise InputError("--to", "is missing: the hub is driven by a torque", fix)
 
-    from gbeam.analysis.study.study import structure_of
     from gbeam.analysis.vibration import campbell as analysis
     from gbeam.report.steady import campbell as report
 
     with Watch(), given.placing(to="--to", modes="--modes"):
         diagram = analysis.campbell(
-            structure_of(given.case), chosen, start=low, end=high, modes=modes, orders=range(1, orders + 1), name=name
+            given.case.assemble(), chosen, start=low, end=high, modes=modes, orders=range(1, orders + 1), name=name
         )
     facts = report.to_json(diagram)
 

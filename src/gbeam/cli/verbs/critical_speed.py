@@ -47,12 +47,11 @@ def critical_speed(
     time = given.time(at)
 
     from gbeam.analysis.equilibrium.operating_point import held_base
-    from gbeam.analysis.study.study import structure_of
     from gbeam.analysis.vibration import stability
     from gbeam.report.steady import critical as report
 
     with Watch(), given.placing():
-        structure = structure_of(given.case).at_time(time)
+        structure = given.case.assemble().at_time(time)
         if vary == "rate":
             critical = stability.critical_speed(structure, chosen, upper=upper, name=name)
         elif vary == "loads":

@@ -60,7 +60,6 @@ def linearize(
     from gbeam.analysis.control.gauges import surface_gauges
     from gbeam.analysis.control.linearization import linearize
     from gbeam.analysis.control.reduction import balanced_truncation, modal_truncation
-    from gbeam.analysis.study.study import structure_of
     from gbeam.report.steady import state_space as report
 
     with naming("--strain-at"):
@@ -68,7 +67,7 @@ def linearize(
     hankel: Iterable[float] = ()
     options = {"order": "--balanced", "modes": "--modes", "inputs": "--inputs", "outputs": "--outputs"}
     with Watch(), given.placing(**options):
-        system = linearize(structure_of(given.case), chosen, time, rate=steady, gauges=gauges, name=name)
+        system = linearize(given.case.assemble(), chosen, time, rate=steady, gauges=gauges, name=name)
         system = system.select(inputs=_names(inputs), outputs=_names(outputs))
         if modes is not None:
             system = modal_truncation(system, modes)

@@ -44,7 +44,6 @@ def place(
 
     from gbeam.analysis.imitation import place as analysis
     from gbeam.analysis.imitation.choice import choice_of
-    from gbeam.analysis.study.study import structure_of
     from gbeam.motion import Centrifuge, Flight
     from gbeam.report.machine import placement as report
 
@@ -54,7 +53,7 @@ def place(
         choice = choice_of(current, widths, limited=not ignore_limits)
     with given.placing():
         placement = analysis.place(
-            structure_of(given.case),
+            given.case.assemble(),
             flight,
             choice,
             given.case.response,
