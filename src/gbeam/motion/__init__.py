@@ -7,7 +7,6 @@ hub that is `free` to turn has a torque in place of a motion.
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
 from gbeam.motion.bases.flight import Flight
-from gbeam.motion.bases.former_hubs import HubRate, HubTorque
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.bases.mount import Mount
 from gbeam.motion.bases.record import read_record
@@ -35,8 +34,6 @@ __all__ = [
     "Episode",
     "Flight",
     "Hub",
-    "HubRate",
-    "HubTorque",
     "Limits",
     "Machine",
     "MachineLimits",

@@ -93,12 +93,15 @@ class Grid:
         self.time = (first + self.step * (np.arange(self.pieces)[:, None] + points)).ravel()
         self.first = np.repeat(np.arange(self.pieces), points.size)  # first coefficient that acts there
 
-    def weights(self, order: int) -> Floats:
-        """Weights (times, 6) of the `order`-th time derivative."""
+    def rows(self, order: int) -> Floats:
+        """Weights (points, 6) of the `order`-th time derivative at the points of any piece."""
         k = np.arange(order, PIECE)
         factor = np.array([factorial(int(n)) / factorial(int(n) - order) for n in k])
-        rows = (factor * self.points[:, None] ** (k - order)) @ _BASIS[order:] / self.step**order
-        return np.tile(rows, (self.pieces, 1))
+        return np.asarray((factor * self.points[:, None] ** (k - order)) @ _BASIS[order:] / self.step**order)
+
+    def weights(self, order: int) -> Floats:
+        """The same for every time, (times, 6)."""
+        return np.tile(self.rows(order), (self.pieces, 1))
 
     def windows(self, c: Floats) -> Floats:
         """Coefficients (size, k) piece by piece, (pieces, 6·k)."""
@@ -127,11 +130,11 @@ class Grid:
 
     def fit(self, values: Floats) -> Floats:
         """Coefficients (n, k) of the least-squares fit to values (times, k)."""
-        w = self.weights(0)
+        rows = np.broadcast_to(self.rows(0), (self.pieces, self.points.size, PIECE))
         columns = []
         for column in values.T:
-            normal = Normal(self.size, 1)
-            normal.add(self.first, w[:, None, :], column[:, None])
+            normal = Normal(self.pieces, 1)
+            normal.add(rows, column.reshape(self.pieces, -1))
             columns.append(normal.solve(1e-14))
         return np.stack(columns, axis=1)
 
@@ -141,30 +144,43 @@ class Normal:
 
     Parameters
     ----------
-    size : int
-        Number of coefficients of one function.
+    pieces : int
+        Of the splines.
     functions : int
-        How many functions are sought at once; unknowns run through them first.
+        How many splines are sought at once; unknowns run through them first.
     """
 
-    def __init__(self, size: int, functions: int) -> None:
-        self.functions, self.block = functions, PIECE * functions
-        self.band = np.zeros((self.block, size * functions))  # upper form of scipy.linalg.solveh_banded, turned over
-        self.right = np.zeros(size * functions)
+    def __init__(self, pieces: int, functions: int) -> None:
+        self.pieces, self.functions, self.block = pieces, functions, PIECE * functions
+        size = (pieces + DEGREE) * functions
+        self.band = np.zeros((self.block, size))  # lower form of scipy.linalg.solveh_banded
+        self.right = np.zeros(size)
 
-    def add(self, first: NDArray[np.int64], rows: Floats, values: Floats) -> None:
-        """Add rows (times, m, 6·functions) with right-hand sides (times, m), acting from coefficient `first` on."""
-        across = rows.swapaxes(1, 2)
-        self.add_products(first, across @ rows, (across @ values[..., None])[..., 0])
+    def add(self, rows: Floats, values: Floats) -> None:
+        """Add rows (pieces, m, 6·functions) with right-hand sides (pieces, m)."""
+        columns = np.ascontiguousarray(np.moveaxis(rows, -1, 0))
+        for i, column in enumerate(columns):
+            self.right[self._at(i)] += np.einsum("pm,pm->p", column, values)
+            for d, other in enumerate(columns[i:]):
+                self.band[d, self._at(i)] += np.einsum("pm,pm->p", column, other)
 
-    def add_products(self, first: NDArray[np.int64], square: Floats, side: Floats) -> None:
-        """Add products of rows already made: RᵀR (times, 6·functions, 6·functions), Rᵀv (times, 6·functions)."""
-        at = first * self.functions
-        n = self.right.size
+    def add_products(self, square: Floats, side: Floats) -> None:
+        """Add products of rows already made: RᵀR (pieces, 6·functions, 6·functions), Rᵀv (pieces, 6·functions)."""
         for i in range(self.block):
-            self.right += np.bincount(at + i, side[:, i], n)
+            self.right[self._at(i)] += side[:, i]
             for d in range(self.block - i):
-                self.band[d] += np.bincount(at + i, square[:, i, i + d], n)
+                self.band[d, self._at(i)] += square[:, i, i + d]
+
+    def add_row(self, piece: int, row: Floats, value: float) -> None:
+        """Add one row (6·functions,) on a piece, counted from the end where negative."""
+        first = (piece % self.pieces) * self.functions
+        self.right[first : first + self.block] += row * value
+        for d in range(self.block):
+            self.band[d, first : first + self.block - d] += row[: self.block - d] * row[d:]
+
+    def _at(self, i: int) -> slice:
+        """Where the `i`-th coefficient of every piece stands."""
+        return slice(i, i + self.functions * (self.pieces - 1) + 1, self.functions)
 
     def solve(self, damping: float) -> Floats:
         """Solve with `damping` times the largest diagonal entry added to the diagonal."""

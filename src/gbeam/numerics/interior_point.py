@@ -77,11 +77,11 @@ def minimise(problem: Problem, c: Floats) -> tuple[Floats, float]:
     at = _Point(c, problem.cost(c), share, slack, barrier / slack)
     for _ in range(_STEPS):
         problem.linearise(at.c)
-        while (found := _step(problem, at, barrier, rigour, damping)) is None:
+        while (step := _step(problem, at, barrier, rigour, damping)) is None:
             damping *= 10
             if damping > _MOST_DAMPING:
                 return at.c, at.cost
-        at, gain, part, rigour = found
+        at, gain, part, rigour = step
         damping = max(damping / 10, 1e-13) if part > 0.5 else damping
         little, left = gain < _ENOUGH * at.cost, barrier * share.size
         if little and np.max(at.share, initial=0.0) <= 1 and left <= 1.01 * _LAST * at.cost:

@@ -7,8 +7,10 @@ NumPy or JAX arrays; two series of different orders give one of the lower.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import reduce
 from math import factorial
+from operator import add
 from typing import Any, ClassVar
 
 from gbeam.arrays.namespace import as_array, namespace
@@ -85,7 +87,7 @@ class Series:
         if not isinstance(other, Series):
             return self.each(lambda c: c * other)
         a, b = self.coefficients, other.coefficients
-        return Series(tuple(sum(a[j] * b[k - j] for j in range(k + 1)) for k in range(min(len(a), len(b)))))
+        return Series(tuple(_total(a[j] * b[k - j] for j in range(k + 1)) for k in range(min(len(a), len(b)))))
 
     __rmul__ = __mul__
 
@@ -103,13 +105,17 @@ class Series:
         return half if exponent == 1 else half * half if exponent % 2 == 0 else half * half * self
 
 
+def _total(terms: Iterable[Any]) -> Any:
+    return reduce(add, terms)
+
+
 def power(base: Series, exponent: float) -> Series:
     """A real power of a positive series."""
     a = base.coefficients
     result = [a[0] ** exponent]
     for k in range(1, len(a)):
         terms = (((exponent + 1) * j - k) * a[j] * result[k - j] for j in range(1, k + 1))
-        result.append(sum(terms) / (k * a[0]))
+        result.append(_total(terms) / (k * a[0]))
     return Series(tuple(result))
 
 
@@ -128,8 +134,8 @@ def sin_cos(angle: Series) -> tuple[Series, Series]:
     xp = namespace(a[0])
     sine, cosine = [xp.sin(a[0])], [xp.cos(a[0])]
     for k in range(1, len(a)):
-        sine.append(sum(j * a[j] * cosine[k - j] for j in range(1, k + 1)) / k)
-        cosine.append(-sum(j * a[j] * sine[k - j] for j in range(1, k + 1)) / k)
+        sine.append(_total(j * a[j] * cosine[k - j] for j in range(1, k + 1)) / k)
+        cosine.append(-_total(j * a[j] * sine[k - j] for j in range(1, k + 1)) / k)
     return Series(tuple(sine)), Series(tuple(cosine))
 
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from gbeam.checks import positive
 from gbeam.errors import InputError
+from gbeam.numerics.intervals import true_runs
 from gbeam.numerics.low_pass import low_pass
 
 Floats = NDArray[np.float64]
@@ -18,7 +19,7 @@ LARGEST = 50 * STANDARD_GRAVITY
 _BEGINS = 3.0  # g0: above that, no flight begins
 _TRUST = "if the record is right as it is, add skip_checks = true"
 _WINDOW, _OUTLIER = 3, 6.0  # samples either side; deviations from the window's median
-_LEAST_JUMP = 0.5  # m/s²: a smaller step is nobody's dropout or spike
+_LEAST_JUMP = 0.5  # m/s²: a smaller step is no dropout and no spike
 
 
 def refuse_unsound(time: Floats, load: Floats, names: tuple[str, str, str], unit: str, numbers: list[int]) -> None:
@@ -60,9 +61,9 @@ def refuse_unsound(time: Floats, load: Floats, names: tuple[str, str, str], unit
             f'a record in {other} wants unit = "{other}"; {_TRUST}',
         )
     for axis, (values, name) in enumerate(zip(load.T, names, strict=True)):
-        found = dropout(values, step)
-        if found is not None:
-            first, last = found
+        still = dropout(values, step)
+        if still is not None:
+            first, last = still
             raise InputError(
                 f"record.{'xyz'[axis]}",
                 f"column {name.lstrip('-')!r} stands still at {values[first] / _scale(unit):g} {unit} "
@@ -84,10 +85,10 @@ def dropout(values: Floats, step: float) -> tuple[int, int] | None:
     rough everywhere else and then the same number to its end has died.
     """
     change = np.diff(values)
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], change == 0, [False]]).astype(int)))
-    runs = edges.reshape(-1, 2)  # samples first … last are equal
+    runs = np.array([(run.start, run.stop) for run in true_runs(change == 0)], dtype=int).reshape(-1, 2)
     repeats = int(np.sum(runs[:, 1] - runs[:, 0]))
-    for first, last in runs[np.argsort(runs[:, 1] - runs[:, 0], kind="stable")]:  # beside a gap the plateau jumps too
+    # Samples first … last are equal. The shortest runs first: beside a gap the plateau jumps too.
+    for first, last in runs[np.argsort(runs[:, 1] - runs[:, 0], kind="stable")]:
         fewest = 3 if values[first] == 0 else 5
         if last - first + 1 < fewest:
             continue
@@ -128,14 +129,14 @@ def filtered(time: Floats, values: Floats, cutoff: float | None, resample: float
     time : (t,) s, even
     values : (t, ...)
     cutoff : float or None
-        Hz, −6 dB; see :func:`gbeam.zero_phase.low_pass`.
+        Hz, −6 dB; see :func:`gbeam.numerics.low_pass.low_pass`.
     resample : float or None
         New sampling rate, Hz; between samples by a cubic spline.
 
     Raises
     ------
     InputError
-        If the cut-off is at or above half of either sampling rate, or fewer samples are asked for without a cut-off.
+        If the cut-off is at or above half of either sampling rate, or a lower rate is given without a cut-off.
     """
     step = float(time[-1] - time[0]) / (len(time) - 1)
     if cutoff is not None:

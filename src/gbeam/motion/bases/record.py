@@ -11,8 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.errors import InputError
-from gbeam.motion.bases.conditioning import FEWEST, filtered, refuse_unsound, spikes, without_spikes
-from gbeam.motion.bases.conditioning import STANDARD_GRAVITY as STANDARD_GRAVITY  # re-exported
+from gbeam.motion.bases.conditioning import (
+    FEWEST,
+    STANDARD_GRAVITY,
+    filtered,
+    refuse_unsound,
+    spikes,
+    without_spikes,
+)
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 
 UNITS = {"g": STANDARD_GRAVITY, "m/s^2": 1.0, "m/s²": 1.0}

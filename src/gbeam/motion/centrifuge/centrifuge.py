@@ -16,13 +16,13 @@ from gbeam.errors import InputError
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
 from gbeam.motion.bases.flight import Flight
+from gbeam.motion.centrifuge.course import Course, prepare
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse
 from gbeam.motion.centrifuge.inverses.registry import INVERSES
 from gbeam.motion.centrifuge.kinematics import Axes, control_point_load, forward, moved
 from gbeam.motion.centrifuge.limits import Limits, MachineLimits, usage
 from gbeam.motion.centrifuge.machines import Machine
-from gbeam.motion.centrifuge.spin_up import STARTS, Start, build_start
-from gbeam.motion.centrifuge.target.build import build_target
+from gbeam.motion.centrifuge.spin_up import STARTS
 from gbeam.motion.centrifuge.target.reachability import shortfalls
 from gbeam.motion.centrifuge.target.target import Episode, Target
 from gbeam.motion.profiles.profile import sampled
@@ -30,15 +30,6 @@ from gbeam.results.machine import LimitUse, Shortfall
 
 MOUNTINGS = {"upright": 1.0, "inverted": -1.0}
 _GRID, _MOST = 1e-3, 200_000  # s between the times at which limits are looked at; most of them
-
-
-@record
-class Course:
-    """What a centrifuge does over one span of time: its target, the inverse solved for it, how it gets under way."""
-
-    target: Target
-    inverse: Inverse
-    start: Start
 
 
 @record
@@ -205,19 +196,18 @@ class Centrifuge:
 
     def axes(self, t: Any) -> Axes:
         """States of the three axes at times `t` (s); :func:`gbeam.motion.axis_history` unwraps the angles."""
-        first, second, third = self._derivatives(t, 2)
+        first, second, third = self._ready().derivatives(t, 2)
         return Axes(*first[:2], *second, *third)
 
     def axes_and_jerks(self, t: Any) -> tuple[Axes, Any]:
         """States of the axes and their jerks (..., 3) rad/s³ at times `t` (s), from the closed forms."""
-        first, second, third = self._derivatives(t, 3)
+        first, second, third = self._ready().derivatives(t, 3)
         jerks = first[2], second[3], third[3]
         return Axes(*first[:2], *second[:3], *third[:3]), namespace(*jerks).stack(jerks, axis=-1)
 
     def reference(self, t: Any) -> Any:
         """Load to be made at the control point at times `t` (s), base axes, m/s², shape (..., 3)."""
-        course = self._ready()
-        return course.start.load(course.target.load, as_array(t))
+        return self._ready().reference(t)
 
     def actual(self, t: Any) -> Any:
         """Load that the axes make at the control point at times `t` (s), base axes, m/s², shape (..., 3)."""
@@ -278,27 +268,15 @@ class Centrifuge:
         return self.course
 
     def _prepared(self, start: float, end: float) -> Course:
-        gravity, method = self.geometry.gravity > 0, INVERSES[self.method]
-        target = build_target(
-            self.flight.acceleration, span=(start, end), idle=self.idle, smoothing=self.smoothing, gravity=gravity,
-            arm=self.geometry.arm, clip=self.clip, spin_up=self.spin_up,
+        return prepare(
+            self.flight.acceleration, self.geometry, self.limits, inverse=self.method, start=self.beginning,
+            idle=self.idle, smoothing=self.smoothing, spin_up=self.spin_up, clip=self.clip, span=(start, end),
         )  # fmt: skip
-        if not target.rounded and (target.turns or not method.follows_corners):
-            problem = f"is missing: {self.method} cannot follow this load's corners"
-            raise InputError("smoothing", problem, 'give "60 ms" or so')
-        beginning = build_start(self.beginning, target, self.geometry)
-        return Course(target, method.build(target, self.geometry, self.limits), beginning)
 
     def _changed(self, **fields: Any) -> Self:
         other = copy.copy(self)
         assign(other, _latest=None, **fields)
         return other
-
-    def _derivatives(self, t: Any, order: int) -> tuple[tuple[Any, ...], ...]:
-        """Of the rate of axis 1 and of the angles of axes 2 and 3 at times `t` (s), each up to `order`."""
-        course = self._ready()
-        pose = course.start.pose(course.inverse, course.target.load, as_array(t), order)
-        return tuple(series.derivatives() for series in pose)
 
 
 def _position(control_point: Any) -> Any:

@@ -132,8 +132,10 @@ class SmoothedPiecewiseLinear(Profile):
         now = as_array(t)
         xp = namespace(now, self.times, self.bends, self.width)
         times, bends = xp.asarray(self.times), xp.asarray(self.bends)
-        first = xp.searchsorted(times[:-1], now - self.width / 2, side="right")
-        near = xp.minimum(first[..., None] + np.arange(self.count), times.size - 1)
+        first, count = xp.searchsorted(times[:-1], now - self.width / 2, side="right"), self.count
+        if xp is np and now.size:  # no more knots than these windows hold
+            count = int((np.searchsorted(times[:-1], now + self.width / 2, side="right") - first).max())
+        near = xp.minimum(first[..., None] + np.arange(count), times.size - 1)
         ramps = hann_orders(0, order, (now[..., None] - times[near]) / self.width)
         bent = bends[near]
         subscripts = "...j,...jv->...v" if bends.ndim > 1 else "...j,...j->..."

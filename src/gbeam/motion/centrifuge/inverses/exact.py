@@ -20,7 +20,7 @@ from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse, Pose
 from gbeam.motion.centrifuge.target.reachability import sharp_turns, size_and_rates
 from gbeam.motion.centrifuge.target.target import Target
 from gbeam.motion.profiles.profile import Profile
-from gbeam.numerics.bspline import Grid, Normal, Spline
+from gbeam.numerics.bspline import PIECE, Grid, Normal, Spline
 from gbeam.numerics.series import sin_cos, sqrt, square
 
 # Of the horizontal load: refined until this is reached. The third derivative of a rounded record jumps wherever a knot
@@ -29,6 +29,7 @@ TRACKING = 1e-7
 ACCEPTED = 1e-4  # what is still a solution, with a warning
 _STEPS = (8e-3, 4e-3, 2e-3, 1e-3, 5e-4)  # s between knots
 _MOST = 60_000  # pieces
+_NEAR, _CLOSE = 1e-6, 1e-10  # rad: largest change of the lag in a step that is taken whole, and in the last one
 _POINTS = np.array([0.5 - np.sqrt(3) / 6, 0.5 + np.sqrt(3) / 6])
 _SMOOTH = 1e-4  # weight of the third derivative at the ends: of all solutions there it picks the one without a layer
 
@@ -63,70 +64,69 @@ def exact(target: Target, geometry: Geometry) -> Exact:
         If the load turns too sharply for the arm, with the smoothing that it needs.
     """
     first, last = (float(end) for end in target.span)
-    lag, error, grid = None, np.inf, None
+    lag: Spline | None = None
     for step in _STEPS:
-        if grid is not None and (last - first) / step > _MOST:
+        if lag is not None and (last - first) / step > _MOST:
             break
         grid = Grid(first, last, step, _POINTS)
-        lag, errors = _solve(grid, target, geometry)
+        lag, errors = _solve(grid, target, geometry, lag)
         error = float(errors.max())
         if error <= TRACKING:
             break
-    assert lag is not None and grid is not None
+    assert lag is not None
     if not error <= ACCEPTED:
         raise _refusal(target, geometry, grid, errors)
-    return Exact(geometry, grid.spline(lag[:, None]))
+    return Exact(geometry, lag)
 
 
-def _solve(grid: Grid, target: Target, geometry: Geometry) -> tuple[Floats, Floats]:
-    """Coefficients of the lag, and the tracking error at the collocation points over the horizontal load."""
-    size, rate, _ = size_and_rates(target.load, geometry.gravity, grid.time)
+def _solve(grid: Grid, target: Target, geometry: Geometry, start: Spline | None) -> tuple[Spline, Floats]:
+    """The lag, and the tracking error at the collocation points over the horizontal load; from a coarser solution."""
+    shape = grid.pieces, _POINTS.size
+    size, rate, _ = (x.reshape(shape) for x in size_and_rates(target.load, geometry.gravity, grid.time))
     a, growth = size / float(geometry.arm), rate / size
-    value, slope = grid.weights(0), grid.weights(1)
-    # The slow solution to first order, which is flat's.
-    start = np.arctan(growth / (2 * np.sqrt(a)))
-    c = grid.fit(start[:, None])[:, 0]
-    near = grid.first[:, None] + np.arange(value.shape[1])
-    ends, bend = np.array([0, -1]), _SMOOTH * grid.step**3 * grid.weights(3)
+    value, slope = grid.rows(0), grid.rows(1)
+    # Without one, the slow solution to first order, which is flat's.
+    first = np.arctan(growth / (2 * np.sqrt(a))).ravel() if start is None else start(grid.time)[:, 0]
+    c = grid.fit(first[:, None])[:, 0]
+    bends = [(piece, _SMOOTH * grid.step**3 * grid.rows(3)[point]) for piece, point in ((0, 0), (-1, -1))]
 
-    def state(c: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        lag, dlag = np.sum(value * c[near], axis=1), np.sum(slope * c[near], axis=1)
-        lag = np.clip(lag, -1.5, 1.5)
-        turn = 2 * np.sqrt(a * np.cos(lag))
-        return lag, dlag, turn, np.sin(lag) * (dlag + turn) - growth * np.cos(lag)
+    def state(c: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+        near = np.lib.stride_tricks.sliding_window_view(c, PIECE)
+        lag, dlag = np.clip(near @ value.T, -1.5, 1.5), near @ slope.T
+        sine, cosine = np.sin(lag), np.cos(lag)
+        turn = 2 * np.sqrt(a * cosine)
+        return sine, cosine, dlag, turn, sine * (dlag + turn) - growth * cosine
 
-    def error(lag: Floats, residual: Floats) -> Floats:
-        return np.asarray(np.abs(residual) / (2 * np.sqrt(a * np.cos(lag))))  # |R dω1/dt − a sin δ| / a
-
-    lag, dlag, turn, residual = state(c)
+    sine, cosine, dlag, turn, residual = state(c)
     for _ in range(40):
-        by_lag = np.cos(lag) * (dlag + turn) - np.sin(lag) ** 2 * turn / (2 * np.cos(lag)) + growth * np.sin(lag)
-        rows = by_lag[:, None] * value + np.sin(lag)[:, None] * slope
-        normal = Normal(grid.size, 1)
-        normal.add(grid.first, rows[:, None, :], -residual[:, None])
-        bent = np.sum(bend[ends] * c[near[ends]], axis=1)
-        normal.add(grid.first[ends], bend[ends][:, None, :], -bent[:, None])
+        by_lag = cosine * (dlag + turn) - sine**2 * turn / (2 * cosine) + growth * sine
+        normal = Normal(grid.pieces, 1)
+        normal.add(by_lag[..., None] * value + sine[..., None] * slope, -residual)
+        for piece, bend in bends:
+            normal.add_row(piece, bend, -float(bend @ (c[:PIECE] if piece == 0 else c[-PIECE:])))
         try:
             move = normal.solve(1e-13)
         except np.linalg.LinAlgError:
-            return c, np.full_like(residual, np.inf)
-        # Far from the solution a whole step may leave the range of the lag.
-        for part in (1.0, 0.5, 0.25, 0.1):
+            return grid.spline(c[:, None]), np.full_like(residual, np.inf)
+        size = np.abs(move).max()
+        # Far from the solution a whole step may leave the range of the lag; near to it rounding decides what gains.
+        for part in (1.0, 0.5, 0.25, 0.1) if size > _NEAR else (1.0,):
             new = state(c + part * move)
-            if np.sum(new[3] ** 2) < np.sum(residual**2) * (1 + 1e-9) + 1e-20:
+            if np.sum(new[-1] ** 2) < np.sum(residual**2) * (1 + 1e-9):
                 break
         c = c + part * move
-        lag, dlag, turn, residual = new
-        if np.abs(move).max() < 1e-12:
+        sine, cosine, dlag, turn, residual = new
+        if size < _CLOSE:
             break
-    return c, error(lag, residual)
+    # |R dω1/dt − a sin δ| / a
+    return grid.spline(c[:, None]), np.asarray(np.abs(residual) / turn)
 
 
 def _refusal(target: Target, geometry: Geometry, grid: Grid, errors: Floats) -> InputError:
     """Name the place and the smoothing that would do."""
     turns = sharp_turns(target, float(geometry.arm))
     if not turns:
-        at = grid.time[int(np.argmax(np.where(np.isfinite(errors), errors, 0.0)))]
+        at = grid.time[int(np.argmax(np.where(np.isfinite(errors), errors, 0.0).ravel()))]
         problem = f"is too small for the exact inverse: no smooth motion follows the load about {at:.3f} s"
         return InputError("smoothing", problem, 'give more, or inverse = "planned" or "flat"')
     worst = max((turn for turn, _ in turns), key=lambda turn: turn.reference / turn.possible)

@@ -86,7 +86,7 @@ class _Tracking:
 
     def __init__(self, grid: Grid, geometry: Geometry, limits: Limits, reference: Floats, weight: Floats) -> None:
         self.grid, self.geometry, self.reference, self.weight = grid, geometry, reference, weight
-        orders = np.stack([grid.weights(order)[: _POINTS.size] for order in range(4)])
+        orders = np.stack([grid.rows(order) for order in range(4)])
         state = np.stack([_row(orders[k], axis) for k, axis in ((0, 0), (1, 0), (0, 1), (0, 2))], axis=1)
         self.state = state.reshape(-1, _ACROSS)  # (points · states, 18)
         self.products = np.einsum("psI,ptJ->pstIJ", state, state).reshape(-1, _ACROSS**2)
@@ -141,8 +141,8 @@ class _Tracking:
             + self.near @ self.ease
             + pull[:first].reshape(pieces, -1) @ self.hull
         )
-        normal = Normal(self.grid.size, 3)
-        normal.add_products(np.arange(pieces), products.reshape(-1, _ACROSS, _ACROSS), -side)
+        normal = Normal(pieces, 3)
+        normal.add_products(products.reshape(-1, _ACROSS, _ACROSS), -side)
         return normal.solve_shifted(damping * float(self.square.max())).reshape(-1, 3)
 
     def change(self, move: Floats) -> Floats:
