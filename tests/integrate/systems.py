@@ -1,62 +1,80 @@
-"""Small systems with known solutions."""
+"""Small systems with known solutions; drives take NumPy's times and JAX's."""
 
 from __future__ import annotations
 
 from typing import Any
 
-import jax.numpy as jnp
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from gbeam.integrate import LinearSystem, NonlinearSystem, State
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record
+from gbeam.integrate import LinearEquations, NonlinearEquations
+
+Equations = LinearEquations | NonlinearEquations
 
 
 def undriven(t: Any) -> Any:
-    return jnp.zeros_like(t)
+    return namespace(t).zeros_like(t)
 
 
-def _oscillator(_: Any) -> Any:
-    return jnp.zeros((1, 1)), jnp.full((1, 1), (2 * np.pi) ** 2), jnp.zeros(1)
+def driven(mass: Any, drive: Any, stiffness: float = 0.0) -> LinearEquations:
+    """One coordinate without damping, m q̈ + k q = f(t)."""
+
+    def matrices(f: Any) -> Any:
+        none = 0 * f[:, None, None]
+        return none, none + stiffness, f[:, None]
+
+    return LinearEquations(np.full((1, 1), mass), matrices, drive)
 
 
-OSCILLATOR = LinearSystem(jnp.eye(1), _oscillator, undriven)  # period 1 s, undamped
+OSCILLATOR = driven(1.0, undriven, (2 * np.pi) ** 2)  # period 1 s, undamped
 
 
-def state(q: Any, qd: Any) -> State:
-    q, qd = jnp.atleast_1d(jnp.asarray(q, dtype=float)), jnp.atleast_1d(jnp.asarray(qd, dtype=float))
-    return State(q, qd, 0 * q, 0 * q)
+def one(value: float) -> np.ndarray:
+    """A vector of one coordinate."""
+    return np.array([value])
+
+
+_C, _K0, _K1 = (np.array(m) for m in ([[0.2, 0.5], [-0.5, 0.1]], [[4.0, -1.0], [0.5, 9.0]], [[2.0, 0.0], [1.0, 3.0]]))
 
 
 def _varying(t: Any) -> Any:
-    c = jnp.array([[0.2, 0.5], [-0.5, 0.1]]) * (1 + 0.3 * jnp.sin(t))
-    k = jnp.array([[4.0, -1.0], [0.5, 9.0]]) + jnp.array([[2.0, 0.0], [1.0, 3.0]]) * jnp.cos(2 * t)
-    return c, k, jnp.stack([jnp.cos(3 * t), jnp.exp(-t)])
+    xp, at = namespace(t), t[:, None, None]
+    c = _C * (1 + 0.3 * xp.sin(at))
+    return c, _K0 + _K1 * xp.cos(2 * at), xp.stack([xp.cos(3 * t), xp.exp(-t)], axis=-1)
 
 
-_MASS = jnp.array([[2.0, 0.3], [0.3, 1.0]])
-VARYING = LinearSystem(_MASS, _varying, lambda t: t)  # C, K and F vary with time; C and K are not symmetric
+_MASS = np.array([[2.0, 0.3], [0.3, 1.0]])
+VARYING = LinearEquations(_MASS, _varying, lambda t: t)  # C, K and F vary with time; C and K are not symmetric
 
 
-def _pendulum(q: Any, qd: Any, qdd: Any, force: Any) -> Any:
-    return qdd + 0.1 * qd + jnp.sin(q) - force
+@record
+class Pendulum:
+    def __call__(self, q: Any, qd: Any, qdd: Any, force: Any) -> Any:
+        return qdd + 0.1 * qd + namespace(q).sin(q) - force
 
 
-PENDULUM = NonlinearSystem(_pendulum, jnp.cos)
+PENDULUM = NonlinearEquations(Pendulum(), lambda t: namespace(t).cos(t))
 
 
-def _bead(q: Any, qd: Any, qdd: Any, force: Any) -> Any:
-    return (1 + q**2) * qdd + q * qd**2 + q - force
+@record
+class Bead:
+    """On a parabola: its mass depends on where it is."""
+
+    def __call__(self, q: Any, qd: Any, qdd: Any, force: Any) -> Any:
+        return (1 + q**2) * qdd + q * qd**2 + q - force
 
 
-BEAD = NonlinearSystem(_bead, lambda t: 0.5 * jnp.sin(t))  # on a parabola: its mass depends on where it is
+BEAD = NonlinearEquations(Bead(), lambda t: 0.5 * np.sin(t))
 
 
-def rates(system: LinearSystem | NonlinearSystem) -> Any:
+def rates(system: Equations) -> Any:
     """q̈ of (t, q, q̇), with numpy's own linear algebra."""
     if system is VARYING:
 
         def acceleration(t: float, q: np.ndarray, qd: np.ndarray) -> np.ndarray:
-            c, k, f = (np.asarray(m) for m in _varying(t))
+            c, k, f = (np.asarray(m)[0] for m in _varying(one(t)))
             return np.linalg.solve(_MASS, f - c @ qd - k @ q)
 
     elif system is PENDULUM:
@@ -72,7 +90,7 @@ def rates(system: LinearSystem | NonlinearSystem) -> Any:
     return acceleration
 
 
-def reference(system: LinearSystem | NonlinearSystem, q: Any, qd: Any, end: float) -> np.ndarray:
+def reference(system: Equations, q: Any, qd: Any, end: float) -> np.ndarray:
     """(q, q̇) at the end by an explicit method of eighth order."""
     q, n, acceleration = np.atleast_1d(q), np.size(q), rates(system)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -36,26 +37,38 @@ def integrate_adaptively(
     stop : callable, optional
         As :func:`gbeam.integrate.integrate` takes it.
     """
-    import diffrax  # here: it takes half a second, and few runs need it
-    import jax
     import jax.numpy as jnp
 
     import gbeam.arrays.jax_setup  # noqa: F401
+
+    inside = np.asarray([] if jumps is None else jumps, dtype=float)
+    inside = np.unique(inside[(inside > times[0]) & (inside < times[-1])])
+    state = jnp.asarray(q, dtype=float), jnp.asarray(qd, dtype=float)
+    q, qd, qdd, ok = (np.asarray(x) for x in _solver(equations)(*state, times, inside, tolerance))
+    good = np.isfinite(q).all(axis=1)
+    valid = len(times) if good.all() else int(np.argmin(good))
+    last = None if stop is None else stop(q[:valid])
+    converged, valid = bool(ok) and valid == len(times), valid if last is None else last
+    return Trajectory(times[:valid], q[:valid], qd[:valid], qdd[:valid], converged, last is not None)
+
+
+@lru_cache(maxsize=2)
+def _solver(equations: LinearEquations | NonlinearEquations) -> Callable[..., Any]:
+    """One program for equations: two tolerances, which give an error estimate, share it."""
+    import diffrax  # here: it takes half a second, and few runs need it
+    import jax
 
     acceleration = _acceleration(equations)
 
     def rates(t: Any, y: tuple[Any, Any], _: Any) -> tuple[Any, Any]:
         return y[1], acceleration(t, *y)
 
-    inside = np.asarray([] if jumps is None else jumps, dtype=float)
-    inside = np.unique(inside[(inside > times[0]) & (inside < times[-1])])
-
     @jax.jit
-    def solve(q: Any, qd: Any) -> Any:
+    def solve(q: Any, qd: Any, times: Any, jumps: Any, tolerance: Any) -> Any:
         span = times[-1] - times[0]
         controller = diffrax.ClipStepSizeController(
             diffrax.PIDController(rtol=tolerance, atol=tolerance * 1e-3, dtmin=1e-10 * span, force_dtmin=False),
-            jump_ts=jnp.asarray(inside) if inside.size else None,
+            jump_ts=jumps if jumps.size else None,
         )
         solution = diffrax.diffeqsolve(
             diffrax.ODETerm(rates),
@@ -64,20 +77,16 @@ def integrate_adaptively(
             times[-1],
             None,
             (q, qd),
-            saveat=diffrax.SaveAt(ts=jnp.asarray(times)),
+            saveat=diffrax.SaveAt(ts=times),
             stepsize_controller=controller,
+            adjoint=diffrax.ForwardMode(),  # its loops are plain ones, half as long to compile
             max_steps=2_000_000,
             throw=False,
         )
         q, qd = solution.ys
-        return q, qd, jax.vmap(acceleration)(jnp.asarray(times), q, qd), solution.result == diffrax.RESULTS.successful
+        return q, qd, jax.vmap(acceleration)(times, q, qd), solution.result == diffrax.RESULTS.successful
 
-    q, qd, qdd, ok = (np.asarray(x) for x in solve(jnp.asarray(q, dtype=float), jnp.asarray(qd, dtype=float)))
-    good = np.isfinite(q).all(axis=1)
-    valid = len(times) if good.all() else int(np.argmin(good))
-    last = None if stop is None else stop(q[:valid])
-    converged, valid = bool(ok) and valid == len(times), valid if last is None else last
-    return Trajectory(times[:valid], q[:valid], qd[:valid], qdd[:valid], converged, last is not None)
+    return solve
 
 
 def _acceleration(equations: LinearEquations | NonlinearEquations) -> Callable[[Any, Any, Any], Any]:

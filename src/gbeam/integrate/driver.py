@@ -88,7 +88,9 @@ def integrate(
             converged = valid == len(good)
             last = None if stop is None or valid == 0 or not pieces else stop(piece[0][:valid])
             stopped = last is not None
-            piece = [x[: valid if last is None else last] for x in piece]
+            kept = valid if last is None else last
+            # The initial state is kept even where it has no acceleration.
+            piece = [x[: kept if pieces else 1] for x in piece]
         pieces.append(tuple(piece))
         done += len(piece[0]) if len(pieces) > 1 else 0
         if progress is not None:
@@ -135,20 +137,20 @@ def _nonlinear(
     yield *(read(x)[None] for x in (q, qd, qdd)), np.array([True])
     x = jnp.broadcast_to(qdd, (len(scheme.offsets), len(q)))
     carry = newton.Carry(jnp.asarray(tableau.first) @ jnp.stack([q, qd, qdd]), x, x, qdd)
-    shape = (-1, newton.PER_JACOBIAN)
+    shape = (-1, newton.PER_JACOBIAN[len(scheme.offsets)])
     for times in _times(start, step, count, CHUNK):
         wanted = len(times)
         # Steps beyond the end fill the last chunk, so that one program serves every duration.
         padded = times[0] + step * np.arange(CHUNK)
         at = _stage_inputs(equations.drive, scheme, padded, step)
         by_chunk = jax.tree.map(lambda leaf: leaf.reshape(*shape, *leaf.shape[1:]), at)
-        after, (*piece, size) = newton.quick(residual, tableau, carry, *by_chunk, ends=scheme.ends)
+        after, (*piece, left) = newton.quick(residual, tableau, carry, *by_chunk, ends=scheme.ends)
         piece = [read(values.reshape(CHUNK, -1))[:wanted] for values in piece]
         if traced:
-            fine = jnp.max(size.ravel()[:wanted]) <= newton.ACCEPTED
+            fine = jnp.max(left.ravel()[:wanted]) <= newton.ACCEPTED
             piece = [jnp.where(fine, values, jnp.nan) for values in piece]
             solved = np.ones(wanted, dtype=bool)
-        elif np.all(np.asarray(size).ravel()[:wanted] <= newton.ACCEPTED):  # NaN is not
+        elif np.all(np.asarray(left).ravel()[:wanted] <= newton.ACCEPTED):  # NaN is not
             solved = np.ones(wanted, dtype=bool)
         else:
             after, (*piece, ok) = newton.safe(residual, tableau, carry, *at, ends=scheme.ends)

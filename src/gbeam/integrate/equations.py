@@ -10,7 +10,7 @@ Array = Any
 Drive = Callable[[Array], Any]  # times (t,) -> what drives the equations there, arrays with that leading axis
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LinearEquations:
     """M q̈ + C(t) q̇ + K(t) q = F(t).
 
@@ -28,7 +28,7 @@ class LinearEquations:
     drive: Drive
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class NonlinearEquations:
     """r(q, q̇, q̈; inputs(t)) = 0, linear in q̈.
 

@@ -20,8 +20,18 @@ def start(equations: LinearEquations, tableau: Tableau, time: float, q: Array, q
     """The first z (m, n) from an initial state, and the accelerations (n,) that its equations demand."""
     c, k, f = (x[0] for x in equations.matrices(equations.drive(np.array([time]))))
     xp = namespace(equations.mass, k, q)
-    qdd = xp.linalg.solve(equations.mass, f - k @ q - c @ qd)
+    qdd = _solved(xp, equations.mass, (f - k @ q - c @ qd)[:, None])[:, 0]
     return tableau.first @ xp.stack([q, qd, qdd]), qdd
+
+
+def _solved(xp: Any, left: Array, right: Array) -> Array:
+    """Solutions of linear systems; NaN where one is singular, which NumPy raises an error for."""
+    try:
+        return xp.linalg.solve(left, right)
+    except np.linalg.LinAlgError:
+        if left.ndim == 2:
+            return np.full_like(right, np.nan)
+        return np.stack([_solved(xp, *pair) for pair in zip(left, right, strict=True)])
 
 
 def chunk(
@@ -41,7 +51,7 @@ def chunk(
         rows.append(xp.concatenate(blocks, axis=-1) if stages > 1 else blocks[0])
         sides.append(xp.concatenate([*onto, xp.broadcast_to(f, (count, n))[..., None]], axis=-1))
     left = xp.concatenate(rows, axis=-2) if stages > 1 else rows[0]
-    solved = xp.linalg.solve(left, xp.concatenate(sides, axis=-2) if stages > 1 else sides[0])
+    solved = _solved(xp, left, xp.concatenate(sides, axis=-2) if stages > 1 else sides[0])
     solved = xp.reshape(solved, (count, stages, n, m * n + 1))
     # z₊ = g z + d x with x = f − X z.
     added = xp.reshape(xp.tensordot(t.d, solved, axes=((1,), (1,))).swapaxes(0, 1), (count, m * n, m * n + 1))

@@ -2,7 +2,8 @@
 
 On a CPU a loop with a condition inside costs as much as the arithmetic of a step. So a step makes a fixed number of
 corrections from an extrapolated guess, with the inverse Jacobian of its chunk's beginning; the size of the last
-correction is put out, and a run of steps in which one is too large is done again by Newton's method proper.
+corrections says what error is left, and a run of steps in which one leaves too much is done again by Newton's method
+proper.
 """
 
 from __future__ import annotations
@@ -18,10 +19,8 @@ from gbeam.integrate.schemes import Tableau
 
 Array = Any
 CORRECTIONS = 3  # per step
-PER_JACOBIAN = 20  # steps
-# Of the largest acceleration: what the last correction of a step may be. The error left is smaller by another
-# contraction, about a hundredth.
-ACCEPTED = 1e-6
+PER_JACOBIAN = {1: 20, 2: 4}  # steps, by the number of stages: a scheme of higher order takes longer ones
+ACCEPTED = 1e-7  # of the largest acceleration: the error that the last correction may leave
 _TOLERANCE, _ROUNDING, _ITERATIONS = 1e-9, 1e3, 25  # Newton's method proper
 
 
@@ -47,6 +46,11 @@ def _size(correction: Array, x: Array) -> Array:
     return jnp.max(jnp.abs(correction)) / (1.0 + jnp.max(jnp.abs(x)))
 
 
+def _left(last: Array, before: Array) -> Array:
+    """Error left after the last of two corrections, which shrink by a constant factor."""
+    return last * jnp.where(before > 0, jnp.minimum(last / before, 1.0), 0.0)
+
+
 @jax.jit
 def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
     """q̈ (n,) that the equations demand, which are linear in them."""
@@ -68,14 +72,14 @@ def quick(residual: Any, t: Tableau, carry: Carry, inputs: Any, end_inputs: Any,
 
     Parameters
     ----------
-    inputs : arrays (chunks, PER_JACOBIAN, s, ...)
-        At the stages.
-    end_inputs : arrays (chunks, PER_JACOBIAN, ...)
+    inputs : arrays (chunks, steps, s, ...)
+        At the stages; one Jacobian for each chunk.
+    end_inputs : arrays (chunks, steps, ...)
         At the ends, where these are no stage.
 
     Returns
     -------
-    Carry, and q, q̇, q̈ at the ends (chunks, PER_JACOBIAN, n) with the largest last correction of each step
+    Carry, and q, q̇, q̈ at the ends (chunks, steps, n) with the relative error that each step's corrections left
     """
     stages, n = carry.x.shape
 
@@ -85,27 +89,29 @@ def quick(residual: Any, t: Tableau, carry: Carry, inputs: Any, end_inputs: Any,
         def flat(x: Array) -> Array:
             return _stage_residual(residual, t, carry.z, first[0], x.reshape(stages, n)).ravel()
 
-        inverse = jnp.linalg.inv(jax.jacfwd(flat)(carry.x.ravel()))
+        inverse = jnp.linalg.inv(jax.jacfwd(flat)((2 * carry.x - carry.before).ravel()))
         if not ends:
             q, qd = carry.z[0], carry.z[1]
             of_mass = jnp.linalg.inv(jax.jacfwd(residual, 2)(q, qd, carry.end, first[1]))
 
         def step(carry: Carry, at: tuple[Any, Any]) -> Any:
             x = 2 * carry.x - carry.before
-            size = jnp.zeros(())
+            sizes = []
             for _ in range(CORRECTIONS):
                 correction = (inverse @ _stage_residual(residual, t, carry.z, at[0], x).ravel()).reshape(stages, n)
                 x = x - correction
-                size = _size(correction, x)
+                sizes.append(_size(correction, x))
+            left = _left(sizes[-1], sizes[-2])
             q, qd = _end(t, carry.z, x, ends)
             end = x[-1]
             if not ends:
-                end = carry.end + (x[-1] - carry.x[-1])
+                end, sizes = carry.end + (x[-1] - carry.x[-1]), []
                 for _ in range(CORRECTIONS - 1):
                     correction = of_mass @ residual(q, qd, end, at[1])
                     end = end - correction
-                size = jnp.maximum(size, _size(correction, end))
-            return Carry(t.g @ carry.z + t.d @ x, x, carry.x, end), (q, qd, end, size)
+                    sizes.append(_size(correction, end))
+                left = jnp.maximum(left, _left(sizes[-1], sizes[-2]))
+            return Carry(t.g @ carry.z + t.d @ x, x, carry.x, end), (q, qd, end, left)
 
         return jax.lax.scan(step, carry, chunk_inputs)
 
@@ -116,8 +122,8 @@ def quick(residual: Any, t: Tableau, carry: Carry, inputs: Any, end_inputs: Any,
 def safe(residual: Any, t: Tableau, carry: Carry, inputs: Any, end_inputs: Any, *, ends: bool) -> Any:
     """Steps by Newton's method with as many iterations as each needs, the Jacobian renewed every fourth.
 
-    Parameters and returns as for :func:`quick`, with (steps, ...) in place of (chunks, PER_JACOBIAN, ...) and, in place
-    of the corrections' size, whether the step has been solved.
+    Parameters and returns as for :func:`quick`, with (steps, ...) in place of (chunks, steps, ...) and, in place
+    of the error left, whether the step has been solved.
     """
     stages, n = carry.x.shape
 
