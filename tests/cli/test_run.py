@@ -1,4 +1,4 @@
-"""gbeam run: the JSON contract of design.md section 4, the files, and what it does when the answer is bad."""
+"""gbeam run: its JSON contract, the files, and what it does when the answer is bad."""
 
 from __future__ import annotations
 

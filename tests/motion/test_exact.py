@@ -1,4 +1,4 @@
-"""The exact inverse: forward of inverse is the identity at the control point; theory.md A1 (9) and its limit.
+"""The exact inverse: forward of inverse is the identity at the control point; docs/theory.md (8.4) and its limit (8.5).
 
 Ledger of the source: "the control point is always consistent" holds for smooth loads with −ä <= a²/R at their maxima.
 """

@@ -125,7 +125,7 @@ def test_what_no_idle_lets_is_said() -> None:
 def test_the_smoothing_that_is_named_is_the_least_that_does(
     raw: Profile, arm: float, gravity: bool, formula: float | None
 ) -> None:
-    """theory.md A1: −ä = 2j/T <= a²/R, which gives the width of a corner to the first order.
+    """docs/theory.md (8.5): −ä = 2j/T <= a²/R, which gives the width of a corner to the first order.
 
     The load has not reached a where the corner is sharpest, so more is needed; where gravity bends a straight slope,
     several times more.

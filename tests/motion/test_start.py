@@ -109,7 +109,7 @@ def test_pre_yawed_follows_from_the_first_instant_in_the_right_direction(gravity
         wanted[spinning, 0] * np.sqrt(full[1] ** 2 + full[2] ** 2 - down**2), horizontal * full[0], atol=1e-6
     )
     assert (np.diff(wanted[spinning, 0]) >= -1e-13).all()
-    # theory.md A1 (9): tangential at first.
+    # docs/theory.md, section 8.4: tangential at first.
     lag = np.arctan2(axes.acceleration1, axes.rate1**2)
     assert lag[1] == pytest.approx(np.pi / 2, abs=1e-6) and abs(lag[2800]) < 1e-9
 

@@ -46,7 +46,7 @@ def test_weighted_sum_lies_between(structure: Any, flight: Any, spin: Any, setti
 
 
 def test_proof_shows_the_gain_over_mid_span(structure: Any, flight: Any, spin: Any, settings: Any) -> None:
-    """theory.md A3: 0.0873 mm at mid-span, 0.0009 mm at 0.7265 L."""
+    """docs/theory.md, section 9: 0.0873 mm at mid-span, 0.0009 mm at 0.7265 L."""
     found = place(structure, flight, only(spin), settings, {"vibration": 1.0}, current=spin(), check=True)
     verifications = {proof.name: proof for proof in found.verifications}
     # The corner's 0.0873 mm, and what the start on the ramp adds to it.

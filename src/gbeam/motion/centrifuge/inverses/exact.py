@@ -1,6 +1,6 @@
 """The exact inverse: the arm's rate and the yaw lag that give the horizontal load its size and direction at once.
 
-With A = a/R, ω1² = A cos δ and dω1/dt = A sin δ, theory.md A1 (9): sin δ (δ' + 2 sqrt(A cos δ)) = (A'/A) cos δ.
+With A = a/R, ω1² = A cos δ and dω1/dt = A sin δ: sin δ (δ' + 2 sqrt(A cos δ)) = (A'/A) cos δ, docs/theory.md (8.4).
 It is stable forward while the load rises and backward while it falls, so its smooth solution needs no initial value;
 where the load rises at the start or falls at the end, it is the solution that has no layer there: the machine is
 yawed ahead of the record as if the load had been rising before. A spline is laid through all of it at once
