@@ -46,7 +46,7 @@ def test_mismatch_bounds_are_those_of_a_uniform_cantilever(compared: Comparison)
 
 
 def test_plateau_vibration_of_the_corner(compared: Comparison) -> None:
-    """docs/theory.md, section 9: 0.0836 mm at mid-span after a 4 g/s corner smoothed over 59.6 ms; in flight 0.00507 mm."""
+    """0.0836 mm at mid-span after 4 g/s, smoothed over 59.6 ms; in flight 0.00507 mm: docs/theory.md, section 9."""
     late = compared.time > 1.45  # clear of the corner's own spectrum, and of the end
     late &= compared.time < 1.93
     assert compared.stations is not None

@@ -52,10 +52,10 @@ def shortfalls(target: Target, arm: float) -> tuple[Shortfall, ...]:
 def sharp_turns(target: Target, arm: float) -> list[tuple[Shortfall, float | None]]:
     """List where the load turns too sharply, with the smoothing, s, that is enough; None where none is.
 
-    docs/theory.md (8.5): at a maximum, and at the corner before a plateau, the horizontal load a can be followed without a jump
-    of the yaw rate only where −ä <= a²/R. A corner of slope change j rounded over T has −ä = 2j/T, and a straight
-    slope j of a load f that gravity is part of −ä = (jγ)²/a³, which no rounding changes. At a corner short of a maximum
-    somewhat more can be followed, and axis 2 pays: 2.3 times the acceleration for 1.3 times the turn.
+    At a maximum, and at the corner before a plateau, the horizontal load a can be followed without a jump of the yaw
+    rate only where −ä <= a²/R, docs/theory.md (8.5). A corner of slope change j rounded over T has −ä = 2j/T, and a
+    straight slope j of a load f that gravity is part of −ä = (jγ)²/a³, which no rounding changes. At a corner short of
+    a maximum somewhat more can be followed, and axis 2 pays: 2.3 times the acceleration for 1.3 times the turn.
     """
     time = _times(target)
     size, _, turn = size_and_rates(target.load, target.gravity, time)
