@@ -6,8 +6,8 @@ angles, rates, accelerations and jerks meet the inverse's. The reference on the 
 part along the beam and across it rise together; gravity stays) and the size p H₁:
 
 - ``rest``: p = S². The arm's tangential acceleration R dω1/dt is ignored, as quasi-static does: axis 2 stands still.
-- ``pre-yawed``: p = sqrt(S⁴ + (S'/ΩT)²) and axis 2 lags by δ = atan2(dω1/dt, ω1²), so that the load has its direction and
-  size from the first instant. At standstill all of it is tangential: δ starts at 90°. See docs/theory.md, section 8.4.
+- ``pre-yawed``: p = sqrt(S⁴ + (S'/ΩT)²) and axis 2 lags by δ = atan2(dω1/dt, ω1²), so that the load has its direction
+  and size from the first instant. At standstill all of it is tangential: δ starts at 90°; docs/theory.md, section 8.4.
 """
 
 from __future__ import annotations
