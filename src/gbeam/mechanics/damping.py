@@ -5,24 +5,19 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import scipy.linalg
 
 from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.errors import InputError
+from gbeam.numerics.eigen import symmetric_modes
 
 Array = Any
 
 
 def rest_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
     """Circular frequencies (n,) rad/s, ascending, and mass-normalised modes (n, n) of a structure on a base at rest."""
-    if namespace(mass, stiffness) is np:
-        square, modes = scipy.linalg.eigh(stiffness, mass)
-        return np.sqrt(np.maximum(square, 0)), modes
-    import jax.numpy as jnp
-
-    scale = jnp.linalg.inv(jnp.linalg.cholesky(mass))
-    square, modes = jnp.linalg.eigh(scale @ stiffness @ scale.T)
-    return jnp.sqrt(jnp.maximum(square, 0)), scale.T @ modes
+    square, modes = symmetric_modes(stiffness, mass)
+    xp = namespace(square)
+    return xp.sqrt(xp.maximum(square, 0)), modes
 
 
 def damping_matrix(ratio: Any, mass: Array, stiffness: Array) -> Array:

@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import scipy.linalg
 
 from gbeam.analysis.equilibrium.operating_point import (
     OperatingPoint,
@@ -210,8 +209,7 @@ def linearize(
     outputs = outputs_of(structure, point, gauges)
     value, d = outputs.matrices(np.concatenate([point.y, point.yd, point.ydd, point.u]))
     c_y, c_yd, c_ydd, c_u = d[:, :n], d[:, n : 2 * n], d[:, 2 * n : 3 * n], d[:, 3 * n :]
-    factor = scipy.linalg.lu_factor(linear.mass)
-    k, c, b = (scipy.linalg.lu_solve(factor, x) for x in (linear.stiffness, linear.velocity, linear.inputs))
+    k, c, b = (np.linalg.solve(linear.mass, x) for x in (linear.stiffness, linear.velocity, linear.inputs))
     zero = np.zeros((n, n))
     a = np.block([[zero, np.eye(n)], [-k, -c]])
     drive = np.concatenate([np.zeros_like(b), b])

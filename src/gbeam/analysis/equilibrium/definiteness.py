@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import scipy.linalg
 
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.results.response import BaseMotion
@@ -43,13 +42,13 @@ def _bound(c: Coefficients, base: BaseMotion) -> Array:
 
     def taken(k: Array) -> float:
         """The largest share that a unit of the term can take, in either sense."""
-        return float(np.abs(scipy.linalg.eigvalsh(scale @ (k + k.T) @ scale.T / 2)).max())
+        return float(np.abs(np.linalg.eigvalsh(scale @ (k + k.T) @ scale.T / 2)).max())
 
     w, a, alpha = base.w_WB_B, base.a_WO_B, base.alpha_WB_B
     total = np.zeros(len(w))
     for i in range(3):
         total += np.abs(a[:, i]) * taken(c.k_a[i]) + np.abs(alpha[:, i]) * taken(c.k_al[i])
-        total += w[:, i] ** 2 * max(-float(scipy.linalg.eigvalsh(scale @ c.k_ww[i, i] @ scale.T)[0]), 0.0)
+        total += w[:, i] ** 2 * max(-float(np.linalg.eigvalsh(scale @ c.k_ww[i, i] @ scale.T)[0]), 0.0)
         for j in range(i):
             total += 2 * np.abs(w[:, i] * w[:, j]) * taken(c.k_ww[i, j])
     return total

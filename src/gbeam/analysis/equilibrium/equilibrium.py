@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-import scipy.linalg
 
 from gbeam.errors import ComputationError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
+from gbeam.numerics.eigen import symmetric_modes
 
 Array = Any
 
@@ -26,7 +26,7 @@ def lowest_stiffness(mass: Array, stiffness: Array) -> tuple[float, Array]:
 
     The antisymmetric part, from an angular acceleration, stores no energy and is left out.
     """
-    value, mode = scipy.linalg.eigh((stiffness + stiffness.T) / 2, (mass + mass.T) / 2, subset_by_index=(0, 0))
+    value, mode = symmetric_modes((stiffness + stiffness.T) / 2, (mass + mass.T) / 2)
     return float(value[0]), mode[:, 0]
 
 

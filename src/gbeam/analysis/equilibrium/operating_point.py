@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-import scipy.integrate
 
 from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
 from gbeam.errors import ComputationError, InputError
@@ -270,6 +269,8 @@ def _momentum_of_the_torque(structure: Structure, hub: Any, time: float, q: Arra
     unit = on_hub(structure, hub, 1.0, q=np.zeros(structure.size) if q is None else q)
     decay = float(hub.damping) / angular_momentum(unit)
     breaks = [float(b) for b in np.asarray(hub.breaks) if 0 < b < time]
+    import scipy.integrate  # only a free hub under a torque needs it
+
     momentum, _ = scipy.integrate.quad(
         lambda t: float(hub.torque(t)) * math.exp(-decay * (time - t)), 0, time, points=breaks or None, limit=200
     )

@@ -7,8 +7,6 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
-from scipy.optimize import brentq, linear_sum_assignment
 
 from gbeam.analysis.equilibrium.operating_point import linear_matrices, on_base, on_hub, steady_base
 from gbeam.analysis.vibration.modal import modes_at
@@ -17,6 +15,7 @@ from gbeam.analysis.vibration.stability import critical_speed, hub_of
 from gbeam.errors import InputError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
+from gbeam.numerics.roots import brent
 from gbeam.results.modal import Campbell, Crossing
 from gbeam.results.result import Complex, Floats
 
@@ -44,7 +43,11 @@ def mac(first: Complex, second: Complex, mass: Floats) -> Floats:
 def _paired(before: _Speed, after: _Speed) -> tuple[np.ndarray, Floats]:
     """For each mode of `before` the one of `after` that resembles it most, −1 for none, and their MAC."""
     alike = mac(before.coordinates, after.coordinates, after.mass)
-    rows, columns = linear_sum_assignment(-alike)
+    rows, columns = np.arange(len(alike)), alike.argmax(axis=1)
+    if len(set(columns)) < len(columns):  # two want the same one
+        from scipy.optimize import linear_sum_assignment
+
+        rows, columns = linear_sum_assignment(-alike)
     match, value = np.full(len(before.frequency), -1), np.full(len(before.frequency), np.nan)
     match[rows], value[rows] = columns, alike[rows, columns]
     return match, value
@@ -183,9 +186,9 @@ def _crossings(
 
         ends = difference(rates[i]), difference(rates[i + 1])
         if ends[0] * ends[1] <= 0:
-            rate = brentq(difference, rates[i], rates[i + 1], xtol=1e-10)
+            rate = brent(difference, float(rates[i]), float(rates[i + 1]), xtol=1e-10)
         else:  # the mode veers within the step: keep what the curve says
-            rate = brentq(PchipInterpolator(rates[i : i + 2], gap[i : i + 2]), rates[i], rates[i + 1])
+            rate = rates[i] - gap[i] * (rates[i + 1] - rates[i]) / (gap[i + 1] - gap[i])
         here = at(rate)
         like = int(mac(mode, here.coordinates, here.mass)[0].argmax())
         found.append(Crossing(track, order, float(rate), order * float(rate) / (2 * np.pi), here.direction[like]))

@@ -13,7 +13,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import brentq
 
 from gbeam.analysis.equilibrium.equilibrium import lowest_stiffness
 from gbeam.analysis.equilibrium.operating_point import (
@@ -33,6 +32,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.protocol import Motion
+from gbeam.numerics.roots import brent
 from gbeam.results.equilibrium import Critical, CriticalMap
 from gbeam.structure.beam import Beam
 from gbeam.structure.bodies import PointMass
@@ -112,7 +112,7 @@ def first_loss_along(
     first = int(lost[0])
     if first == 0:
         return answer(0.0, "divergence", "", "the beam is unstable before anything moves")
-    root = brentq(margin, grid[first - 1], grid[first], xtol=1e-11, rtol=4 * np.finfo(float).eps)
+    root = brent(margin, float(grid[first - 1]), float(grid[first]), xtol=1e-11)
     point = _point(*path(root)) or on_base(*path(float(grid[first - 1])))
     beyond = _point(*path(root * (1 + 1e-5)))
     if beyond is None:

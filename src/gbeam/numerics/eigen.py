@@ -1,0 +1,23 @@
+"""The symmetric eigenproblem K φ = ω² M φ."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from gbeam.arrays.namespace import namespace
+
+Array = Any
+
+
+def symmetric_modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:
+    """Eigenvalues (n,), ascending, and eigenvectors (n, n) in columns, of unit length in M.
+
+    Parameters
+    ----------
+    stiffness : (n, n), symmetric
+    mass : (n, n), symmetric and positive definite
+    """
+    xp = namespace(stiffness, mass)
+    scale = xp.linalg.inv(xp.linalg.cholesky(mass))
+    value, vector = xp.linalg.eigh(scale @ stiffness @ scale.T)
+    return value, scale.T @ vector
