@@ -18,9 +18,9 @@ import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.integrate.schemes import Tableau
 
 Array = Any
-CORRECTIONS = 3  # per step
-PER_JACOBIAN = {1: 20, 2: 4}  # steps, by the number of stages: a scheme of higher order takes longer ones
-ACCEPTED = 1e-7  # of the largest acceleration: the error that the last correction may leave
+# By the number of stages, since a scheme of higher order takes longer steps: corrections per step, steps per Jacobian.
+CORRECTIONS, PER_JACOBIAN = {1: 3, 2: 5}, {1: 20, 2: 4}
+ACCEPTED = 1e-6  # of the largest acceleration: the error that the last correction may leave
 _TOLERANCE, _ROUNDING, _ITERATIONS = 1e-9, 1e3, 25  # Newton's method proper
 
 
@@ -97,7 +97,7 @@ def quick(residual: Any, t: Tableau, carry: Carry, inputs: Any, end_inputs: Any,
         def step(carry: Carry, at: tuple[Any, Any]) -> Any:
             x = 2 * carry.x - carry.before
             sizes = []
-            for _ in range(CORRECTIONS):
+            for _ in range(CORRECTIONS[stages]):
                 correction = (inverse @ _stage_residual(residual, t, carry.z, at[0], x).ravel()).reshape(stages, n)
                 x = x - correction
                 sizes.append(_size(correction, x))
@@ -106,7 +106,7 @@ def quick(residual: Any, t: Tableau, carry: Carry, inputs: Any, end_inputs: Any,
             end = x[-1]
             if not ends:
                 end, sizes = carry.end + (x[-1] - carry.x[-1]), []
-                for _ in range(CORRECTIONS - 1):
+                for _ in range(2):
                     correction = of_mass @ residual(q, qd, end, at[1])
                     end = end - correction
                     sizes.append(_size(correction, end))

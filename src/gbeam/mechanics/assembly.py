@@ -76,10 +76,10 @@ def assemble(
     springs = beam.root.springs
     if springs:
         field = RootedField(field, x, *beam.root.directions(), linear=not row.foreshortening)
-    inertia = _inertia(beam, field, rule)
+    inertia, station = _inertia(beam, field, rule)
     elasticity = Elasticity(field, _rigidity(beam, rule))
     history = _history(beam)
-    work = None if history is None else _work(beam, field, rule, len(rule.node) + len(bodies))
+    work, loaded_at = _work(beam, field, rule, len(rule.node) + len(bodies)) if beam.loads else (None, np.zeros(0, int))
     places = inertia.places()
     c = coefficients(
         inertia.mass,
@@ -103,7 +103,7 @@ def assemble(
         elasticity=elasticity,
         field=field,
         first_station=first_station,
-        sections=_sections(beam, at, field, inertia, work, first_station),
+        sections=_sections(beam, at, field, (inertia.mass, station), (work, loaded_at), first_station),
         history=history,
         work=work,
         load_values=None if history is None else history(np.zeros(())),
@@ -118,8 +118,8 @@ def _stations(beam: Beam, stations: ArrayLike) -> Array:
     return np.append(given[given < beam.length], beam.length)
 
 
-def _inertia(beam: Beam, field: Field, rule: Quadrature) -> Inertia:
-    """The beam's quadrature points and its bodies' particles."""
+def _inertia(beam: Beam, field: Field, rule: Quadrature) -> tuple[Inertia, Array]:
+    """The beam's quadrature points and its bodies' particles, and the index of each one's point in the field."""
     nodes, area = len(rule.node), beam.section.at(rule.node).area
     station, mass, offset = [np.arange(nodes)], [beam.material.density * area * rule.weight], [np.zeros((nodes, 3))]
     for k, body in enumerate(beam.masses):
@@ -129,7 +129,8 @@ def _inertia(beam: Beam, field: Field, rule: Quadrature) -> Inertia:
         offset.append(places)
     xp = namespace(*mass, *offset)
     off_axis = xp is not np or any(place.any() for place in offset)
-    return Inertia(field, np.concatenate(station), xp.concatenate(mass), xp.concatenate(offset) if off_axis else None)
+    at = np.concatenate(station)
+    return Inertia(field.sampled(at), xp.concatenate(mass), xp.concatenate(offset) if off_axis else None), at
 
 
 def _rigidity(beam: Beam, rule: Quadrature) -> Strains:
@@ -153,8 +154,8 @@ def _history(beam: Beam) -> LoadHistory | None:
     return LoadHistory(tuple((profile(load.force), profile(load.moment)) for load in beam.loads))
 
 
-def _work(beam: Beam, field: Field, rule: Quadrature, first: int) -> LoadWork:
-    """Where the loads act: at a point of their own, counted from `first`, or on all quadrature nodes."""
+def _work(beam: Beam, field: Field, rule: Quadrature, first: int) -> tuple[LoadWork, Array]:
+    """Where the loads act: at a point of their own, counted from `first`, or on all quadrature nodes; those points."""
     station, which, weight = [], [], []
     for k, load in enumerate(beam.loads):
         if load.at is None:
@@ -165,17 +166,19 @@ def _work(beam: Beam, field: Field, rule: Quadrature, first: int) -> LoadWork:
             weight.append(np.ones(1))
             first += 1
         which.append(np.full(len(station[-1]), k))
-    of_load = np.concatenate(which)
-    return LoadWork(
-        field=field,
-        station=np.concatenate(station),
-        load=of_load,
-        weight=np.concatenate(weight),
-        follower=np.array([load.follower for load in beam.loads])[of_load],
-    )
+    at, of_load = np.concatenate(station), np.concatenate(which)
+    follower = np.array([load.follower for load in beam.loads])[of_load]
+    return LoadWork(field.sampled(at), of_load, np.concatenate(weight), follower), at
 
 
-def _sections(beam: Beam, at: Array, field: Field, inertia: Inertia, work: LoadWork | None, first: int) -> Sections:
+def _sections(
+    beam: Beam,
+    at: Array,
+    field: Field,
+    particles: tuple[Array, Array],
+    loads: tuple[LoadWork | None, Array],
+    first: int,
+) -> Sections:
     """Sections at the root, on the base's side of its springs, and at the stations, with what is outboard of each."""
     until = np.asarray(field.cumulative)
     nodes = until.shape[1]
@@ -187,6 +190,6 @@ def _sections(beam: Beam, at: Array, field: Field, inertia: Inertia, work: LoadW
     beyond = np.concatenate([share, whole], axis=1)
     return Sections(
         values=beam.section.at(np.append(0.0, at)),
-        mass=beyond[:, inertia.station] * inertia.mass,
-        loaded=np.empty((len(stations), 0)) if work is None else beyond[:, work.station] * work.weight,
+        mass=beyond[:, particles[1]] * particles[0],
+        loaded=np.empty((len(stations), 0)) if loads[0] is None else beyond[:, loads[1]] * loads[0].weight,
     )

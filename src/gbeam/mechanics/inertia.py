@@ -19,31 +19,28 @@ class Inertia:
     Parameters
     ----------
     field : Field
-        Its points are the particles' stations.
-    station : (particles,) int
-        Index of each particle's point in the field.
+        Sampled at the particles, one point each.
     mass : (particles,) kg
     offset : (particles, 3) m, or None
         From the beam's axis, section axes; None where all particles lie on the axis.
     """
 
     field: Field
-    station: Array
     mass: Array
     offset: Array | None
 
     def positions(self, q: Array) -> Array:
         """Positions of the particles at coordinates (..., n), base axes, (..., particles, 3) m."""
-        r = self.field.position(q)[..., self.station, :]
+        r = self.field.position(q)
         if self.offset is None:
             return r
         xp = namespace(r, self.offset)
-        return r + xp.einsum("...kij,kj->...ki", self.field.rotation(q, self.station), self.offset)
+        return r + xp.einsum("...kij,kj->...ki", self.field.rotation(q), self.offset)
 
     def places(self) -> Places:
         """Taylor polynomial of the positions at the straight beam."""
-        axis = self.field.places()[self.station]
-        return axis if self.offset is None else self.field.turns()[self.station].carry(axis, self.offset)
+        axis = self.field.places()
+        return axis if self.offset is None else self.field.turns().carry(axis, self.offset)
 
 
 @record

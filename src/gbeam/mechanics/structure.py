@@ -180,7 +180,8 @@ class Structure:
         from gbeam.mechanics.equations.dalembert import Complete
 
         assert self.inertia is not None and self.elasticity is not None
-        return Complete(self.inertia, self.elasticity, self.coefficients.damping, self.work)
+        stiffness = self.coefficients.stiffness if self.elasticity.field.linear_strains else None
+        return Complete(self.inertia, self.elasticity, self.coefficients.damping, stiffness, self.work)
 
     def on_free_hub(self, hub: Any) -> FreeHub | CompleteHub:
         """The equations with the angle of a free hub as one more coordinate.
@@ -207,8 +208,8 @@ class Structure:
     @cached_property
     def load_places(self) -> Places:
         """Places of the loaded points, to second order."""
-        assert self.field is not None and self.work is not None
-        return self.field.places()[self.work.station]
+        assert self.work is not None
+        return self.work.field.places()
 
     def strain_energy(self, q: Array) -> Array:
         """Strain energy at coordinates (n,), J."""

@@ -137,7 +137,7 @@ def _of_polynomial(structure: Structure, count: int, q: Array, qd: Array, qdd: A
     particles, stations = structure.places.paths(q, qd, qdd), structure.station_places[-count:].paths(q, qd, qdd)
     loaded = None
     if structure.work is not None:
-        loaded = structure.load_places.positions(q), structure.field.rotation(q, structure.work.station)
+        loaded = structure.load_places.positions(q), structure.work.field.rotation(q)
     return particles, stations, structure.field.rotation(q, slice(-count, None)), loaded
 
 
@@ -145,18 +145,17 @@ def _of_field(structure: Structure, count: int, q: Array, qd: Array, qdd: Array)
     """The same of a complete field, by JAX."""
     from gbeam.mechanics.equations.compiled import paths
 
-    traced = is_jax(q)
-    size = len(q)
+    assert structure.field is not None
+    traced, size = is_jax(q), len(q)
     padded = [x if traced else np.concatenate([x, np.repeat(x[-1:], -size % _BLOCK, axis=0)]) for x in (q, qd, qdd)]
-    particles, points, turned = paths(structure.inertia, *padded)
+    stations = structure.field.sampled(slice(-count, None))
+    particles, points = (paths(record, *padded) for record in (structure.inertia, stations))
     if not traced:
         particles, points = (tuple(np.asarray(x)[:size] for x in each) for each in (particles, points))
-        turned = np.asarray(turned)[:size]
     loaded = None
     if structure.work is not None:
-        at = structure.work.station
-        loaded = points[0][:, at], turned[:, at]
-    return particles, tuple(x[:, -count:] for x in points), turned[:, -count:], loaded
+        loaded = structure.work.field.position(q), structure.work.field.rotation(q)
+    return particles, points, stations.rotation(q), loaded
 
 
 def _absolute(xp: Any, base: Base, r: Array, rd: Array, rdd: Array) -> Array:

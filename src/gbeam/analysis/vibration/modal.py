@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import scipy.linalg
 
 from gbeam.analysis.equilibrium.operating_point import Linear, OperatingPoint, linear_matrices, operating_point
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
+from gbeam.numerics.eigen import symmetric_modes
 from gbeam.results.modal import Instability, Modes
 from gbeam.results.result import Complex, Floats
 
@@ -44,7 +44,7 @@ def eigenvalues(linear: Linear, *, gyroscopic: bool = True) -> tuple[Complex, Co
     damping = velocity if gyroscopic else (velocity + velocity.T) / 2
     # In modes of the symmetric part, each scaled by its own frequency, all blocks are of the size of the frequencies:
     # the raw companion matrix loses half the digits of the low ones.
-    square, basis = scipy.linalg.eigh((stiffness + stiffness.T) / 2, (mass + mass.T) / 2)
+    square, basis = symmetric_modes((stiffness + stiffness.T) / 2, (mass + mass.T) / 2)
     reference = np.sqrt(np.abs(square).max())
     scale = np.maximum(np.sqrt(np.abs(square)), 1e-6 * reference)
     k, c = basis.T @ stiffness @ basis, basis.T @ damping @ basis
@@ -52,7 +52,7 @@ def eigenvalues(linear: Linear, *, gyroscopic: bool = True) -> tuple[Complex, Co
     moving = np.abs(k).max(axis=0) > 1e-13 * reference**2
     a = np.block([[np.zeros((n, n)), np.diag(scale)], [-k / scale, -c]])
     keep = np.concatenate([moving, np.ones(n, dtype=bool)])
-    value, vector = scipy.linalg.eig(a[np.ix_(keep, keep)])
+    value, vector = np.linalg.eig(a[np.ix_(keep, keep)])
     # The velocities hold a mode also where its coordinate was dropped.
     mode = basis @ vector[-n:]
     weight = np.sqrt(np.einsum("ik,ij,jk->k", mode.conj(), mass, mode).real)
@@ -65,8 +65,9 @@ def _sensitivity(structure: Structure, q: Any) -> tuple[Floats, Floats]:
         return structure.places.slopes(q), structure.station_places.slopes(q)
     from gbeam.mechanics.equations.compiled import slopes
 
-    particles, points = slopes(structure.inertia, q)
-    return np.asarray(particles), np.asarray(points)[structure.first_station :]
+    assert structure.field is not None
+    particles, points = slopes(structure.inertia, structure.field.sampled(slice(structure.first_station, None)), q)
+    return np.asarray(particles), np.asarray(points)
 
 
 def directions(structure: Structure, point: OperatingPoint, coordinates: Complex | Floats) -> tuple[str, ...]:

@@ -10,34 +10,27 @@ import gbeam.arrays.jax_setup  # noqa: F401
 
 
 @jax.jit
-def paths(inertia: Any, q: Any, qd: Any, qdd: Any) -> Any:
-    """Places, velocities and accelerations of the particles and of the field's points over times, and its rotations.
+def paths(points: Any, q: Any, qd: Any, qdd: Any) -> tuple[Any, Any, Any]:
+    """Places, velocities and accelerations of particles, or of a field's points, over times, (t, p, 3) each.
 
     Parameters
     ----------
-    inertia : Inertia
+    points : Inertia or Field
     q, qd, qdd : (t, n)
-
-    Returns
-    -------
-    (r, ṙ, r̈) of the particles (t, k, 3); the same of the points (t, p, 3); rotations (t, p, 3, 3)
     """
-
-    def everything(q: Any) -> tuple[Any, Any]:
-        return inertia.positions(q), inertia.field.position(q)
+    place = getattr(points, "positions", None) or points.position
 
     def moving(q: Any, qd: Any) -> Any:
-        return jax.jvp(everything, (q,), (qd,))
+        return jax.jvp(place, (q,), (qd,))
 
     def at(q: Any, qd: Any, qdd: Any) -> Any:
         (r, rd), (_, rdd) = jax.jvp(moving, (q, qd), (qd, qdd))
-        particles, points = zip(r, rd, rdd, strict=True)
-        return particles, points, inertia.field.rotation(q)
+        return r, rd, rdd
 
     return jax.vmap(at)(q, qd, qdd)
 
 
 @jax.jit
-def slopes(inertia: Any, q: Any) -> Any:
-    """Derivatives with respect to q of the particles' places (k, 3, n) and of the field's points (p, 3, n)."""
-    return jax.jacfwd(lambda q: (inertia.positions(q), inertia.field.position(q)))(q)
+def slopes(inertia: Any, field: Any, q: Any) -> tuple[Any, Any]:
+    """Derivatives with respect to q of the particles' places (k, 3, n) and of a field's points (p, 3, n)."""
+    return jax.jacfwd(inertia.positions)(q), jax.jacfwd(field.position)(q)

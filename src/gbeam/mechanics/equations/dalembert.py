@@ -30,12 +30,15 @@ class Complete:
     inertia : Inertia
     elasticity : Elasticity
     damping : (n, n)
+    stiffness : (n, n) or None
+        Of the beam and its springs, where the strains are linear in q and the energy is quadratic.
     work : LoadWork or None
     """
 
     inertia: Inertia
     elasticity: Elasticity
     damping: Array
+    stiffness: Array | None
     work: LoadWork | None
 
     @property
@@ -81,12 +84,12 @@ class Complete:
             return jax.jvp(place, (q,), (qd,))[1]
 
         rd, rdd = jax.jvp(moving, (q, qd), (qd, qdd))
-        # Cross products with one vector are products with its matrix: smaller programs than jnp.cross.
-        acceleration = a + r @ (_cross(alpha) + _cross(w) @ _cross(w)).T + 2 * rd @ _cross(w).T + rdd
+        acceleration = a + _cross(alpha, r) + _cross(w, _cross(w, r) + 2 * rd) + rdd
         return self.inertia.mass[:, None] * acceleration, pull_back, r
 
     def _inside(self, q: Array, qd: Array) -> Array:
-        return jax.grad(self.elasticity.energy)(q) + self.damping @ qd
+        elastic = self.stiffness @ q if self.stiffness is not None else jax.grad(self.elasticity.energy)(q)
+        return elastic + self.damping @ qd
 
     def _generalised(self, q: Array, load_values: Array | None) -> Array:
         if self.work is None or load_values is None:
@@ -94,10 +97,10 @@ class Complete:
         return self.work.generalised(q, load_values)
 
 
-def _cross(w: Array) -> Array:
-    """The matrix [w]×."""
-    o = jnp.zeros(())
-    return jnp.stack([jnp.stack([o, -w[2], w[1]]), jnp.stack([w[2], o, -w[0]]), jnp.stack([-w[1], w[0], o])])
+def _cross(w: Array, r: Array) -> Array:
+    """w × r of one vector (3,) and many (k, 3)."""
+    x, y, z = r[:, 0], r[:, 1], r[:, 2]
+    return jnp.stack([w[1] * z - w[2] * y, w[2] * x - w[0] * z, w[0] * y - w[1] * x], axis=-1)
 
 
 @record
@@ -139,7 +142,7 @@ class CompleteHub:
 
     def _levers(self, r: Array) -> Array:
         """e × (r_O + r), (k, 3) m."""
-        return (r + self.mount.radius * self.mount.R_HB[0]) @ _cross(jnp.asarray(self.mount.R_HB)[2]).T
+        return _cross(self.mount.R_HB[2], r + self.mount.radius * self.mount.R_HB[0])
 
     def _twist(self) -> Array:
         return jnp.concatenate([self.mount.radius * jnp.asarray(self.mount.R_HB)[1], jnp.asarray(self.mount.R_HB)[2]])

@@ -25,14 +25,13 @@ class LoadWork:
     Parameters
     ----------
     field : Field
-    station : (p,) index of each loaded point in the field
+        Sampled at the loaded points.
     load : (p,) index of the load that acts there
     weight : (p,) 1, or the quadrature weight of a load per length, m
     follower : (p,) whether its axes are the section's
     """
 
     field: Field
-    station: Array
     load: Array
     weight: Array
     follower: Array
@@ -46,7 +45,7 @@ class LoadWork:
         import jax.numpy as jnp
 
         def place(q: Array) -> tuple[Array, Array]:
-            return self.field.position(q)[self.station], self.field.rotation(q, self.station)
+            return self.field.position(q), self.field.rotation(q)
 
         (r, rotation), pull_back = jax.vjp(place, q)
         force, moment = self.forces(rotation, values)
@@ -68,7 +67,7 @@ class LoadWork:
 
     def first_order(self, count: int) -> LoadTerms:
         """The generalised forces of `count` loads' unit components, to first order in q."""
-        places, turns = self.field.places()[self.station], self.field.turns()[self.station]
+        places, turns = self.field.places(), self.field.turns()
         xp = namespace(places.first, self.weight)
         r0, slope, bend = places.r0, places.first, places.second
         points, _, n = slope.shape

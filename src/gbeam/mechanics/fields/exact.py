@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from gbeam.mechanics.fields.basis import Families, Quadrature, polynomials
 from gbeam.mechanics.fields.rotation import (
     Strains,
     about_x,
+    at_nodes,
     block,
     exponential_of,
     one_minus_sinc,
@@ -29,26 +31,25 @@ class ExactField:
     ε and the rotation vector φ = (0, φ_y, φ_z) are sums of shapes. The twist α keeps the frame free of torsion
     (κ_x = 0): the beam is stiff in torsion, which is out of scope. In one plane φ is the angle itself and has no limit;
     out of plane the rotation vector has its pole where the tangent points straight back, |φ| = π. Angles at the points
-    are (points, n); what is at the quadrature nodes is (g, n).
+    are (points, n); `nodal`, (3, g, n), holds strain and angles at the quadrature nodes, `node_slopes`, (2, g, n), the
+    angles' slopes there: stacked, so that a program multiplies once.
     """
 
     angle_y: Array
     angle_z: Array
-    node_angle_y: Array
-    node_angle_z: Array
-    node_strain: Array
-    node_slope_y: Array
-    node_slope_z: Array
+    nodal: Array
+    node_slopes: Array
     cumulative: Array
+    node_cumulative: Array
     planar: bool = static()
 
     def position(self, q: Array) -> Array:
         """Positions of the points of the axis at coordinates (..., n), (..., points, 3) m."""
         xp = namespace(self.cumulative, q)
-        y, z = q @ self.node_angle_y.T, q @ self.node_angle_z.T
+        strain, y, z = at_nodes(self.nodal, q)
         sinc, _, cosine = exponential_of(y**2 + z**2)
-        tangent = xp.stack([cosine, sinc * z, -sinc * y], axis=-1)
-        return self.cumulative @ ((1 + q @ self.node_strain.T)[..., None] * tangent)
+        stretch = 1 + strain
+        return self.cumulative @ xp.stack([stretch * cosine, stretch * sinc * z, -stretch * sinc * y], axis=-1)
 
     def rotation(self, q: Array, at: Any = slice(None)) -> Array:
         """Rotations of the sections `at` some points at coordinates (..., n), (..., points, 3, 3)."""
@@ -60,27 +61,34 @@ class ExactField:
     def strains(self, q: Array) -> Strains:
         """Axial strain and curvatures at the quadrature nodes, in the torsion-free frame."""
         xp = namespace(self.cumulative, q)
-        slope_y, slope_z, strain = q @ self.node_slope_y.T, q @ self.node_slope_z.T, q @ self.node_strain.T
+        (strain, y, z), (slope_y, slope_z) = at_nodes(self.nodal, q), at_nodes(self.node_slopes, q)
         if self.planar:
             return Strains(strain, slope_y, slope_z)
-        y, z = q @ self.node_angle_y.T, q @ self.node_angle_z.T
         sinc, _, _ = exponential_of(y**2 + z**2)
         # Curvature of exp[φ]×: sinc φ' + (1 − sinc)/φ² (φ·φ') φ − versine φ × φ', the last along x.
         along = one_minus_sinc(y**2 + z**2) * (y * slope_y + z * slope_z)
         bend_y, bend_z = sinc * slope_y + along * y, sinc * slope_z + along * z
-        nodes = self.node_strain.shape[0]
-        twist = self._twist_rate(q) @ self.cumulative[:nodes].T
+        twist = self._twist_rate(q) @ self.node_cumulative.T
         c, s = xp.cos(twist), xp.sin(twist)
         return Strains(strain, c * bend_y + s * bend_z, c * bend_z - s * bend_y)
 
+    def sampled(self, at: Any) -> ExactField:
+        """The same field at some of the points."""
+        return replace(self, angle_y=self.angle_y[at], angle_z=self.angle_z[at], cumulative=self.cumulative[at])
+
+    @property
+    def linear_strains(self) -> bool:
+        """Whether the strains are linear in q."""
+        return self.planar
+
     def strain_slopes(self) -> Strains:
         """Derivatives of the strains at the straight beam, (g, n) each."""
-        return Strains(self.node_strain, self.node_slope_y, self.node_slope_z)
+        return Strains(self.nodal[0], *self.node_slopes)
 
     def places(self) -> Places:
         """Taylor polynomial of the positions: (1 + ε) (1 − ½ φ², φ_z, −φ_y), integrated."""
-        xp = namespace(self.cumulative, self.node_strain)
-        y, z, strain = self.node_angle_y, self.node_angle_z, self.node_strain
+        xp = namespace(self.cumulative, self.nodal)
+        strain, y, z = self.nodal
         first = xp.stack([strain, z, -y], axis=1)
         square = -0.5 * (xp.einsum("pi,pj->pij", y, y) + xp.einsum("pi,pj->pij", z, z))
         second = xp.stack([square, xp.einsum("pi,pj->pij", strain, z), -xp.einsum("pi,pj->pij", strain, y)], axis=1)
@@ -91,22 +99,22 @@ class ExactField:
 
     def turns(self) -> Turns:
         """Taylor polynomial of the rotations."""
-        xp = namespace(self.cumulative, self.node_strain)
+        xp = namespace(self.cumulative, self.nodal)
         first = xp.stack([0 * self.angle_y, self.angle_y, self.angle_z], axis=1)
         points, n = self.angle_y.shape
         second = xp.zeros((points, 3, n, n))
         if not self.planar:
-            y, z = self.node_angle_y, self.node_angle_z
-            rate = 0.5 * (xp.einsum("pi,pj->pij", y, self.node_slope_z) - xp.einsum("pi,pj->pij", z, self.node_slope_y))
+            (_, y, z), (slope_y, slope_z) = self.nodal, self.node_slopes
+            rate = 0.5 * (xp.einsum("pi,pj->pij", y, slope_z) - xp.einsum("pi,pj->pij", z, slope_y))
             twist = xp.einsum("pg,gij->pij", self.cumulative, rate + xp.swapaxes(rate, -1, -2))
             second = xp.stack([twist, 0 * twist, 0 * twist], axis=1)
         return exponential(first, second)
 
     def _twist_rate(self, q: Array) -> Array:
         """α' = −κ_x of exp[φ]× at the nodes."""
-        y, z = q @ self.node_angle_y.T, q @ self.node_angle_z.T
+        (_, y, z), (slope_y, slope_z) = at_nodes(self.nodal, q), at_nodes(self.node_slopes, q)
         _, versine, _ = exponential_of(y**2 + z**2)
-        return versine * (y * (q @ self.node_slope_z.T) - z * (q @ self.node_slope_y.T))
+        return versine * (y * slope_z - z * slope_y)
 
 
 def exact_field(
@@ -140,14 +148,13 @@ def exact_field(
     # Bending towards +z turns about −y.
     about_y = [-block(f, strain + along_y, n) for f in (shapes_w.slope, shapes_w.curvature)]
     about_z = [block(f, strain, n) for f in (shapes_v.slope, shapes_v.curvature)]
+    cumulative = rule.cumulative(x)
     return ExactField(
         angle_y=about_y[0],
         angle_z=about_z[0],
-        node_angle_y=about_y[0][:nodes],
-        node_angle_z=about_z[0][:nodes],
-        node_strain=block(s(rule.node).slope, 0, n),
-        node_slope_y=about_y[1][:nodes],
-        node_slope_z=about_z[1][:nodes],
-        cumulative=rule.cumulative(x),
+        nodal=np.stack([block(s(rule.node).slope, 0, n), about_y[0][:nodes], about_z[0][:nodes]]),
+        node_slopes=np.stack([about_y[1][:nodes], about_z[1][:nodes]]),
+        cumulative=cumulative,
+        node_cumulative=cumulative[:nodes],
         planar=along_y == 0 or along_z == 0,
     )

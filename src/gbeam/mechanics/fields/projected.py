@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.fields.basis import Families, Quadrature, closed_forms
-from gbeam.mechanics.fields.rotation import Strains, about_x, block, rotation_matrix
+from gbeam.mechanics.fields.rotation import Strains, about_x, at_nodes, block, rotation_matrix
 from gbeam.mechanics.fields.taylor import Places, Turns, exponential
 
 Array = Any
@@ -19,34 +20,30 @@ Array = Any
 class ProjectedField:
     """The field (x + s − ½∫(v'² + w'²), v, w) of TLAM (without the integral), FOAM, SFOAM and CFOAM.
 
-    2009 (2), (3), (11); 2020 (7), (12). q are amplitudes in m of dimensionless shapes with ∫f² dx = L. Shapes and
-    slopes at the points are (points, n), those at the quadrature nodes (g, n).
+    2009 (2), (3), (11); 2020 (7), (12). q are amplitudes in m of dimensionless shapes with ∫f² dx = L. The shapes s, v,
+    w and their slopes at the points are stacked, (3, points, n); so are those at the quadrature nodes: the slopes of v
+    and w and their curvatures, (2, g, n).
     """
 
     x: Array
-    s: Array
-    v: Array
-    w: Array
-    slope_s: Array
-    slope_v: Array
-    slope_w: Array
-    node_slope_v: Array
-    node_slope_w: Array
-    cumulative: Array
+    shapes: Array
+    slopes: Array
+    node_slopes: Array
+    curvatures: Array
     node_slope_s: Array
-    curvature_v: Array
-    curvature_w: Array
+    cumulative: Array
     foreshortening: bool = static()
 
     def position(self, q: Array) -> Array:
         """Positions of the points of the axis at coordinates (..., n), (..., points, 3) m."""
         xp = namespace(self.x, q)
-        along = self.x + q @ self.s.T
+        s, v, w = at_nodes(self.shapes, q)
+        along = self.x + s
         if self.foreshortening:
             # 2009 (3): w_c = −½ ∫ v'² dx, in both planes.
-            square = (q @ self.node_slope_v.T) ** 2 + (q @ self.node_slope_w.T) ** 2
+            square = (at_nodes(self.node_slopes, q) ** 2).sum(axis=0)
             along = along - 0.5 * square @ self.cumulative.T
-        return xp.stack([along, q @ self.v.T, q @ self.w.T], axis=-1)
+        return xp.stack([along, v, w], axis=-1)
 
     def rotation(self, q: Array, at: Any = slice(None)) -> Array:
         """Rotations of the sections `at` some points at coordinates (..., n), (..., points, 3, 3), to second order.
@@ -54,42 +51,58 @@ class ProjectedField:
         The sections follow the tangent, whose slopes the axial strain lessens, in a frame free of torsion.
         """
         xp = namespace(self.x, q)
-        stretch = 1 - q @ self.slope_s[at].T
-        slope_v, slope_w = stretch * (q @ self.slope_v[at].T), stretch * (q @ self.slope_w[at].T)
+        slope_s, slope_v, slope_w = at_nodes(self.slopes[:, at], q)
+        slope_v, slope_w = (1 - slope_s) * slope_v, (1 - slope_s) * slope_w
         arc = rotation_matrix(xp.stack([xp.zeros_like(slope_v), -slope_w, slope_v], axis=-1))
-        v, w = q @ self.node_slope_v.T, q @ self.node_slope_w.T
-        twist = 0.5 * (v * (q @ self.curvature_w.T) - w * (q @ self.curvature_v.T)) @ self.cumulative[at].T
+        (v, w), (bend_v, bend_w) = at_nodes(self.node_slopes, q), at_nodes(self.curvatures, q)
+        twist = 0.5 * (v * bend_w - w * bend_v) @ self.cumulative[at].T
         return arc @ about_x(twist)
 
     def strains(self, q: Array) -> Strains:
         """Strains s', −w'', v'' at the quadrature nodes: linear (2009 (10); 2020 (8), corrected)."""
-        return Strains(q @ self.node_slope_s.T, -q @ self.curvature_w.T, q @ self.curvature_v.T)
+        bend_v, bend_w = at_nodes(self.curvatures, q)
+        return Strains(q @ self.node_slope_s.T, -bend_w, bend_v)
+
+    def sampled(self, at: Any) -> ProjectedField:
+        """The same field at some of the points."""
+        return replace(
+            self,
+            x=self.x[at],
+            shapes=self.shapes[:, at],
+            slopes=self.slopes[:, at],
+            cumulative=self.cumulative[at],
+        )
+
+    @property
+    def linear_strains(self) -> bool:
+        """The strains are linear in q."""
+        return True
 
     def strain_slopes(self) -> Strains:
         """Derivatives of the strains, (g, n) each."""
-        return Strains(self.node_slope_s, -self.curvature_w, self.curvature_v)
+        return Strains(self.node_slope_s, -self.curvatures[1], self.curvatures[0])
 
     def places(self) -> Places:
         """The positions, which are a polynomial of second degree."""
-        xp = namespace(self.cumulative, self.s)
+        xp = namespace(self.cumulative, self.shapes)
         o = xp.zeros_like(self.x)
-        points, n = self.s.shape
+        _, points, n = self.shapes.shape
         second = xp.zeros((points, 3, n, n))
         if self.foreshortening:
-            square = _products(xp, self.node_slope_v, self.node_slope_v)
-            square = square + _products(xp, self.node_slope_w, self.node_slope_w)
+            square = xp.einsum("cpi,cpj->pij", self.node_slopes, self.node_slopes)
             short = -xp.reshape(self.cumulative @ xp.reshape(square, (-1, n * n)), (points, n, n))
             second = xp.stack([short, 0 * short, 0 * short], axis=1)
-        return Places(xp.stack([self.x, o, o], -1), xp.stack([self.s, self.v, self.w], axis=1), second)
+        return Places(xp.stack([self.x, o, o], -1), xp.moveaxis(self.shapes, 0, 1), second)
 
     def turns(self) -> Turns:
         """Taylor polynomial of the rotations."""
-        xp = namespace(self.cumulative, self.s)
-        twist = _products(xp, self.node_slope_v, self.curvature_w) - _products(xp, self.node_slope_w, self.curvature_v)
-        points, n = self.s.shape
+        xp = namespace(self.cumulative, self.shapes)
+        (v, w), (bend_v, bend_w), (s, slope_v, slope_w) = self.node_slopes, self.curvatures, self.slopes
+        twist = _products(xp, v, bend_w) - _products(xp, w, bend_v)
+        points, n = s.shape
         twist = 0.5 * xp.reshape(self.cumulative @ xp.reshape(twist, (-1, n * n)), (points, n, n))
-        first = xp.stack([0 * self.s, -self.slope_w, self.slope_v], axis=1)
-        lessened = [_products(xp, self.slope_s, slope) for slope in (self.slope_w, -self.slope_v)]
+        first = xp.stack([0 * s, -slope_w, slope_v], axis=1)
+        lessened = [_products(xp, s, slope) for slope in (slope_w, -slope_v)]
         second = xp.stack([twist, *lessened], axis=1)
         return exponential(first, second + xp.swapaxes(second, -1, -2))
 
@@ -130,17 +143,11 @@ def projected_field(
     node_s, node_v, node_w = at(rule.node)
     return ProjectedField(
         x=x,
-        s=s[0],
-        v=v[0],
-        w=w[0],
-        slope_s=s[1],
-        slope_v=v[1],
-        slope_w=w[1],
-        node_slope_v=node_v[1],
-        node_slope_w=node_w[1],
-        cumulative=rule.cumulative(x),
+        shapes=np.stack([s[0], v[0], w[0]]),
+        slopes=np.stack([s[1], v[1], w[1]]),
+        node_slopes=np.stack([node_v[1], node_w[1]]),
+        curvatures=np.stack([node_v[2], node_w[2]]),
         node_slope_s=node_s[1],
-        curvature_v=node_v[2],
-        curvature_w=node_w[2],
+        cumulative=rule.cumulative(x),
         foreshortening=foreshortening,
     )

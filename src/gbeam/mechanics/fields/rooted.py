@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from gbeam.arrays.namespace import namespace
@@ -61,6 +62,15 @@ class RootedField:
         """Strains of the beam, and the springs' stretches."""
         beam, root = self._split(q)
         return self.inner.strains(beam)._replace(root=root)
+
+    def sampled(self, at: Any) -> RootedField:
+        """The same field at some of the points."""
+        return replace(self, inner=self.inner.sampled(at), x=self.x[at])
+
+    @property
+    def linear_strains(self) -> bool:
+        """Whether the strains are linear in q: those of the inner field."""
+        return self.inner.linear_strains
 
     def strain_slopes(self) -> Strains:
         """Derivatives of the strains at the straight beam, (g, n) each; the springs' (springs, n)."""

@@ -44,6 +44,15 @@ class Field(Protocol):
         """Strains that store energy, at the quadrature nodes."""
         ...
 
+    def sampled(self, at: Any) -> Field:
+        """The same field at some of the points."""
+        ...
+
+    @property
+    def linear_strains(self) -> bool:
+        """Whether the strains are linear in q."""
+        ...
+
     def places(self) -> Places:
         """Taylor polynomial of the positions at the straight beam."""
         ...
@@ -98,3 +107,11 @@ def block(shapes: np.ndarray, start: int, total: int) -> np.ndarray:
     out = np.zeros((shapes.shape[0], total))
     out[:, start : start + shapes.shape[1]] = shapes
     return out
+
+
+def at_nodes(stacked: Array, q: Array) -> Array:
+    """Values (m, ..., g) of m families of shapes, stacked (m, g, n), at coordinates (..., n): one matrix product."""
+    xp = namespace(stacked, q)
+    families, nodes, n = stacked.shape
+    values = q @ xp.reshape(stacked, (families * nodes, n)).T
+    return xp.moveaxis(xp.reshape(values, (*q.shape[:-1], families, nodes)), -2, 0)
