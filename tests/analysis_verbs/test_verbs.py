@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gbeam.plots.campbell import plot_campbell
+from gbeam.plots import plot_campbell
 from gbeam.results.modal import Campbell
 
 from ..scenarios import SLEWING

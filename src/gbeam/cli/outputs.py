@@ -49,7 +49,7 @@ def write(
     def make(hidden: Path) -> None:
         write_json(hidden / f"{name}.json", facts)
         if figures is not None:
-            from gbeam.plots.style import save
+            from gbeam.plots import save
 
             for stem, figure in figures().items():
                 save(figure, hidden, stem)

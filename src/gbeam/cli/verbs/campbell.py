@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from cyclopts import Parameter
 
@@ -12,9 +12,6 @@ from gbeam.cli.inputs import number, read
 from gbeam.cli.options import Json, MotionName, Out, Overrides, ScenarioFile, Speed
 from gbeam.cli.outputs import list_files, show, write
 from gbeam.errors import InputError
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def campbell(
@@ -55,12 +52,7 @@ def campbell(
         )
     facts = report.to_json(diagram)
 
-    def figures() -> dict[str, Figure]:
-        from gbeam.plots.campbell import plot_campbell
-
-        return {"campbell": plot_campbell(diagram, given.case.title)}
-
-    files = write(folder, "campbell", facts, figures)
+    files = write(folder, "campbell", facts, lambda: {"campbell": diagram.plot(title=given.case.title)})
     show(report.text(diagram), facts, json)
     if not json:
         list_files(folder, files)

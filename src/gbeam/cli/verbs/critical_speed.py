@@ -89,12 +89,11 @@ def _map(
     facts = report.map_json(critical)
 
     def make(hidden: Path) -> None:
-        from gbeam.plots.critical import plot_critical_map
-        from gbeam.plots.style import save
+        from gbeam.plots import save
 
         write_json(hidden / "critical_speed.json", facts)
         (hidden / "critical_speed.csv").write_text(report.map_csv(critical), encoding="utf-8")
-        save(plot_critical_map(critical, case.title), hidden, "critical_speed")
+        save(critical.plot(title=case.title), hidden, "critical_speed")
 
     if out is not None:
         publish(out, make)

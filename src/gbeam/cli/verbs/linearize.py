@@ -59,7 +59,6 @@ def linearize(
 
     from gbeam.analysis.control.gauges import surface_gauges
     from gbeam.analysis.control.linearization import linearize
-    from gbeam.analysis.control.reduction import balanced_truncation, modal_truncation
     from gbeam.report.steady import state_space as report
 
     with naming("--strain-at"):
@@ -69,10 +68,13 @@ def linearize(
     with Watch(), given.placing(**options):
         system = linearize(given.case.assemble(), chosen, time, rate=steady, gauges=gauges, name=name)
         system = system.select(inputs=_names(inputs), outputs=_names(outputs))
-        if modes is not None:
-            system = modal_truncation(system, modes)
-        elif balanced is not None:
-            system, hankel = balanced_truncation(system, balanced)
+        if modes is not None or balanced is not None:
+            from gbeam.analysis.control import reduction
+
+            if modes is not None:
+                system = reduction.modal_truncation(system, modes)
+            elif balanced is not None:
+                system, hankel = reduction.balanced_truncation(system, balanced)
     facts = report.to_json(system, gauges, hankel)
 
     def make(hidden: Path) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from cyclopts import Parameter
 
@@ -10,9 +10,6 @@ from gbeam.cli.console import Watch
 from gbeam.cli.inputs import read
 from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile
 from gbeam.cli.outputs import show, write
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def modes(
@@ -42,11 +39,6 @@ def modes(
         modes = modal.modes(given.structure(), chosen, time, gyroscopic=gyroscopic, name=name)
     facts = report.to_json(modes)
 
-    def figures() -> dict[str, Figure]:
-        from gbeam.plots.modes import plot_modes
-
-        return {"modes": plot_modes(modes, given.case.title)}
-
-    write(out, "modes", facts, figures)
+    write(out, "modes", facts, lambda: {"modes": modes.plot(title=given.case.title)})
     show(report.text(modes), facts, json)
     return 0

@@ -55,14 +55,13 @@ def plan(
 
     def make(hidden: Path) -> None:
         from gbeam.io.commands import write_commands
-        from gbeam.plots import plot_axes
-        from gbeam.plots.style import save
+        from gbeam.plots import save
 
         for name, each in plans.items():
             own = tables[name].commands
             time = every or (own.sample if own else SAMPLE)
             write_commands(each, analysis.commands(machines[name], time), hidden)
-            save(plot_axes(each, each.axes, given.title), hidden, f"axes_{name}")
+            save(each.plot(title=given.title), hidden, f"axes_{name}")
 
     files = [] if out is None else publish(out, make)
     if json:

@@ -42,14 +42,9 @@ def static(
     facts = report.to_json(title, deflections)
 
     def figures() -> dict[str, Figure]:
-        from gbeam.plots.loads import plot_loads_along
-        from gbeam.plots.static import plot_static
+        from gbeam.plots import plot_static
 
-        loads = {
-            f"loads_{each.motion}": plot_loads_along(each, each.loads, title)
-            for each in deflections
-            if each.loads is not None
-        }
+        loads = {f"loads_{each.motion}": each.plot("loads", title=title) for each in deflections}
         return {"static": plot_static(deflections, title), **loads}
 
     write(out, "static", facts, figures)
