@@ -59,13 +59,17 @@ def largest(filters: Filters, values: Floats, offset: Floats, covered: NDArray[n
     -------
     (f, k)
     """
-    found = []
+    sizes = []
     for i in range(0, len(filters.d), _TOGETHER):
         y = _in_blocks(Filters(*(each[i : i + _TOGETHER] for each in filters)), values)
         y += offset
-        y *= _arranged(covered[:, None], y.shape[3])
-        found.append(np.maximum(y.max(axis=(1, 2, 3)), -y.min(axis=(1, 2, 3))))
-    return np.concatenate(found)
+        side = y.shape[3]
+        y *= _arranged(covered[:, None], side)
+        # First over what keeps the rows long: a reduction over short ones takes ten times as long.
+        rows = y.reshape(len(y), -1, side * values.shape[1])
+        size = np.maximum(rows.max(axis=1), -rows.min(axis=1))
+        sizes.append(size.reshape(len(y), side, -1).max(axis=1))
+    return np.concatenate(sizes)
 
 
 def _arranged(values: Floats | NDArray[np.bool_], side: int) -> Floats:

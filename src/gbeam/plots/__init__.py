@@ -1,60 +1,33 @@
-"""Plots of a study, as files: PNG to look at and SVG to print.
+"""Figures of results: PNG to look at and SVG to print, or to work on with matplotlib.
 
-One module per figure; style is what they share. A plot reads results only, never a model.
+`figures` knows which figures a result has; a module for each kind of result draws them; `style` is what they share and
+`layout` where things lie; `files` writes. A figure reads results only, never a model.
 """
 
-from pathlib import Path
-
-from gbeam.plots.axes import plot_axes
-from gbeam.plots.base import plot_base
 from gbeam.plots.comparison import plot_comparison, plot_shock
-from gbeam.plots.hub import plot_hub
-from gbeam.plots.loads import plot_loads
-from gbeam.plots.style import save
+from gbeam.plots.environment import plot_axes, plot_base, plot_hub
+from gbeam.plots.equilibrium import plot_critical_map, plot_static
+from gbeam.plots.figures import figures, plot, write_plots
+from gbeam.plots.files import save
+from gbeam.plots.loads import plot_loads, plot_loads_along
 from gbeam.plots.tip import plot_tip
-from gbeam.results.response import Study
+from gbeam.plots.vibration import plot_campbell, plot_modes
 
 __all__ = [
+    "figures",
+    "plot",
     "plot_axes",
     "plot_base",
+    "plot_campbell",
     "plot_comparison",
+    "plot_critical_map",
     "plot_hub",
     "plot_loads",
+    "plot_loads_along",
+    "plot_modes",
     "plot_shock",
+    "plot_static",
     "plot_tip",
+    "save",
     "write_plots",
 ]
-
-
-def write_plots(study: Study, folder: Path) -> list[Path]:
-    """Write all plots of a study.
-
-    Parameters
-    ----------
-    study : Study
-    folder : Path
-        Which exists.
-
-    Returns
-    -------
-    list of Path
-        The files: ``tip``, and per environment ``base_NAME``, ``loads_NAME``, ``axes_NAME`` (centrifuges),
-        ``hub_NAME`` (hubs); per comparison ``comparison_NAME`` and ``shock_NAME``, NAME being the centrifuge's.
-    """
-    files = save(plot_tip(study), folder, "tip")
-    for name, it in study.responses.items():
-        files += save(plot_base(it, study.title), folder, f"base_{name}")
-        if it.loads is not None:
-            files += save(plot_loads(it, it.loads, study.title), folder, f"loads_{name}")
-        if it.axes is not None:
-            files += save(plot_axes(it, it.axes, study.title), folder, f"axes_{name}")
-        if it.hub is not None:
-            files += save(plot_hub(it, it.hub, study.title), folder, f"hub_{name}")
-    for compared in study.comparisons:
-        name = compared.centrifuge
-        if compared.root or compared.stations or compared.mismatch:
-            both = study.responses[compared.flight], study.responses[name]
-            files += save(plot_comparison(compared, *both, study.title), folder, f"comparison_{name}")
-        if compared.shock:
-            files += save(plot_shock(compared, compared.shock, study.title), folder, f"shock_{name}")
-    return files

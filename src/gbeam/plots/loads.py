@@ -8,27 +8,29 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from gbeam.plots.style import colour, heading, legend, panels, show_zero, styled
-from gbeam.results.modal import Deflection
-from gbeam.results.response import Floats, Response
+from gbeam.plots.style import colour, heading, legend, line, panels, show_zero, styled
+from gbeam.results.equilibrium import Deflection
+from gbeam.results.response import Response
+from gbeam.results.result import Floats
 from gbeam.results.section_forces import Loads
 
 NOTHING = 1e-9  # of the largest force or moment: a component smaller than that is rounding
 
 
 @styled
-def plot_loads_along(found: Deflection, loads: Loads, title: str) -> Figure:
+def plot_loads_along(deflection: Deflection, loads: Loads, title: str = "") -> Figure:
     """Plot force, moment and, where the section's outer fibres are known, stress along the beam at rest.
 
     Parameters
     ----------
-    found : Deflection
+    deflection : Deflection
     loads : Loads
         Of the deflection.
     title : str
         Of the scenario.
     """
-    subject = f"{found.motion}: loads along the beam at rest, section axes, {found.model}, t = {found.time:.4g} s"
+    at = f"{deflection.model}, t = {deflection.time:.4g} s"
+    subject = f"{deflection.motion}: loads along the beam at rest, section axes, {at}"
     stress = np.isfinite(loads.stress).all()
     figure, drawn = panels(heading(title, subject, []), 2 + int(stress))
     drawn[-1].set_xlabel("position from the root, m")
@@ -41,7 +43,7 @@ def plot_loads_along(found: Deflection, loads: Loads, title: str) -> Figure:
 
 
 @styled
-def plot_loads(response: Response, loads: Loads, title: str) -> Figure:
+def plot_loads(response: Response, loads: Loads, title: str = "") -> Figure:
     """Plot over time what the base gives the beam's root, the largest stress, and the torque about a hub's axis.
 
     Parameters
@@ -61,10 +63,10 @@ def plot_loads(response: Response, loads: Loads, title: str) -> Figure:
     _components(drawn[1], response.time, loads.root_moment, ("x", "y", "z"))
     labels = ["force, N", "moment, N m"]
     if stress:
-        drawn[2].plot(response.time, 1e-6 * loads.stress.max(axis=1), color=colour(0))
+        line(drawn[2], response.time, 1e-6 * loads.stress.max(axis=1), color=colour(0))
         labels.append("largest stress, MPa")
     if torque is not None:
-        drawn[-1].plot(response.time, torque, color=colour(0))
+        line(drawn[-1], response.time, torque, color=colour(0))
         labels.append("torque for\nthe beam, N m")
     _label(drawn, labels)
     return figure
@@ -84,4 +86,4 @@ def _components(panel: Axes, where: Floats, values: Floats, names: Sequence[str]
     size = np.abs(values).max(axis=0)
     for i in range(3):
         if size[i] > NOTHING * size.max() or (size.max() == 0 and i == 0):
-            panel.plot(where, values[:, i], color=colour(i), label=names[i])
+            line(panel, where, values[:, i], color=colour(i), label=names[i])

@@ -1,43 +1,48 @@
-"""What all plots share: colours, figures, shading, files.
+"""What all plots share: colours, panels one above the other, lines, shading.
 
-Figures are made without pyplot, which keeps every figure of a process in one global list.
+Figures are made without pyplot, which keeps every figure of a process in one global list, and are laid out by
+`gbeam.plots.layout` instead of matplotlib's solver.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from functools import wraps
-from pathlib import Path
 from typing import Any, ParamSpec
 
 import numpy as np
 from matplotlib import rc_context
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.backend_bases import RendererBase
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
+from matplotlib.path import Path
 
-from gbeam.results.response import Floats, PlotHeading
+from gbeam.plots.layout import PANEL, WIDTH, arrange
+from gbeam.results.response import PlotHeading
+from gbeam.results.result import Flags, Floats
 
 P = ParamSpec("P")
 
-# Okabe and Ito (2008): told apart with any colour vision. Black is left for what the others are compared with.
+# Okabe and Ito (2008): distinct with any colour vision. Black is left for what the others are compared with.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 REFERENCE = "black"
 HELD = "#BBBBBB"
-WIDTH = 8.0  # inches
-PANEL = 2.1  # inches of height per panel
-_STYLE: dict[Any, Any] = {
+COLUMNS = 1500  # across a line: more than a panel has pixels at 150 dpi
+_MOVE_LINE = [int(Path.MOVETO), int(Path.LINETO)]
+STYLE: dict[Any, Any] = {
     "font.size": 9.0,
     "axes.spines.top": False,
     "axes.spines.right": False,
-    "axes.grid": True,
     "axes.axisbelow": True,
     "axes.xmargin": 0.01,
     "axes.formatter.useoffset": False,
     "axes.formatter.limits": (-4, 5),
-    "grid.color": "#E4E4E4",
-    "grid.linewidth": 0.6,
+    "xtick.bottom": False,  # the grid shows where
+    "ytick.left": False,
+    "text.hinting": "none",
     "lines.linewidth": 1.1,
     "legend.fontsize": 8.5,
     "legend.frameon": False,
@@ -47,12 +52,14 @@ _STYLE: dict[Any, Any] = {
 
 
 def styled(plot: Callable[P, Figure]) -> Callable[P, Figure]:
-    """Draw a plot in gbeam's style, and leave matplotlib's settings as they were."""
+    """Draw a plot in gbeam's style, lay it out, and leave matplotlib's settings as they were."""
 
     @wraps(plot)
     def drawn(*args: P.args, **options: P.kwargs) -> Figure:
-        with rc_context(_STYLE):
-            return plot(*args, **options)
+        with rc_context(STYLE):
+            figure = plot(*args, **options)
+            arrange(figure)
+            return figure
 
     return drawn
 
@@ -73,20 +80,69 @@ def panels(title: str, count: int, *, heights: Iterable[float] | None = None) ->
         Relative to the usual height.
     """
     ratios = [1.0] * count if heights is None else list(heights)
-    figure = Figure(figsize=(WIDTH, 0.7 + PANEL * sum(ratios)), layout="constrained")
+    figure = Figure(figsize=(WIDTH, PANEL * sum(ratios)))
     FigureCanvasAgg(figure)
     grid = figure.subplots(count, 1, sharex=True, squeeze=False, height_ratios=ratios)
     axes: list[Axes] = list(grid[:, 0])
-    figure.suptitle(title, x=0.01, ha="left", fontsize=10.5, fontweight="bold")
+    figure.suptitle(title, ha="left", va="top", fontsize=10.5, fontweight="bold")
     axes[-1].set_xlabel("time, s")
-    figure.align_ylabels(axes)
+    for panel in axes:
+        panel.add_artist(Grid(axes[-1].xaxis, panel, across=True))
+        panel.add_artist(Grid(panel.yaxis, panel, across=False))
+        panel.xaxis.set_visible(panel is axes[-1])
     return figure, axes
+
+
+class Grid(Artist):
+    """Grid lines of one axis at its ticks, as one path: a line per tick takes longer than all the data.
+
+    Parameters
+    ----------
+    axis : matplotlib axis
+        Whose ticks they are; the lowest panel's where the panels share it.
+    panel : Axes
+    across : bool
+        Whether the axis is horizontal.
+    """
+
+    def __init__(self, axis: Axis, panel: Axes, *, across: bool) -> None:
+        super().__init__()
+        self.set_zorder(0.5)
+        self._ticks, self._across = axis, across
+        self._place = panel.get_xaxis_transform() if across else panel.get_yaxis_transform()
+
+    def draw(self, renderer: RendererBase) -> None:
+        """Draw the lines where the ticks are now."""
+        low, high = sorted(self._ticks.get_view_interval())
+        at = np.asarray(self._ticks.get_majorticklocs())
+        at = at[(at >= low) & (at <= high)]
+        ends, along = np.tile([0.0, 1.0], len(at)), np.repeat(at, 2)
+        corners = np.stack([along, ends] if self._across else [ends, along], axis=1)
+        path = self._place.transform_path_non_affine(Path(corners, _MOVE_LINE * len(at)))
+        gc = renderer.new_gc()
+        gc.set_foreground("#E4E4E4")
+        gc.set_linewidth(0.6)
+        renderer.draw_path(gc, path, self._place.get_affine())
+        gc.restore()
+
+
+def line(panel: Axes, x: Floats, y: Floats, *style: str, **options: Any) -> None:
+    """Draw a line; of many points only those that show: per column of pixels the first, last, lowest and highest."""
+    per_column = len(x) // COLUMNS
+    if per_column > 4:
+        full = COLUMNS * per_column
+        rows = y[:full].reshape(COLUMNS, per_column)
+        start = per_column * np.arange(COLUMNS)
+        lowest, highest = start + rows.argmin(axis=1), start + rows.argmax(axis=1)
+        kept = np.unique(np.concatenate([start, lowest, highest, start + per_column - 1, np.arange(full, len(x))]))
+        x, y = x[kept], y[kept]
+    panel.plot(x, y, *style, **options)
 
 
 def heading(title: str, subject: str, responses: Iterable[PlotHeading]) -> str:
     """Title of a plot: the scenario's, what is shown, and in capitals what must not be overlooked."""
     parts = [part for part in (title, subject) if part]
-    failed = sorted({it.outcome.upper() for it in responses if it.outcome != "done"})
+    failed = sorted({response.outcome.upper() for response in responses if response.outcome != "done"})
     return "\n".join([" – ".join(failed + parts[:1]), *parts[1:]])
 
 
@@ -102,7 +158,7 @@ def legend(panel: Axes, columns: int = 4) -> None:
     )
 
 
-def shade(panel: Axes, time: Floats, flags: NDArray[np.bool_]) -> None:
+def shade(panel: Axes, time: Floats, flags: Flags) -> None:
     """Shade the stretches of time in which the target is held."""
     if flags.any():
         edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(int)))
@@ -113,7 +169,7 @@ def shade(panel: Axes, time: Floats, flags: NDArray[np.bool_]) -> None:
             label = None
 
 
-def scale_to(panel: Axes, covered: NDArray[np.bool_], *values: Floats) -> bool:
+def scale_to(panel: Axes, covered: Flags, *values: Floats) -> bool:
     """Scale a panel to zero and what happens while the target is not held; False where it never or always is."""
     if covered.all() or not covered.any():
         return False
@@ -130,14 +186,3 @@ def show_zero(panel: Axes) -> None:
     if low > 0 or high < 0:
         low, high = min(low, 0.0), max(high, 0.0)
         panel.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
-
-
-def save(figure: Figure, folder: Path, name: str) -> list[Path]:
-    """Write a figure as PNG (150 dpi) and SVG; return the files."""
-    files = [folder / f"{name}.{kind}" for kind in ("png", "svg")]
-    # Some settings are read only when a figure is written.
-    with rc_context(_STYLE):
-        for file in files:
-            figure.savefig(file, dpi=150)
-            figure.set_layout_engine("none")  # laid out once for both
-    return files

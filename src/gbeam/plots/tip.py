@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from gbeam.plots.style import REFERENCE, colour, heading, legend, panels, scale_to, shade, show_zero, styled
-from gbeam.results.response import Study
+from gbeam.plots.style import REFERENCE, colour, heading, legend, line, panels, scale_to, shade, show_zero, styled
+from gbeam.results.study import Study
 
 
 @styled
@@ -29,24 +29,24 @@ def plot_tip(study: Study) -> Figure:
     figure, (top, *below) = panels(title, len(heights), heights=heights)
     flights = {c.flight for c in study.comparisons}
     others = [name for name in responses if name not in flights]
-    for name, it in responses.items():
-        dot = "o" if len(it.time) == 1 else ""  # what diverged at once is no line
+    for name, response in responses.items():
+        dot = "o" if len(response.time) == 1 else ""  # what diverged at once is no line
         # A flight is drawn thin on what imitates it: a vibration would hide it.
         if name in flights:
-            top.plot(it.time, 1e3 * it.tip[:, axis], color=REFERENCE, lw=0.8, zorder=3, marker=dot, label=name)
+            style = {"color": REFERENCE, "lw": 0.8, "zorder": 3}
         else:
-            line = colour(others.index(name))
-            top.plot(it.time, 1e3 * it.tip[:, axis], color=line, lw=1.6 if flights else 1.1, marker=dot, label=name)
+            style = {"color": colour(others.index(name)), "lw": 1.6 if flights else 1.1}
+        line(top, response.time, 1e3 * response.tip[:, axis], marker=dot, label=name, **style)
     show_zero(top)
     top.set_ylabel("displacement, mm")
-    together = all(np.array_equal(it.covered, study.comparisons[0].covered) for it in study.comparisons)
+    together = all(np.array_equal(each.covered, study.comparisons[0].covered) for each in study.comparisons)
     if study.comparisons and together:
         shade(top, study.comparisons[0].time, ~study.comparisons[0].covered)
     if len(responses) > 1:
         legend(top)
     for panel, compared in zip(below, study.comparisons, strict=True):
         difference, covered = 1e3 * compared.difference[:, axis], compared.covered
-        panel.plot(compared.time, difference, color=colour(others.index(compared.centrifuge)))
+        line(panel, compared.time, difference, color=colour(others.index(compared.centrifuge)))
         shade(panel, compared.time, ~covered)
         if not together and not covered.all():
             legend(panel)
@@ -60,6 +60,6 @@ def plot_tip(study: Study) -> Figure:
 
 def main_axis(study: Study) -> int:
     """Axis (0, 1, 2) along which the tip moves most, in flight where there is one."""
-    flights = [it for it in study.responses.values() if it.environment == "flight"]
-    largest = [it.peaks.max_abs for it in flights or study.responses.values()]
+    flights = [each for each in study.responses.values() if each.environment == "flight"]
+    largest = [each.peaks.max_abs for each in flights or study.responses.values()]
     return int(np.argmax(np.max(largest, axis=0)))
