@@ -206,7 +206,7 @@ def _from_rest(structure: Structure, jerk: float, arm: float, at: float, frequen
     grid = end * np.linspace(0, 1, 2001) ** 2
     rate = smoothed(tabulated(grid, np.sqrt(jerk * grid / arm)), period / 30)
     motion = FromRest(rate, arm, at)
-    t, z = _run(structure, motion, -period / 15, end * 0.95, period / 200)
+    t, z = _run(structure, motion, -period / 15, end * 0.95, period / 100)
     late = t > 2 * period
     # The beam follows the load, ∝ t, and the arm's acceleration, ∝ t^-½ with its second derivative.
     return abs(_phasor(t[late], z[late], frequency, (0, 1, -0.5, -2.5)))
@@ -221,7 +221,7 @@ def _flat(
     start, end = first - watched, last + watched
     flight = Flight(z=tabulated([0.0, corner], [0.5 * level, level]))
     motion = Centrifuge(flight, arm=arm, control_point=at, inverse="flat", smoothing=width)
-    t, z = _run(structure, motion, start, end - start, period / 100)
+    t, z = _run(structure, motion, start, end - start, period / 50)
     # The run starts on the ramp without the ramp's speed, and so with a vibration of its own: not the corner's.
     before, after = (_phasor(t[part], z[part], frequency, (0, 1, 2)) for part in (t < first, t > last))
     return abs(after - before)

@@ -26,9 +26,9 @@ def test_named_tests_exist(document: Path) -> None:
         name
         for path in SOURCES
         if "tests" in path.parts
-        for name in [path.name, *re.findall(r"def (test_\w+)", path.read_text(encoding="utf-8"))]
+        for name in [path.stem, *re.findall(r"def (test_\w+)", path.read_text(encoding="utf-8"))]
     }
-    named = set(re.findall(r"`(test_\w+(?:\.py)?)`", document.read_text(encoding="utf-8")))
+    named = set(re.findall(r"\btest_\w+", document.read_text(encoding="utf-8")))
     assert named <= defined
 
 
