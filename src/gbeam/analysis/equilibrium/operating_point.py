@@ -101,7 +101,12 @@ def _jacobian(structure: Structure, residual: OnBase | OnHub, y: Array, yd: Arra
 
 def linear_matrices(point: OperatingPoint) -> Linear:
     """Derivatives of the residual at an operating point."""
-    n = len(point.y)
+    n, c = len(point.y), point.structure.coefficients
+    if point.structure.linear and isinstance(point.residual, OnBase):
+        base, loads = point.residual.unpack(point.u)
+        velocity, stiffness, _ = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
+        inputs = c.input_matrix(point.y, point.yd, base.w_WB_B, loaded=loads is not None)
+        return Linear(c.mass, velocity, stiffness, inputs)
     d = _jacobian(point.structure, point.residual, point.y, point.yd, point.ydd, point.u)
     return Linear(d[:, 2 * n : 3 * n], d[:, n : 2 * n], d[:, :n], -d[:, 3 * n :])
 
