@@ -98,6 +98,7 @@ def _app(chosen: str) -> App:
         name="gbeam",
         help="How a flexible beam responds while its base moves a lot: in flight, on a centrifuge, on a hub.",
         version=gbeam.__version__,
+        help_format="markdown" if chosen in VERBS else "plaintext",  # whose renderer is not worth its import
         suppress_keyboard_interrupt=False,
     )
     for verb, summary in VERBS.items():

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 
 from gbeam.cli.outputs import refuse_unwritable
 from gbeam.errors import InputError
-from gbeam.scenario import Scenario, UnitError, argument, build, load, placed
 
 if TYPE_CHECKING:
     from gbeam.analysis.study.case import Case
     from gbeam.io.netcdf import Provenance
     from gbeam.mechanics.structure import Structure
     from gbeam.motion.protocol import Motion
+    from gbeam.scenario import Scenario
 
 STATIONS = 81  # along the beam, at which shapes are given
 
@@ -44,6 +44,8 @@ class Input:
         except InputError as error:
             if error.where in options:
                 raise InputError(options[error.where], error.problem, error.fix) from None
+            from gbeam.scenario import placed
+
             raise placed(self.scenario, [error]) from None
 
     def motion(self, name: str | None, *, hubs_only: bool = False) -> tuple[str, Motion]:
@@ -97,6 +99,8 @@ def read(verb: str, file: Path, overrides: Sequence[str], out: Path | None = Non
     """
     if out is not None:
         refuse_unwritable(out)
+    from gbeam.scenario import build, load  # not needed, nor imported, for help
+
     scenario = load(file, overrides)
     changes = [word for change in overrides for word in ("--set", change)]
     return Input(scenario, build(scenario), shlex.join(["gbeam", verb, str(file), *changes]))
@@ -119,6 +123,8 @@ def number(option: str, text: str, kind: str) -> float:
     InputError
         If it cannot be read.
     """
+    from gbeam.scenario.text.units import UnitError, argument
+
     try:
         return argument(text, kind)
     except UnitError as error:
