@@ -10,17 +10,19 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from gbeam.report import as_json, summary, summary_json
-from gbeam.results.response import Study
+from gbeam.report import as_json
+from gbeam.report.study.summary import table
+from gbeam.report.study.summary_json import to_json
+from gbeam.results.study import Study
 
 
 def _text(study: Study) -> str:
     console = Console(width=120, file=io.StringIO(), record=True)
-    console.print(summary(study))
+    console.print(table(study))
     return console.export_text()
 
 
-def test_summary_tells_what_matters(study: Study) -> None:
+def test_summary_names_what_matters(study: Study) -> None:
     text = _text(study)
     assert text.startswith("a title\n")
     assert "spin (centrifuge): done" in text and "flight: done" in text
@@ -40,9 +42,9 @@ def test_summary_of_a_failure(study: Study) -> None:
 
 
 def test_rounding_is_not_a_displacement(study: Study) -> None:
-    it = study.responses["flight"]
-    peaks = replace(it.peaks, max_abs=np.array([1e-20, 0.0, 1e-3]))
-    rows = [line.split() for line in _text(Study("", {"flight": replace(it, peaks=peaks)}, ())).splitlines()]
+    response = study.responses["flight"]
+    peaks = replace(response.peaks, max_abs=np.array([1e-20, 0.0, 1e-3]))
+    rows = [line.split() for line in _text(Study("", {"flight": replace(response, peaks=peaks)}, ())).splitlines()]
     assert ["x", "0", "–", "0"] in rows and ["y", "0", "–", "0"] in rows
 
 
@@ -54,18 +56,18 @@ def test_many_episodes_are_counted(study: Study) -> None:
 
 
 def test_json(study: Study) -> None:
-    told = json.loads(as_json(summary_json(study)))
-    spin = told["motions"]["spin"]
+    facts = json.loads(as_json(to_json(study)))
+    spin = facts["motions"]["spin"]
     assert spin["tracking_error"] == pytest.approx({"max": 0.6, "time_of_max": 2.0, "fraction": 0.01})
     assert spin["not_followed"] == [{"start": 0.505, "end": 0.795, "reason": "below idle"}]
     assert spin["axes"]["1"]["acceleration"]["max_abs"] == pytest.approx(8 * np.sin(np.pi / 2), rel=1e-3)
-    assert told["motions"]["slew"]["hub"] == {"angle_end": 2.0, "rate_max": 4.0, "rate_end": 4.0}
-    assert told["comparisons"][0]["relative"]["z"] == pytest.approx(0.1)
+    assert facts["motions"]["slew"]["hub"] == {"angle_end": 2.0, "rate_max": 4.0, "rate_end": 4.0}
+    assert facts["comparisons"][0]["relative"]["z"] == pytest.approx(0.1)
 
 
 def test_json_has_null_for_what_is_no_number(study: Study) -> None:
-    held = replace(study.responses["spin"].axes, held=np.ones(201, dtype=bool))
-    it = replace(study.responses["spin"], axes=held, step=float("nan"), error_estimate=float("inf"))
-    spin = json.loads(as_json(summary_json(Study("", {"spin": it}, ()))))["motions"]["spin"]
+    axes = replace(study.responses["spin"].axes, not_followed=np.ones(201, dtype=bool))
+    response = replace(study.responses["spin"], axes=axes, step=float("nan"), error_estimate=float("inf"))
+    spin = json.loads(as_json(to_json(Study("", {"spin": response}, ()))))["motions"]["spin"]
     assert spin["step"] is None and spin["error_estimate"] is None
     assert spin["tracking_error"] == {"max": None, "time_of_max": None, "fraction": None}
