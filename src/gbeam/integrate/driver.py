@@ -128,6 +128,7 @@ def _nonlinear(
 
     from gbeam.integrate import newton
 
+    scheme = scheme.ending()
     tableau, residual = scheme.tableau(step), equations.residual
     first = jax.tree.map(lambda x: x[0], equations.drive(np.array([start])))
     q, qd = jnp.asarray(q, dtype=float), jnp.asarray(qd, dtype=float)
@@ -136,34 +137,34 @@ def _nonlinear(
     read = (lambda x: x) if traced else np.asarray
     yield *(read(x)[None] for x in (q, qd, qdd)), np.array([True])
     x = jnp.broadcast_to(qdd, (len(scheme.offsets), len(q)))
-    carry = newton.Carry(jnp.asarray(tableau.first) @ jnp.stack([q, qd, qdd]), x, x, qdd)
-    shape = (-1, newton.PER_JACOBIAN[len(scheme.offsets)])
+    carry = newton.Carry(jnp.asarray(tableau.first) @ jnp.stack([q, qd, qdd]), x, x)
+    shape, corrections = (-1, newton.PER_JACOBIAN[scheme.order]), newton.CORRECTIONS[scheme.order]
     for times in _times(start, step, count, CHUNK):
-        wanted = len(times)
+        inside = slice(len(times))
         # Steps beyond the end fill the last chunk, so that one program serves every duration.
-        padded = times[0] + step * np.arange(CHUNK)
-        at = _stage_inputs(equations.drive, scheme, padded, step)
-        by_chunk = jax.tree.map(lambda leaf: leaf.reshape(*shape, *leaf.shape[1:]), at)
-        after, (*piece, left) = newton.quick(residual, tableau, carry, *by_chunk, ends=scheme.ends)
-        piece = [read(values.reshape(CHUNK, -1))[:wanted] for values in piece]
+        inputs = _stage_inputs(equations.drive, scheme, times[0] + step * np.arange(CHUNK), step)
+        by_chunk = jax.tree.map(lambda leaf: leaf.reshape(*shape, *leaf.shape[1:]), inputs)
+        solved: Any = np.ones(len(times), dtype=bool)
         if traced:
-            fine = jnp.max(left.ravel()[:wanted]) <= newton.ACCEPTED
-            piece = [jnp.where(fine, values, jnp.nan) for values in piece]
-            solved = np.ones(wanted, dtype=bool)
-        elif np.all(np.asarray(left).ravel()[:wanted] <= newton.ACCEPTED):  # NaN is not
-            solved = np.ones(wanted, dtype=bool)
+            after, (*piece, left) = newton.steps(residual, tableau, carry, by_chunk, corrections)
+            fine = jnp.max(left.ravel()[inside]) <= newton.ACCEPTED
+            piece = [jnp.where(fine, values.reshape(CHUNK, -1)[inside], jnp.nan) for values in piece]
         else:
-            after, (*piece, ok) = newton.safe(residual, tableau, carry, *at, ends=scheme.ends)
-            piece, solved = [np.asarray(values)[:wanted] for values in piece], np.asarray(ok)[:wanted]
+            for tries in (corrections, newton.PATIENT):
+                after, (*piece, left) = newton.quick(residual, tableau, carry, by_chunk, tries)
+                if np.all(np.asarray(left).ravel()[inside] <= newton.ACCEPTED):  # NaN is not
+                    break
+            else:
+                after, (*piece, solved) = newton.safe(residual, tableau, carry, inputs)
+                solved = np.asarray(solved)[inside]
+            piece = [np.asarray(values).reshape(CHUNK, -1)[inside] for values in piece]
         carry = after
         yield *piece, solved
 
 
-def _stage_inputs(drive: Drive, scheme: Scheme, times: Floats, step: float) -> tuple[Any, Any]:
-    """Inputs at the stages, arrays (t, s, ...), and at the ends of the steps, (t, ...)."""
+def _stage_inputs(drive: Drive, scheme: Scheme, times: Floats, step: float) -> Any:
+    """Inputs at the stages of steps that begin at times (t,), arrays (t, s, ...)."""
     import jax
 
     stages = [drive(times + offset * step) for offset in scheme.offsets]
-    together = jax.tree.map(lambda *leaves: namespace(*leaves).stack(leaves, axis=1), *stages)
-    end = stages[-1] if scheme.ends else drive(times + step)
-    return together, end
+    return jax.tree.map(lambda *leaves: namespace(*leaves).stack(leaves, axis=1), *stages)

@@ -1,14 +1,13 @@
-"""Nonlinear equations in time, compiled by JAX: steps without control flow, and the safe way for those that fail.
+"""Nonlinear equations in time, compiled by JAX: steps without conditions, and the safe way for those that fail.
 
-On a CPU a loop with a condition inside costs as much as the arithmetic of a step. So a step makes a fixed number of
-corrections from an extrapolated guess, with the inverse Jacobian of its chunk's beginning; the size of the last
-corrections says what error is left, and a run of steps in which one leaves too much is done again by Newton's method
-proper.
+On a CPU a loop with a condition inside costs as much as the arithmetic of a step. So a step makes a given number of
+corrections from an extrapolated guess, with the inverse Jacobian of its chunk's beginning; the size of the last two
+says what error is left. A run of steps in which one leaves too much is done again with more corrections by the same
+program, and where these do not suffice by Newton's method proper.
 """
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Any, NamedTuple
 
 import jax
@@ -18,19 +17,19 @@ import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.integrate.schemes import Tableau
 
 Array = Any
-# By the number of stages, since a scheme of higher order takes longer steps: corrections per step, steps per Jacobian.
-CORRECTIONS, PER_JACOBIAN = {1: 3, 2: 5}, {1: 20, 2: 4}
+# By the order of the scheme, since a higher one takes longer steps: corrections per step, steps per Jacobian.
+CORRECTIONS, PER_JACOBIAN = {2: 3, 4: 5}, {2: 20, 4: 4}
+PATIENT = 25  # corrections where those did not suffice
 ACCEPTED = 1e-6  # of the largest acceleration: the error that the last correction may leave
 _TOLERANCE, _ROUNDING, _ITERATIONS = 1e-9, 1e3, 25  # Newton's method proper
 
 
 class Carry(NamedTuple):
-    """What goes from step to step: z (m, n); the stages' accelerations of the last two steps (s, n), and at the end."""
+    """What goes from step to step: z (m, n); the stages' accelerations of the last two steps, (s, n) each."""
 
     z: Array
     x: Array
     before: Array
-    end: Array
 
 
 def _stage_residual(residual: Any, t: Tableau, z: Array, inputs: Any, x: Array) -> Array:
@@ -48,34 +47,37 @@ def _size(correction: Array, x: Array) -> Array:
 
 def _left(last: Array, before: Array) -> Array:
     """Error left after the last of two corrections, which shrink by a constant factor."""
-    return last * jnp.where(before > 0, jnp.minimum(last / before, 1.0), 0.0)
+    return last * jnp.where(before > 0, jnp.minimum(last / jnp.maximum(before, 1e-300), 1.0), 0.0)
 
 
 @jax.jit
 def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
     """q̈ (n,) that the equations demand, which are linear in them."""
-    zero = jnp.zeros_like(q)
-    mass = jax.jacfwd(residual, 2)(q, qd, zero, inputs)
-    return jnp.linalg.solve(mass, -residual(q, qd, zero, inputs))
+    n = q.shape[0]
+    units = jnp.concatenate([jnp.zeros((1, n)), jnp.eye(n)])
+    forces = jax.vmap(lambda qdd: residual(q, qd, qdd, inputs))(units)
+    return jnp.linalg.solve((forces[1:] - forces[0]).T, -forces[0])
 
 
-def _end(t: Tableau, z: Array, x: Array, ends: bool) -> tuple[Array, Array]:
-    if ends:
-        return t.w_q[-1] @ z + t.c_q[-1] @ x, t.w_v[-1] @ z + t.c_v[-1] @ x
-    new = t.g @ z + t.d @ x
-    return new[0], new[1]
+def _next(t: Tableau, carry: Carry, x: Array) -> tuple[Carry, tuple[Array, Array, Array]]:
+    """The next carry, and q, q̇, q̈ at the end of the step, which is the last stage."""
+    q, qd = t.w_q[-1] @ carry.z + t.c_q[-1] @ x, t.w_v[-1] @ carry.z + t.c_v[-1] @ x
+    return Carry(t.g @ carry.z + t.d @ x, x, carry.x), (q, qd, x[-1])
 
 
-@partial(jax.jit, static_argnames="ends")
-def quick(residual: Any, t: Tableau, carry: Carry, inputs: Any, end_inputs: Any, *, ends: bool) -> Any:
-    """Steps with a fixed number of corrections.
+def steps(residual: Any, t: Tableau, carry: Carry, inputs: Any, corrections: Any) -> Any:
+    """Steps with a given number of corrections each.
 
     Parameters
     ----------
+    residual : callable record
+        (q, q̇, q̈, inputs) -> (n,).
+    t : Tableau
+        Whose last stage is the end of the step.
     inputs : arrays (chunks, steps, s, ...)
         At the stages; one Jacobian for each chunk.
-    end_inputs : arrays (chunks, steps, ...)
-        At the ends, where these are no stage.
+    corrections : int
+        A plain number where the run is to be differentiated backwards.
 
     Returns
     -------
@@ -83,53 +85,46 @@ def quick(residual: Any, t: Tableau, carry: Carry, inputs: Any, end_inputs: Any,
     """
     stages, n = carry.x.shape
 
-    def chunk(carry: Carry, chunk_inputs: tuple[Any, Any]) -> Any:
+    def chunk(carry: Carry, chunk_inputs: Any) -> Any:
         first = jax.tree.map(lambda leaf: leaf[0], chunk_inputs)
 
         def flat(x: Array) -> Array:
-            return _stage_residual(residual, t, carry.z, first[0], x.reshape(stages, n)).ravel()
+            return _stage_residual(residual, t, carry.z, first, x.reshape(stages, n)).ravel()
 
         inverse = jnp.linalg.inv(jax.jacfwd(flat)((2 * carry.x - carry.before).ravel()))
-        if not ends:
-            q, qd = carry.z[0], carry.z[1]
-            of_mass = jnp.linalg.inv(jax.jacfwd(residual, 2)(q, qd, carry.end, first[1]))
 
-        def step(carry: Carry, at: tuple[Any, Any]) -> Any:
-            x = 2 * carry.x - carry.before
-            sizes = []
-            for _ in range(CORRECTIONS[stages]):
-                correction = (inverse @ _stage_residual(residual, t, carry.z, at[0], x).ravel()).reshape(stages, n)
+        def step(carry: Carry, at: Any) -> Any:
+            def correct(_: Any, state: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
+                x, last, _ = state
+                correction = (inverse @ _stage_residual(residual, t, carry.z, at, x).ravel()).reshape(stages, n)
                 x = x - correction
-                sizes.append(_size(correction, x))
-            left = _left(sizes[-1], sizes[-2])
-            q, qd = _end(t, carry.z, x, ends)
-            end = x[-1]
-            if not ends:
-                end, sizes = carry.end + (x[-1] - carry.x[-1]), []
-                for _ in range(2):
-                    correction = of_mass @ residual(q, qd, end, at[1])
-                    end = end - correction
-                    sizes.append(_size(correction, end))
-                left = jnp.maximum(left, _left(sizes[-1], sizes[-2]))
-            return Carry(t.g @ carry.z + t.d @ x, x, carry.x, end), (q, qd, end, left)
+                return x, _size(correction, x), last
+
+            far = jnp.full((), jnp.inf)
+            x, last, before = jax.lax.fori_loop(0, corrections, correct, (2 * carry.x - carry.before, far, far))
+            after, ends = _next(t, carry, x)
+            return after, (*ends, _left(last, before))
 
         return jax.lax.scan(step, carry, chunk_inputs)
 
-    return jax.lax.scan(chunk, carry, (inputs, end_inputs))
+    return jax.lax.scan(chunk, carry, inputs)
 
 
-@partial(jax.jit, static_argnames="ends")
-def safe(residual: Any, t: Tableau, carry: Carry, inputs: Any, end_inputs: Any, *, ends: bool) -> Any:
+quick = jax.jit(steps)
+
+
+@jax.jit
+def safe(residual: Any, t: Tableau, carry: Carry, inputs: Any) -> Any:
     """Steps by Newton's method with as many iterations as each needs, the Jacobian renewed every fourth.
 
-    Parameters and returns as for :func:`quick`, with (steps, ...) in place of (chunks, steps, ...) and, in place
-    of the error left, whether the step has been solved.
+    Parameters and returns as for :func:`steps`, with (steps, ...) in place of (chunks, steps, ...) and, in place of the
+    error left, whether the step has been solved.
     """
     stages, n = carry.x.shape
 
-    def step(carry: Carry, at: tuple[Any, Any]) -> Any:
+    def step(carry: Carry, at: Any) -> Any:
         def flat(x: Array) -> Array:
-            return _stage_residual(residual, t, carry.z, at[0], x.reshape(stages, n)).ravel()
+            return _stage_residual(residual, t, carry.z, at, x.reshape(stages, n)).ravel()
 
         def go_on(state: tuple[Any, ...]) -> Array:
             _, _, size, before, count = state
@@ -146,10 +141,7 @@ def safe(residual: Any, t: Tableau, carry: Carry, inputs: Any, end_inputs: Any, 
         far = jnp.array(jnp.inf)
         begin = (carry.x.ravel(), jnp.eye(stages * n), far, far, jnp.array(0))
         x, _, size, _, _ = jax.lax.while_loop(go_on, iterate, begin)
-        x = x.reshape(stages, n)
-        q, qd = _end(t, carry.z, x, ends)
-        end = x[-1] if ends else accelerations(residual, q, qd, at[1])
-        ok = (size <= _ROUNDING * _TOLERANCE) & jnp.all(jnp.isfinite(end))
-        return Carry(t.g @ carry.z + t.d @ x, x, carry.x, end), (q, qd, end, ok)
+        after, ends = _next(t, carry, x.reshape(stages, n))
+        return after, (*ends, (size <= _ROUNDING * _TOLERANCE) & jnp.all(jnp.isfinite(x)))
 
-    return jax.lax.scan(step, carry, (inputs, end_inputs))
+    return jax.lax.scan(step, carry, inputs)

@@ -66,6 +66,20 @@ class Scheme:
     offsets: tuple[float, ...]
     tableau: Callable[[float], Tableau]
 
+    def ending(self) -> Scheme:
+        """The same scheme with the end of the step as its last stage, so that the accelerations there are unknowns."""
+        if self.ends:
+            return self
+
+        def tableau(h: float) -> Tableau:
+            t, none = self.tableau(h), np.zeros((len(self.offsets), 1))
+            # The end depends on the stages, and nothing on its acceleration.
+            c_q, c_v = (np.block([[c, none], [d, 0.0]]) for c, d in ((t.c_q, t.d[:1]), (t.c_v, t.d[1:2])))
+            w_q, w_v = np.vstack([t.w_q, t.g[:1]]), np.vstack([t.w_v, t.g[1:2]])
+            return Tableau(w_q, w_v, c_q, c_v, t.g, np.hstack([t.d, np.zeros((len(t.d), 1))]), t.first)
+
+        return Scheme(self.name, self.order, (*self.offsets, 1.0), tableau)
+
     @property
     def ends(self) -> bool:
         """Whether the last stage is the end of the step; else z begins with the q and q̇ of the end."""
