@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from scipy.io import savemat
 
-from gbeam.results.response import Commands, MachinePlan
+from gbeam.results.machine import Commands, MachinePlan
 
 _UNITS = {"angle": "rad", "rate": "rad_per_s", "acceleration": "rad_per_s2"}
 COLUMNS = ("time_s", *(f"{quantity}{i}_{unit}" for quantity, unit in _UNITS.items() for i in (1, 2, 3)))
@@ -40,10 +40,10 @@ def write_commands(plan: MachinePlan, commands: Commands, folder: Path) -> list[
         ``commands_NAME.mat``: time (t, 1); angle, rate, acceleration (t, 3), columns for axes 1, 2, 3; sample, arm;
         conventions.
     """
-    told = header(plan, commands)
+    lines_above = header(plan, commands)
     csv, mat = folder / f"commands_{plan.name}.csv", folder / f"commands_{plan.name}.mat"
     table = np.column_stack([commands.time, commands.angle, commands.rate, commands.acceleration])
-    lines = [*(f"# {line}" for line in told), ",".join(COLUMNS)]
+    lines = [*(f"# {line}" for line in lines_above), ",".join(COLUMNS)]
     with csv.open("w", encoding="utf-8", newline="\n") as file:
         file.write("\n".join(lines) + "\n")
         # %.12g keeps the angle of axis 1 to a microradian over a thousand turns.
@@ -57,7 +57,7 @@ def write_commands(plan: MachinePlan, commands: Commands, folder: Path) -> list[
             "acceleration": commands.acceleration,
             "sample": commands.sample,
             "arm": plan.arm,
-            "conventions": "\n".join(told),
+            "conventions": "\n".join(lines_above),
         },
         do_compression=True,
     )

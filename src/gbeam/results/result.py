@@ -65,7 +65,7 @@ class Result:
         xarray.Dataset
             Of a :class:`~gbeam.Study` an xarray.DataTree.
         """
-        from gbeam.io.export import to_xarray
+        from gbeam.io.netcdf import to_xarray
 
         return to_xarray(self)
 
@@ -82,7 +82,7 @@ class Result:
         OSError
             If it cannot be written.
         """
-        from gbeam.io.export import save
+        from gbeam.io.netcdf import save
 
         save(self, path)
 

@@ -13,19 +13,11 @@ import xarray as xr
 
 from gbeam.errors import InputError
 from gbeam.io import netcdf as store
-from gbeam.results.comparison import Sizes, Statistics
-from gbeam.results.response import (
-    AxesResult,
-    BaseHistory,
-    Comparison,
-    HubResult,
-    LimitUse,
-    Peaks,
-    Response,
-    Shortfall,
-    Study,
-)
+from gbeam.results.comparison import Comparison, RootHistory, RootLoads, Sizes, Statistics
+from gbeam.results.machine import AxesResult, LimitUse, Shortfall
+from gbeam.results.response import BaseMotion, HubResult, Peaks, Response
 from gbeam.results.section_forces import Loads
+from gbeam.results.study import Failure, Study
 
 T, N = 11, 4
 RANDOM = np.random.default_rng(0)
@@ -44,7 +36,7 @@ LIMITS = (
 )
 SHORTFALLS = (
     Shortfall(0.55, 1.0, "below idle", 0.8, 0.7, 1.4, "g", 'idle = "0.70 g" would follow it'),
-    Shortfall(0.3, 0.4, "turns sharply", 0.35, 302.0, 128.0, "m/s^4", 'smoothing = "142 ms" or more would let it'),
+    Shortfall(0.3, 0.4, "sharp corner", 0.35, 302.0, 128.0, "m/s^4", 'smoothing = "142 ms" or more is trackable'),
 )
 
 
@@ -65,7 +57,7 @@ def _response(name: str, environment: str) -> Response:
         displacement=_random(T, 2, 3),
         q=_random(T, N),
         qd=_random(T, N),
-        base=BaseHistory(_random(T, 3), _random(T, 3), _random(T, 3)),
+        base=BaseMotion(_random(T, 3), _random(T, 3), _random(T, 3)),
         peaks=Peaks(_random(3), _random(3), np.full(3, np.nan)),
         integrator="newmark",
         step=0.1,
@@ -75,7 +67,7 @@ def _response(name: str, environment: str) -> Response:
     )
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def study() -> Study:
     """All three environments, with a comparison."""
     held = TIME > 0.5
@@ -91,16 +83,18 @@ def study() -> Study:
     }
     sizes = (Sizes(*(abs(_random(2, 3)) for _ in range(3))) for _ in range(3))
     split = Statistics(np.array([0.1, 0.3]), 18.0, *sizes, *(_random(T, 3) for _ in range(4)))
+    history = RootHistory(*(_random(T, 3) for _ in range(4)))
+    root = RootLoads(*(abs(_random(3)) for _ in range(6)), 1.0, 2.0, 3.0, history)
     comparison = Comparison(
-        "flight", "spin", TIME, _random(T, 3), ~held, *(abs(_random(3)) for _ in range(4)), stations=split
+        "flight", "spin", TIME, _random(T, 3), ~held, *(abs(_random(3)) for _ in range(4)), stations=split, root=root
     )
     return Study("a title", responses, (comparison,))
 
 
-@pytest.fixture
-def file(study: Study, tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def file(study: Study, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The study, written."""
-    path = tmp_path / "result.nc"
+    path = tmp_path_factory.mktemp("store") / "result.nc"
     store.write(study, path, store.Provenance(SCENARIO, ["a=1", "b=2"], "gbeam run s.toml"))
     return path
 
@@ -122,6 +116,43 @@ def test_xarray_reads_what_was_written(study: Study, file: Path) -> None:
     assert tree["comparisons/spin"].attrs["verdict"] == study.comparisons[0].verdict
 
 
+def test_histories_at_the_root_of_a_comparison(study: Study, file: Path) -> None:
+    compared = store.read(file)["comparisons/spin"]
+    assert study.comparisons[0].root is not None
+    history = study.comparisons[0].root.history
+    for name in ("force_flight", "force_centrifuge", "moment_flight", "moment_centrifuge"):
+        np.testing.assert_array_equal(compared[f"root_{name}"], getattr(history, name))
+        assert compared[f"root_{name}"].attrs["frame"].startswith("S: ")
+
+
+def test_one_name_for_the_torque_of_a_drive(study: Study) -> None:
+    """It is given on a free hub, and follows from the loads where the rate is prescribed."""
+    slew = study.responses["slew"]
+    given = _random(T)
+    free = replace(slew, hub=replace(slew.hub, drive_torque=given)).to_xarray()
+    np.testing.assert_array_equal(free["drive_torque"], given)
+    np.testing.assert_array_equal(slew.to_xarray()["drive_torque"], slew.loads.drive_torque)
+    assert "hub_torque" not in free
+
+
+def test_what_is_written_is_what_xarray_gets(study: Study, file: Path, tmp_path: Path) -> None:
+    tree, read = study.to_xarray(), store.read(file)
+    assert [node.path for node in tree.subtree] == [node.path for node in read.subtree]
+    for node in tree.subtree:
+        if node.path != "/":  # which says when it was made and from what
+            xr.testing.assert_identical(node.to_dataset(), read[node.path].to_dataset())
+    study.responses["spin"].save(tmp_path / "spin.nc")
+    xr.testing.assert_identical(
+        xr.load_dataset(tmp_path / "spin.nc", engine="h5netcdf"), study.responses["spin"].to_xarray()
+    )
+
+
+def test_a_failure_is_kept(study: Study, tmp_path: Path) -> None:
+    failed = replace(study, failures={f"motion{i}": Failure("diverged", f"reason {i}") for i in range(12)})
+    failed.save(tmp_path / "x.nc")
+    assert store.read(tmp_path / "x.nc").attrs["failure_motion11"] == "diverged: reason 11"
+
+
 def test_limits_and_what_cannot_be_followed(study: Study, file: Path) -> None:
     tree = store.read(file)
     spin = tree["motions/spin"]
@@ -131,14 +162,17 @@ def test_limits_and_what_cannot_be_followed(study: Study, file: Path) -> None:
     assert spin["jerk_used"].attrs["units"] == "rad s-3"
     assert (float(spin["power_used"]), float(spin["power_allowed"]), float(spin["power_time"])) == (4e4, 5e4, 0.7)
     assert float(spin["control_point"]) == 0.15
-    assert list(spin["shortfall_reason"].values) == ["below idle", "turns sharply"]
-    assert list(spin["shortfall_unit"].values) == ["g", "m/s^4"] and list(spin["shortfall_wanted"].values) == [0.7, 302]
+    assert list(spin["shortfall_reason"].values) == ["below idle", "sharp corner"]
+    assert list(spin["shortfall_unit"].values) == ["g", "m/s^4"] and list(spin["shortfall_reference"].values) == [
+        0.7,
+        302,
+    ]
     assert str(spin["shortfall_remedy"].values[1]).startswith("smoothing")
     sizes = tree["comparisons/spin/station_rms_difference"]
     assert study.comparisons[0].stations is not None
     np.testing.assert_array_equal(sizes, study.comparisons[0].stations.difference.rms)
-    with h5py.File(file) as it:
-        group = it["motions/spin"]
+    with h5py.File(file) as opened:
+        group = opened["motions/spin"]
         np.testing.assert_array_equal(group["rate_used"][:], [10, 20, 30])
         assert [each.decode() for each in group["shortfall_unit"]] == ["g", "m/s^4"]
         assert [each.decode() for each in group["not_followed_reason"]] == ["below idle"]
@@ -175,13 +209,13 @@ def test_every_number_says_what_it_is(file: Path) -> None:
 
 
 def test_h5py_reads_it(study: Study, file: Path) -> None:
-    with h5py.File(file) as it:
-        group = it["motions/spin"]
+    with h5py.File(file) as opened:
+        group = opened["motions/spin"]
         np.testing.assert_array_equal(group["displacement"][:], study.responses["spin"].displacement)
         assert [each.decode() for each in group["axis"]] == ["x", "y", "z"]
         np.testing.assert_array_equal(group["not_followed"][:], study.responses["spin"].axes.not_followed)
         # Attributes that MATLAB reads: text and numbers, nothing else.
-        kinds = {type(value) for node in (it, group) for value in node.attrs.values()}
+        kinds = {type(value) for node in (opened, group) for value in node.attrs.values()}
         assert kinds <= {str, np.float64, np.int64, np.ndarray, bytes, np.bytes_}
         assert group.attrs["environment"] == "centrifuge"
 
@@ -191,20 +225,24 @@ def test_a_group_opens_alone(file: Path) -> None:
         assert dict(flight.sizes) == {"time": T, "station": 2, "axis": 3, "coordinate": N}
 
 
-def test_a_file_is_replaced_whole_or_not_at_all(study: Study, file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    before = file.read_bytes()
+def test_a_file_is_replaced_whole_or_not_at_all(
+    study: Study, file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = tmp_path / file.name
+    own.write_bytes(file.read_bytes())
+    before = own.read_bytes()
 
     def fail(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patched:
-        patched.setattr(xr.DataTree, "to_netcdf", fail)
+        patched.setattr(h5py.Group, "create_dataset", fail)
         with pytest.raises(OSError, match="No space"):
-            store.write(study, file)
-    assert file.read_bytes() == before
-    assert os.listdir(file.parent) == [file.name]
-    store.write(replace(study, title="another"), file)
-    assert store.read(file).attrs["title"] == "another"
+            store.write(study, own)
+    assert own.read_bytes() == before
+    assert os.listdir(own.parent) == [own.name]
+    store.write(replace(study, title="another"), own)
+    assert store.read(own).attrs["title"] == "another"
 
 
 @pytest.mark.parametrize("content", [None, b"not netCDF"])
