@@ -13,6 +13,7 @@ from gbeam.motion import (
     Centrifuge,
     Flight,
     axis_history,
+    machines,
     moved,
     read_record,
     trapezoid,
@@ -122,3 +123,35 @@ def test_refusals(change: dict[str, object], where: str, words: str) -> None:
     with pytest.raises(InputError, match=words) as caught:
         machine(**{**change, "span": None})
     assert caught.value.where == where
+
+
+def test_the_target_is_built_for_the_span_that_is_asked_of_it() -> None:
+    with pytest.raises(InputError, match="use over") as caught:
+        machine(span=None).base(1.0)
+    assert caught.value.where == "span"
+    idle = machine(span=None)
+    prepared = idle.over(0.0, 12.0)
+    np.testing.assert_array_equal(prepared.base(3.0).a_WO_B, machine().base(3.0).a_WO_B)
+    assert idle.over(0.0, 12.0) is prepared and prepared.over(1.0, 5.0) is prepared  # the last one is kept
+    assert idle.over(0.0, 6.0).target.span == (0.0, 6.0) and prepared.over(0.0, 20.0).target.span == (0.0, 20.0)
+    assert prepared.kind == "centrifuge" and not prepared.free
+
+
+def test_an_example_machine_tells_its_arm_limits_and_idle() -> None:
+    example = machines["specimen-3.3m"]
+    spin = Centrifuge(TRAPEZOID, control_point=XC, limits=example, span=SPAN)
+    assert spin.geometry.arm == example.arm and spin.idle == example.idle
+    assert spin.episodes()[0].reason == "below idle"  # the flight begins with no load
+    assert {use.axis for use in spin.usage() if np.isfinite(use.allowed)} == {"axis 1", "axis 2", "axis 3"}
+    own = Centrifuge(TRAPEZOID, arm=4.0, control_point=XC, limits=example, idle=2 * G, span=SPAN)
+    assert own.geometry.arm == 4.0 and own.idle == 2 * G
+
+
+def test_altered_changes_what_is_named_and_nothing_else() -> None:
+    spin, t = machine(mounting="inverted", inverse="quasi-static"), np.linspace(0, 12, 25)
+    moved_on = spin.altered(control_point=0.25)
+    assert moved_on.course is spin.course and float(moved_on.control_point) == 0.25
+    np.testing.assert_array_equal(moved_on.actual(t), spin.actual(t))
+    upright = spin.altered(mounting="upright", smoothing=0.1)
+    np.testing.assert_allclose(upright.base(t).a_WO_B, machine(inverse="quasi-static", smoothing=0.1).base(t).a_WO_B)
+    assert spin.mounting == "inverted" and upright.target.span == SPAN

@@ -1,8 +1,12 @@
 """Flight: translation only."""
 
-import numpy as np
+from typing import Any
 
-from gbeam.motion import Flight, trapezoid
+import numpy as np
+import pytest
+
+from gbeam.errors import InputError
+from gbeam.motion import Flight, constant, trapezoid, vector
 
 
 def test_flight_is_its_load_without_rotation() -> None:
@@ -13,3 +17,30 @@ def test_flight_is_its_load_without_rotation() -> None:
     assert not np.any(base.w_WB_B) and not np.any(base.alpha_WB_B) and base.w_WB_B.shape == (25, 3)
     assert flight.base(2.0).a_WO_B.shape == (3,)
     assert flight.breaks.size == 6
+
+
+def test_components_are_profiles_or_numbers_and_vectors_go_by_name() -> None:
+    ramp = trapezoid(98.0, jerk=40.0, start=1.0, hold=4.0)
+    flight = Flight(z=ramp, x=-2.0)
+    np.testing.assert_allclose(flight.base(4.0).a_WO_B, [-2.0, 0.0, 98.0])
+    same = Flight(acceleration=vector(x=-2.0, z=ramp))
+    np.testing.assert_array_equal(same.base(1.7).a_WO_B, flight.base(1.7).a_WO_B)
+    np.testing.assert_array_equal(Flight(acceleration=(0.0, 0.0, 9.8)).base(0.0).a_WO_B, [0.0, 0.0, 9.8])
+    assert flight.kind == "flight" and not flight.free and flight.over(0.0, 1.0) is flight
+
+
+@pytest.mark.parametrize(
+    ("given", "where", "words"),
+    [
+        ({}, "acceleration", "give x, y or z"),
+        ({"z": 1.0, "acceleration": (0.0, 0.0, 1.0)}, "z", "beside acceleration"),
+        ({"x": constant([1.0, 2.0, 3.0])}, "x", "acceleration = "),
+        ({"acceleration": 9.8}, "acceleration", "give x, y and z"),
+        ({"z": "fast"}, "z", "a profile or a number"),
+        ({"z": np.nan}, "z", "finite"),
+    ],
+)
+def test_what_is_no_flight_is_refused(given: dict[str, Any], where: str, words: str) -> None:
+    with pytest.raises(InputError, match=words) as caught:
+        Flight(**given)
+    assert caught.value.where == where

@@ -11,10 +11,13 @@ from gbeam.motion import (
     AxisLimit,
     Centrifuge,
     Flight,
+    Limits,
     MachineLimits,
     read_record,
     trapezoid,
 )  # fmt: skip
+from gbeam.motion.centrifuge.inverses.closed_form import Geometry
+from gbeam.motion.centrifuge.inverses.planned import Tracking
 from gbeam.numerics.bspline import Grid
 
 G, R = STANDARD_GRAVITY, 3.3
@@ -121,3 +124,15 @@ def test_spline_reproduces_quintics_and_their_derivatives() -> None:
         )
     t = np.array([1.0, 1.7, 3.0])
     np.testing.assert_allclose(grid.spline(c)(t)[:, 0], polynomial(t), rtol=1e-8)
+
+
+def test_the_derivatives_of_the_tracking_error_are_those_of_its_differences() -> None:
+    rng = np.random.default_rng(3)
+    grid = Grid(0.0, 1.0, 0.2, np.array([1, 3, 5]) / 6)
+    count = grid.time.size
+    cost = Tracking(grid, Geometry(R, G, -1.0), Limits(), rng.normal(size=(count, 3)), rng.uniform(0.1, 1, count))
+    state = rng.normal(size=(count, 4))
+    slope = cost.derivatives(state)
+    for k, step in enumerate(1e-6 * np.eye(4)):
+        finite = (cost.residual(state + step) - cost.residual(state - step)) / 2e-6
+        np.testing.assert_allclose(slope[:, :, k], finite, atol=1e-8)

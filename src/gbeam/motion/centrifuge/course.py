@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from gbeam.arrays.namespace import as_array
+from gbeam.arrays.namespace import as_array, is_traced
 from gbeam.arrays.tree import record
 from gbeam.errors import InputError
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse
@@ -63,5 +63,8 @@ def prepare(
     method = INVERSES[inverse]
     if not target.rounded and (target.turns or not method.follows_corners):
         raise InputError("smoothing", f"is missing: {inverse} cannot follow this load's corners", 'give "60 ms" or so')
+    if method.solved and is_traced(target.load(span[0]), geometry.arm):
+        fix = 'choose "flat" or "quasi-static", or prepare the machine of numbers: over(start, end)'
+        raise InputError("inverse", f"is {inverse}, solved for numerically, and JAX traces the machine", fix)
     beginning = build_start(start, target, geometry)
     return Course(target, method.build(target, geometry, limits), beginning)

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import as_array, namespace
+from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record, static
 from gbeam.errors import InputError
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse, Pose, across_beam, speed
@@ -165,9 +165,9 @@ def build_start(kind: str, target: Target, geometry: Geometry) -> Start:
     if kind == "idle":
         return Turning()
     end = ready - width  # from there on the target's corner is being rounded
-    full = float(speed(target.load.series(first, 0), geometry).value)
+    full = speed(target.load.series(first, 0), geometry).value
     turned, yawed = full * (end - first), kind == "pre-yawed"
-    if yawed and turned < LEAST_TURNED:
+    if yawed and not is_traced(turned) and turned < LEAST_TURNED:
         raise InputError(
             "spin_up",
             f"is {ready - first:.3g} s, so short that a pre-yawed start would overshoot its load",

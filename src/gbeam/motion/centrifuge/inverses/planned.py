@@ -62,13 +62,13 @@ def planned(target: Target, geometry: Geometry, limits: Limits) -> Planned:
     reference, not_followed = target.load(grid.time), target.not_followed(grid.time)
     weight = np.sqrt(np.where(not_followed, HELD, 1.0))
     # Without limits first, and of several starts the best: far from what the arm can do, flat's is a poor one.
-    free = _Tracking(grid, geometry, Limits(), reference, weight)
+    free = Tracking(grid, geometry, Limits(), reference, weight)
     tried = [
         minimise(free, grid.fit(np.column_stack([rate.value, *(np.unwrap(angle.value) for angle in angles)])))
         for rate, *angles in starts
     ]
     c, _ = min(tried, key=lambda each: each[1])
-    within = _Tracking(grid, geometry, limits, reference, weight)
+    within = Tracking(grid, geometry, limits, reference, weight)
     if within.most(c) > 1:
         c, _ = minimise(within, c)
         # What a search that ended early still exceeds: the same motion about the same angles, smaller.
@@ -77,7 +77,7 @@ def planned(target: Target, geometry: Geometry, limits: Limits) -> Planned:
     return Planned(grid.spline(c))
 
 
-class _Tracking:
+class Tracking:
     """The cost of a motion and the shares of the limits that it uses; a :class:`gbeam.numerics.interior_point.Problem`.
 
     The load depends on four states: the arm's rate and acceleration and the angles of the gimbals. Each is the product
@@ -105,7 +105,7 @@ class _Tracking:
     def cost(self, c: Floats) -> float:
         """Half the sum of squares."""
         near = self.grid.windows(c)
-        residual = self._residual(self._states(near))
+        residual = self.residual(self._states(near))
         return float(np.sum(residual**2) + np.sum(near @ self.ease * near)) / 2
 
     def shares(self, c: Floats) -> Floats:
@@ -122,7 +122,7 @@ class _Tracking:
         """Take the derivatives of the residuals and of the power with respect to the states."""
         self.near = self.grid.windows(c)
         state = self._states(self.near)
-        residual, slope = self._residual(state), self._slope(state)
+        residual, slope = self.residual(state), self.derivatives(state)
         across = slope.swapaxes(1, 2)
         self.square, self.slope = across @ slope, (across @ residual[..., None])[..., 0]
         self.power = self.per_power * np.stack([state[:, 1], state[:, 0], *np.zeros((2, len(state)))], axis=1)
@@ -151,7 +151,7 @@ class _Tracking:
         of_hull = (near @ self.hull.T).ravel()
         return np.append(of_hull, np.sum(self.power * self._states(near), axis=1)) if self.per_power else of_hull
 
-    def _residual(self, state: Floats) -> Floats:
+    def residual(self, state: Floats) -> Floats:
         """Weighted tracking error, (times, 3), in g0."""
         radial, tangential, sin2, cos2, sin3, cos3 = self._parts(state)
         across = tangential * cos2 - radial * sin2
@@ -165,7 +165,7 @@ class _Tracking:
         )
         return (self.weight / STANDARD_GRAVITY)[:, None] * (load - self.reference)
 
-    def _slope(self, state: Floats) -> Floats:
+    def derivatives(self, state: Floats) -> Floats:
         """Its derivatives with respect to the states, (times, 3, 4): of the load of `control_point_load`."""
         arm, gravity = float(self.geometry.arm), self.geometry.gravity
         radial, tangential, sin2, cos2, sin3, cos3 = self._parts(state)

@@ -13,15 +13,25 @@ from gbeam.motion.centrifuge.target.target import Target
 
 
 class Method(NamedTuple):
-    """How to build an inverse, and whether it can follow corners of a load that does not turn."""
+    """How to build an inverse.
+
+    Parameters
+    ----------
+    build : callable
+    follows_corners : bool
+        Whether it can follow corners of a load that does not turn.
+    solved : bool
+        Whether it is solved for numerically, and so needs numbers.
+    """
 
     build: Callable[[Target, Geometry, Limits], Inverse]
     follows_corners: bool
+    solved: bool
 
 
 INVERSES: dict[str, Method] = {
-    "quasi-static": Method(lambda target, geometry, limits: QuasiStatic(geometry), True),
-    "flat": Method(lambda target, geometry, limits: Flat(geometry), False),
-    "exact": Method(lambda target, geometry, limits: exact(target, geometry), False),
-    "planned": Method(planned, False),
+    "quasi-static": Method(lambda target, geometry, limits: QuasiStatic(geometry), True, False),
+    "flat": Method(lambda target, geometry, limits: Flat(geometry), False, False),
+    "exact": Method(lambda target, geometry, limits: exact(target, geometry), False, True),
+    "planned": Method(planned, False, True),
 }

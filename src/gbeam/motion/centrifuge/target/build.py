@@ -103,7 +103,7 @@ def build_target(
         load = smoothed(waiting, width) if is_traced(width) or width else waiting
         if gravity:
             load = LoadFloor(load, _FLOOR, _BAND)
-        none = np.zeros(3, int)
+        none = np.zeros(3)
         parts = (load, raw, waiting, np.array([first, final]), none, none)
         return _target(*parts, least, gravity, width, (first, final), ready, rounded=True, turns=True)
     times = _knots(raw, ready - width / 2, final + width / 2, width / _PER_WIDTH or _GRID)
@@ -187,8 +187,8 @@ def _padded(times: Floats, *columns: NDArray[Any]) -> tuple[NDArray[Any], ...]:
     return np.append(times, later), *unchanged
 
 
-def _running(changed: Flags) -> NDArray[np.int64]:
-    return np.append(0, np.cumsum(changed))
+def _running(changed: Flags) -> Floats:
+    return np.append(0.0, np.cumsum(changed))
 
 
 def _knots(raw: Profile, start: float, end: float, step: float) -> Floats:

@@ -41,7 +41,7 @@ class Target:
         γ, m/s²: 9.80665 or 0.
     times : array, shape (k,)
         Knots at which it was decided whether to hold, s.
-    below_idle, out_of_reach : array of int, shape (k + 1,)
+    below_idle, out_of_reach : array, shape (k + 1,)
         Running count of the knots changed for either reason.
     half_width : float
         How far a changed knot acts beyond its neighbours: half the kernel's width, s.
