@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from gbeam import Beam, Material, Model, Response, Section, Structure, assemble
-from gbeam.results.response import AxesResult, BaseHistory, Peaks
+from gbeam.results.machine import AxesResult
+from gbeam.results.response import BaseMotion, Peaks
 
 LENGTH = 0.3
 SECTION = Section.rectangle(0.02, 0.004)
@@ -33,6 +34,6 @@ def made(name: str, time: np.ndarray, tip: np.ndarray, held: np.ndarray | None =
     return Response(
         name=name, environment="flight", model="FOAM", outcome="done", message="", warnings=(), time=time,
         stations=np.array([LENGTH]), displacement=tip[:, None, :], q=np.zeros((n, 1)), qd=np.zeros((n, 1)),
-        base=BaseHistory(none, none, none), peaks=Peaks(np.abs(tip).max(0), np.zeros(3), np.full(3, np.nan)),
+        base=BaseMotion(none, none, none), peaks=Peaks(np.abs(tip).max(0), np.zeros(3), np.full(3, np.nan)),
         integrator="newmark", step=0.1, steps=n - 1, error_estimate=0.0, residual_from=np.nan, axes=axes,
     )  # fmt: skip

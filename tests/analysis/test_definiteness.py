@@ -7,17 +7,17 @@ import pytest
 
 from gbeam.analysis.equilibrium.definiteness import first_loss, lowest_stiffness
 from gbeam.mechanics.equations import coefficients
-from gbeam.results.response import BaseHistory
+from gbeam.results.response import BaseMotion
 
 from .helpers import LENGTH, OMEGA, strip
 
 TLAM = coefficients(strip("TLAM").system)
 
 
-def spin(rate: np.ndarray) -> BaseHistory:
+def spin(rate: np.ndarray) -> BaseMotion:
     """Rotation about y, in whose plane the strip bends, hub radius 0; an angular acceleration that must not matter."""
     o = np.zeros_like(rate)
-    return BaseHistory(np.stack([o, o, o], 1), np.stack([o, rate, o], 1), np.stack([o, rate, o], 1))
+    return BaseMotion(np.stack([o, o, o], 1), np.stack([o, rate, o], 1), np.stack([o, rate, o], 1))
 
 
 def test_tlam_softens_by_the_square_of_the_rate() -> None:
@@ -49,5 +49,5 @@ def test_foam_does_not_lose_it_on_a_hub() -> None:
     foam = coefficients(strip().system)
     rate = np.linspace(0, 5 * OMEGA, 20)
     base = spin(rate)
-    on_rim = BaseHistory(np.outer(rate**2, [-LENGTH, 0, 0]), base.w_WB_B, base.alpha_WB_B)
+    on_rim = BaseMotion(np.outer(rate**2, [-LENGTH, 0, 0]), base.w_WB_B, base.alpha_WB_B)
     assert first_loss(foam, np.linspace(0, 1, 20), on_rim) is None

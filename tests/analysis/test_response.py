@@ -96,7 +96,7 @@ def test_hub_angle_is_the_integral_of_its_rate() -> None:
     assert result.environment == "hub" and result.hub is not None
     assert result.hub.angle[-1] == pytest.approx(4.5, abs=1e-6)
     assert result.hub.rate[-1] == pytest.approx(3.0)
-    assert np.isnan(result.hub.torque).all()
+    assert np.isnan(result.hub.drive_torque).all()
     np.testing.assert_allclose(result.base.a_WO_B[-1], [-0.5 * 9, 0, 0], atol=1e-12)
 
 
@@ -107,7 +107,7 @@ def test_free_hub_turns_as_a_rigid_body_would() -> None:
     assert result.hub is not None
     wanted = 20 / inertia * (2 / (2 * np.pi)) * (result.time - np.sin(np.pi * result.time) / np.pi)
     np.testing.assert_allclose(result.hub.angle, wanted, atol=1e-5 * wanted.max())
-    np.testing.assert_allclose(result.hub.torque, 20 * np.sin(np.pi * result.time), atol=1e-9)
+    np.testing.assert_allclose(result.hub.drive_torque, 20 * np.sin(np.pi * result.time), atol=1e-9)
 
 
 # --- steps and their errors

@@ -1,19 +1,19 @@
-"""Inputs and outputs of the linearisation: slopes of the nonlinear model, which tells what `loads` tells."""
+"""Inputs and outputs of the linearisation: slopes of the nonlinear model, whose outputs are those of the section forces."""
 
 from __future__ import annotations
 
 from functools import cache
 
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
 from gbeam import Beam, InputError, Load, Material, Model, PointMass, Root, Section, assemble
-from gbeam.analysis.control.linearization import Gauge, linearize
+from gbeam.analysis.control.linearization import linearize
 from gbeam.analysis.control.nonlinear import nonlinear_system
-from gbeam.analysis.response.section_forces import section_loads
+from gbeam.analysis.response.section_forces import section_forces
 from gbeam.motion import Flight, Hub, constant
-from gbeam.results.response import BaseHistory
+from gbeam.results.response import BaseMotion
+from gbeam.results.state_space import Gauge
 
 MODELS = {
     "TLAM": Model("TLAM", 1, 1, 1),
@@ -64,13 +64,13 @@ def test_finite_differences_of_the_nonlinear_model(base, kind):
     """A, B, C, D about a bent and moving beam on a tilted hub with gravity and loads."""
     pytest.importorskip("control")
     q, qd = np.random.default_rng(5).normal(size=(2, structure(kind).size)) * 0.03
-    options = {"q": jnp.asarray(q), "qd": jnp.asarray(qd), "gauges": GAUGES}
+    options = {"q": q, "qd": qd, "gauges": GAUGES}
     system = linearize(structure(kind), HUBS[base], **options, **({"rate": 1.2} if base == "free" else {}))
     model = nonlinear_system(structure(kind), HUBS[base], gauges=GAUGES)
-    assert list(model.input_labels) == [it.name for it in system.inputs]
-    assert list(model.output_labels) == [it.name for it in system.outputs]
+    assert list(model.input_labels) == [signal.name for signal in system.inputs]
+    assert list(model.output_labels) == [signal.name for signal in system.outputs]
 
-    place = [list(model.state_labels).index(it.name) for it in system.states]
+    place = [list(model.state_labels).index(state.name) for state in system.states]
     n, z = len(place), np.concatenate([system.state, system.input])
 
     def both(z):
@@ -78,31 +78,31 @@ def test_finite_differences_of_the_nonlinear_model(base, kind):
         full[place] = z[:n]
         return np.concatenate([model.dynamics(0.0, full, z[n:])[place], model.output(0.0, full, z[n:])])
 
-    wanted = np.block([[system.a, system.b], [system.c, system.d]])
-    found = np.stack([slope(both, z, k, 1e-3) for k in range(len(z))], axis=1)
-    size = np.abs(wanted).max(axis=1, keepdims=True)
-    np.testing.assert_allclose(found / size, wanted / size, atol=1e-6)
+    expected = np.block([[system.a, system.b], [system.c, system.d]])
+    slopes = np.stack([slope(both, z, k, 1e-3) for k in range(len(z))], axis=1)
+    size = np.abs(expected).max(axis=1, keepdims=True)
+    np.testing.assert_allclose(slopes / size, expected / size, atol=1e-6)
 
-    rates, told = np.split(both(z), [n])
-    np.testing.assert_allclose(system.output, told, rtol=1e-12, atol=1e-12 * np.abs(told).max())
+    rates, outputs = np.split(both(z), [n])
+    np.testing.assert_allclose(system.output, outputs, rtol=1e-12, atol=1e-12 * np.abs(outputs).max())
     carried(kind, base, system, rates)
 
 
 def carried(kind, base, system, rates):
-    """Root moment and tip acceleration are those of `loads`; with hub and ground they make up the torque."""
+    """Root moment and tip acceleration are those of the section forces; with hub and ground they make up the torque."""
     beam, size, first = structure(kind), structure(kind).size, int(base == "free")
-    mount, states = HUBS[base].mount, {it.name: k for k, it in enumerate(system.states)}
+    mount, states = HUBS[base].mount, {state.name: k for k, state in enumerate(system.states)}
     half = first + size
     turned = (system.state[0], 1.2, rates[half]) if first else (0.0, 1.2, 0.0)
-    at = mount.base(*map(jnp.asarray, turned))
+    at = mount.base(*map(np.asarray, turned))
     q, qd, qdd = system.state[first:half], system.state[half + first : 2 * half], rates[half + first : 2 * half]
     assert ("hub_angle" in states) == bool(first)
-    history = BaseHistory(*(np.asarray(x)[None] for x in (at.a_WO_B, at.w_WB_B, at.alpha_WB_B)))
-    loads = section_loads(beam, BEAM, history, q[None], qd[None], qdd[None], np.zeros(1))
-    told = dict(zip([it.name for it in system.outputs], system.output, strict=True))
+    history = BaseMotion(*(np.asarray(x)[None] for x in (at.a_WO_B, at.w_WB_B, at.alpha_WB_B)))
+    loads = section_forces(beam, history, q[None], qd[None], qdd[None], np.zeros(1))
+    outputs = dict(zip([signal.name for signal in system.outputs], system.output, strict=True))
     for i, axis in enumerate("xyz"):
-        assert told[f"root_moment_{axis}"] == pytest.approx(loads.root_moment[0, i], rel=1e-9, abs=1e-9)
-        assert told[f"tip_specific_force_{axis}"] == pytest.approx(loads.acceleration[0, -1, i], rel=1e-9, abs=1e-9)
+        assert outputs[f"root_moment_{axis}"] == pytest.approx(loads.root_moment[0, i], rel=1e-9, abs=1e-9)
+        assert outputs[f"tip_specific_force_{axis}"] == pytest.approx(loads.acceleration[0, -1, i], rel=1e-9, abs=1e-9)
     if first and kind in ("CFOAM", "exact"):  # the others' hub does not feel terms of third order
         force, moment = (np.asarray(mount.R_HB) @ x[0] for x in (loads.root_force, loads.root_moment))
         spring, damper = 20.0 * turned[0], 4.0 * turned[1]

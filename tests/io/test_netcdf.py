@@ -36,7 +36,7 @@ LIMITS = (
 )
 SHORTFALLS = (
     Shortfall(0.55, 1.0, "below idle", 0.8, 0.7, 1.4, "g", 'idle = "0.70 g" would follow it'),
-    Shortfall(0.3, 0.4, "sharp corner", 0.35, 302.0, 128.0, "m/s^4", 'smoothing = "142 ms" or more is trackable'),
+    Shortfall(0.3, 0.4, "too sharp for the arm", 0.35, 302.0, 128.0, "m/s^4", 'smoothing = "142 ms" or more is trackable'),
 )
 
 
@@ -162,7 +162,7 @@ def test_limits_and_what_cannot_be_followed(study: Study, file: Path) -> None:
     assert spin["jerk_used"].attrs["units"] == "rad s-3"
     assert (float(spin["power_used"]), float(spin["power_allowed"]), float(spin["power_time"])) == (4e4, 5e4, 0.7)
     assert float(spin["control_point"]) == 0.15
-    assert list(spin["shortfall_reason"].values) == ["below idle", "sharp corner"]
+    assert list(spin["shortfall_reason"].values) == ["below idle", "too sharp for the arm"]
     assert list(spin["shortfall_unit"].values) == ["g", "m/s^4"] and list(spin["shortfall_reference"].values) == [
         0.7,
         302,

@@ -30,7 +30,7 @@ from gbeam.analysis.response.section_forces import influence, internal_loads, se
 from gbeam.mechanics.equations import Hub as HubBody
 from gbeam.mechanics.equations import on_prescribed_base
 from gbeam.motion import Base
-from gbeam.results.response import BaseHistory
+from gbeam.results.response import BaseMotion
 from gbeam.structure.loads import Load
 from gbeam.structure.support import Root
 
@@ -46,8 +46,8 @@ TAPERED = Beam(
 SPATIAL = {kind: Model(kind, 1, 2, 2) for kind in ("TLAM", "FOAM", "CFOAM", "exact")}
 
 
-def history(base: Base) -> BaseHistory:
-    return BaseHistory(*(np.atleast_2d(x) for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
+def history(base: Base) -> BaseMotion:
+    return BaseMotion(*(np.atleast_2d(x) for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
 
 
 @pytest.mark.parametrize("kind", SPATIAL)
@@ -161,7 +161,7 @@ def test_bodies_count_as_outboard_of_their_own_station() -> None:
     beam = Beam(L, Section.rectangle(0.02, 0.004), MATERIAL, [PointMass(L, 0.5)])
     structure = assemble(beam, Model("FOAM", 0, 0, 3))
     zero = np.zeros((1, 3))
-    loads = section_loads(structure, beam, BaseHistory(np.array([[0, 0, 2.0]]), zero, zero), zero, zero, zero)
+    loads = section_loads(structure, beam, BaseMotion(np.array([[0, 0, 2.0]]), zero, zero), zero, zero, zero)
     np.testing.assert_allclose(loads.force[0, :, 2], [-2 * (M * L + 0.5), -1.0])
 
 
@@ -180,7 +180,7 @@ def test_loads_on_the_beam_are_carried_to_the_root() -> None:
     beam = Beam(L, Section.rectangle(0.02, 0.004), MATERIAL, loads=loads)
     structure = assemble(beam, Model("FOAM", 0, 2, 3), [0.2])
     zero, q = np.zeros((1, 3)), np.zeros((1, 5))
-    found = section_loads(structure, beam, BaseHistory(zero, zero, zero), q, q, q)
+    found = section_loads(structure, beam, BaseMotion(zero, zero, zero), q, q, q)
     np.testing.assert_allclose(found.root_force[0], [0, -2 * L, -5], atol=1e-12)
     np.testing.assert_allclose(found.root_moment[0], [0, 5 * L - 0.3, -2 * L**2 / 2], atol=1e-12)
     np.testing.assert_allclose(found.section_force[0, 1], [0, 2 * (L - 0.2), 5], atol=1e-12)
@@ -191,7 +191,7 @@ def test_sprung_root_carries_the_same() -> None:
     beam = Beam(L, Section.rectangle(0.02, 0.004), MATERIAL, root=Root(rotation_y=200.0, translation_z=1e5))
     structure = assemble(beam, Model("FOAM", 0, 0, 3))
     zero, q = np.zeros((1, 3)), np.zeros((1, 5))
-    found = section_loads(structure, beam, BaseHistory(np.array([[0, 0, 2.0]]), zero, zero), q, q, q)
+    found = section_loads(structure, beam, BaseMotion(np.array([[0, 0, 2.0]]), zero, zero), q, q, q)
     np.testing.assert_allclose(found.root_force[0], [0, 0, 2 * M * L], rtol=1e-12)
     np.testing.assert_allclose(found.root_moment[0], [0, -(M * L**2), 0], rtol=1e-12)
 
@@ -200,7 +200,7 @@ def test_unknown_fibres_leave_the_stress_open() -> None:
     beam = Beam(L, Section.general(8e-5, 1e-10, 2e-9), MATERIAL)
     structure = assemble(beam, Model("FOAM", 1, 1, 1))
     zero = np.zeros((1, 3))
-    assert np.isnan(section_loads(structure, beam, BaseHistory(zero, zero, zero), zero, zero, zero).stress).all()
+    assert np.isnan(section_loads(structure, beam, BaseMotion(zero, zero, zero), zero, zero, zero).stress).all()
 
 
 def test_static_influence_of_a_uniform_cantilever() -> None:
@@ -229,7 +229,7 @@ def test_torque_for_the_beam_and_the_hub_is_what_drives_them(pointing: str, angl
     response = simulate(structure, hub, ResponseSettings(duration=0.2, step=2e-3))
     loads = internal_loads(structure, TAPERED, response, hub)
     assert response.hub is not None and loads.drive_torque is not None
-    left = response.hub.torque - 30.0 * response.hub.angle - 2.0 * response.hub.rate
+    left = response.hub.drive_torque - 30.0 * response.hub.angle - 2.0 * response.hub.rate
     np.testing.assert_allclose(loads.drive_torque, left, atol=1e-6 * np.abs(left).max())
     assert loads.beam_torque is not None
     np.testing.assert_allclose(loads.beam_torque, left - 20.0 * response.hub.acceleration, atol=1e-6)

@@ -63,7 +63,7 @@ class Shortfall:
     start, end : float
         s.
     reason : str
-        below idle, below gravity, across below gravity, or a corner that is too sharp.
+        below idle, below gravity, across below gravity, too sharp for the arm.
     time : float
         When it is worst, s.
     reference, possible : float

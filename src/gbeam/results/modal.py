@@ -166,18 +166,3 @@ class Campbell(Figured):
             f"{self.speed[0]:.4g} to {self.speed[-1]:.4g} rad/s; {len(self.crossings)} crossings with multiples "
             f"{', '.join(str(order) for order in self.orders) or 'none'} of the speed{lost}"
         )
-
-
-# Old places, until their users have moved.
-from gbeam.results.equilibrium import CriticalMap as CriticalMap  # noqa: E402
-from gbeam.results.equilibrium import Deflection as Deflection  # noqa: E402
-
-FrozenBase = BaseMotion
-
-
-def __getattr__(name: str) -> object:
-    if name in ("ModelRow", "ModelStudy"):
-        from gbeam.results import study
-
-        return getattr(study, name)
-    raise AttributeError(name)

@@ -47,11 +47,6 @@ class HubResult(Part):
     acceleration: Floats
     drive_torque: Floats
 
-    @property
-    def torque(self) -> Floats:
-        """Old name of `drive_torque`, until its users have moved."""
-        return self.drive_torque
-
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Peaks(Part):
@@ -173,21 +168,3 @@ class Response(Figured):
             *(f"warning: {each}" for each in self.warnings),
         ]
         return "\n  ".join(lines)
-
-
-# Old places, until their users have moved.
-from gbeam.results.comparison import Comparison as Comparison  # noqa: E402
-from gbeam.results.machine import Commands as Commands  # noqa: E402
-from gbeam.results.machine import LimitUse as LimitUse  # noqa: E402
-from gbeam.results.machine import MachinePlan as MachinePlan  # noqa: E402
-from gbeam.results.machine import Shortfall as Shortfall  # noqa: E402
-
-BaseHistory = BaseMotion
-
-
-def __getattr__(name: str) -> object:
-    if name in ("Study", "Failure"):
-        from gbeam.results import study
-
-        return getattr(study, name)
-    raise AttributeError(name)

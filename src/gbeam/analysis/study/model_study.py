@@ -166,7 +166,7 @@ def _row(
         warnings = it.warnings if isinstance(it, Response) else ()
         return ModelRow(kind, name, it.outcome, it.message, warnings, seconds=seconds)
     peak, residual = float(it.peaks.max_abs[axis]), float(it.peaks.residual_amplitude[axis])
-    angle = nan if it.hub is None or not np.isfinite(it.hub.torque).all() else float(it.hub.angle[-1])
+    angle = nan if it.hub is None or not np.isfinite(it.hub.drive_torque).all() else float(it.hub.angle[-1])
     against = (nan, nan, nan, nan)
     if isinstance(reference, Response) and reference.outcome == "done":
         top, left = float(reference.peaks.max_abs[axis]), float(reference.peaks.residual_amplitude[axis])
