@@ -16,7 +16,7 @@ from gbeam.analysis.equilibrium.operating_point import (
     operating_point,
     steady_base,
 )
-from gbeam.analysis.response.section_forces import sections
+from gbeam.analysis.loads.section_forces import sections
 from gbeam.analysis.vibration.stability import hub_of
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
@@ -40,7 +40,7 @@ class Outputs:
 
     Tip displacement relative to the base axes; tip acceleration, absolute, or specific force where gravity acts; moment
     of the base on the root, which is what the section there carries; strains; on a free hub its angle and rate. Vectors
-    in base axes; acceleration and moment as in :mod:`gbeam.analysis.response.section_forces`.
+    in base axes; acceleration and moment as in :mod:`gbeam.analysis.loads.section_forces`.
     """
 
     structure: Structure

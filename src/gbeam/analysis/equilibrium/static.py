@@ -8,7 +8,7 @@ import numpy as np
 
 from gbeam.analysis.equilibrium.equilibrium import lowest_stiffness
 from gbeam.analysis.equilibrium.operating_point import OperatingPoint, beam_block, on_base, operating_point
-from gbeam.analysis.response.section_forces import section_forces
+from gbeam.analysis.loads.section_forces import section_forces
 from gbeam.errors import InputError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gbeam.analysis.response.section_forces import influence
+from gbeam.analysis.loads.influence import influence
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import first_step
 from gbeam.errors import InputError

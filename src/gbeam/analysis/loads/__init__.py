@@ -1,0 +1,1 @@
+"""What the sections of a beam carry, and its static answer to acceleration fields."""
