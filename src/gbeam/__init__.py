@@ -1,7 +1,10 @@
 """gbeam: how a flexible beam responds while its base moves a lot.
 
-A model is a displacement field with a truncation of one kinetic energy; its equations come by differentiation.
-The numerical names load JAX when they are first used, so that importing gbeam is light.
+A structure is particles with places r(q) and a strain energy; a model says where the places' expansion ends. The rooms,
+from the outside in: cli, scenario and report, plots, io; analysis; mechanics, structure, motion, integrate; results and
+numerics. Everything that the command line does is a function of this module.
+
+A name is imported when it is first used, and with it what it needs: importing gbeam is light.
 """
 
 from __future__ import annotations
@@ -9,163 +12,140 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from gbeam.errors import ComputationError, GbeamError, InputError
-from gbeam.structure.beam import Beam
-from gbeam.structure.bodies import PointMass
-from gbeam.structure.material import Material
-from gbeam.structure.loads import Load
-from gbeam.structure.section import Section
-from gbeam.structure.support import Root
-
-if TYPE_CHECKING:
-    from gbeam.analysis.control.linearization import linearize
-    from gbeam.analysis.control.nonlinear import nonlinear_system
-    from gbeam.analysis.control.reduction import balanced_truncation, modal_truncation
-    from gbeam.results.state_space import Gauge, StateSpace
-    from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
-    from gbeam.analysis.equilibrium.static import static
-    from gbeam.analysis.imitation.comparison import compare
-    from gbeam.analysis.response.simulation import simulate
-    from gbeam.analysis.response.settings import ResponseSettings
-    from gbeam.analysis.study.case import Case
-    from gbeam.analysis.study.model_study import compare_models
-    from gbeam.analysis.study.study import study
-    from gbeam.analysis.vibration.campbell import campbell
-    from gbeam.analysis.vibration.modal import modes
-    from gbeam.analysis.vibration.stability import buckling_acceleration, critical_speed, critical_speed_map
-    from gbeam.mechanics.assembly import assemble
-    from gbeam.mechanics.models import Model
-    from gbeam.mechanics.structure import Structure
-    from gbeam.motion import (
-        Centrifuge,
-        Flight,
-        Hub,
-        Sine,
-        SmoothStep,
-        build_target,
-        constant,
-        machines,
-        read_record,
-        smoothed,
-        tabulated,
-        trapezoid,
-        vector,
-    )
-    from gbeam.results.comparison import Comparison
-    from gbeam.results.response import Response, Study
-    from gbeam.scenario import build, load  # type: ignore[no-redef]  # modules there have the same names
+if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
+    from gbeam.analysis.control.gauges import surface_gauges as surface_gauges
+    from gbeam.analysis.control.linearization import linearize as linearize
+    from gbeam.analysis.control.nonlinear import nonlinear_system as nonlinear_system
+    from gbeam.analysis.control.reduction import balanced_truncation as balanced_truncation
+    from gbeam.analysis.control.reduction import modal_truncation as modal_truncation
+    from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium as solve_equilibrium
+    from gbeam.analysis.equilibrium.static import static as static
+    from gbeam.analysis.imitation.choice import choice_of as choice_of
+    from gbeam.analysis.imitation.comparison import compare as compare
+    from gbeam.analysis.imitation.place import Choice as Choice
+    from gbeam.analysis.imitation.place import place as place
+    from gbeam.analysis.imitation.plan import commands as commands
+    from gbeam.analysis.imitation.plan import plan as plan
+    from gbeam.analysis.response.settings import ResponseSettings as ResponseSettings
+    from gbeam.analysis.response.simulation import simulate as simulate
+    from gbeam.analysis.study.case import Case as Case
+    from gbeam.analysis.study.describe import describe as describe
+    from gbeam.analysis.study.model_study import compare_models as compare_models
+    from gbeam.analysis.study.study import study as study
+    from gbeam.analysis.vibration.campbell import campbell as campbell
+    from gbeam.analysis.vibration.modal import modes as modes
+    from gbeam.analysis.vibration.stability import buckling_acceleration as buckling_acceleration
+    from gbeam.analysis.vibration.stability import critical_load as critical_load
+    from gbeam.analysis.vibration.stability import critical_speed as critical_speed
+    from gbeam.analysis.vibration.stability import critical_speed_map as critical_speed_map
+    from gbeam.errors import ComputationError as ComputationError
+    from gbeam.errors import GbeamError as GbeamError
+    from gbeam.errors import InputError as InputError
+    from gbeam.mechanics.assembly import assemble as assemble
+    from gbeam.mechanics.models import Model as Model
+    from gbeam.mechanics.structure import Structure as Structure
+    from gbeam.motion.bases.flight import Flight as Flight
+    from gbeam.motion.bases.hub import Hub as Hub
+    from gbeam.motion.bases.record import read_record as read_record
+    from gbeam.motion.centrifuge.centrifuge import Centrifuge as Centrifuge
+    from gbeam.motion.centrifuge.limits import AxisLimit as AxisLimit
+    from gbeam.motion.centrifuge.limits import MachineLimits as MachineLimits
+    from gbeam.motion.centrifuge.machines import machines as machines
+    from gbeam.motion.centrifuge.target.build import build_target as build_target
+    from gbeam.motion.profiles.combine import Sum as Sum
+    from gbeam.motion.profiles.piecewise import constant as constant
+    from gbeam.motion.profiles.piecewise import tabulated as tabulated
+    from gbeam.motion.profiles.piecewise import trapezoid as trapezoid
+    from gbeam.motion.profiles.profile import smoothed as smoothed
+    from gbeam.motion.profiles.pulse import Sine as Sine
+    from gbeam.motion.profiles.pulse import SmoothStep as SmoothStep
+    from gbeam.results.comparison import Comparison as Comparison
+    from gbeam.results.response import Response as Response
+    from gbeam.results.state_space import Gauge as Gauge
+    from gbeam.results.state_space import StateSpace as StateSpace
+    from gbeam.results.study import Study as Study
+    from gbeam.scenario.build import read_scenario as read_scenario
+    from gbeam.structure.beam import Beam as Beam
+    from gbeam.structure.bodies import PointMass as PointMass
+    from gbeam.structure.loads import Load as Load
+    from gbeam.structure.material import Material as Material
+    from gbeam.structure.section import Section as Section
+    from gbeam.structure.support import Root as Root
 
 __version__ = "0.1.0"
 
-_HOMES = {
-    "gbeam.analysis.control.linearization": (
-        "Gauge",
-        "linearize",
-    ),
-    "gbeam.analysis.control.nonlinear": ("nonlinear_system",),
-    "gbeam.analysis.control.reduction": (
-        "balanced_truncation",
-        "modal_truncation",
-    ),
-    "gbeam.results.state_space": ("Gauge", "StateSpace"),
-    "gbeam.analysis.equilibrium.equilibrium": ("solve_equilibrium",),
-    "gbeam.analysis.equilibrium.static": ("static",),
-    "gbeam.analysis.imitation.comparison": ("compare",),
-    "gbeam.analysis.response.simulation": ("simulate",),
-    "gbeam.analysis.study.model_study": ("compare_models",),
-    "gbeam.analysis.study.study": ("study",),
-    "gbeam.analysis.vibration.campbell": ("campbell",),
-    "gbeam.analysis.vibration.modal": ("modes",),
-    "gbeam.analysis.vibration.stability": (
-        "buckling_acceleration",
-        "critical_load",
-        "critical_speed",
-        "critical_speed_map",
-    ),
-    "gbeam.analysis.response.settings": ("ResponseSettings",),
-    "gbeam.analysis.study.case": ("Case",),
-    "gbeam.mechanics.assembly": ("assemble",),
-    "gbeam.mechanics.models": ("Model",),
-    "gbeam.mechanics.structure": ("Structure",),
-    "gbeam.motion": (
-        "Centrifuge",
-        "Flight",
-        "Hub",
-        "Sine",
-        "SmoothStep",
-        "build_target",
-        "constant",
-        "machines",
-        "read_record",
-        "smoothed",
-        "tabulated",
-        "trapezoid",
-        "vector",
-    ),
-    "gbeam.results.response": ("Comparison", "Response", "Study"),
-    "gbeam.scenario": ("build", "load"),
+# Every public name, and the module it is in.
+_HOME = {
+    "AxisLimit": "motion.centrifuge.limits",
+    "Beam": "structure.beam",
+    "Case": "analysis.study.case",
+    "Centrifuge": "motion.centrifuge.centrifuge",
+    "Choice": "analysis.imitation.place",
+    "Comparison": "results.comparison",
+    "ComputationError": "errors",
+    "Flight": "motion.bases.flight",
+    "Gauge": "results.state_space",
+    "GbeamError": "errors",
+    "Hub": "motion.bases.hub",
+    "InputError": "errors",
+    "Load": "structure.loads",
+    "MachineLimits": "motion.centrifuge.limits",
+    "Material": "structure.material",
+    "Model": "mechanics.models",
+    "PointMass": "structure.bodies",
+    "Response": "results.response",
+    "ResponseSettings": "analysis.response.settings",
+    "Root": "structure.support",
+    "Section": "structure.section",
+    "Sine": "motion.profiles.pulse",
+    "SmoothStep": "motion.profiles.pulse",
+    "StateSpace": "results.state_space",
+    "Structure": "mechanics.structure",
+    "Study": "results.study",
+    "Sum": "motion.profiles.combine",
+    "assemble": "mechanics.assembly",
+    "balanced_truncation": "analysis.control.reduction",
+    "buckling_acceleration": "analysis.vibration.stability",
+    "build_target": "motion.centrifuge.target.build",
+    "campbell": "analysis.vibration.campbell",
+    "choice_of": "analysis.imitation.choice",
+    "commands": "analysis.imitation.plan",
+    "compare": "analysis.imitation.comparison",
+    "compare_models": "analysis.study.model_study",
+    "constant": "motion.profiles.piecewise",
+    "critical_load": "analysis.vibration.stability",
+    "critical_speed": "analysis.vibration.stability",
+    "critical_speed_map": "analysis.vibration.stability",
+    "describe": "analysis.study.describe",
+    "linearize": "analysis.control.linearization",
+    "machines": "motion.centrifuge.machines",
+    "modal_truncation": "analysis.control.reduction",
+    "modes": "analysis.vibration.modal",
+    "nonlinear_system": "analysis.control.nonlinear",
+    "place": "analysis.imitation.place",
+    "plan": "analysis.imitation.plan",
+    "read_record": "motion.bases.record",
+    "read_scenario": "scenario.build",
+    "simulate": "analysis.response.simulation",
+    "smoothed": "motion.profiles.profile",
+    "solve_equilibrium": "analysis.equilibrium.equilibrium",
+    "static": "analysis.equilibrium.static",
+    "study": "analysis.study.study",
+    "surface_gauges": "analysis.control.gauges",
+    "tabulated": "motion.profiles.piecewise",
+    "trapezoid": "motion.profiles.piecewise",
 }
-_HOME = {name: module for module, names in _HOMES.items() for name in names}
 
-__all__ = [
-    "Beam",
-    "Case",
-    "Centrifuge",
-    "Comparison",
-    "ComputationError",
-    "Flight",
-    "Gauge",
-    "GbeamError",
-    "Hub",
-    "InputError",
-    "Load",
-    "Material",
-    "Model",
-    "PointMass",
-    "Response",
-    "ResponseSettings",
-    "Root",
-    "Section",
-    "Sine",
-    "SmoothStep",
-    "StateSpace",
-    "Structure",
-    "Study",
-    "assemble",
-    "balanced_truncation",
-    "buckling_acceleration",
-    "build",
-    "build_target",
-    "campbell",
-    "compare",
-    "compare_models",
-    "constant",
-    "critical_load",
-    "critical_speed",
-    "critical_speed_map",
-    "solve_equilibrium",
-    "linearize",
-    "load",
-    "machines",
-    "modal_truncation",
-    "modes",
-    "nonlinear_system",
-    "read_record",
-    "simulate",
-    "smoothed",
-    "static",
-    "study",
-    "tabulated",
-    "trapezoid",
-    "vector",
-]
+__all__ = sorted(_HOME)
 
 
 def __getattr__(name: str) -> object:
-    if name in _HOME:
-        return getattr(import_module(_HOME[name]), name)
-    raise AttributeError(f"module 'gbeam' has no attribute {name!r}")
+    if name not in _HOME:
+        raise AttributeError(f"module 'gbeam' has no attribute {name!r}")
+    value = getattr(import_module(f"gbeam.{_HOME[name]}"), name)
+    globals()[name] = value  # from now on it needs no look-up
+    return value
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return __all__

@@ -19,7 +19,13 @@ QUANTITIES = {"rate": "rad/s", "acceleration": "rad/s^2", "jerk": "rad/s^3"}
 
 @dataclass(frozen=True)
 class AxisLimit:
-    """Largest rate rad/s, acceleration rad/s² and jerk rad/s³ of one axis, without sign; None where not known."""
+    """What one axis of a centrifuge can do.
+
+    Parameters
+    ----------
+    rate, acceleration, jerk : float or None
+        Largest size, rad/s, rad/s² and rad/s³; None where it is not known.
+    """
 
     rate: float | None = None
     acceleration: float | None = None

@@ -1,0 +1,62 @@
+"""One list of public names: what runs, what type checkers see, and what is documented."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import gbeam
+
+SOURCE = Path(gbeam.__file__)
+
+
+def test_type_checkers_see_the_same_names_in_the_same_modules() -> None:
+    block = next(node for node in ast.parse(SOURCE.read_text(encoding="utf-8")).body if isinstance(node, ast.If))
+    seen = {}
+    for node in block.body:
+        assert isinstance(node, ast.ImportFrom) and node.module is not None
+        for alias in node.names:
+            assert alias.asname == alias.name  # what is not imported as itself is private
+            seen[alias.name] = node.module.removeprefix("gbeam.")
+    assert seen == gbeam._HOME
+    assert dir(gbeam) == gbeam.__all__ == sorted(seen)
+    assert SOURCE.with_name("py.typed").exists()
+
+
+@pytest.mark.parametrize("name", gbeam.__all__)
+def test_every_name_is_documented(name: str) -> None:
+    value = getattr(gbeam, name)
+    if not callable(value):
+        assert name == "machines" and set(value) >= {"human-7.6m", "specimen-3.3m", "large-15m"}
+        return
+    assert value.__module__ == f"gbeam.{gbeam._HOME[name]}"
+    text = inspect.getdoc(value)
+    assert text and text.splitlines()[0].partition("  #")[0].endswith((".", ":"))  # a citation may follow
+    if not (isinstance(value, type) and issubclass(value, Exception)):
+        signature = inspect.signature(value)
+        named = [each for each in signature.parameters.values() if each.kind is not each.VAR_KEYWORD]
+        assert not named or "Parameters\n----------" in text, name
+        documented = _documented(text)
+        assert [each.name for each in named if each.name not in documented] == [], name
+
+
+def _documented(text: str) -> set[str]:
+    section = text.partition("Parameters\n----------\n")[2].split("\n\n")
+    lines = [line for part in section for line in part.splitlines() if line and not line.startswith(" ")]
+    return {name.strip(" *") for line in lines for name in line.partition(":")[0].split(",")}
+
+
+def test_an_unknown_name_is_an_attribute_error() -> None:
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        _ = gbeam.nothing
+
+
+def test_importing_is_light() -> None:
+    heavy = ("jax", "numpy", "scipy", "matplotlib")
+    code = f"import sys, gbeam; dir(gbeam); print([name for name in {heavy} if name in sys.modules])"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
