@@ -159,17 +159,16 @@ class Normal:
     def add(self, rows: Floats, values: Floats) -> None:
         """Add rows (pieces, m, 6·functions) with right-hand sides (pieces, m)."""
         columns = np.ascontiguousarray(np.moveaxis(rows, -1, 0))
-        for i, column in enumerate(columns):
-            self.right[self._at(i)] += np.einsum("pm,pm->p", column, values)
-            for d, other in enumerate(columns[i:]):
-                self.band[d, self._at(i)] += np.einsum("pm,pm->p", column, other)
+        pairs = zip(*np.triu_indices(self.block), strict=True)
+        products = np.stack([np.einsum("pm,pm->p", columns[i], columns[j]) for i, j in pairs])
+        self.add_products(products, np.einsum("ipm,pm->ip", columns, values))
 
     def add_products(self, square: Floats, side: Floats) -> None:
-        """Add products of rows already made: RᵀR (pieces, 6·functions, 6·functions), Rᵀv (pieces, 6·functions)."""
+        """Add products of rows already made: the upper half of RᵀR, row by row, (·, pieces), and Rᵀv (·, pieces)."""
+        for i, j, product in zip(*np.triu_indices(self.block), square, strict=True):
+            self.band[j - i, self._at(i)] += product
         for i in range(self.block):
-            self.right[self._at(i)] += side[:, i]
-            for d in range(self.block - i):
-                self.band[d, self._at(i)] += square[:, i, i + d]
+            self.right[self._at(i)] += side[i]
 
     def add_row(self, piece: int, row: Floats, value: float) -> None:
         """Add one row (6·functions,) on a piece, counted from the end where negative."""

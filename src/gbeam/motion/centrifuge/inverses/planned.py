@@ -35,6 +35,7 @@ _POINTS = np.array([1, 3, 5]) / 6  # of each piece
 _PARTS = 2  # of each piece, whose hulls are kept within the limits
 _POWER = 0.995  # of the arm's power is used: it is looked at in the points only
 _ACROSS = 3 * PIECE  # coefficients that one piece depends on
+_UPPER = np.triu_indices(_ACROSS)  # pairs of them, in which products of rows are symmetric
 
 Floats = NDArray[np.float64]
 
@@ -89,17 +90,25 @@ class Tracking:
         orders = np.stack([grid.rows(order) for order in range(4)])
         state = np.stack([_row(orders[k], axis) for k, axis in ((0, 0), (1, 0), (0, 1), (0, 2))], axis=1)
         self.state = state.reshape(-1, _ACROSS)  # (points · states, 18)
-        self.products = np.einsum("psI,ptJ->pstIJ", state, state).reshape(-1, _ACROSS**2)
+        self.products = np.einsum("psI,ptJ->IJpst", state, state)[_UPPER].reshape(len(_UPPER[0]), -1)
         # The spline of axis 1 is that of its rate, those of axes 2 and 3 are those of their angles.
         rates = [(q, axis, q + (axis > 0)) for q in range(3) for axis in range(3)]
         ease = np.concatenate([_EASE[q - 1] * _row(orders[k], axis) for q, axis, k in rates if q > 0])
         self.ease = ease.T @ ease
-        allowed = np.asarray(limits.axes)
-        hulls = [
-            _row(grid.hull(k, _PARTS), axis) / allowed[q, axis] for q, axis, k in rates if allowed[q, axis] < np.inf
-        ]
-        self.hull = np.concatenate([np.empty((0, _ACROSS)), *hulls])
-        self.hull_products = (self.hull[:, :, None] * self.hull[:, None, :]).reshape(-1, _ACROSS**2)
+        allowed, hulls, self.hull_products = np.asarray(limits.axes), [np.empty((0, _ACROSS))], []
+        for axis in range(3):  # a row of a hull is of one axis, and so are its products
+            of_axis = [
+                _row(grid.hull(k, _PARTS), axis) / allowed[q, axis]
+                for q, other, k in rates
+                if other == axis and allowed[q, axis] < np.inf
+            ]
+            rows = np.concatenate([np.empty((0, _ACROSS)), *of_axis])
+            of_both = np.flatnonzero((_UPPER[0] % 3 == axis) & (_UPPER[1] % 3 == axis))
+            first = sum(len(each) for each in hulls)
+            pairs = rows[:, _UPPER[0][of_both]] * rows[:, _UPPER[1][of_both]]
+            self.hull_products.append((slice(first, first + len(rows)), of_both, pairs.T))
+            hulls.append(rows)
+        self.hull = np.concatenate(hulls)
         self.per_power = float(limits.inertia / limits.power) / _POWER  # zero where there is no such limit
 
     def cost(self, c: Floats) -> float:
@@ -134,15 +143,17 @@ class Tracking:
         if self.per_power:
             square = square + weight[first:, None, None] * self.power[:, :, None] * self.power[:, None, :]
             slope = slope + pull[first:, None] * self.power
-        products = square.reshape(pieces, -1) @ self.products + self.ease.ravel()
-        products += weight[:first].reshape(pieces, -1) @ self.hull_products
+        products = self.products @ square.reshape(pieces, -1).T + self.ease[_UPPER][:, None]
+        of_hulls = weight[:first].reshape(pieces, -1).T
+        for rows, pairs, each in self.hull_products:
+            products[pairs] += each @ of_hulls[rows]
         side = (
             slope.reshape(pieces, -1) @ self.state
             + self.near @ self.ease
             + pull[:first].reshape(pieces, -1) @ self.hull
         )
         normal = Normal(pieces, 3)
-        normal.add_products(products.reshape(-1, _ACROSS, _ACROSS), -side)
+        normal.add_products(products, -side.T)
         return normal.solve_shifted(damping * float(self.square.max())).reshape(-1, 3)
 
     def change(self, move: Floats) -> Floats:
