@@ -53,6 +53,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.motion.centrifuge.machines import machines as machines
     from gbeam.motion.centrifuge.target.build import build_target as build_target
     from gbeam.motion.profiles.combine import Sum as Sum
+    from gbeam.motion.profiles.combine import vector as vector
     from gbeam.motion.profiles.piecewise import constant as constant
     from gbeam.motion.profiles.piecewise import tabulated as tabulated
     from gbeam.motion.profiles.piecewise import trapezoid as trapezoid
@@ -134,6 +135,7 @@ _HOME = {
     "surface_gauges": "analysis.control.gauges",
     "tabulated": "motion.profiles.piecewise",
     "trapezoid": "motion.profiles.piecewise",
+    "vector": "motion.profiles.combine",
 }
 
 __all__ = sorted(_HOME)

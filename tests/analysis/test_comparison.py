@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -15,50 +17,48 @@ EXTRA = np.stack([1e-6 + 0 * TIME, 0 * TIME, 3e-5 * (TIME > 1)], axis=1)
 
 
 def test_same_response_has_no_difference() -> None:
-    found = compare(made("flight", TIME, WAVE), made("arm", TIME, WAVE))
-    assert not found.difference.any()
-    assert found.covered.all()
-    np.testing.assert_allclose(found.peak_flight, [0, 2e-3, 3e-3], rtol=1e-12)
-    assert "agrees with flight within 0" in found.verdict
+    compared = compare(made("flight", TIME, WAVE), made("arm", TIME, WAVE))
+    assert not compared.difference.any()
+    assert compared.covered.all()
+    np.testing.assert_allclose(compared.peak_flight, [0, 2e-3, 3e-3], rtol=1e-12)
+    assert "agrees with flight within 0" in compared.verdict
 
 
 def test_difference_is_centrifuge_less_flight() -> None:
-    found = compare(made("flight", TIME, WAVE), made("arm", TIME, WAVE + EXTRA))
-    np.testing.assert_allclose(found.difference, EXTRA, atol=1e-18)
-    np.testing.assert_allclose(found.max_difference, [1e-6, 0, 3e-5], atol=1e-18)
-    np.testing.assert_allclose(found.rms_difference, [1e-6, 0, 3e-5 * np.sqrt(100 / 201)], rtol=1e-9, atol=1e-18)
-    np.testing.assert_allclose(found.relative[2], 0.01, rtol=1e-12)
-    assert np.isnan(found.relative[0])  # nothing in flight to compare with
-    assert (found.flight, found.centrifuge) == ("flight", "arm")
-    assert "along z on arm" in found.verdict
+    compared = compare(made("flight", TIME, WAVE), made("arm", TIME, WAVE + EXTRA))
+    np.testing.assert_allclose(compared.difference, EXTRA, atol=1e-18)
+    np.testing.assert_allclose(compared.max_difference, [1e-6, 0, 3e-5], atol=1e-18)
+    np.testing.assert_allclose(compared.rms_difference, [1e-6, 0, 3e-5 * np.sqrt(100 / 201)], rtol=1e-9, atol=1e-18)
+    np.testing.assert_allclose(compared.relative[2], 0.01, rtol=1e-12)
+    assert np.isnan(compared.relative[0])  # nothing in flight to compare with
+    assert (compared.flight, compared.centrifuge) == ("flight", "arm")
+    assert "along z on arm" in compared.verdict
 
 
 def test_held_times_do_not_count() -> None:
-    found = compare(made("flight", TIME, WAVE), made("arm", TIME, WAVE + EXTRA, held=TIME > 1))
-    np.testing.assert_array_equal(found.covered, TIME <= 1)
-    assert found.max_difference[2] == 0
-    np.testing.assert_allclose(found.difference, EXTRA, atol=1e-18)  # still told
-    np.testing.assert_allclose(found.peak_flight[1], 1e-3, rtol=1e-12)
+    compared = compare(made("flight", TIME, WAVE), made("arm", TIME, WAVE + EXTRA, held=TIME > 1))
+    np.testing.assert_array_equal(compared.covered, TIME <= 1)
+    assert compared.max_difference[2] == 0
+    np.testing.assert_allclose(compared.difference, EXTRA, atol=1e-18)  # still there
+    np.testing.assert_allclose(compared.peak_flight[1], 1e-3, rtol=1e-12)
 
 
 def test_nothing_covered() -> None:
-    found = compare(made("flight", TIME, WAVE), made("arm", TIME, WAVE, held=TIME > -1))
-    assert np.isnan(found.max_difference).all() and np.isnan(found.rms_difference).all()
-    assert "never carries flight's load" in found.verdict
+    compared = compare(made("flight", TIME, WAVE), made("arm", TIME, WAVE, held=TIME > -1))
+    assert np.isnan(compared.max_difference).all() and np.isnan(compared.rms_difference).all()
+    assert "never carries flight's load" in compared.verdict
 
 
 def test_other_times_are_interpolated_and_the_later_ones_left_out() -> None:
     coarse = TIME[::4]
     longer = np.linspace(0, 3, 301)
     straight = np.outer(longer, [0.0, 1e-3, 0.0])
-    found = compare(made("flight", coarse, straight[:201:4]), made("arm", longer, straight))
-    assert len(found.time) == 201 and found.time[-1] == pytest.approx(2.0)
-    np.testing.assert_allclose(found.difference, 0, atol=1e-15)
+    compared = compare(made("flight", coarse, straight[:201:4]), made("arm", longer, straight))
+    assert len(compared.time) == 201 and compared.time[-1] == pytest.approx(2.0)
+    np.testing.assert_allclose(compared.difference, 0, atol=1e-15)
 
 
 def test_outcome_of_a_study_is_the_first_that_is_not_done() -> None:
-    from dataclasses import replace
-
     good = made("flight", TIME, WAVE)
     assert Study("t", {"a": good, "b": good}, ()).outcome == "done"
     assert Study("t", {"a": good, "b": replace(good, outcome="diverged")}, ()).outcome == "diverged"

@@ -7,24 +7,19 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy.signal
+from scipy.linalg import expm
 
-from gbeam import Beam, Comparison, Material, Section, compare, simulate
-from gbeam.analysis.response.section_forces import influence, internal_loads
+from gbeam import Comparison, InputError, compare, simulate
 from gbeam.numerics.low_pass import low_pass
-from gbeam.numerics.oscillators import displacement, riding_acceleration
+from gbeam.numerics.oscillators import displacement, largest_riding_acceleration, riding_acceleration
 
-SPECIMEN = Beam(0.3, Section.rectangle(0.02, 0.004), Material(2700.0, 70e9))
 M, L, EI = 2700 * 0.02 * 0.004, 0.3, 70e9 * 0.02 * 0.004**3 / 12
 
 
 @pytest.fixture(scope="module")
 def pair(structure: Any, flight: Any, spin: Any, settings: Any) -> tuple[Any, Any]:
-    def full(motion: Any, name: str) -> Any:
-        response = simulate(structure, motion, settings, name=name)
-        loads = internal_loads(structure, SPECIMEN, response)
-        return replace(response, loads=loads, influence=influence(structure))
-
-    return full(flight, "flight"), full(spin(), "arm")
+    return simulate(structure, flight, settings, name="flight"), simulate(structure, spin(), settings, name="arm")
 
 
 @pytest.fixture(scope="module")
@@ -33,15 +28,16 @@ def compared(pair: tuple[Any, Any]) -> Comparison:
 
 
 def test_mismatch_bounds_are_those_of_a_uniform_cantilever(compared: Comparison) -> None:
-    it = compared.mismatch
-    assert it is not None and it.control_point == 0.15
-    np.testing.assert_allclose(it.force_bound[2], 0, atol=1e-12)
-    np.testing.assert_allclose(it.moment_bound[2], M * L**3 * abs(1 / 3 - 1 / 4) * it.max_gradient[2], rtol=1e-9)
-    np.testing.assert_allclose(it.tip_bound[2], M * L**5 / EI * abs(11 / 120 - 1 / 16) * it.max_gradient[2], rtol=2e-3)
-    np.testing.assert_allclose(it.tip_envelope.max(axis=0), it.tip_bound)
-    assert it.max_acceleration[2] == pytest.approx(0.15 * it.max_gradient[2])
+    mismatch = compared.mismatch
+    assert mismatch is not None and mismatch.control_point == 0.15 and mismatch.length == L
+    gradient = mismatch.max_gradient[2]
+    np.testing.assert_allclose(mismatch.force_bound[2], 0, atol=1e-12)
+    np.testing.assert_allclose(mismatch.moment_bound[2], M * L**3 * abs(1 / 3 - 1 / 4) * gradient, rtol=1e-9)
+    np.testing.assert_allclose(mismatch.tip_bound[2], M * L**5 / EI * abs(11 / 120 - 1 / 16) * gradient, rtol=2e-3)
+    np.testing.assert_allclose(mismatch.tip_envelope.max(axis=0), mismatch.tip_bound)
+    assert mismatch.max_acceleration[2] == pytest.approx(0.15 * gradient)
     np.testing.assert_allclose(
-        it.field(np.array([0.15, 0.3]))[:, :, 2].T, [0 * it.gradient[:, 2], 0.15 * it.gradient[:, 2]]
+        mismatch.field(np.array([0.15, 0.3]))[:, :, 2].T, [0 * mismatch.gradient[:, 2], 0.15 * mismatch.gradient[:, 2]]
     )
 
 
@@ -77,8 +73,40 @@ def test_statistics_root_and_verdict(compared: Comparison, pair: tuple[Any, Any]
     assert between.verdict.endswith("from 1 to 1.2 s")
 
 
+def test_root_history(compared: Comparison, pair: tuple[Any, Any]) -> None:
+    assert compared.root is not None
+    history = compared.root.history
+    np.testing.assert_array_equal(history.moment_centrifuge, pair[1].loads.section_moment[:, 0])
+    np.testing.assert_allclose(np.abs(history.force_flight).max(axis=0), compared.root.force_flight, rtol=1e-12)
+    assert compared.root.main == 1
+
+
+def test_a_response_without_a_name_goes_by_its_environment(pair: tuple[Any, Any]) -> None:
+    flight, arm = (replace(each, name="") for each in pair)
+    compared = compare(flight, arm)
+    assert (compared.flight, compared.centrifuge) == ("flight", "centrifuge")
+    assert str(compared).startswith("Tip displacement along z on centrifuge agrees with flight within ")
+    assert compare(flight, flight).centrifuge == "the second flight"
+
+
+def test_what_does_not_agree_says_so(pair: tuple[Any, Any]) -> None:
+    flight, arm = pair
+    nine = compare(flight, replace(arm, displacement=9 * arm.displacement))
+    assert not nine.agrees
+    peak = 1e3 * nine.peak_flight[2]
+    differs = 1e3 * nine.max_difference[2]
+    assert nine.verdict.startswith(
+        f"arm does not agree with flight: tip differs along z by up to {differs:.4g} mm, 8.6 times flight's peak "
+        f"({peak:.4g} mm), root moment by "
+    )
+    half = compare(flight, replace(arm, displacement=0.5 * arm.displacement))
+    assert "does not agree" in half.verdict and f"mm, {100 * half.relative[2]:.2g} % of flight's peak (" in half.verdict
+    still = compare(replace(flight, displacement=0 * flight.displacement), arm)
+    assert still.verdict.startswith("flight does not move the tip, which differs by up to ")
+
+
 def test_comparison_needs_no_loads(pair: tuple[Any, Any]) -> None:
-    flight, arm = (replace(it, loads=None, influence=None, frequencies=np.empty(0)) for it in pair)
+    flight, arm = (replace(each, loads=None, influence=None, frequencies=np.empty(0)) for each in pair)
     bare = compare(flight, arm)
     assert bare.root is None and bare.shock is None and bare.stations is None
     assert bare.mismatch is not None and np.isnan(bare.mismatch.tip_bound).all()
@@ -113,3 +141,41 @@ def test_low_pass_has_no_phase_and_bounded_corners() -> None:
     kink = np.maximum(t - 2, 0) * 7.0
     left = np.abs(kink - low_pass(kink, 1e-3, 10.0))
     assert left.max() <= 0.12 * 7.0 / 10.0 and left[(t < 1.8)].max() < 2e-3
+
+
+def test_filters_are_the_recurrences_they_stand_for() -> None:
+    """Exact under a straight load: the state after a step by the exponential of the oscillator's matrix."""
+    step, damping = 1e-3, 0.05
+    load = np.cumsum(np.random.default_rng(0).standard_normal((200, 2)), axis=0)
+    frequencies = np.array([0.7, 40.0, 900.0, 1100.0, 5000.0])
+    together, riding = (f(load, frequencies, damping, step) for f in (displacement, riding_acceleration))
+    for omega, eta, riders in zip(frequencies, together, riding, strict=True):
+        a = np.zeros((4, 4))  # η, η̇, the load and its slope
+        a[0, 1], a[1], a[2, 3] = 1, [-(omega**2), -2 * damping * omega, 1, 0], 1
+        free = expm(a * step)
+        state, expected = np.zeros((2, 2)), np.zeros((200, 2, 2))
+        for n in range(1, 200):
+            slope = (load[n] - load[n - 1]) / step
+            state = free[:2] @ np.concatenate([state, [load[n - 1] - load[0], slope]])
+            expected[n] = state
+        place, rate = expected[:, 0], expected[:, 1]
+        np.testing.assert_allclose(eta, place + load[0] / omega**2, rtol=1e-11, atol=1e-12 * np.abs(eta).max())
+        acceleration = omega**2 * place + 2 * damping * omega * rate + load[0]
+        np.testing.assert_allclose(riders, acceleration, rtol=1e-11, atol=1e-12 * np.abs(riders).max())
+        np.testing.assert_allclose(displacement(load[:, 0], omega, damping, step), eta[:, 0], rtol=1e-12)
+    covered = np.arange(200) % 3 > 0
+    largest = largest_riding_acceleration(load, frequencies, damping, step, covered)
+    np.testing.assert_allclose(largest, np.abs(riding[:, covered]).max(axis=1), rtol=1e-12)
+
+
+def test_low_pass_against_scipy() -> None:
+    """Butterworth's sections, forwards and backwards over the ends' point reflections."""
+    values = np.cumsum(np.random.default_rng(1).standard_normal((300, 2, 3)), axis=0)
+    for cutoff in (2.0, 30.0, 400.0):
+        sections = scipy.signal.butter(4, 2e-3 * cutoff, output="sos")
+        beyond = min(299, int(np.ceil(1e3 / cutoff)))
+        expected = scipy.signal.sosfiltfilt(sections, values, axis=0, padtype="odd", padlen=beyond)
+        np.testing.assert_allclose(low_pass(values, 1e-3, cutoff), expected, atol=1e-11 * np.abs(values).max())
+    np.testing.assert_array_equal(low_pass(values[:1], 1e-3, 30.0), values[:1])
+    with pytest.raises(InputError, match="below 500 Hz"):
+        low_pass(values, 1e-3, 500.0)

@@ -18,7 +18,7 @@ COMMANDS = [shlex.split(line)[1:] for block in BLOCKS for line in block.splitlin
 SLOW = {"run", "plan", "place"}
 
 
-CASES = [pytest.param(it, marks=[pytest.mark.slow] if it[0] in SLOW else [], id=it[0]) for it in COMMANDS]
+CASES = [pytest.param(each, marks=[pytest.mark.slow] if each[0] in SLOW else [], id=each[0]) for each in COMMANDS]
 
 
 @pytest.mark.parametrize("command", CASES)

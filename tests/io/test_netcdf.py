@@ -36,7 +36,9 @@ LIMITS = (
 )
 SHORTFALLS = (
     Shortfall(0.55, 1.0, "below idle", 0.8, 0.7, 1.4, "g", 'idle = "0.70 g" would follow it'),
-    Shortfall(0.3, 0.4, "too sharp for the arm", 0.35, 302.0, 128.0, "m/s^4", 'smoothing = "142 ms" or more is trackable'),
+    Shortfall(
+        0.3, 0.4, "too sharp for the arm", 0.35, 302.0, 128.0, "m/s^4", 'smoothing = "142 ms" or more is trackable'
+    ),
 )
 
 

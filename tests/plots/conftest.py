@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from gbeam.results.comparison import Comparison
-from gbeam.results.response import AxesResult, BaseHistory, HubResult, Peaks, Response, Study
+from gbeam.results.machine import AxesResult
+from gbeam.results.response import BaseMotion, HubResult, Peaks, Response
+from gbeam.results.study import Study
 
 TIME = np.linspace(0, 2, 201)
 
@@ -28,7 +30,7 @@ def _response(name: str, environment: str, turning: float) -> Response:
         displacement=wave[:, None],
         q=zero,
         qd=zero,
-        base=BaseHistory(zero + np.array([0, 0, 60.0]), zero + np.array([0, turning, 0]), zero),
+        base=BaseMotion(zero + np.array([0, 0, 60.0]), zero + np.array([0, turning, 0]), zero),
         peaks=Peaks(np.abs(wave).max(axis=0), TIME[np.abs(wave).argmax(axis=0)], np.array([0.0, 1e-4, 2e-4])),
         integrator="newmark",
         step=1e-3,
@@ -38,7 +40,7 @@ def _response(name: str, environment: str, turning: float) -> Response:
     )
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def study() -> Study:
     """A flight, a centrifuge that is held in the middle, a hub; one comparison."""
     flight = _response("flight", "flight", 0.0)
