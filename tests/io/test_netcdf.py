@@ -101,8 +101,13 @@ def file(study: Study, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_xarray_reads_what_was_written(study: Study, file: Path) -> None:
-    tree = store.read(file)
+@pytest.fixture(scope="module")
+def tree(file: Path) -> xr.DataTree:
+    """The file, read."""
+    return store.read(file)
+
+
+def test_xarray_reads_what_was_written(study: Study, tree: xr.DataTree) -> None:
     flight, spin, slew = (tree[f"motions/{name}"] for name in study.responses)
     np.testing.assert_array_equal(flight["displacement"].sel(axis="y"), study.responses["flight"].displacement[:, :, 1])
     np.testing.assert_array_equal(spin["load_reference"], study.responses["spin"].axes.reference)
@@ -118,8 +123,8 @@ def test_xarray_reads_what_was_written(study: Study, file: Path) -> None:
     assert tree["comparisons/spin"].attrs["verdict"] == study.comparisons[0].verdict
 
 
-def test_histories_at_the_root_of_a_comparison(study: Study, file: Path) -> None:
-    compared = store.read(file)["comparisons/spin"]
+def test_histories_at_the_root_of_a_comparison(study: Study, tree: xr.DataTree) -> None:
+    compared = tree["comparisons/spin"]
     assert study.comparisons[0].root is not None
     history = study.comparisons[0].root.history
     for name in ("force_flight", "force_centrifuge", "moment_flight", "moment_centrifuge"):
@@ -137,12 +142,12 @@ def test_one_name_for_the_torque_of_a_drive(study: Study) -> None:
     assert "hub_torque" not in free
 
 
-def test_what_is_written_is_what_xarray_gets(study: Study, file: Path, tmp_path: Path) -> None:
-    tree, read = study.to_xarray(), store.read(file)
-    assert [node.path for node in tree.subtree] == [node.path for node in read.subtree]
-    for node in tree.subtree:
+def test_what_is_written_is_what_xarray_gets(study: Study, tree: xr.DataTree, tmp_path: Path) -> None:
+    made = study.to_xarray()
+    assert [node.path for node in made.subtree] == [node.path for node in tree.subtree]
+    for node in made.subtree:
         if node.path != "/":  # which says when it was made and from what
-            xr.testing.assert_identical(node.to_dataset(), read[node.path].to_dataset())
+            xr.testing.assert_identical(node.to_dataset(), tree[node.path].to_dataset())
     study.responses["spin"].save(tmp_path / "spin.nc")
     xr.testing.assert_identical(
         xr.load_dataset(tmp_path / "spin.nc", engine="h5netcdf"), study.responses["spin"].to_xarray()
@@ -155,8 +160,7 @@ def test_a_failure_is_kept(study: Study, tmp_path: Path) -> None:
     assert store.read(tmp_path / "x.nc").attrs["failure_motion11"] == "diverged: reason 11"
 
 
-def test_limits_and_what_cannot_be_followed(study: Study, file: Path) -> None:
-    tree = store.read(file)
+def test_limits_and_what_cannot_be_followed(study: Study, file: Path, tree: xr.DataTree) -> None:
     spin = tree["motions/spin"]
     np.testing.assert_array_equal(spin["acceleration_used"], [11, 21, 31])
     np.testing.assert_array_equal(spin["acceleration_allowed"], [20, 20, np.inf])
@@ -187,8 +191,7 @@ def test_limits_and_what_cannot_be_followed(study: Study, file: Path) -> None:
             assert variable.dtype.kind in "fiOS" and variable.dtype != bool
 
 
-def test_provenance(file: Path) -> None:
-    tree = store.read(file)
+def test_provenance(tree: xr.DataTree) -> None:
     assert str(tree["scenario"].values) == SCENARIO
     assert tree.attrs["title"] == "a title" and tree.attrs["outcome"] == "done"
     assert tree.attrs["overrides"] == "a=1\nb=2" and tree.attrs["command"] == "gbeam run s.toml"
@@ -196,8 +199,8 @@ def test_provenance(file: Path) -> None:
     assert tree.attrs["gbeam_version"] and tree.attrs["jax_version"]
 
 
-def test_every_number_says_what_it_is(file: Path) -> None:
-    for group in store.read(file)["motions"].children.values():
+def test_every_number_says_what_it_is(tree: xr.DataTree) -> None:
+    for group in tree["motions"].children.values():
         for name, variable in group.variables.items():
             if variable.dtype.kind == "f":
                 assert variable.attrs["units"] and variable.attrs["long_name"], name
@@ -205,9 +208,9 @@ def test_every_number_says_what_it_is(file: Path) -> None:
                 frame = "S: axes of the deformed section" if name.startswith("section_") else "B: base axes"
                 assert variable.attrs["frame"].startswith(frame), name
     # The exact model's coordinates are angles and strains.
-    assert store.read(file)["motions/slew/coordinates"].attrs["units"] == "1"
-    assert store.read(file)["motions/slew/coordinate_rates"].attrs["units"] == "s-1"
-    assert store.read(file)["motions/flight/coordinate_rates"].attrs["units"] == "m s-1"
+    assert tree["motions/slew/coordinates"].attrs["units"] == "1"
+    assert tree["motions/slew/coordinate_rates"].attrs["units"] == "s-1"
+    assert tree["motions/flight/coordinate_rates"].attrs["units"] == "m s-1"
 
 
 def test_h5py_reads_it(study: Study, file: Path) -> None:
