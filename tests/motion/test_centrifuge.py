@@ -59,12 +59,12 @@ def test_f16_record_on_a_short_arm(f16: Centrifuge) -> None:
     base, error, held = f16.base(t), f16.tracking_error(t), f16.not_followed(t)
     for part in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B):
         assert np.isfinite(part).all()
-    wanted = np.asarray(f16.reference(t))
-    assert np.hypot(wanted[:, 1], wanted[:, 2]).min() > 1.01 * G
+    reference = np.asarray(f16.reference(t))
+    assert np.hypot(reference[:, 1], reference[:, 2]).min() > 1.01 * G
     # The 8 g turn. Near idle the aileron's steps change the load faster than so slow an arm can follow.
     turn = (t > 3.2) & (t < 11.2)
     assert not np.asarray(held)[turn].any()
-    relative = np.linalg.norm(np.asarray(error), axis=1) / np.linalg.norm(wanted, axis=1)
+    relative = np.linalg.norm(np.asarray(error), axis=1) / np.linalg.norm(reference, axis=1)
     assert relative[turn].max() < 0.3 and np.sqrt(np.mean(relative[(t > 4.5) & (t < 10)] ** 2)) < 1e-3
     reasons = {episode.reason for episode in f16.episodes()}
     assert reasons == {"below idle", "out of reach of the gimbals"}

@@ -48,12 +48,12 @@ def swinging() -> Profile:
 @pytest.mark.parametrize("gravity", [False, True])
 @pytest.mark.parametrize("sign", [1, -1])
 def test_forward_of_inverse_is_the_identity_on_a_smooth_load(gravity: bool, sign: int) -> None:
-    it, t = machine(swinging(), (0.0, 2.0), gravity=gravity, sign=sign), np.linspace(0, 2, 2001)
-    wanted, achieved, axes, base = seen(it, t)
-    np.testing.assert_allclose(achieved, wanted, atol=1e-8)
-    np.testing.assert_allclose(achieved[20:-20], wanted[20:-20], atol=1e-9)  # within: the ends are one-sided
+    spin, t = machine(swinging(), (0.0, 2.0), gravity=gravity, sign=sign), np.linspace(0, 2, 2001)
+    reference, actual, axes, base = seen(spin, t)
+    np.testing.assert_allclose(actual, reference, atol=1e-8)
+    np.testing.assert_allclose(actual[20:-20], reference[20:-20], atol=1e-9)  # within: the ends are one-sided
     # (9): ω1⁴ + (dω1/dt)² = (H/R)²
-    horizontal = np.sqrt(np.sum(wanted**2, axis=1) - (G**2 if gravity else 0))
+    horizontal = np.sqrt(np.sum(reference**2, axis=1) - (G**2 if gravity else 0))
     np.testing.assert_allclose(np.hypot(axes.rate1**2, axes.acceleration1), horizontal / R, rtol=1e-9)
     assert np.isfinite(base.alpha_WB_B).all()
 
@@ -62,19 +62,19 @@ def test_forward_of_inverse_is_the_identity_on_a_smooth_load(gravity: bool, sign
 def test_a_rounded_trapezoid_up_and_down_is_tracked_to_5e_7(width: float) -> None:
     raw = vector(z=Sum((constant(2 * G), trapezoid(8 * G, jerk=4 * G, start=1.0, hold=4.0))))
     t = np.linspace(0, 11, 11003)
-    wanted, achieved, axes, _ = seen(machine(raw, (0.0, 11.0), smoothing=width), t)
-    assert np.abs(achieved - wanted).max() < 5e-7 * 10 * G
+    reference, actual, axes, _ = seen(machine(raw, (0.0, 11.0), smoothing=width), t)
+    assert np.abs(actual - reference).max() < 5e-7 * 10 * G
     # Flat's lag is the solution's first order: on a straight flank they agree to the second.
     lag, first = np.arctan2(axes.acceleration1, axes.rate1**2), 4 * G * np.sqrt(R) / (2 * (6 * G) ** 1.5)
-    assert lag[np.argmin(np.abs(wanted[:, 2] - 6 * G))] == pytest.approx(first, rel=0.02)
+    assert lag[np.argmin(np.abs(reference[:, 2] - 6 * G))] == pytest.approx(first, rel=0.02)
 
 
 def test_smooth_step_and_rates() -> None:
-    it = machine(vector(z=Sum((constant(2 * G), SmoothStep(8 * G, 4.0, 1.0)))), (0.0, 8.0))
+    spin = machine(vector(z=Sum((constant(2 * G), SmoothStep(8 * G, 4.0, 1.0)))), (0.0, 8.0))
     t, h = np.linspace(0.5, 7.5, 141), 1e-5
-    wanted, achieved, here, _ = seen(it, t)
-    assert np.abs(achieved - wanted).max() < 5e-7 * 10 * G
-    before, after = seen(it, t - h)[2], seen(it, t + h)[2]
+    reference, actual, here, _ = seen(spin, t)
+    assert np.abs(actual - reference).max() < 5e-7 * 10 * G
+    before, after = seen(spin, t - h)[2], seen(spin, t + h)[2]
     for value, rate in (("rate1", "acceleration1"), ("angle2", "rate2"), ("rate2", "acceleration2")):
         finite = (getattr(after, value) - getattr(before, value)) / (2 * h)
         np.testing.assert_allclose(getattr(here, rate), finite, atol=1e-6)
@@ -87,8 +87,8 @@ def test_a_maximum_can_be_followed_where_it_is_flat_enough(frequency: float, arm
     sharp = 1.2 * G * (2 * np.pi * frequency) ** 2 / ((3.2 * G) ** 2 / arm)  # −ä over a²/R
     assert (sharp <= 1) == possible
     if possible:
-        wanted, achieved, *_ = seen(machine(raw, (0.6, 3.4), smoothing=0.1, arm=arm), np.linspace(0.6, 3.4, 2801))
-        assert np.abs(achieved - wanted).max() < 2e-6 * 3.2 * G
+        reference, actual, *_ = seen(machine(raw, (0.6, 3.4), smoothing=0.1, arm=arm), np.linspace(0.6, 3.4, 2801))
+        assert np.abs(actual - reference).max() < 2e-6 * 3.2 * G
         return
     with pytest.raises(InputError, match="the arm allows a²/R") as caught:
         machine(raw, (0.6, 3.4), smoothing=0.1, arm=arm)

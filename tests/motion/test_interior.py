@@ -36,8 +36,8 @@ class Bounded:
 @pytest.mark.parametrize("start", [0.0, 3.0])  # within the tighter bounds and beyond
 def test_bounded_least_squares(bound: float, start: float) -> None:
     rows, values = RANDOM.normal(size=(60, 20)), RANDOM.normal(size=60)
-    it = Bounded(rows, values, bound)
-    c, cost = minimise(it, np.full((20, 1), start))
+    problem = Bounded(rows, values, bound)
+    c, cost = minimise(problem, np.full((20, 1), start))
     best = scipy.optimize.lsq_linear(rows, values, (-bound, bound), tol=1e-12)
     assert np.abs(c).max() <= bound
     assert best.cost <= cost * (1 + 1e-9) and cost <= best.cost * (1 + 2e-3)

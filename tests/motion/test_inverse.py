@@ -56,8 +56,8 @@ def test_constant_loads_are_exact(load: tuple[float, float, float], sign: int, g
     assume(np.hypot(load[1], load[2]) > (1.06 if gravity else 0.1))
     f = np.array(load) * G
     machine = centrifuge(constant(f), inverse, gravity, sign)
-    _, achieved, _, base = seen(machine, 1.0)
-    np.testing.assert_allclose(achieved, f, atol=1e-9)
+    _, actual, _, base = seen(machine, 1.0)
+    np.testing.assert_allclose(actual, f, atol=1e-9)
     np.testing.assert_allclose(base.alpha_WB_B, 0, atol=1e-5)  # the splines' rounding, two derivatives on
     assert inverse in ("exact", "planned") or not np.any(base.alpha_WB_B)
 
@@ -79,28 +79,28 @@ def test_a_load_along_the_beam_is_free_of_nan(inverse: str) -> None:
 
 
 def test_flat_has_the_direction_and_is_high_by_the_lag() -> None:
-    wanted, achieved, axes, _ = seen(centrifuge(swinging(), "flat"), T)
-    excess = np.linalg.norm(achieved, axis=1) / np.linalg.norm(wanted, axis=1)
-    np.testing.assert_allclose(np.cross(achieved, wanted), 0, atol=1e-9)
+    reference, actual, axes, _ = seen(centrifuge(swinging(), "flat"), T)
+    excess = np.linalg.norm(actual, axis=1) / np.linalg.norm(reference, axis=1)
+    np.testing.assert_allclose(np.cross(actual, reference), 0, atol=1e-9)
     np.testing.assert_allclose(excess, np.hypot(1, axes.acceleration1 / axes.rate1**2), rtol=1e-12)
     assert excess.max() - 1 > 1e-4  # or this would test nothing
 
 
 def test_flat_with_gravity_has_the_direction_of_the_horizontal_load() -> None:
-    wanted, achieved, _, _ = seen(centrifuge(swinging(), "flat", gravity=True), T)
+    reference, actual, _, _ = seen(centrifuge(swinging(), "flat", gravity=True), T)
 
     def horizontal(f: np.ndarray) -> np.ndarray:
         return np.stack([f[:, 0], np.sqrt(f[:, 1] ** 2 + f[:, 2] ** 2 - G**2)])
 
-    (x0, b0), (x1, b1) = horizontal(wanted), horizontal(achieved)
+    (x0, b0), (x1, b1) = horizontal(reference), horizontal(actual)
     np.testing.assert_allclose(x0 * b1 - x1 * b0, 0, atol=1e-9)
 
 
 def test_quasi_static_errs_along_the_beam_by_the_tangential_acceleration() -> None:
     load = Sum((constant(5 * G), Sine(0.5 * G, 8.0, start=-3.0)))
     machine = centrifuge(vector(z=load), "quasi-static")
-    wanted, achieved, axes, _ = seen(machine, T)
-    tangential, error = R * np.asarray(axes.acceleration1), np.asarray(achieved - wanted)
+    reference, actual, axes, _ = seen(machine, T)
+    tangential, error = R * np.asarray(axes.acceleration1), np.asarray(actual - reference)
     np.testing.assert_allclose(machine.tracking_error(T), error, atol=1e-12)
     np.testing.assert_allclose(np.abs(error[:, 0]), np.abs(tangential), atol=1e-12)
     np.testing.assert_allclose(error[:, 1:], 0, atol=1e-12)

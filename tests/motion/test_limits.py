@@ -33,7 +33,7 @@ def test_usage_of_a_known_motion() -> None:
     jerk = np.stack([-np.sin(t), -27 * np.cos(3 * t), 0 * t], axis=1)
     assert angle.shape == rate.shape
     limits = Limits(MachineLimits(AxisLimit(rate=4.0), AxisLimit(acceleration=6.0), inertia=100.0, power=1e3))
-    use = {(it.axis, it.quantity): it for it in usage(t, rate, acceleration, jerk, limits)}
+    use = {(each.axis, each.quantity): each for each in usage(t, rate, acceleration, jerk, limits)}
     assert len(use) == 10
     first = use["axis 1", "rate"]
     assert (first.used, first.share, first.exceeded) == (pytest.approx(3), pytest.approx(0.75), False)
@@ -90,24 +90,24 @@ def dip(level: float) -> Profile:
     return vector(z=tabulated([0.0, 2.0, 3.0, 5.0, 6.0, 8.0], np.array([6, 6, level, level, 6, 6]) * G))
 
 
-def quoted(it: Shortfall) -> float:
+def quoted(each: Shortfall) -> float:
     """Number that a remedy names."""
-    return float(it.remedy.split('"')[1].split()[0])
+    return float(each.remedy.split('"')[1].split()[0])
 
 
 def test_loads_below_idle_are_followed_with_the_idle_that_is_named_and_not_above() -> None:
-    (low,) = (it for it in shortfalls(dip(1.25), idle=1.4 * G) if it.reason == "below idle")
+    (low,) = (each for each in shortfalls(dip(1.25), idle=1.4 * G) if each.reason == "below idle")
     assert (low.reference, low.possible) == (pytest.approx(1.25), pytest.approx(1.4))
     assert low.start == pytest.approx(2.968, abs=3e-3) and low.end == pytest.approx(5.032, abs=3e-3)
     made = build_target(dip(1.25), span=(0.0, 8.0), idle=quoted(low) * G, smoothing=0.06, gravity=True, arm=R)
     assert made.episodes() == [] and 'idle = "1.19 g" or less' in low.remedy
-    assert any(it.reason == "below idle" for it in shortfalls(dip(1.25), idle=quoted(low) * G / 0.9))
+    assert any(each.reason == "below idle" for each in shortfalls(dip(1.25), idle=quoted(low) * G / 0.9))
 
 
 def test_what_no_idle_lets_is_said() -> None:
     """Idle is 1.1 g at least, and raises what is below 1.05 times it."""
     for level, words in ((1.12, "without idle it would be followed"), (0.9, "no machine follows a load below 1.05 g")):
-        (low,) = (it for it in shortfalls(dip(level), idle=1.4 * G) if it.reason == "below idle")
+        (low,) = (each for each in shortfalls(dip(level), idle=1.4 * G) if each.reason == "below idle")
         assert words in low.remedy
     made = build_target(dip(1.12), span=(0.0, 8.0), idle=None, smoothing=0.06, gravity=True, arm=R)
     assert made.episodes() == []
@@ -131,12 +131,12 @@ def test_the_smoothing_that_is_named_is_the_least_that_does(
     several times more.
     """
     idle = None if gravity else G
-    first = next(it for it in shortfalls(raw, arm, idle=idle, gravity=gravity) if it.reason == TOO_SHARP)
+    first = next(each for each in shortfalls(raw, arm, idle=idle, gravity=gravity) if each.reason == TOO_SHARP)
     width = 1e-3 * quoted(first)
     assert formula is None or formula < width < 1.3 * formula
 
     def remains(smoothing: float) -> bool:
         left = shortfalls(raw, arm, smoothing, idle, gravity)
-        return any(it.reason == TOO_SHARP and it.start <= first.end and it.end >= first.start for it in left)
+        return any(each.reason == TOO_SHARP and each.start <= first.end and each.end >= first.start for each in left)
 
     assert remains(0.06) and remains(0.9 * width) and not remains(width)

@@ -50,8 +50,8 @@ def tracked(machine: Centrifuge) -> np.ndarray:
 def test_the_f16_record_is_followed_ten_times_better_than_flat_with_gentler_axes(spin: Spin, mounting: str) -> None:
     flat, best = (spin(inverse, mounting=mounting) for inverse in ("flat", "planned"))
     assert tracked(flat).max() > 4 and tracked(best).max() < 0.02
-    use = {(it.axis, it.quantity): it.used for it in flat.usage()}
-    planned = {(it.axis, it.quantity): it.used for it in best.usage()}
+    use = {(each.axis, each.quantity): each.used for each in flat.usage()}
+    planned = {(each.axis, each.quantity): each.used for each in best.usage()}
     assert planned["axis 2", "acceleration"] < use["axis 2", "acceleration"] / 5
 
 
@@ -64,12 +64,12 @@ def test_limits_are_kept_where_flat_breaks_them(spin: Spin) -> None:
 
 def test_limits_just_above_what_the_free_plan_uses_cost_nothing(spin: Spin) -> None:
     free = spin("planned")
-    used = {(it.axis, it.quantity): it.used for it in free.usage()}
+    used = {(each.axis, each.quantity): each.used for each in free.usage()}
 
     def times(arm: float, gimbals: float) -> MachineLimits:
         quantities = ("rate", "acceleration", "jerk")
         factors = ("axis 1", arm), ("axis 2", gimbals), ("axis 3", gimbals)
-        return MachineLimits(*(AxisLimit(*(by * used[axis, it] for it in quantities)) for axis, by in factors))
+        return MachineLimits(*(AxisLimit(*(by * used[axis, each] for each in quantities)) for axis, by in factors))
 
     limits = times(1.02, 1.02), times(1.0, 1.0), times(1.02, 0.8)
     near, at, below = (spin("planned", each) for each in limits)

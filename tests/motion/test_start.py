@@ -44,9 +44,9 @@ def machine(
     )  # fmt: skip
 
 
-def seen(it: Centrifuge, t: np.ndarray) -> tuple[Axes, np.ndarray, Base, np.ndarray, np.ndarray]:
-    axes, jerk = it.axes_and_jerks(t)
-    return axes, jerk, it.base(t), it.reference(t), forward(axes, it.geometry.arm, it.geometry.gravity).a_WO_B
+def seen(spin: Centrifuge, t: np.ndarray) -> tuple[Axes, np.ndarray, Base, np.ndarray, np.ndarray]:
+    axes, jerk = spin.axes_and_jerks(t)
+    return axes, jerk, spin.base(t), spin.reference(t), forward(axes, spin.geometry.arm, spin.geometry.gravity).a_WO_B
 
 
 def states(axes: Axes) -> np.ndarray:
@@ -59,17 +59,17 @@ def states(axes: Axes) -> np.ndarray:
     [("rest", "quasi-static"), ("rest", "flat"), ("rest", "planned"), ("pre-yawed", "exact"), ("pre-yawed", "flat")],
 )
 def test_standstill_first_and_no_jump_at_the_join(start: str, inverse: str, gravity: bool, sign: int) -> None:
-    it = machine(start, inverse, gravity=gravity, sign=sign)
-    axes, _, base, _, achieved = seen(it, np.array([0.0]))
+    spin = machine(start, inverse, gravity=gravity, sign=sign)
+    axes, _, base, _, actual = seen(spin, np.array([0.0]))
     moving = [axes.rate1, axes.rate2, axes.rate3, axes.acceleration1, axes.acceleration2, axes.acceleration3]
     np.testing.assert_allclose(np.concatenate(moving), 0, atol=1e-9)
     # Gravity alone, across the beam where the load is across the beam.
-    np.testing.assert_allclose(np.linalg.norm(achieved), G if gravity else 0, atol=1e-9)
+    np.testing.assert_allclose(np.linalg.norm(actual), G if gravity else 0, atol=1e-9)
     np.testing.assert_allclose(np.linalg.norm(base.a_WO_B), G if gravity else 0, atol=1e-9)
     if gravity:
-        np.testing.assert_allclose(achieved[0, 1:] / G, np.array([1, 2]) / np.sqrt(5), atol=1e-9)
+        np.testing.assert_allclose(actual[0, 1:] / G, np.array([1, 2]) / np.sqrt(5), atol=1e-9)
     end = SPIN_UP - W
-    before, after = (seen(it, end + np.array([side])) for side in (-1e-6, 1e-6))
+    before, after = (seen(spin, end + np.array([side])) for side in (-1e-6, 1e-6))
     rough = 1e-3 if inverse == "planned" else 0.0
     np.testing.assert_allclose(after[1], before[1], atol=1e-3 + 100 * rough)  # jerk: the slope of the fourth order left
     for one, other in ((before[2].a_WO_B, after[2].a_WO_B), (before[2].alpha_WB_B, after[2].alpha_WB_B)):
@@ -83,9 +83,9 @@ def test_rates_belong_to_the_angles_all_the_way() -> None:
         ("pre-yawed", "exact", True),
         ("pre-yawed", "exact", False),
     ):
-        it, t, h = machine(start, inverse, gravity=gravity), np.linspace(0.01, 3.5, 400), 1e-5
-        here, jerk, _, _, _ = seen(it, t)
-        (before, _, _, _, _), (after, _, _, _, _) = seen(it, t - h), seen(it, t + h)
+        spin, t, h = machine(start, inverse, gravity=gravity), np.linspace(0.01, 3.5, 400), 1e-5
+        here, jerk, _, _, _ = seen(spin, t)
+        (before, _, _, _, _), (after, _, _, _, _) = seen(spin, t - h), seen(spin, t + h)
         for value, rate in (("rate1", "acceleration1"), ("angle2", "rate2"), ("rate2", "acceleration2"),
                             ("angle3", "rate3"), ("rate3", "acceleration3")):  # fmt: skip
             finite = (np.asarray(getattr(after, value)) - getattr(before, value)) / (2 * h)
@@ -95,20 +95,20 @@ def test_rates_belong_to_the_angles_all_the_way() -> None:
 
 @pytest.mark.parametrize(("gravity", "sign"), [(False, 1), (True, -1)])
 def test_pre_yawed_follows_from_the_first_instant_in_the_right_direction(gravity: bool, sign: int) -> None:
-    it, t = machine("pre-yawed", "exact", gravity=gravity, sign=sign), np.linspace(0, 8, 8001)
-    axes, _, _, wanted, achieved = seen(it, t)
-    np.testing.assert_allclose(achieved, wanted, atol=1e-7 * 5.2 * G)
+    spin, t = machine("pre-yawed", "exact", gravity=gravity, sign=sign), np.linspace(0, 8, 8001)
+    axes, _, _, reference, actual = seen(spin, t)
+    np.testing.assert_allclose(actual, reference, atol=1e-7 * 5.2 * G)
     spinning = t <= SPIN_UP - W
-    np.testing.assert_allclose(achieved[spinning], np.asarray(wanted)[spinning], atol=1e-11)
-    full = np.asarray(wanted)[2800]
+    np.testing.assert_allclose(actual[spinning], np.asarray(reference)[spinning], atol=1e-11)
+    full = np.asarray(reference)[2800]
     down = G * gravity
-    across = np.hypot(wanted[:, 1], wanted[:, 2])[spinning]
+    across = np.hypot(reference[:, 1], reference[:, 2])[spinning]
     # What is horizontal rises in proportion, along the beam and across it, and never falls.
     horizontal = np.sqrt(np.maximum(across**2 - down**2, 0))
     np.testing.assert_allclose(
-        wanted[spinning, 0] * np.sqrt(full[1] ** 2 + full[2] ** 2 - down**2), horizontal * full[0], atol=1e-6
+        reference[spinning, 0] * np.sqrt(full[1] ** 2 + full[2] ** 2 - down**2), horizontal * full[0], atol=1e-6
     )
-    assert (np.diff(wanted[spinning, 0]) >= -1e-13).all()
+    assert (np.diff(reference[spinning, 0]) >= -1e-13).all()
     # docs/theory.md, section 8.4: tangential at first.
     lag = np.arctan2(axes.acceleration1, axes.rate1**2)
     assert lag[1] == pytest.approx(np.pi / 2, abs=1e-6) and abs(lag[2800]) < 1e-9
@@ -122,9 +122,9 @@ def test_the_shortest_pre_yawed_spin_up_does_not_overshoot() -> None:
 
 
 def test_from_rest_ignores_the_tangential_acceleration_only() -> None:
-    it, t = machine("rest", "flat"), np.linspace(0, SPIN_UP - W, 501)
-    axes, _, _, wanted, achieved = seen(it, t)
-    error = np.linalg.norm(np.asarray(achieved) - wanted, axis=1)
+    spin, t = machine("rest", "flat"), np.linspace(0, SPIN_UP - W, 501)
+    axes, _, _, reference, actual = seen(spin, t)
+    error = np.linalg.norm(np.asarray(actual) - reference, axis=1)
     np.testing.assert_allclose(error, R * np.asarray(axes.acceleration1), atol=1e-9)
 
 
@@ -133,25 +133,25 @@ def test_a_flight_that_begins_with_nothing(start: str, inverse: str) -> None:
     raw = vector(z=trapezoid(8 * G, jerk=2 * G, start=1.0, hold=9.0))
     with pytest.raises(InputError, match="next to no load"):
         build_target(raw, span=(0.0, 8.0), idle=None, smoothing=0.1, gravity=False)
-    it = machine(start, inverse, raw=raw, gravity=False, spin_up=2.0, smoothing=0.1)
+    spin = machine(start, inverse, raw=raw, gravity=False, spin_up=2.0, smoothing=0.1)
     t = np.linspace(0, 8, 4001)
-    axes, jerk, base, wanted, achieved = seen(it, t)
+    axes, jerk, base, reference, actual = seen(spin, t)
     assert np.isfinite(states(axes)).all() and np.isfinite(jerk).all() and np.isfinite(base.alpha_WB_B).all()
     after = t >= 2.0
-    np.testing.assert_allclose(np.asarray(wanted)[after, 2], smoothed(raw, 0.1)(t)[after, 2], atol=1e-9)
+    np.testing.assert_allclose(np.asarray(reference)[after, 2], smoothed(raw, 0.1)(t)[after, 2], atol=1e-9)
     if inverse == "exact":
-        np.testing.assert_allclose(achieved, wanted, atol=1e-6 * 8 * G)
+        np.testing.assert_allclose(actual, reference, atol=1e-6 * 8 * G)
 
 
 def test_spin_up_is_an_episode_and_nothing_before_it_counts() -> None:
     raw = vector(z=tabulated([0, 1, 2, 5, 7, 8], np.array([0.2, 0.2, 3, 3, 1.2, 1.2]) * G))
-    it = machine("rest", "flat", raw=raw, idle=1.4 * G)
-    spin_up, held = it.episodes()
+    spin = machine("rest", "flat", raw=raw, idle=1.4 * G)
+    spin_up, held = spin.episodes()
     assert (spin_up.start, spin_up.end, spin_up.reason) == (0.0, SPIN_UP, "spin-up")
     assert held.reason == "below idle" and held.start > 6
-    assert np.asarray(it.not_followed(np.array([0.0, 2.9, 3.001, 5.0]))).tolist() == [True, True, False, False]
-    assert all(each.start >= SPIN_UP for each in it.shortfalls())
-    use = {(u.axis, u.quantity): u for u in it.usage()}
+    assert np.asarray(spin.not_followed(np.array([0.0, 2.9, 3.001, 5.0]))).tolist() == [True, True, False, False]
+    assert all(each.start >= SPIN_UP for each in spin.shortfalls())
+    use = {(u.axis, u.quantity): u for u in spin.usage()}
     assert use["axis 1", "rate"].used == pytest.approx((3**2 - 1) ** 0.25 * np.sqrt(G / R), rel=1e-6)
     assert use["axis 1", "acceleration"].time < SPIN_UP  # not where the flight is followed
 
@@ -159,12 +159,12 @@ def test_spin_up_is_an_episode_and_nothing_before_it_counts() -> None:
 def test_the_f16_record_from_rest() -> None:
     record = read_record(F16, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
     options = {"arm": R, "control_point": 0.15, "gravity": True, "idle": 1.4 * G, "span": (0.0, 15.99)}
-    it = Centrifuge(Flight(acceleration=record), **options, start="rest", spin_up=3.0)
+    spin = Centrifuge(Flight(acceleration=record), **options, start="rest", spin_up=3.0)
     idle, t = Centrifuge(Flight(acceleration=record), **options), np.linspace(0, 15.99, 3001)
-    axes, _, _, wanted, _ = seen(it, t)
+    axes, _, _, reference, _ = seen(spin, t)
     others, _, _, usual, _ = seen(idle, t)
     turn = (t > 3.2) & (t < 11)
-    np.testing.assert_allclose(np.asarray(wanted)[turn], np.asarray(usual)[turn], atol=1e-9)
+    np.testing.assert_allclose(np.asarray(reference)[turn], np.asarray(usual)[turn], atol=1e-9)
     np.testing.assert_allclose(np.asarray(axes.rate1)[turn], np.asarray(others.rate1)[turn], atol=1e-9)
 
 

@@ -67,9 +67,9 @@ def test_idle_is_held_below_and_the_load_kept_above(gravity: bool) -> None:
 def test_the_hold_keeps_the_direction() -> None:
     raw = PiecewiseLinear([0.0, 12.0], [[0.3 * G, 0.4 * G, 0.0], [0.0, 0.6 * G, 0.8 * G]])
     inner = T[5:-5]  # away from the corners at either end
-    load, asked = np.asarray(target(raw, idle=2 * G).load(inner)), np.asarray(raw(inner))
+    load, given = np.asarray(target(raw, idle=2 * G).load(inner)), np.asarray(raw(inner))
     np.testing.assert_allclose(sizes(load), 2, rtol=1e-5)
-    unit = [f / np.linalg.norm(f, axis=1, keepdims=True) for f in (load, asked)]
+    unit = [f / np.linalg.norm(f, axis=1, keepdims=True) for f in (load, given)]
     np.testing.assert_allclose(unit[0], unit[1], atol=1e-4)
 
 
@@ -99,7 +99,7 @@ def test_a_held_path_does_not_overshoot_through_zero() -> None:
     )
     made = build_target(raw, span=(0.0, 8.0), idle=1.4 * G, smoothing=0.06, gravity=True, arm=3.3)
     assert np.asarray(made.load(T))[:, 2].min() > 1.01 * G
-    assert {it.reason for it in made.episodes()} == {"out of reach of the gimbals"}
+    assert {episode.reason for episode in made.episodes()} == {"out of reach of the gimbals"}
 
 
 def test_every_derivative_is_finite_where_the_load_is_held() -> None:

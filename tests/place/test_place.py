@@ -31,27 +31,28 @@ def only(spin: Any, width: float = 0.0596) -> Choice:
 def test_best_control_point(
     structure: Any, flight: Any, spin: Any, settings: Any, measure: str, fraction: float
 ) -> None:
-    found = place(structure, flight, only(spin), settings, {measure: 1.0}, current=spin())
+    placement = place(structure, flight, only(spin), settings, {measure: 1.0}, current=spin())
     # Three shapes put the static tip of a linear load 2e-4 of the length off.
-    assert found.fraction == pytest.approx(fraction, abs=3e-4 if measure == "tip" else 1e-5)
+    assert placement.fraction == pytest.approx(fraction, abs=3e-4 if measure == "tip" else 1e-5)
     assert (
-        found.values["best"][measure] < 1e-4 * found.values["current"]["vibration" if measure != "vibration" else "tip"]
+        placement.values["best"][measure]
+        < 1e-4 * placement.values["current"]["vibration" if measure != "vibration" else "tip"]
     )
-    assert found.current == 0.15
+    assert placement.current == 0.15
 
 
 def test_weighted_sum_lies_between(structure: Any, flight: Any, spin: Any, settings: Any) -> None:
-    found = place(structure, flight, only(spin), settings, {"root-shear": 1.0, "tip": 1.0}, current=spin())
-    assert 0.5 - 1e-5 <= found.fraction <= 0.7334
+    placement = place(structure, flight, only(spin), settings, {"root-shear": 1.0, "tip": 1.0}, current=spin())
+    assert 0.5 - 1e-5 <= placement.fraction <= 0.7334
 
 
 def test_proof_shows_the_gain_over_mid_span(structure: Any, flight: Any, spin: Any, settings: Any) -> None:
     """docs/theory.md, section 9: 0.0873 mm at mid-span, 0.0009 mm at 0.7265 L."""
-    found = place(structure, flight, only(spin), settings, {"vibration": 1.0}, current=spin(), check=True)
-    verifications = {proof.name: proof for proof in found.verifications}
+    placement = place(structure, flight, only(spin), settings, {"vibration": 1.0}, current=spin(), check=True)
+    verifications = {proof.name: proof for proof in placement.verifications}
     # The corner's 0.0873 mm, and what the start on the ramp adds to it.
     assert 0.08e-3 < verifications["middle"].vibration < 0.2e-3
-    assert found.vibration_gain > 50
+    assert placement.vibration_gain > 50
     assert verifications["best"].tip_difference < verifications["middle"].tip_difference
 
 
@@ -68,16 +69,16 @@ def test_mirror_images_keep_the_scenario_and_the_width_is_searched_for(
         return spin(width, sign=1 if mounting == "upright" else -1, limits=limits)
 
     choice = Choice(make, ("upright", "inverted"), coarse(0.02, 0.32))
-    found = place(structure, flight, choice, settings, {"tip": 1.0}, current=spin())
+    placement = place(structure, flight, choice, settings, {"tip": 1.0}, current=spin())
     # With no lever left, rounding the corners less changes the load less: down to what the machine can do.
-    assert found.best.mounting == "upright"
-    assert found.best.smoothing == pytest.approx(0.0596, rel=0.05) and 0.9 < found.best.share <= 1
+    assert placement.best.mounting == "upright"
+    assert placement.best.smoothing == pytest.approx(0.0596, rel=0.05) and 0.9 < placement.best.share <= 1
     assert len(made) <= 25
-    broken = [it for it in found.options if it.exceeded]
-    assert broken and all(it.smoothing < 0.0596 and it.exceeded[0].quantity == "jerk" for it in broken)
-    assert found.options[-1] in broken and not found.options[0].exceeded
-    whole = {(it.mounting, it.smoothing): it.total_error for it in found.options}
-    assert whole["upright", 0.32] == pytest.approx(whole["inverted", 0.32], rel=1e-6)
+    broken = [each for each in placement.options if each.exceeded]
+    assert broken and all(each.smoothing < 0.0596 and each.exceeded[0].quantity == "jerk" for each in broken)
+    assert placement.options[-1] in broken and not placement.options[0].exceeded
+    total = {(each.mounting, each.smoothing): each.total_error for each in placement.options}
+    assert total["upright", 0.32] == pytest.approx(total["inverted", 0.32], rel=1e-6)
 
 
 def test_no_option_within_the_limits_is_an_outcome_that_names_the_nearest(
@@ -143,16 +144,16 @@ duration = "1.2 s"
 def test_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "s.toml"
     file.write_text(SCENARIO, encoding="utf-8")
-    asked = ["place", str(file), "--measure", "vibration", "--no-proof"]
-    assert main([*asked, "--json", "--smoothing", "60 ms"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["fraction_of_length"] == pytest.approx(0.7265, abs=1e-4) and len(told["options"]) == 2
+    command = ["place", str(file), "--measure", "vibration", "--no-proof"]
+    assert main([*command, "--json", "--smoothing", "60 ms"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["fraction_of_length"] == pytest.approx(0.7265, abs=1e-4) and len(facts["options"]) == 2
     limit = ["--set", "motion.spin.limits.axis2.jerk=1 rad/s^3"]
-    assert main([*asked, *limit, "--smoothing", "60 ms", "--json"]) == 1
+    assert main([*command, *limit, "--smoothing", "60 ms", "--json"]) == 1
     answer = capsys.readouterr()
     assert json.loads(answer.out)["outcome"] == "limits exceeded" and "nearest comes upright, 60 ms" in answer.err
-    assert main([*asked, *limit, "--smoothing", "60 ms", "--ignore-limits"]) == 0
+    assert main([*command, *limit, "--smoothing", "60 ms", "--ignore-limits"]) == 0
     assert "exceeds axis 2 jerk" in capsys.readouterr().out
     for words in (["1 kg"], ["0 s", "1 s"], ["1 s", "2 s", "3 s"]):
-        assert main([*asked, *(part for it in words for part in ("--smoothing", it))]) == 2
+        assert main([*command, *(part for each in words for part in ("--smoothing", each))]) == 2
         assert "--smoothing" in capsys.readouterr().err

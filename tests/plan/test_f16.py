@@ -22,14 +22,14 @@ def planned(*overrides: str) -> MachinePlan:
     return plan("centrifuge", build_machines(given)["centrifuge"])
 
 
-def error(it: MachinePlan) -> tuple[float, float]:
+def error(made: MachinePlan) -> tuple[float, float]:
     """Largest and rms, m/s², where the target is not held."""
-    size = it.axes.tracking_error[~it.axes.not_followed]
+    size = made.axes.tracking_error[~made.axes.not_followed]
     return float(size.max()), float(np.sqrt(np.mean(size**2)))
 
 
-def used(it: MachinePlan, axis: str, quantity: str) -> float:
-    return next(use.used for use in it.axes.limits if (use.axis, use.quantity) == (axis, quantity))
+def used(made: MachinePlan, axis: str, quantity: str) -> float:
+    return next(use.used for use in made.axes.limits if (use.axis, use.quantity) == (axis, quantity))
 
 
 @pytest.mark.parametrize(
@@ -42,13 +42,13 @@ def used(it: MachinePlan, axis: str, quantity: str) -> float:
     ],
 )
 def test_the_table(inverse: str, largest: float, rms: float, rate: float, acceleration: float) -> None:
-    it = planned(f"inverse={inverse}")
+    made = planned(f"inverse={inverse}")
     # What is left of an error of 1e-8 of the load depends on the platform's rounding.
     slack = 1.0 if inverse == "exact" else 0.05
-    assert error(it) == (pytest.approx(largest, rel=slack), pytest.approx(rms, rel=slack))
-    assert used(it, "axis 2", "rate") == pytest.approx(rate, rel=0.02)
-    assert used(it, "axis 2", "acceleration") == pytest.approx(acceleration, rel=0.02)
-    assert it.axes.warnings == () and it.outcome == "done"
+    assert error(made) == (pytest.approx(largest, rel=slack), pytest.approx(rms, rel=slack))
+    assert used(made, "axis 2", "rate") == pytest.approx(rate, rel=0.02)
+    assert used(made, "axis 2", "acceleration") == pytest.approx(acceleration, rel=0.02)
+    assert made.axes.warnings == () and made.outcome == "done"
 
 
 def test_on_an_example_machine_only_the_plan_is_within_limits_and_it_beats_flat() -> None:
@@ -70,9 +70,9 @@ def test_what_an_arm_too_slow_for_the_load_misses_is_told() -> None:
 def test_exact_says_where_it_is_not(capsys: pytest.CaptureFixture[str]) -> None:
     sharp = ["--set", f"{MACHINE}.inverse=exact", "--set", f"{MACHINE}.smoothing=30 ms"]
     assert main(["plan", str(EXAMPLE), *sharp, "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)["motions"]["centrifuge"]
-    (warning,) = told["warnings"]
-    assert 1e-7 < told["tracking_error"]["fraction"] < 1e-5
-    assert f"{told['tracking_error']['max']:.3g} m/s² at" in warning and "exact promises 1e-07" in warning
+    facts = json.loads(capsys.readouterr().out)["motions"]["centrifuge"]
+    (warning,) = facts["warnings"]
+    assert 1e-7 < facts["tracking_error"]["fraction"] < 1e-5
+    assert f"{facts['tracking_error']['max']:.3g} m/s² at" in warning and "exact promises 1e-07" in warning
     assert main(["plan", str(EXAMPLE), *sharp]) == 0
     assert "warning: the load is followed within" in capsys.readouterr().out

@@ -50,10 +50,10 @@ def scenario(tmp_path: Path) -> Path:
 
 def test_a_plan_needs_no_beam(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plan", str(scenario), "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    spin = told["motions"]["spin"]
-    assert told["outcome"] == spin["outcome"] == "done" and spin["tracks"] == "flight"
-    use = {(it["axis"], it["quantity"]): it for it in spin["limits"]}
+    facts = json.loads(capsys.readouterr().out)
+    spin = facts["motions"]["spin"]
+    assert facts["outcome"] == spin["outcome"] == "done" and spin["tracks"] == "flight"
+    use = {(each["axis"], each["quantity"]): each for each in spin["limits"]}
     assert use["axis 1", "rate"]["allowed"] == pytest.approx(2 * np.pi)
     assert use["axis 1", "rate"]["used"] == pytest.approx((6**2 - 1) ** 0.25 * (9.80665 / 3.3) ** 0.5)
     assert use["axis 2", "jerk"]["allowed"] is None and use["arm", "power"]["share"] > 0
@@ -131,10 +131,10 @@ def test_run_names_the_limits_too(scenario: Path, capsys: pytest.CaptureFixture[
     scenario.write_text(PLAN.replace("60 rpm", "20 rpm") + BEAM, encoding="utf-8")
     for allow, status, mark in ((), 1, "%) at"), (("--ignore-limits",), 0, "(allowed)"):
         assert main(["run", str(scenario), "--json", *allow]) == status
-        told = capsys.readouterr()
-        assert "motion.spin limits exceeded: exceeds axis 1 rate" in told.err and mark in told.err
-        limits = json.loads(told.out)["motions"]["spin"]["limits"]
-        assert next((it["axis"], it["quantity"]) for it in limits if it["exceeded"]) == ("axis 1", "rate")
+        facts = capsys.readouterr()
+        assert "motion.spin limits exceeded: exceeds axis 1 rate" in facts.err and mark in facts.err
+        limits = json.loads(facts.out)["motions"]["spin"]["limits"]
+        assert next((each["axis"], each["quantity"]) for each in limits if each["exceeded"]) == ("axis 1", "rate")
 
 
 DIP = ["--set", "motion.flight.acceleration.z={ profile = 'table', times = [0, 1, 1.4, 1.6, 2, 3], "
@@ -148,14 +148,14 @@ def test_a_clipped_target_is_asked_for_and_marked(
     for verb in ("plan", "run"):
         scenario.write_text(PLAN + BEAM, encoding="utf-8")
         assert main([verb, str(scenario), *DIP, "--out", str(out)]) == 2
-        told = capsys.readouterr().err
-        assert "0.9 g only at 1.400 s" in told and "clip = true" in told and "add 0.15 g across" in told
+        facts = capsys.readouterr().err
+        assert "0.9 g only at 1.400 s" in facts and "clip = true" in facts and "add 0.15 g across" in facts
         assert not out.exists()
     clip = ["--set", "motion.spin.clip=true", "--ignore-limits"]
     assert main(["plan", str(scenario), *DIP, *clip, "--out", str(out), "--json"]) == 0
     spin = json.loads(capsys.readouterr().out)["motions"]["spin"]
     (held,) = spin["not_followed"]
-    (far,) = (it for it in spin["shortfalls"] if it["reason"] == "across below gravity")
+    (far,) = (each for each in spin["shortfalls"] if each["reason"] == "across below gravity")
     assert held["reason"] == "out of reach of the gimbals" and held["start"] < far["start"] < far["end"] < held["end"]
     marked = f"TARGET HELD {held['start']:.3f} to {held['end']:.3f} s: out of reach of the gimbals"
     assert marked in (out / "commands_spin.csv").read_text(encoding="utf-8")
@@ -166,7 +166,9 @@ def test_what_is_lacking_across_the_beam_is_enough_when_added(
     scenario: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     for level, status in ("1.05 g", 0), ("1.035 g", 2):  # 0.9 g and 0.15 g; and 0.9 of that
-        assert main(["plan", str(scenario), *(it.replace("0.9 g", level) for it in DIP), "--ignore-limits"]) == status
+        assert (
+            main(["plan", str(scenario), *(each.replace("0.9 g", level) for each in DIP), "--ignore-limits"]) == status
+        )
     assert "add 0.02 g across the beam" in capsys.readouterr().err
 
 
@@ -179,7 +181,7 @@ def test_a_spin_up_is_told_and_commanded(
     assert main(["plan", str(scenario), "--ignore-limits", "--json", "--out", str(tmp_path)]) == 0
     spin = json.loads(capsys.readouterr().out)["motions"]["spin"]
     assert spin["not_followed"] == [{"start": 0.0, "end": 2.0, "reason": "spin-up"}]
-    hardest = next(it for it in spin["limits"] if (it["axis"], it["quantity"]) == ("axis 1", "acceleration"))
+    hardest = next(each for each in spin["limits"] if (each["axis"], each["quantity"]) == ("axis 1", "acceleration"))
     assert hardest["time"] < 1.9 and hardest["exceeded"]  # 2 s from nothing to 6 g
     commands = loadmat(tmp_path / "commands_spin.mat")
     np.testing.assert_allclose(commands["rate"][0], 0, atol=1e-12)
