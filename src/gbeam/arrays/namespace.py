@@ -38,3 +38,9 @@ def is_traced(*values: Any) -> bool:
     """Whether one of the values is a JAX tracer, which has no numbers to look at."""
     jax = sys.modules.get("jax")
     return jax is not None and any(isinstance(value, jax.core.Tracer) for value in values)
+
+
+def holds_jax(*records: Any) -> bool:
+    """Whether an array anywhere in some records is JAX's, or traced by it."""
+    jax = sys.modules.get("jax")
+    return jax is not None and any(is_jax(leaf) for leaf in jax.tree.leaves(records))

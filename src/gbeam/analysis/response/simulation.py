@@ -15,7 +15,7 @@ from gbeam.analysis.response.outcome import describe
 from gbeam.analysis.response.problem import Problem, problem_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import difference, first_step, refine, scheme_of
-from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.errors import InputError
 from gbeam.integrate.adaptive import integrate_adaptively
 from gbeam.integrate.driver import Trajectory, integrate
@@ -73,7 +73,7 @@ def simulate(
         raise InputError(next(iter(options)), "is given beside settings", "give one of them")
     motion = motion.over(settings.start, settings.start + settings.duration)
     problem = problem_of(structure, motion, settings.start)
-    if is_jax(problem.q):
+    if holds_jax(structure, motion):
         return _traced(structure, motion, settings, problem, name)
     coarse = first_step(structure, settings)
 
