@@ -29,7 +29,8 @@ def plot_static(deflections: Sequence[Deflection], title: str = "") -> Figure:
     drawn[-1].set_xlabel("position from the root, m")
     for panel, i in zip(drawn, axes, strict=True):
         for k, each in enumerate(deflections):
-            panel.plot(each.stations, 1e3 * each.displacement[:, i], color=colour(k), label=each.motion)
+            dot = "o" if len(each.stations) < 3 else ""  # too few for a line
+            panel.plot(each.stations, 1e3 * each.displacement[:, i], color=colour(k), label=each.motion, marker=dot)
         panel.set_ylabel(f"{'xyz'[i]}, mm")
         show_zero(panel)
     if len(deflections) > 1:

@@ -80,10 +80,11 @@ def plot_modes(modes: Modes, title: str = "") -> Figure:
     figure, (panel,) = panels(heading(title, subject, []), 1, heights=[2.0])
     panel.set_xlabel("position from the root, m")
     panel.set_ylabel("displacement,\nlargest 1")
+    dot = "o" if len(modes.stations) < 3 else ""  # too few for a line
     for k in range(min(SHOWN, len(modes.frequency))):
         shape = modes.shape[k, :, "xyz".index(modes.direction[k])]
         label = f"{modes.frequency[k]:.4g} Hz, {modes.direction[k]}"
-        panel.plot(modes.stations, shape.real, color=colour(k), label=label)
+        panel.plot(modes.stations, shape.real, color=colour(k), label=label, marker=dot)
         if np.abs(shape.imag).max() > 1e-6:
             panel.plot(modes.stations, shape.imag, ":", color=colour(k))
     legend(panel, columns=3)

@@ -1,0 +1,109 @@
+"""Every result prints on a few lines, goes to xarray and to a file, and draws itself where it has a figure."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import gbeam as gb
+from gbeam.results.machine import AxesResult, LimitUse, MachinePlan
+from gbeam.results.placement import Candidate, Placement
+from gbeam.results.study import ModelRow, ModelStudy
+
+BEAM = gb.Beam(
+    0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700.0, 70e9), [gb.PointMass(0.3, 0.01)], damping_ratio=0.01
+)
+
+
+@pytest.fixture(scope="module")
+def every() -> dict[str, Any]:
+    """One result of each kind."""
+    structure, hub = (
+        gb.assemble(BEAM, "FOAM", y=1, z=1, stations=(0.1, 0.2)),
+        gb.Hub(radius=0.5, rate=gb.constant(10.0)),
+    )
+    time, x = np.linspace(0, 1, 5), np.ones((5, 3))
+    uses = tuple(LimitUse(f"axis {i}", "rate", "rad/s", 2.0, 1.0 if i == 1 else np.inf, 0.5) for i in (1, 2, 3))
+    axes = AxesResult(x, 2 * x, 3 * x, x, x + 0.1, np.zeros(5, bool), (), uses, (), 0.15)
+    options = tuple(Candidate("upright", 0.06, at, 0.1, 0.2, (1.0, 2.0, 3.0), 0.5, uses[:1]) for at in (0.2, 0.1))
+    values = {place: {"tip": 0.1} for place in ("best", "current", "middle")}
+    rows = (
+        ModelRow("exact", "slew", "done", "", (), 0.1, 0.5, 0.0, difference=0.0),
+        ModelRow("TLAM", "slew", "diverged", "too fast", ("a warning",)),
+    )
+    flight = gb.Flight(z=gb.constant(9.81))
+    return {
+        "static": gb.static(structure, flight),
+        "modes": gb.modes(structure, hub),
+        "campbell": gb.campbell(structure, hub, speeds=np.linspace(0, 20, 3)),
+        "critical": gb.critical_speed(structure, hub, upper=30.0),
+        "critical map": gb.critical_speed_map(BEAM, gb.Model("FOAM", 0, 1, 1), hub, [0.1], [0.1, 0.3], 30.0),
+        "system": gb.linearize(structure, hub),
+        "plan": MachinePlan("arm", "flight", 3.3, "limits exceeded", axes.exceeding, time, axes),
+        "placement": Placement("flight", "arm", {"tip": 1.0}, 0.3, options[0], options, 0.15, values),
+        "models": ModelStudy("title", "exact", {"slew": "z"}, rows),
+        "response": gb.simulate(structure, flight, duration=0.05, step=1e-3, name="flight"),
+    }
+
+
+KINDS = (
+    "static", "modes", "campbell", "critical", "critical map", "system", "plan", "placement", "models", "response"
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_prints_on_a_few_lines(every: dict[str, Any], kind: str) -> None:
+    lines = repr(every[kind]).splitlines()
+    assert 1 <= len(lines) <= 6 and max(len(line) for line in lines) <= 160
+    assert lines[0].startswith(type(every[kind]).__name__) and "array(" not in repr(every[kind])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_goes_to_xarray_and_to_a_file(every: dict[str, Any], kind: str, tmp_path: Path) -> None:
+    made = every[kind].to_xarray()
+    every[kind].save(tmp_path / "x.nc")
+    xr.testing.assert_identical(xr.load_dataset(tmp_path / "x.nc", engine="h5netcdf"), made)
+    for name, variable in made.variables.items():
+        if variable.dtype.kind == "f":
+            assert variable.attrs["units"] and variable.attrs["long_name"], name
+
+
+def test_values_in_xarray(every: dict[str, Any]) -> None:
+    static, modes, system = every["static"], every["modes"], every["system"]
+    tip = static.to_xarray()["displacement"].isel(station=-1).sel(axis="z")
+    assert float(tip) == static.tip[2]
+    first = modes.to_xarray().sel(mode=1)
+    assert float(first["frequency"]) == modes.frequency[0] and str(first["direction"].values) == modes.direction[0]
+    campbell = every["campbell"].to_xarray()
+    np.testing.assert_array_equal(campbell["frequency"].sel(speed=20.0), every["campbell"].frequency[-1])
+    matrix = system.to_xarray()["A"]
+    assert matrix.dims == ("state", "state_of") and list(matrix["state"].values) == [s.name for s in system.states]
+    np.testing.assert_array_equal(matrix, system.a)
+    assert list(every["models"].to_xarray()["outcome"].values) == ["done", "diverged"]
+    assert every["placement"].to_xarray().attrs["weight_tip"] == 1.0
+
+
+@pytest.mark.parametrize("kind", ["static", "modes", "campbell", "critical map", "plan", "response"])
+def test_draws_itself(every: dict[str, Any], kind: str) -> None:
+    figure = every[kind].plot(title="a title")
+    assert figure.get_suptitle().startswith(("a title\n", "LIMITS EXCEEDED – a title\n"))
+    figure.draw_without_rendering()
+
+
+def test_parts_print_their_shapes(every: dict[str, Any]) -> None:
+    response = every["response"]
+    assert repr(response.base) == "BaseMotion(a_WO_B=(51, 3), w_WB_B=(51, 3), alpha_WB_B=(51, 3))"
+    assert "section_force=(51, 4, 3)" in repr(response.loads) and len(repr(response.loads)) < 200
+    assert repr(every["plan"].axes).endswith("control_point=0.15, warnings=())")
+
+
+def test_a_study_prints_its_responses_and_comparisons(every: dict[str, Any]) -> None:
+    response = every["response"]
+    study = gb.Study("title", {"flight": response}, (gb.compare(response, response),))
+    lines = repr(study).splitlines()
+    assert lines[0] == "Study 'title': done" and lines[1].startswith("Response 'flight' (flight, FOAM): done")
+    assert lines[-1].startswith("Comparison: tip displacement along z on the second flight agrees with flight")
