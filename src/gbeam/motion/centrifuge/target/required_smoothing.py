@@ -12,6 +12,7 @@ from gbeam.motion.profiles.profile import Profile
 _WIDEST, _LADDER = 3.0, 1.05  # s; ratio of two widths tried one after the other
 _LEAST = 0.01  # s: the first width tried where there is no smoothing
 _PER_WIDTH = 30  # times over the narrowest kernel
+_QUICK = 512
 _ROUNDING = 1e-3  # of what the arm allows: what finite differences leave
 
 Floats = NDArray[np.float64]
@@ -45,7 +46,9 @@ def required_smoothing(
         s, within 5 %; None where no width up to 3 s does.
     """
     step = min(float(time[1] - time[0]), max(width, _LEAST) / _PER_WIDTH)
-    times = np.arange(time[0] - _WIDEST / 2, time[-1] + _WIDEST / 2, step)
+    count = np.ceil((time[-1] - time[0] + _WIDEST) / step)
+    # A number of times whose Fourier transform is quick.
+    times = time[0] - _WIDEST / 2 + step * np.arange(_QUICK * int(np.ceil(count / _QUICK)))
     spectrum = np.fft.rfft(corners(times), axis=0)
     held_until = np.append(0, np.cumsum(np.interp(times, time, not_followed.astype(float)) > 0))
     ends = [(float(time[run.start]), float(time[run.stop - 1])) for run in runs]
