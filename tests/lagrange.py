@@ -2,12 +2,13 @@
 
 T = ½ Σ m_k |v_O + ω × r_k + ṙ_k|² over the particles of a field, complete or truncated to second order in (q, q̇) by
 differentiating it at rest. gbeam itself never writes T: its equations are D'Alembert's sum.
+
+Programs are compiled to be compiled fast, not to run fast: each runs a few times only.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import jax
@@ -16,9 +17,13 @@ import numpy as np
 
 import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam import Structure
+from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.arrays.tree import record
 
+from .differences import along, hessian, jacobian
+
 Array = Any
+quickly_compiled = partial(jax.jit, compiler_options={"xla_backend_optimization_level": 0})
 
 
 @record
@@ -42,8 +47,11 @@ class Complete:
 
     def kinetic(self, u: Array, q: Array, qd: Array) -> Array:
         """J; 2009 (9), 2020 (5). u = (v_O, ω)."""
-        v = velocities(self.particles, q, jnp.concatenate([u, qd]))
-        return 0.5 * jnp.sum(self.mass[:, None] * v**2)
+        if is_jax(q) or is_jax(qd):
+            r, rd = jax.jvp(self.particles, (q,), (qd,))
+        else:
+            r, rd = self.particles(q), along(self.particles, q, qd)
+        return _half_m_v_squared(self.mass, u, r, rd)
 
     def potential(self, q: Array) -> Array:
         return self.elasticity.energy(q)
@@ -51,7 +59,7 @@ class Complete:
 
 @record
 class Quadratic:
-    """T₂ = ½ uᵀ(A₀ + A₁q + ½ qA₂q) u + uᵀ(B₀ + B₁q) q̇ + ½ q̇ᵀM q̇, found by differentiating T at rest."""
+    """T₂ = ½ uᵀ(A₀ + A₁q + ½ qA₂q) u + uᵀ(B₀ + B₁q) q̇ + ½ q̇ᵀM q̇, from differentiating T at rest."""
 
     a0: Array
     a1: Array
@@ -66,9 +74,10 @@ class Quadratic:
         return int(self.mass.shape[0])
 
     def kinetic(self, u: Array, q: Array, qd: Array) -> Array:
-        a1 = jnp.einsum("i,ijn,j->n", u, self.a1, u)
-        a2 = jnp.einsum("i,ijnm,j->nm", u, self.a2, u)
-        b1 = jnp.einsum("i,inm->nm", u, self.b1)
+        xp = namespace(u, q, qd)
+        a1 = xp.einsum("i,ijn,j->n", u, self.a1, u)
+        a2 = xp.einsum("i,ijnm,j->nm", u, self.a2, u)
+        b1 = xp.einsum("i,inm->nm", u, self.b1)
         base = u @ self.a0 @ u + a1 @ q + 0.5 * q @ a2 @ q
         return 0.5 * base + u @ self.b0 @ qd + q @ b1 @ qd + 0.5 * qd @ self.mass @ qd
 
@@ -76,38 +85,38 @@ class Quadratic:
         return 0.5 * q @ self.stiffness @ q
 
 
-def velocities(particles: Callable[[Array], Array], q: Array, rates: Array) -> Array:
-    """Velocities v_O + ω × r + ṙ of particles, linear in the rates (v_O, ω, q̇), (particles, 3) m/s."""
-    r, rd = jax.jvp(particles, (q,), (rates[6:],))
-    return rates[:3] + jnp.cross(rates[3:6], r) + rd
+def _half_m_v_squared(mass: Array, u: Array, r: Array, rd: Array) -> Array:
+    """T of particles with velocities v_O + ω × r + ṙ, J."""
+    v = u[:3] + namespace(u, r).cross(u[3:], r) + rd
+    return 0.5 * (mass[:, None] * v**2).sum()
 
 
-@jax.jit
-def second_order(energy: Complete) -> Quadratic:
-    """Truncate a kinetic energy to second order in (q, q̇) by differentiating it at rest."""
-    zero, rates = jnp.zeros(energy.size), jnp.zeros(6 + energy.size)
-    place, slope = energy.particles(zero), jax.jacfwd(energy.particles)(zero)
-    bend = jax.jacfwd(jax.jacfwd(energy.particles))(zero)
+@quickly_compiled
+def _truncated(mass: Array, place: Array, slope: Array, bend: Array) -> tuple[Array, ...]:
+    """A₀, A₁, A₂, B₀, B₁ and M of particles whose places are a polynomial of second degree."""
+    zero = jnp.zeros(slope.shape[-1])
 
     def inertia(q: Array) -> Array:
-        """The matrix of T, half a sum of squares of the velocities, in the rates (v_O, ω, q̇)."""
+        """The matrix of T in the rates (v_O, ω, q̇), which is its second derivative."""
 
-        def polynomial(q: Array) -> Array:
-            return place + (slope + 0.5 * bend @ q) @ q
+        def kinetic(rates: Array) -> Array:
+            r, rd = jax.jvp(lambda q: place + (slope + 0.5 * bend @ q) @ q, (q,), (rates[6:],))
+            return _half_m_v_squared(mass, rates[:6], r, rd)
 
-        per_rate = jax.jacfwd(lambda rates: velocities(polynomial, q, rates))(rates)
-        return jnp.einsum("kai,k,kaj->ij", per_rate, energy.mass, per_rate)
+        return jax.jacfwd(jax.jacfwd(kinetic))(jnp.zeros(6 + len(zero)))
 
-    whole, first, second = inertia(zero), jax.jacfwd(inertia)(zero), jax.jacfwd(jax.jacfwd(inertia))(zero)
-    return Quadratic(
-        a0=whole[:6, :6],
-        a1=first[:6, :6],
-        a2=second[:6, :6],
-        b0=whole[:6, 6:],
-        b1=jnp.swapaxes(first[:6, 6:], 1, 2),
-        mass=whole[6:, 6:],
-        stiffness=jax.hessian(energy.potential)(zero),
-    )
+    def first(q: Array) -> Array:
+        return jax.jacfwd(inertia)(q)
+
+    whole, one, two = inertia(zero), first(zero), jax.jacfwd(first)(zero)
+    return whole[:6, :6], one[:6, :6], two[:6, :6], whole[:6, 6:], jnp.swapaxes(one[:6, 6:], 1, 2), whole[6:, 6:]
+
+
+def second_order(energy: Complete) -> Quadratic:
+    """Truncate a kinetic energy to second order in (q, q̇) by differentiating it at rest."""
+    zero, particles = np.zeros(energy.size), energy.particles
+    terms = _truncated(energy.mass, particles(zero), jacobian(particles, zero), hessian(particles, zero))
+    return Quadratic(*(np.asarray(x) for x in terms), hessian(energy.potential, zero))
 
 
 def energy_of(structure: Structure) -> Complete | Quadratic:
@@ -116,75 +125,59 @@ def energy_of(structure: Structure) -> Complete | Quadratic:
     return second_order(complete) if structure.linear else complete
 
 
-@jax.jit
-def kinetic(energy: Any, u: Array, q: Array, qd: Array) -> Array:
-    """T, J, compiled."""
-    return energy.kinetic(u, q, qd)
+def _momentum_rates(energy: Any, u: Array, ud: Array, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array]:
+    """d/dt ∂T/∂(v_O, ω), (6,), and d/dt ∂T/∂q̇ − ∂T/∂q + ∂U/∂q, (n,), as (v_O, ω, q̇) change by (u̇, q̈)."""
+    (_, of_q, _), (base, _, beam) = jax.jvp(jax.grad(energy.kinetic, (0, 1, 2)), (u, q, qd), (ud, qd, qdd))
+    return base, beam - of_q + jax.grad(energy.potential)(q)
 
 
-@jax.jit
-def rest_matrices(energy: Any) -> tuple[Array, Array]:
-    """Mass and stiffness matrices of the undeformed beam on a base at rest."""
-    zero = jnp.zeros(energy.size)
-    return jax.hessian(energy.kinetic, 2)(jnp.zeros(6), zero, zero), jax.hessian(energy.potential)(zero)
+momentum_rates = quickly_compiled(_momentum_rates)
 
 
-@dataclass(frozen=True)
-class Hub:
-    """A hub's numbers as T needs them; R_HB from base axes to hub axes."""
-
-    radius: float
-    inertia: float
-    R_HB: Array
-    stiffness: float = 0.0
-    damping: float = 0.0
-
-
-@jax.jit
 def on_prescribed_base(
     energy: Any, damping: Array, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array
-) -> Array:
-    """d/dt ∂T/∂q̇ − ∂T/∂q + Cq̇ + ∂U/∂q on a base whose motion is given: v_O = 0 with rate a_O."""
-    u, ud = jnp.concatenate([jnp.zeros(3), w]), jnp.concatenate([a, alpha])
-    _, momentum_rate = jax.jvp(jax.grad(energy.kinetic, 2), (u, q, qd), (ud, qd, qdd))
-    return momentum_rate - jax.grad(energy.kinetic, 1)(u, q, qd) + damping @ qd + jax.grad(energy.potential)(q)
+) -> np.ndarray:
+    """Residual on a base whose motion is given: v_O = 0 with rate a_O."""
+    u, ud = np.concatenate([np.zeros(3), w]), np.concatenate([a, alpha])
+    return np.asarray(momentum_rates(energy, u, ud, q, qd, qdd)[1]) + damping @ qd
 
 
-def hub_kinetic(energy: Any, radius: Array, inertia: Array, R_HB: Array, y: Array, yd: Array) -> Array:
+def twist(radius: float, R_HB: Array) -> np.ndarray:
+    """(v_O, ω) in base axes of a hub that turns at 1 rad/s."""
+    return np.concatenate([radius * R_HB[1], R_HB[2]])
+
+
+def hub_kinetic(energy: Any, radius: float, inertia: float, R_HB: Array, y: Array, yd: Array) -> float:
     """Kinetic energy of hub and beam, y = (θ, q), J (2009 (9))."""
-    twist = jnp.concatenate([radius * R_HB[1], R_HB[2]]) * yd[0]
-    return 0.5 * inertia * yd[0] ** 2 + energy.kinetic(twist, y[1:], yd[1:])
+    return 0.5 * inertia * yd[0] ** 2 + energy.kinetic(twist(radius, R_HB) * yd[0], y[1:], yd[1:])
 
 
-@jax.jit
 def on_free_hub(
-    energy: Any, damping: Array, radius: Array, inertia: Array, R_HB: Array, y: Array, yd: Array, ydd: Array
-) -> Array:
-    """Residual of hub and beam without torque, y = (θ, q)."""
-
-    def kinetic(y: Array, yd: Array) -> Array:
-        return hub_kinetic(energy, radius, inertia, R_HB, y, yd)
-
-    _, momentum_rate = jax.jvp(jax.grad(kinetic, 1), (y, yd), (yd, ydd))
-    elastic = damping @ yd[1:] + jax.grad(energy.potential)(y[1:])
-    return momentum_rate - jax.grad(kinetic)(y, yd) + jnp.concatenate([jnp.zeros(1), elastic])
+    energy: Any, damping: Array, radius: float, inertia: float, R_HB: Array, y: Array, yd: Array, ydd: Array
+) -> np.ndarray:
+    """Residual of hub and beam without torque, y = (θ, q): T does not depend on θ."""
+    per_rate = twist(radius, R_HB)
+    base, beam = momentum_rates(energy, per_rate * yd[0], per_rate * ydd[0], y[1:], yd[1:], ydd[1:])
+    return np.concatenate([[inertia * ydd[0] + per_rate @ base], beam + damping @ yd[1:]])
 
 
-def coefficients(energy: Any, size: int) -> dict[str, np.ndarray]:
+@quickly_compiled
+def _derivatives(energy: Any) -> Any:
+    q0, o = jnp.zeros(energy.size), jnp.zeros(3)
+
+    def residual(q: Array, qd: Array, qdd: Array, a: Array, w: Array, al: Array) -> Array:
+        u, ud = jnp.concatenate([jnp.zeros(3), w]), jnp.concatenate([a, al])
+        return _momentum_rates(energy, u, ud, q, qd, qdd)[1]
+
+    at_rest = (q0, q0, q0, o, o, o)
+    first = jax.jacfwd(residual, (0, 2, 3, 5))(*at_rest)
+    second = jax.jacfwd(jax.jacfwd(residual, (0, 1, 4)), (3, 4, 5))(*at_rest)
+    return first, second, jax.jacfwd(jax.jacfwd(jax.jacfwd(residual, 0), 4), 4)(*at_rest)
+
+
+def coefficients(energy: Quadratic) -> dict[str, np.ndarray]:
     """The constant coefficients of a linear model by differentiating Lagrange's residual at rest."""
-    q0, o, none = jnp.zeros(size), jnp.zeros(3), jnp.zeros((size, size))
-
-    @jax.jit
-    def derivatives(energy: Any) -> Any:
-        def residual(q: Array, qd: Array, qdd: Array, a: Array, w: Array, al: Array) -> Array:
-            return on_prescribed_base(energy, none, q, qd, qdd, a, w, al)
-
-        at_rest = (q0, q0, q0, o, o, o)
-        first = jax.jacfwd(residual, (0, 2, 3, 5))(*at_rest)
-        second = jax.jacfwd(jax.jacfwd(residual, (0, 1, 4)), (3, 4, 5))(*at_rest)
-        return first, second, jax.jacfwd(jax.jacfwd(jax.jacfwd(residual, 0), 4), 4)(*at_rest)
-
-    (k, m, f_a, f_al), (of_q, of_qd, of_w), k_ww = derivatives(energy)
+    (k, m, f_a, f_al), (of_q, of_qd, of_w), k_ww = _derivatives(energy)
 
     def front(a: Array, base_axes: int) -> np.ndarray:
         """Move the base's axes, which differentiation puts last, to the front."""

@@ -24,8 +24,8 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.analysis.imitation.comparison import compare as compare
     from gbeam.analysis.imitation.place import Choice as Choice
     from gbeam.analysis.imitation.place import place as place
-    from gbeam.analysis.imitation.plan import commands as commands
-    from gbeam.analysis.imitation.plan import plan as plan
+    from gbeam.analysis.machine.plan import commands as commands
+    from gbeam.analysis.machine.plan import plan as plan
     from gbeam.analysis.response.settings import ResponseSettings as ResponseSettings
     from gbeam.analysis.response.simulation import simulate as simulate
     from gbeam.analysis.study.case import Case as Case

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gbeam.mechanics.basis import (
+from gbeam.mechanics.fields.basis import (
     Shapes,
     bar_shapes,
     bending_roots,

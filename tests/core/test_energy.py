@@ -7,11 +7,11 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-
-from gbeam import Model, PointMass, assemble
-from gbeam.mechanics.basis import bending_shapes, quadrature
 from gbeam.mechanics.energy import rest_matrices, second_order
 from gbeam.mechanics.field import exact_field
+
+from gbeam import Model, PointMass, assemble
+from gbeam.mechanics.fields.basis import bending_shapes, quadrature
 
 from .helpers import BODY, BOX, COMPLETE, MATERIAL, SPATIAL, TIP, beam, planar, spatial, states
 

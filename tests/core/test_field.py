@@ -9,16 +9,16 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from gbeam.mechanics.energy import rest_matrices, second_order
+from gbeam.mechanics.field import projected_field, rotation_matrix
 from scipy.integrate import solve_ivp
 from scipy.interpolate import BarycentricInterpolator
 
 from gbeam import Model, assemble
 from gbeam.analysis.response.simulation import displacement
 from gbeam.mechanics.assembly import Structure, rest_modes
-from gbeam.mechanics.basis import bar_shapes, bending_shapes, legendre_shapes, quadrature
-from gbeam.mechanics.energy import rest_matrices, second_order
 from gbeam.mechanics.equations import Damped, coefficients
-from gbeam.mechanics.field import projected_field, rotation_matrix
+from gbeam.mechanics.fields.basis import bar_shapes, bending_shapes, legendre_shapes, quadrature
 
 from .helpers import beam, states
 

@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from gbeam.mechanics.energy import rest_matrices
 from scipy.integrate import quad
 
 from gbeam import Beam, InputError, Material, Model, PointMass, Section, assemble
 from gbeam.mechanics.assembly import KINDS, rest_modes
-from gbeam.mechanics.basis import bar_shapes, bending_shapes
-from gbeam.mechanics.energy import rest_matrices
+from gbeam.mechanics.fields.basis import bar_shapes, bending_shapes
 
 from .helpers import TIP, beam
 

@@ -26,7 +26,8 @@ from gbeam import (
     simulate,
     static,
 )
-from gbeam.analysis.response.section_forces import influence, internal_loads, section_loads
+from gbeam.analysis.loads.influence import influence
+from gbeam.analysis.loads.section_forces import internal_loads, section_loads
 from gbeam.mechanics.equations import Hub as HubBody
 from gbeam.mechanics.equations import on_prescribed_base
 from gbeam.motion import Base

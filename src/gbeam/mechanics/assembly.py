@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from gbeam.arrays.namespace import namespace
 from gbeam.errors import InputError
 from gbeam.mechanics.damping import damping_matrix
+from gbeam.mechanics.equations.inertia import Elasticity, Inertia
 from gbeam.mechanics.equations.linear import coefficients
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.adapted import adapted_shapes
@@ -18,7 +19,6 @@ from gbeam.mechanics.fields.exact import exact_field
 from gbeam.mechanics.fields.projected import projected_field
 from gbeam.mechanics.fields.rooted import RootedField
 from gbeam.mechanics.fields.rotation import Field, Strains
-from gbeam.mechanics.inertia import Elasticity, Inertia
 from gbeam.mechanics.models import Model
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.motion.profiles.piecewise import constant

@@ -21,7 +21,7 @@ from gbeam.structure.section import SectionValues
 
 if TYPE_CHECKING:
     from gbeam.mechanics.equations.dalembert import Complete, CompleteHub
-    from gbeam.mechanics.inertia import Elasticity, Inertia
+    from gbeam.mechanics.equations.inertia import Elasticity, Inertia
 
 Array = Any
 

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.imitation.plan import axes_result
 from gbeam.analysis.loads.influence import influence
 from gbeam.analysis.loads.section_forces import section_forces
+from gbeam.analysis.machine.axes import axes_result
 from gbeam.analysis.response.outcome import describe
 from gbeam.analysis.response.problem import Problem, problem_of
 from gbeam.analysis.response.settings import ResponseSettings

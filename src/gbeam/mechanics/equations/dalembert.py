@@ -14,8 +14,8 @@ import jax.numpy as jnp
 import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.arrays.tree import record
 from gbeam.mechanics.equations.hub import Ground
+from gbeam.mechanics.equations.inertia import Elasticity, Inertia
 from gbeam.mechanics.equations.virtual_work import LoadWork
-from gbeam.mechanics.inertia import Elasticity, Inertia
 from gbeam.motion.bases.base import Base
 
 Array = Any

@@ -1,4 +1,4 @@
-"""The machine's side alone: what its axes must do, what that uses of its limits, and where it cannot follow."""
+"""What a centrifuge's axes do at given times, what that uses of its limits, and where it cannot follow."""
 
 from __future__ import annotations
 
@@ -6,19 +6,17 @@ import numpy as np
 
 from gbeam.motion import Axes, Centrifuge, axis_history
 from gbeam.motion.centrifuge.limits import usage
-from gbeam.results.machine import AxesResult, Commands, LimitUse, MachinePlan
+from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.result import Floats
 
-_GRID, _MOST = 2e-3, 50_000  # s between the times of the result; most of them
 _USED_UP = 0.99  # share of a limit
-_FINE = 1e-3  # s: the angle of axis 1 is integrated on times no further apart
 
 
 def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
     """What a centrifuge does at given times (s, ascending), with its limits and where it cannot follow."""
     axes, jerk = motion.axes_and_jerks(time)
     reference, actual, not_followed = motion.reference(time), motion.actual_by(axes), motion.not_followed(time)
-    angle, rate, acceleration = _columns(axes, time)
+    angle, rate, acceleration = columns(axes, time)
     limits = usage(time, rate, acceleration, jerk, motion.limits)
     return AxesResult(
         angle=angle,
@@ -76,43 +74,7 @@ def _short_spin_up(motion: Centrifuge, limits: tuple[LimitUse, ...]) -> tuple[st
     return (f'the arm exceeds its limits in the spin-up: spin_up = "{enough:g} s" or more would keep them',)
 
 
-def plan(name: str, motion: Centrifuge, tracks: str = "") -> MachinePlan:
-    """Plan one centrifuge over its target's span.
-
-    Parameters
-    ----------
-    name : str
-        Of the motion.
-    motion : Centrifuge
-    tracks : str
-        Name of the flight.
-    """
-    first, last = (float(end) for end in motion.target.span)
-    count = min(int(np.ceil((last - first) / _GRID)), _MOST)
-    time = np.linspace(first, last, count + 1)
-    axes = axes_result(motion, time)
-    outcome = "done" if axes.within_limits else "limits exceeded"
-    return MachinePlan(name, tracks, float(motion.geometry.arm), outcome, axes.exceeding, time, axes)
-
-
-def commands(motion: Centrifuge, sample: float) -> Commands:
-    """Return the axis motions at a controller's sample time, from their closed forms and not by interpolation.
-
-    Parameters
-    ----------
-    motion : Centrifuge
-    sample : float
-        s; the last sample is the last that lies within the target's span.
-    """
-    first, last = (float(end) for end in motion.target.span)
-    between = int(np.ceil(sample / _FINE))  # axis 1's angle is an integral: finer than the samples
-    count = int(np.floor((last - first) / sample * (1 + 1e-12)))
-    time = np.asarray(first + sample / between * np.arange(count * between + 1), dtype=np.float64)
-    columns = _columns(motion.axes(time), time)
-    return Commands(sample, time[::between], *(column[::between] for column in columns))
-
-
-def _columns(axes: Axes, time: Floats) -> tuple[Floats, Floats, Floats]:
+def columns(axes: Axes, time: Floats) -> tuple[Floats, Floats, Floats]:
     history = axis_history(axes, time)
     a = history.axes
     return (
