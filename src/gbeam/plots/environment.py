@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from gbeam.plots.style import REFERENCE, colour, heading, legend, line, panels, shade, styled
+from gbeam.plots.style import REFERENCE, colour, heading, legend, line, named, panels, shade, styled
 from gbeam.results.machine import AxesResult
 from gbeam.results.response import HubResult, PlotHeading, Response
 from gbeam.results.result import Floats
@@ -33,7 +33,7 @@ def plot_base(response: Response, title: str) -> Figure:
     if np.any(base.w_WB_B) or np.any(base.alpha_WB_B):
         shown += [(base.w_WB_B, "angular\nvelocity, rad/s"), (base.alpha_WB_B, "angular\nacceleration, rad/s²")]
     figure, axes = panels(
-        heading(title, f"{response.name}: motion of the base, base axes", [response]),
+        heading(title, named(response.name, "motion of the base, base axes"), [response]),
         len(shown),
         heights=None if len(shown) > 1 else [1.6],
     )
@@ -64,7 +64,7 @@ def plot_axes(response: PlotHeading, axes: AxesResult, title: str) -> Figure:
         held times shaded.
     """
     figure, (rate, acceleration, load, error) = panels(
-        heading(title, f"{response.name}: axes of the machine, and the load at the control point", [response]), 4
+        heading(title, named(response.name, "axes of the machine, and the load at the control point"), [response]), 4
     )
     time = response.time
     for i in range(3):
@@ -115,7 +115,7 @@ def plot_hub(response: Response, hub: HubResult, title: str) -> Figure:
     shown: list[tuple[Floats, str]] = [(hub.angle, "angle, rad"), (hub.rate, "rate, rad/s")]
     if np.isfinite(hub.drive_torque).any():
         shown.append((hub.drive_torque, "drive torque, N m"))
-    figure, axes = panels(heading(title, f"{response.name}: the hub, about z", [response]), len(shown))
+    figure, axes = panels(heading(title, named(response.name, "the hub, about z"), [response]), len(shown))
     for panel, (values, label) in zip(axes, shown, strict=True):
         line(panel, response.time, values, color=colour(0))
         panel.set_ylabel(label)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from gbeam.plots.style import colour, heading, legend, panels, show_zero, styled
+from gbeam.plots.style import colour, heading, legend, named, panels, show_zero, styled
 from gbeam.results.equilibrium import CriticalMap, Deflection
 
 
@@ -48,7 +48,7 @@ def plot_critical_map(critical: CriticalMap, title: str = "") -> Figure:
     title : str
         Of the scenario.
     """
-    subject = f"{critical.motion}: critical hub rate with one more mass, {critical.model}"
+    subject = named(critical.motion, f"critical hub rate with one more mass, {critical.model}")
     figure, (panel,) = panels(heading(title, subject, []), 1, heights=[2.0])
     panel.set_xlabel("position of the mass from the root, m")
     panel.set_ylabel("hub rate, rad/s")

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from gbeam.plots.style import colour, heading, legend, line, panels, show_zero, styled
+from gbeam.plots.style import colour, heading, legend, line, named, panels, show_zero, styled
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
@@ -30,7 +30,7 @@ def plot_loads_along(deflection: Deflection, loads: Loads, title: str = "") -> F
         Of the scenario.
     """
     at = f"{deflection.model}, t = {deflection.time:.4g} s"
-    subject = f"{deflection.motion}: loads along the beam at rest, section axes, {at}"
+    subject = named(deflection.motion, f"loads along the beam at rest, section axes, {at}")
     stress = np.isfinite(loads.stress).all()
     figure, drawn = panels(heading(title, subject, []), 2 + int(stress))
     drawn[-1].set_xlabel("position from the root, m")
@@ -56,7 +56,7 @@ def plot_loads(response: Response, loads: Loads, title: str = "") -> Figure:
     """
     stress, torque = np.isfinite(loads.stress).all(), loads.beam_torque
     figure, drawn = panels(
-        heading(title, f"{response.name}: force and moment of the base on the root, base axes", [response]),
+        heading(title, named(response.name, "force and moment of the base on the root, base axes"), [response]),
         2 + int(stress) + int(torque is not None),
     )
     _components(drawn[0], response.time, loads.root_force, ("x", "y", "z"))

@@ -139,6 +139,11 @@ def line(panel: Axes, x: Floats, y: Floats, *style: str, **options: Any) -> None
     panel.plot(x, y, *style, **options)
 
 
+def named(name: str, subject: str) -> str:
+    """What is shown, after the motion's name if it has one."""
+    return f"{name}: {subject}" if name else subject
+
+
 def heading(title: str, subject: str, responses: Iterable[PlotHeading]) -> str:
     """Title of a plot: the scenario's, what is shown, and in capitals what must not be overlooked."""
     parts = [part for part in (title, subject) if part]

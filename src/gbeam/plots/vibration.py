@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from gbeam.plots.style import REFERENCE, colour, heading, legend, panels, styled
+from gbeam.plots.style import REFERENCE, colour, heading, legend, named, panels, styled
 from gbeam.results.modal import Campbell, Modes
 
 _LINES = {"x": ":", "y": "-", "z": "--"}
@@ -34,7 +34,7 @@ def plot_campbell(diagram: Campbell, title: str = "") -> Figure:
     far = FAR * highest if diagram.orders else np.inf
     shown = [k for k, low in enumerate(np.nanmin(diagram.frequency, axis=0)) if low <= far or k < FEW]
     left = len(diagram.direction) - len(shown)
-    subject = f"{diagram.motion}: frequencies about the equilibrium, {diagram.model}"
+    subject = named(diagram.motion, f"frequencies about the equilibrium, {diagram.model}")
     if left:
         subject += f"; {left} higher mode{'s' if left > 1 else ''} not drawn"
     figure, (panel,) = panels(heading(title, subject, []), 1, heights=[2.4])
@@ -76,7 +76,7 @@ def plot_modes(modes: Modes, title: str = "") -> Figure:
     Figure
         Real and, where Coriolis coupling turns the phase, imaginary part (dotted).
     """
-    subject = f"{modes.motion} at {modes.time:.4g} s: modes about the equilibrium, {modes.model}"
+    subject = named(modes.motion, f"modes about the equilibrium at {modes.time:.4g} s, {modes.model}")
     figure, (panel,) = panels(heading(title, subject, []), 1, heights=[2.0])
     panel.set_xlabel("position from the root, m")
     panel.set_ylabel("displacement,\nlargest 1")
