@@ -62,8 +62,8 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.motion.profiles.pulse import SmoothStep as SmoothStep
     from gbeam.results.comparison import Comparison as Comparison
     from gbeam.results.response import Response as Response
-    from gbeam.results.state_space import Gauge as Gauge
-    from gbeam.results.state_space import StateSpace as StateSpace
+    from gbeam.results.steady.state_space import Gauge as Gauge
+    from gbeam.results.steady.state_space import StateSpace as StateSpace
     from gbeam.results.study import Study as Study
     from gbeam.scenario.build import read_scenario as read_scenario
     from gbeam.structure.beam import Beam as Beam
@@ -85,7 +85,7 @@ _HOME = {
     "Comparison": "results.comparison",
     "ComputationError": "errors",
     "Flight": "motion.bases.flight",
-    "Gauge": "results.state_space",
+    "Gauge": "results.steady.state_space",
     "GbeamError": "errors",
     "Hub": "motion.bases.hub",
     "InputError": "errors",
@@ -100,7 +100,7 @@ _HOME = {
     "Section": "structure.section",
     "Sine": "motion.profiles.pulse",
     "SmoothStep": "motion.profiles.pulse",
-    "StateSpace": "results.state_space",
+    "StateSpace": "results.steady.state_space",
     "Structure": "mechanics.structure",
     "Study": "results.study",
     "Sum": "motion.profiles.combine",

@@ -13,7 +13,7 @@ from gbeam.analysis.control.nonlinear import nonlinear_system
 from gbeam.analysis.loads.section_forces import section_forces
 from gbeam.motion import Flight, Hub, constant
 from gbeam.results.response import BaseMotion
-from gbeam.results.state_space import Gauge
+from gbeam.results.steady.state_space import Gauge
 
 MODELS = {
     "TLAM": Model("TLAM", 1, 1, 1),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from gbeam.plots import plot_campbell
-from gbeam.results.modal import Campbell
+from gbeam.results.steady.modal import Campbell
 
 from ..scenarios import SLEWING
 

@@ -25,12 +25,13 @@ from gbeam.io.responses import response_group
 from gbeam.io.small_motions import campbell_group, critical_group, critical_map_group, deflection_group, modes_group
 from gbeam.io.tables import models_group, placement_group, state_space_group
 from gbeam.results.comparison import Comparison
-from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
 from gbeam.results.machine import MachinePlan
-from gbeam.results.modal import Campbell, Modes
 from gbeam.results.placement import Placement
 from gbeam.results.response import Response
-from gbeam.results.state_space import StateSpace
+from gbeam.results.steady.equilibrium import Deflection
+from gbeam.results.steady.modal import Campbell, Modes
+from gbeam.results.steady.stability import Critical, CriticalMap
+from gbeam.results.steady.state_space import StateSpace
 from gbeam.results.study import ModelStudy, Study
 
 if TYPE_CHECKING:

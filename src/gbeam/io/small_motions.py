@@ -6,9 +6,10 @@ import numpy as np
 
 from gbeam.io.groups import AXIS, Group, Variable, coordinate, variable, words
 from gbeam.io.responses import load_variables, section_coordinate
-from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
-from gbeam.results.modal import Campbell, Modes
 from gbeam.results.response import BaseMotion
+from gbeam.results.steady.equilibrium import Deflection
+from gbeam.results.steady.modal import Campbell, Modes
+from gbeam.results.steady.stability import Critical, CriticalMap
 
 
 def deflection_group(deflection: Deflection) -> Group:

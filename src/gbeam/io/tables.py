@@ -6,7 +6,7 @@ import numpy as np
 
 from gbeam.io.groups import Group, coordinate, labels, variable, words
 from gbeam.results.placement import Placement
-from gbeam.results.state_space import StateSpace
+from gbeam.results.steady.state_space import StateSpace
 from gbeam.results.study import ModelStudy
 
 _ROW = {

@@ -8,7 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from gbeam.plots.style import colour, heading, legend, named, panels, show_zero, styled
-from gbeam.results.equilibrium import CriticalMap, Deflection
+from gbeam.results.steady.equilibrium import Deflection
+from gbeam.results.steady.stability import CriticalMap
 
 
 @styled

@@ -18,10 +18,11 @@ from gbeam.plots.loads import plot_loads, plot_loads_along
 from gbeam.plots.tip import plot_tip
 from gbeam.plots.vibration import plot_campbell, plot_modes
 from gbeam.results.comparison import Comparison
-from gbeam.results.equilibrium import CriticalMap, Deflection
 from gbeam.results.machine import MachinePlan
-from gbeam.results.modal import Campbell, Modes
 from gbeam.results.response import Response
+from gbeam.results.steady.equilibrium import Deflection
+from gbeam.results.steady.modal import Campbell, Modes
+from gbeam.results.steady.stability import CriticalMap
 from gbeam.results.study import Study
 
 Draw = Callable[[], Figure]

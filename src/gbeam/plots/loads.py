@@ -9,10 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gbeam.plots.style import colour, heading, legend, line, named, panels, show_zero, styled
-from gbeam.results.equilibrium import Deflection
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.section_forces import Loads
+from gbeam.results.steady.equilibrium import Deflection
 
 NOTHING = 1e-9  # of the largest force or moment: a component smaller than that is rounding
 

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from gbeam.plots.style import REFERENCE, colour, heading, legend, named, panels, styled
-from gbeam.results.modal import Campbell, Modes
+from gbeam.results.steady.modal import Campbell, Modes
 
 _LINES = {"x": ":", "y": "-", "z": "--"}
 FAR = 2.0  # times the highest multiple of the speed: a mode above would press the others to the ground

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.results.state_space import Gauge
+from gbeam.results.steady.state_space import Gauge
 from gbeam.structure.beam import Beam
 
 

@@ -27,7 +27,7 @@ from gbeam.mechanics.structure import Sections, Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.complex_step import complex_step
-from gbeam.results.state_space import Gauge, Signal, StateSpace
+from gbeam.results.steady.state_space import Gauge, Signal, StateSpace
 
 Array = Any
 BASE_RATES = tuple(Signal(f"base_rate_{i}", "rad/s") for i in "xyz")

@@ -17,7 +17,7 @@ from gbeam.analysis.control.linearization import (
 from gbeam.analysis.equilibrium.operating_point import REST, on_base, on_hub
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
-from gbeam.results.state_space import Gauge, import_control
+from gbeam.results.steady.state_space import Gauge, import_control
 
 
 def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[Gauge] = ()) -> Any:

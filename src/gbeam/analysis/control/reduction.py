@@ -10,7 +10,7 @@ import scipy.linalg
 
 from gbeam.errors import InputError
 from gbeam.results.result import Floats
-from gbeam.results.state_space import Signal, StateSpace
+from gbeam.results.steady.state_space import Signal, StateSpace
 
 Parts = tuple[StateSpace, StateSpace]
 RIGID = 1e-7  # of the largest eigenvalue: what is slower has none, as a free hub's angle

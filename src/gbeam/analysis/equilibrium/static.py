@@ -13,8 +13,8 @@ from gbeam.errors import InputError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
-from gbeam.results.equilibrium import Deflection
 from gbeam.results.response import BaseMotion
+from gbeam.results.steady.equilibrium import Deflection
 
 
 def static(

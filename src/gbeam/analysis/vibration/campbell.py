@@ -16,8 +16,8 @@ from gbeam.errors import InputError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.roots import brent
-from gbeam.results.modal import Campbell, Crossing
 from gbeam.results.result import Complex, Floats
+from gbeam.results.steady.modal import Campbell, Crossing
 
 CONFIDENT = 0.9  # a mode that resembles itself less from one speed to the next is looked at in between
 DEPTH = 8  # halvings of a step at most: what veers faster is a crossing to every eye

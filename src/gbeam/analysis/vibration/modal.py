@@ -10,8 +10,8 @@ from gbeam.analysis.equilibrium.operating_point import Linear, OperatingPoint, l
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import symmetric_modes
-from gbeam.results.modal import Instability, Modes
 from gbeam.results.result import Complex, Floats
+from gbeam.results.steady.modal import Instability, Modes
 
 ZERO = 1e-11  # of the largest eigenvalue: a smaller one is rounding about zero
 # Of a mode's frequency: a base that speeds up, once frozen, feeds or drains a mode by 1e-7, and means nothing by it.

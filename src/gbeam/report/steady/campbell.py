@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from gbeam.results.modal import Campbell
+from gbeam.results.steady.modal import Campbell
 
 
 def to_json(diagram: Campbell) -> dict[str, Any]:

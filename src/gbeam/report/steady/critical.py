@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.results.equilibrium import Critical, CriticalMap
+from gbeam.results.steady.stability import Critical, CriticalMap
 
 KEYS = {"rate": "critical_speed", "loads": "critical_load_factor", "acceleration": "critical_acceleration"}
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from gbeam.report.words import tidy, xyz, xyz_lists
-from gbeam.results.equilibrium import Deflection
 from gbeam.results.response import BaseMotion
 from gbeam.results.section_forces import Loads
+from gbeam.results.steady.equilibrium import Deflection
 
 
 def to_json(title: str, deflections: Iterable[Deflection]) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from typing import Any
 
 from gbeam.report.steady.deflection import base_json
 from gbeam.report.words import xyz_lists
-from gbeam.results.modal import Modes
+from gbeam.results.steady.modal import Modes
 
 ROUNDING = 1e-10  # a damping ratio smaller than this is none
 

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from textwrap import wrap
 from typing import Any
 
-from gbeam.results.state_space import Gauge, StateSpace
+from gbeam.results.steady.state_space import Gauge, StateSpace
 
 WIDTH = 100  # columns of the text
 

@@ -1,59 +1,10 @@
-"""Where a beam rests while its base moves steadily, and where it no longer can: frozen records."""
+"""Where a beam no longer rests: critical speeds, accelerations and load factors, as frozen records."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from gbeam.results.response import BaseMotion
 from gbeam.results.result import Figured, Floats, Result, brief
-from gbeam.results.section_forces import Loads
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class Deflection(Figured):
-    """Relative equilibrium at a frozen base motion.
-
-    Parameters
-    ----------
-    motion, model : str
-    time : float
-        s.
-    base : BaseMotion
-        At that time, (3,).
-    stations : (s,) m, the last is the tip
-    displacement : (s, 3)
-        Relative to the base axes, m.
-    q : (n,)
-        Coordinates.
-    strain_energy : float
-        J.
-    stable : bool
-        Whether the stiffness about the equilibrium is positive definite.
-    loads : Loads or None
-        What the sections carry, of one time.
-    """
-
-    motion: str
-    model: str
-    time: float
-    base: BaseMotion
-    stations: Floats
-    displacement: Floats
-    q: Floats
-    strain_energy: float
-    stable: bool
-    loads: Loads | None = None
-
-    @property
-    def tip(self) -> Floats:
-        """Displacement of the tip, (3,) m."""
-        return self.displacement[-1]
-
-    def __repr__(self) -> str:
-        of = f" {self.motion!r}" if self.motion else ""
-        tip = ", ".join(f"{1e3 * each:.4g}" for each in self.tip)
-        rest = "stable" if self.stable else "NOT stable: the stiffness is not positive definite"
-        return f"Deflection{of} ({self.model}) at {self.time:.4g} s: tip ({tip}) mm; {rest}"
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gbeam.results.equilibrium import Critical
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Complex, Figured, Floats
+from gbeam.results.steady.stability import Critical
 
 SHOWN = 6  # frequencies in a short description
 
