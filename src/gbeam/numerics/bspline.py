@@ -165,7 +165,8 @@ class Normal:
 
     def add_products(self, square: Floats, side: Floats) -> None:
         """Add products of rows already made: the upper half of RᵀR, row by row, (·, pieces), and Rᵀv (·, pieces)."""
-        for i, j, product in zip(*np.triu_indices(self.block), square, strict=True):
+        pairs = ((i, j) for i in range(self.block) for j in range(i, self.block))
+        for (i, j), product in zip(pairs, square, strict=True):
             self.band[j - i, self._at(i)] += product
         for i in range(self.block):
             self.right[self._at(i)] += side[i]
