@@ -14,8 +14,8 @@ from matplotlib.figure import Figure
 WIDTH = 8.0  # inches
 PANEL = 2.1  # inches of height per panel
 _RIGHT, _EDGE = 0.15, 0.08  # inches: right of the panels, left of the labels
-_LABEL_LINE, _LABEL_GAP = 0.16, 0.12  # inches: a line of a label, and between it and the tick labels
-_DIGIT = 0.075  # inches: mean width of a number's letters
+_LABEL_LINE, _LABEL_GAP = 0.16, 0.15  # inches: a line of a label, and between it and the tick labels
+_DIGIT = 0.08  # inches: mean width of a number's letters
 _BOTTOM = 0.45  # inches: tick labels, and the label of the axis
 _LINE, _TITLE = 0.185, 0.06  # inches: a line of the figure's title, and the space above it
 _GAP, _HEADED = 0.16, 0.34  # inches above a panel: where nothing is, and under a title or a legend
