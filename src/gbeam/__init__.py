@@ -24,8 +24,8 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.analysis.imitation.comparison import compare as compare
     from gbeam.analysis.imitation.place import Choice as Choice
     from gbeam.analysis.imitation.place import place as place
-    from gbeam.analysis.machine.plan import commands as commands
-    from gbeam.analysis.machine.plan import plan as plan
+    from gbeam.analysis.imitation.plan import commands as commands
+    from gbeam.analysis.imitation.plan import plan as plan
     from gbeam.analysis.response.settings import ResponseSettings as ResponseSettings
     from gbeam.analysis.response.simulation import simulate as simulate
     from gbeam.analysis.study.case import Case as Case
@@ -48,9 +48,9 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.motion.bases.hub import Hub as Hub
     from gbeam.motion.bases.record import read_record as read_record
     from gbeam.motion.centrifuge.centrifuge import Centrifuge as Centrifuge
-    from gbeam.motion.centrifuge.limits import AxisLimit as AxisLimit
-    from gbeam.motion.centrifuge.limits import MachineLimits as MachineLimits
-    from gbeam.motion.centrifuge.machines import machines as machines
+    from gbeam.motion.centrifuge.machine.examples import machines as machines
+    from gbeam.motion.centrifuge.machine.limits import AxisLimit as AxisLimit
+    from gbeam.motion.centrifuge.machine.limits import MachineLimits as MachineLimits
     from gbeam.motion.centrifuge.target.build import build_target as build_target
     from gbeam.motion.profiles.combine import Sum as Sum
     from gbeam.motion.profiles.combine import vector as vector
@@ -77,7 +77,7 @@ __version__ = "0.1.0"
 
 # Every public name, and the module it is in.
 _HOME = {
-    "AxisLimit": "motion.centrifuge.limits",
+    "AxisLimit": "motion.centrifuge.machine.limits",
     "Beam": "structure.beam",
     "Case": "analysis.study.case",
     "Centrifuge": "motion.centrifuge.centrifuge",
@@ -90,7 +90,7 @@ _HOME = {
     "Hub": "motion.bases.hub",
     "InputError": "errors",
     "Load": "structure.loads",
-    "MachineLimits": "motion.centrifuge.limits",
+    "MachineLimits": "motion.centrifuge.machine.limits",
     "Material": "structure.material",
     "Model": "mechanics.models",
     "PointMass": "structure.bodies",
@@ -110,7 +110,7 @@ _HOME = {
     "build_target": "motion.centrifuge.target.build",
     "campbell": "analysis.vibration.campbell",
     "choice_of": "analysis.imitation.choice",
-    "commands": "analysis.machine.plan",
+    "commands": "analysis.imitation.plan",
     "compare": "analysis.imitation.comparison",
     "compare_models": "analysis.study.model_study",
     "constant": "motion.profiles.piecewise",
@@ -119,12 +119,12 @@ _HOME = {
     "critical_speed_map": "analysis.vibration.stability",
     "describe": "analysis.study.describe",
     "linearize": "analysis.control.linearization",
-    "machines": "motion.centrifuge.machines",
+    "machines": "motion.centrifuge.machine.examples",
     "modal_truncation": "analysis.control.reduction",
     "modes": "analysis.vibration.modal",
     "nonlinear_system": "analysis.control.nonlinear",
     "place": "analysis.imitation.place",
-    "plan": "analysis.machine.plan",
+    "plan": "analysis.imitation.plan",
     "read_record": "motion.bases.record",
     "read_scenario": "scenario.build",
     "simulate": "analysis.response.simulation",

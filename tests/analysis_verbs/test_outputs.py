@@ -10,7 +10,7 @@ import pytest
 from gbeam import Beam, InputError, Load, Material, Model, PointMass, Root, Section, assemble
 from gbeam.analysis.control.linearization import linearize
 from gbeam.analysis.control.nonlinear import nonlinear_system
-from gbeam.analysis.loads.section_forces import section_forces
+from gbeam.mechanics.section_forces import section_forces
 from gbeam.motion import Flight, Hub, constant
 from gbeam.results.response import BaseMotion
 from gbeam.results.steady.state_space import Gauge

@@ -11,8 +11,8 @@ import scipy.signal
 from scipy.linalg import expm
 
 from gbeam import Comparison, InputError, compare, simulate
-from gbeam.numerics.low_pass import low_pass
-from gbeam.numerics.oscillators import displacement, largest_riding_acceleration, riding_acceleration
+from gbeam.numerics.filters.low_pass import low_pass
+from gbeam.numerics.filters.oscillators import displacement, largest_riding_acceleration, riding_acceleration
 
 M, L, EI = 2700 * 0.02 * 0.004, 0.3, 70e9 * 0.02 * 0.004**3 / 12
 

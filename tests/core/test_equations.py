@@ -16,9 +16,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from gbeam.mechanics.energy import second_order
 
 from gbeam import assemble
-from gbeam.mechanics.energy import second_order
 from gbeam.mechanics.equations import Damped, Hub, coefficients, on_free_hub, on_prescribed_base
 
 from .helpers import (

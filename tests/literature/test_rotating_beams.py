@@ -14,6 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 import scipy.linalg
+from gbeam.mechanics.energy import second_order
 
 from gbeam import (
     Beam,
@@ -29,7 +30,6 @@ from gbeam import (
     equilibrium,
     simulate,
 )
-from gbeam.mechanics.energy import second_order
 from gbeam.mechanics.equations import Coefficients, Damped, coefficients, on_prescribed_base
 from gbeam.motion import Base
 

@@ -26,10 +26,10 @@ from gbeam import (
     simulate,
     static,
 )
-from gbeam.analysis.loads.influence import influence
-from gbeam.analysis.loads.section_forces import internal_loads, section_loads
 from gbeam.mechanics.equations import Hub as HubBody
 from gbeam.mechanics.equations import on_prescribed_base
+from gbeam.mechanics.influence import influence
+from gbeam.mechanics.section_forces import internal_loads, section_loads
 from gbeam.motion import Base
 from gbeam.results.response import BaseMotion
 from gbeam.structure.loads import Load

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.optimize
 
-from gbeam.numerics.interior_point import minimise
+from gbeam.numerics.solvers.interior_point import minimise
 
 RANDOM = np.random.default_rng(7)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from gbeam.numerics.banded import solve_banded
+from gbeam.numerics.solvers.banded import solve_banded
 
 
 @pytest.mark.parametrize(("n", "width"), [(2, 1), (7, 3), (8, 2), (50, 3), (1001, 6)])

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 import scipy.optimize
 
-from gbeam.numerics.roots import brent
+from gbeam.numerics.solvers.roots import brent
 
 CASES: dict[str, tuple[Callable[[float], float], float, float]] = {
     "cosine": (lambda x: math.cos(x) - x, 0.0, 2.0),

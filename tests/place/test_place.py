@@ -17,7 +17,7 @@ from gbeam.analysis.imitation.place import Choice, place
 from gbeam.cli import main
 from gbeam.cli.verbs.place import parse
 from gbeam.motion import AxisLimit, MachineLimits
-from gbeam.numerics.bounded_search import coarse, refine
+from gbeam.numerics.solvers.bounded_search import coarse, refine
 
 
 def only(spin: Any, width: float = 0.0596) -> Choice:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gbeam.analysis.machine.plan import plan
+from gbeam.analysis.imitation.plan import plan
 from gbeam.cli import main
 from gbeam.results.machine import MachinePlan
 from gbeam.scenario import build_machines, load_environments

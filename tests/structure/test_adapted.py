@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from exact_beams import AREA, DENSITY, INERTIA, LENGTH, MODULUS, truncated_wedge, with_bodies
+from gbeam.mechanics.energy import rest_matrices
 
 from gbeam import Beam, InputError, Material, Model, PointMass, Section, assemble
 from gbeam.mechanics.assembly import rest_modes
-from gbeam.mechanics.energy import rest_matrices
 from gbeam.structure.support import Root
 
 BOX, METAL = Section.general(AREA, INERTIA, INERTIA), Material(DENSITY, MODULUS)

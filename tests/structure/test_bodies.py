@@ -7,10 +7,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from exact_beams import AREA, DENSITY, INERTIA, LENGTH, MODULUS, with_bodies
+from gbeam.mechanics.energy import rest_matrices
 
 from gbeam import Beam, Material, Model, PointMass, Section, assemble
 from gbeam.mechanics.assembly import rest_modes
-from gbeam.mechanics.energy import rest_matrices
 from gbeam.mechanics.equations import Hub, hub_kinetic
 
 BOX, METAL = Section.general(AREA, INERTIA, INERTIA), Material(DENSITY, MODULUS)

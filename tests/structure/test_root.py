@@ -6,11 +6,11 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from exact_beams import AREA, DENSITY, EI, INERTIA, LENGTH, MODULUS, with_bodies
+from gbeam.mechanics.energy import rest_matrices
 from scipy.optimize import brentq
 
 from gbeam import Beam, InputError, Material, Model, PointMass, Section, assemble, equilibrium
 from gbeam.mechanics.assembly import rest_modes
-from gbeam.mechanics.energy import rest_matrices
 from gbeam.motion import Base
 from gbeam.structure.loads import Load
 from gbeam.structure.support import Root

@@ -12,9 +12,9 @@ from gbeam.motion.bases.mount import Mount
 from gbeam.motion.bases.record import read_record
 from gbeam.motion.centrifuge.centrifuge import Centrifuge
 from gbeam.motion.centrifuge.inverses.registry import INVERSES
-from gbeam.motion.centrifuge.kinematics import Axes, AxisHistory, axis_history, forward, moved
-from gbeam.motion.centrifuge.limits import AxisLimit, Limits, MachineLimits, usage
-from gbeam.motion.centrifuge.machines import Machine, machines
+from gbeam.motion.centrifuge.machine.examples import Machine, machines
+from gbeam.motion.centrifuge.machine.kinematics import Axes, AxisHistory, axis_history, forward, moved
+from gbeam.motion.centrifuge.machine.limits import AxisLimit, Limits, MachineLimits, usage
 from gbeam.motion.centrifuge.target.build import build_target
 from gbeam.motion.centrifuge.target.target import Episode, Target
 from gbeam.motion.profiles.combine import Sum, Vector, vector

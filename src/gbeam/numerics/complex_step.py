@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 _STEP = 1e-30
 
 
-def complex_step(function: Callable[[NDArray[np.complex128]], NDArray[np.complex128]], x: NDArray[np.float64]) -> NDArray[np.float64]:
+def complex_step(
+    function: Callable[[NDArray[np.complex128]], NDArray[np.complex128]], x: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Jacobian (m, n) of a function of a vector (n,) that is analytic and computes with complex numbers.
 
     f(x + ih) = f(x) + ih f'(x) − …: the imaginary part holds the derivative to rounding, whatever the step.

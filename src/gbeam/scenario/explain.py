@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
-from gbeam.scenario.fields import Quantity, Table
 from gbeam.scenario.schema import Scenario
+from gbeam.scenario.schema.fields import Quantity, Table
 from gbeam.scenario.text.diagnostics import Diagnostic
 from gbeam.scenario.text.kinds import KINDS
 from gbeam.scenario.text.paths import Path

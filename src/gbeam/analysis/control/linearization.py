@@ -16,13 +16,13 @@ from gbeam.analysis.equilibrium.operating_point import (
     operating_point,
     steady_base,
 )
-from gbeam.analysis.loads.section_forces import sections
 from gbeam.analysis.vibration.stability import hub_of
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.errors import InputError
 from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.fields.rooted import RootedField
+from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
@@ -40,7 +40,7 @@ class Outputs:
 
     Tip displacement relative to the base axes; tip acceleration, absolute, or specific force where gravity acts; moment
     of the base on the root, which is what the section there carries; strains; on a free hub its angle and rate. Vectors
-    in base axes; acceleration and moment as in :mod:`gbeam.analysis.loads.section_forces`.
+    in base axes; acceleration and moment as in :mod:`gbeam.mechanics.section_forces`.
     """
 
     structure: Structure

@@ -9,7 +9,7 @@ import numpy as np
 from gbeam.errors import ComputationError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
-from gbeam.numerics.eigen import symmetric_modes
+from gbeam.numerics.solvers.eigen import symmetric_modes
 
 Array = Any
 

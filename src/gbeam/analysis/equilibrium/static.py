@@ -8,8 +8,8 @@ import numpy as np
 
 from gbeam.analysis.equilibrium.equilibrium import lowest_stiffness
 from gbeam.analysis.equilibrium.operating_point import OperatingPoint, beam_block, on_base, operating_point
-from gbeam.analysis.loads.section_forces import section_forces
 from gbeam.errors import InputError
+from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion

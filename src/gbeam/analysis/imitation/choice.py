@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from gbeam.analysis.imitation.place import Choice
 from gbeam.errors import InputError
 from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge
-from gbeam.numerics.bounded_search import coarse
+from gbeam.numerics.solvers.bounded_search import coarse
 
 _FACTOR = 4.0  # of the centrifuge's own smoothing, either way
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from gbeam.numerics.low_pass import low_pass
-from gbeam.numerics.oscillators import largest_riding_acceleration
+from gbeam.numerics.filters.low_pass import low_pass
+from gbeam.numerics.filters.oscillators import largest_riding_acceleration
 from gbeam.results.comparison import Comparison, Mismatch, RootHistory, RootLoads, Shock, Sizes, Statistics
 from gbeam.results.response import BaseMotion, Response
 from gbeam.results.result import Flags, Floats

@@ -23,9 +23,9 @@ from gbeam.arrays.tree import record
 from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion import Base, Centrifuge, Flight
-from gbeam.motion.centrifuge.limits import exceeded
-from gbeam.numerics.bounded_search import refine
-from gbeam.numerics.low_pass import low_pass
+from gbeam.motion.centrifuge.machine.limits import exceeded
+from gbeam.numerics.filters.low_pass import low_pass
+from gbeam.numerics.solvers.bounded_search import refine
 from gbeam.results.placement import MEASURES, Candidate, Placement, Verification
 
 EXCEEDED = "limits exceeded"  # an outcome

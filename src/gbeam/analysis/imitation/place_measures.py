@@ -6,14 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gbeam.analysis.loads.influence import influence
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import first_step
 from gbeam.errors import InputError
+from gbeam.mechanics.influence import influence
 from gbeam.mechanics.structure import Structure
 from gbeam.motion import Base, Centrifuge, Flight
-from gbeam.motion.centrifuge.kinematics import forward
-from gbeam.numerics.oscillators import displacement
+from gbeam.motion.centrifuge.machine.kinematics import forward
+from gbeam.numerics.filters.oscillators import displacement
 from gbeam.results.result import Flags, Floats
 
 

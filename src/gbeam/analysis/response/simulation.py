@@ -8,9 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.loads.influence import influence
-from gbeam.analysis.loads.section_forces import section_forces
-from gbeam.analysis.machine.axes import axes_result
 from gbeam.analysis.response.outcome import describe
 from gbeam.analysis.response.problem import Problem, problem_of
 from gbeam.analysis.response.settings import ResponseSettings
@@ -19,7 +16,10 @@ from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.errors import InputError
 from gbeam.integrate.adaptive import integrate_adaptively
 from gbeam.integrate.driver import Trajectory, integrate
+from gbeam.mechanics.influence import influence
+from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
+from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
 from gbeam.results.response import BaseMotion, HubResult, Peaks, Response
 from gbeam.results.result import Floats

@@ -15,7 +15,7 @@ from gbeam.analysis.vibration.stability import critical_speed, hub_of
 from gbeam.errors import InputError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.roots import brent
+from gbeam.numerics.solvers.roots import brent
 from gbeam.results.result import Complex, Floats
 from gbeam.results.steady.modal import Campbell, Crossing
 

@@ -9,7 +9,7 @@ import numpy as np
 from gbeam.analysis.equilibrium.operating_point import Linear, OperatingPoint, linear_matrices, operating_point
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.eigen import symmetric_modes
+from gbeam.numerics.solvers.eigen import symmetric_modes
 from gbeam.results.result import Complex, Floats
 from gbeam.results.steady.modal import Instability, Modes
 

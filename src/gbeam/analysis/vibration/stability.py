@@ -32,7 +32,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.roots import brent
+from gbeam.numerics.solvers.roots import brent
 from gbeam.results.steady.stability import Critical, CriticalMap
 from gbeam.structure.beam import Beam
 from gbeam.structure.bodies import PointMass

@@ -47,7 +47,7 @@ def plan(
     if every is not None and every <= 0:
         raise InputError("--sample", f"is {sample}", 'give a positive time, such as "5 ms"')
 
-    from gbeam.analysis.machine import plan as analysis
+    from gbeam.analysis.imitation import plan as analysis
     from gbeam.report.machine import plan as report
 
     tables = {name: table for name, table in given.motion.items() if isinstance(table, schema.Centrifuge)}

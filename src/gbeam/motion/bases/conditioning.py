@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from gbeam.checks import positive
 from gbeam.errors import InputError
+from gbeam.numerics.filters.low_pass import low_pass
 from gbeam.numerics.intervals import true_runs
-from gbeam.numerics.low_pass import low_pass
 
 Floats = NDArray[np.float64]
 
@@ -129,7 +129,7 @@ def filtered(time: Floats, values: Floats, cutoff: float | None, resample: float
     time : (t,) s, even
     values : (t, ...)
     cutoff : float or None
-        Hz, −6 dB; see :func:`gbeam.numerics.low_pass.low_pass`.
+        Hz, −6 dB; see :func:`gbeam.numerics.filters.low_pass.low_pass`.
     resample : float or None
         New sampling rate, Hz; between samples by a cubic spline.
 

@@ -19,9 +19,9 @@ from gbeam.motion.bases.flight import Flight
 from gbeam.motion.centrifuge.course import Course, prepare
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse
 from gbeam.motion.centrifuge.inverses.registry import INVERSES
-from gbeam.motion.centrifuge.kinematics import Axes, control_point_load, forward, moved
-from gbeam.motion.centrifuge.limits import Limits, MachineLimits, usage
-from gbeam.motion.centrifuge.machines import Machine
+from gbeam.motion.centrifuge.machine.examples import Machine
+from gbeam.motion.centrifuge.machine.kinematics import Axes, control_point_load, forward, moved
+from gbeam.motion.centrifuge.machine.limits import Limits, MachineLimits, usage
 from gbeam.motion.centrifuge.spin_up import STARTS
 from gbeam.motion.centrifuge.target.reachability import shortfalls
 from gbeam.motion.centrifuge.target.target import Episode, Target

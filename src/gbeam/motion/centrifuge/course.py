@@ -9,7 +9,7 @@ from gbeam.arrays.tree import record
 from gbeam.errors import InputError
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse
 from gbeam.motion.centrifuge.inverses.registry import INVERSES
-from gbeam.motion.centrifuge.limits import Limits
+from gbeam.motion.centrifuge.machine.limits import Limits
 from gbeam.motion.centrifuge.spin_up import Start, build_start
 from gbeam.motion.centrifuge.target.build import build_target
 from gbeam.motion.centrifuge.target.target import Target

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from gbeam.scenario.fields import (
+from gbeam.scenario.schema.fields import (
     Areas,
     Density,
     Length,

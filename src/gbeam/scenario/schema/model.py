@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, StrictInt
 
-from gbeam.scenario.fields import Table
+from gbeam.scenario.schema.fields import Table
 
 Count = Annotated[StrictInt, Field(ge=0)]
 

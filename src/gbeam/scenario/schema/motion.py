@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Discriminator, Field, StrictBool, ValidationInfo, model_validator
 from pydantic_core import PydanticCustomError
 
-from gbeam.scenario.fields import (
+from gbeam.scenario.schema.fields import (
     Acceleration,
     Duration,
     Length,

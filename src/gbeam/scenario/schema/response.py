@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from gbeam.scenario.fields import Duration, Loc, Position, Quantity, Ratio, Step, Table, Time, refuse, wrong
+from gbeam.scenario.schema.fields import Duration, Loc, Position, Quantity, Ratio, Step, Table, Time, refuse, wrong
 
 # Which parameters each integrator takes.
 PARAMETERS: dict[str, tuple[str, ...]] = {

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Self
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, model_validator
 from pydantic_core import PydanticCustomError
 
-from gbeam.scenario.fields import Loc, Table, refuse, wrong
 from gbeam.scenario.schema.beam import Beam
+from gbeam.scenario.schema.fields import Loc, Table, refuse, wrong
 from gbeam.scenario.schema.model import Model
 from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub, Motion
 from gbeam.scenario.schema.response import Response

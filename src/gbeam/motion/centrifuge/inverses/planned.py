@@ -22,11 +22,11 @@ from numpy.typing import NDArray
 from gbeam.arrays.tree import record
 from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
 from gbeam.motion.centrifuge.inverses.closed_form import Flat, Geometry, Inverse, Pose, QuasiStatic
-from gbeam.motion.centrifuge.limits import Limits
+from gbeam.motion.centrifuge.machine.limits import Limits
 from gbeam.motion.centrifuge.target.target import Target
 from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.bspline import PIECE, Grid, Normal, Spline
-from gbeam.numerics.interior_point import minimise
+from gbeam.numerics.solvers.interior_point import minimise
 
 HELD = 0.01  # weight of the tracking error while the target is held, where it is 1 otherwise
 _EASE = 1e-5, 1e-7  # weights of 1 rad/s² and of 1 rad/s³ beside a tracking error of 1 g0
@@ -79,7 +79,7 @@ def planned(target: Target, geometry: Geometry, limits: Limits) -> Planned:
 
 
 class Tracking:
-    """The cost of a motion and the shares of the limits that it uses; a :class:`gbeam.numerics.interior_point.Problem`.
+    """The cost of a motion and the shares of the limits that it uses; a ``Problem`` of the solver.
 
     The load depends on four states: the arm's rate and acceleration and the angles of the gimbals. Each is the product
     of a row and the coefficients around it, the same rows in every piece.

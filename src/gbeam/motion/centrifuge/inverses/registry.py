@@ -8,7 +8,7 @@ from typing import NamedTuple
 from gbeam.motion.centrifuge.inverses.closed_form import Flat, Geometry, Inverse, QuasiStatic
 from gbeam.motion.centrifuge.inverses.exact import exact
 from gbeam.motion.centrifuge.inverses.planned import planned
-from gbeam.motion.centrifuge.limits import Limits
+from gbeam.motion.centrifuge.machine.limits import Limits
 from gbeam.motion.centrifuge.target.target import Target
 
 

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from gbeam.motion.centrifuge.target.load_limits import OPPOSED, nearest_to_zero
 from gbeam.motion.profiles.hann import soft_floor
-from gbeam.numerics.banded import solve_banded
 from gbeam.numerics.intervals import true_runs
+from gbeam.numerics.solvers.banded import solve_banded
 
 BAND = 0.1  # of a floor: how softly it sets in
 

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from gbeam.motion import Axes, Centrifuge, axis_history
-from gbeam.motion.centrifuge.limits import usage
+from gbeam.motion.centrifuge.machine.kinematics import Axes, axis_history
+from gbeam.motion.centrifuge.machine.limits import usage
 from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.result import Floats
+
+if TYPE_CHECKING:
+    from gbeam.motion.centrifuge.centrifuge import Centrifuge
 
 _USED_UP = 0.99  # share of a limit
 

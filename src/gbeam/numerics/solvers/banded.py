@@ -47,7 +47,7 @@ def solve_banded(band: Floats, right: Floats) -> Floats:
 def _reduced(diagonal: Floats, below: Floats, right: Floats) -> Floats:
     """Solve a block tridiagonal system: eliminate every other block, solve for the rest, substitute back."""
     if len(diagonal) == 1:
-        return np.linalg.solve(diagonal, right)
+        return np.asarray(np.linalg.solve(diagonal, right), dtype=np.float64)
     odd = diagonal[1::2]
     before = below[::2]  # of each odd block, to the even one before it
     after = below[1::2]  # of the even block after it, to the odd one; the last odd block may have none

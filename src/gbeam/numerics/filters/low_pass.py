@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.errors import InputError
-from gbeam.numerics.linear_filter import Filters, run
+from gbeam.numerics.filters.linear_filter import Filters, run
 
 Floats = NDArray[np.float64]
 ORDER = 4

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from gbeam.analysis.machine.axes import axes_result, columns
 from gbeam.motion import Centrifuge
+from gbeam.motion.centrifuge.history import axes_result, columns
 from gbeam.results.machine import Commands, MachinePlan
 
 _GRID, _MOST = 2e-3, 50_000  # s between the times of the result; most of them

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gbeam.numerics.linear_filter import Filters, largest, run
+from gbeam.numerics.filters.linear_filter import Filters, largest, run
 
 Floats = NDArray[np.float64]
 _TERMS = 24  # of a series for an angle below 2 per sample: the last is below 1e-17

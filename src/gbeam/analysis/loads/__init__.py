@@ -1,1 +1,0 @@
-"""What the sections of a beam carry, and its static answer to acceleration fields."""

@@ -1,0 +1,1 @@
+"""The machine itself: its axes' kinematics, its limits, examples of machines."""

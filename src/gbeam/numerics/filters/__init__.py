@@ -1,0 +1,1 @@
+"""Digital filters and oscillators on evenly sampled histories, without scipy.signal."""

@@ -1,0 +1,76 @@
+"""The equations of structures as functions of numbers: plain for linear models, compiled once a size for complete ones.
+
+A hub here has gravity, a spring and a damper, zero or not: one program serves all.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from gbeam import Hub, Structure
+from gbeam.mechanics.equations.residuals import OnBase, OnHub
+from gbeam.motion import Base
+
+from .differences import jacobian
+from .lagrange import quickly_compiled
+from .specimens import HUB_INERTIA, HUB_RADIUS
+
+Array = Any
+HUB = Hub(radius=HUB_RADIUS, inertia=HUB_INERTIA, gravity=(0.0, 0.0, 0.0))
+MOUNTED: dict[str, Any] = {"pointing": "inward", "setting_angle": 0.7, "gravity": (3.0, -7.0, -5.0)}
+MOUNTED_HUB = Hub(radius=HUB_RADIUS, inertia=HUB_INERTIA, stiffness=30.0, damping=4.0, **MOUNTED)
+
+
+def _base_residual(structure: Structure, q: Array, qd: Array, qdd: Array, base: Base, loads: Array) -> Array:
+    return OnBase(structure.equations)(q, qd, qdd, (base, loads))
+
+
+def _hub_residual(
+    structure: Structure, hub: Hub, y: Array, yd: Array, ydd: Array, torque: Array, loads: Array
+) -> tuple[Array, Array]:
+    equations = structure.on_free_hub(hub)
+    return OnHub(equations, hub.mount)(y, yd, ydd, (torque, loads)), equations.momentum(y, yd)
+
+
+_compiled_base, _compiled_hub = quickly_compiled(_base_residual), quickly_compiled(_hub_residual)
+
+
+def _values(structure: Structure, loaded: bool) -> Array:
+    values = structure.load_values
+    return values if loaded or values is None else 0 * values
+
+
+def on_base(structure: Structure, q: Array, qd: Array, qdd: Array, base: Base, *, loaded: bool = False) -> np.ndarray:
+    """Residual on a base whose motion is given, with or without the structure's loads."""
+    residual = _base_residual if structure.linear else _compiled_base
+    return np.asarray(residual(structure, q, qd, qdd, base, _values(structure, loaded)))
+
+
+def on_hub(
+    structure: Structure, y: Array, yd: Array, ydd: Array, torque: float = 0.0, *, hub: Hub = HUB, loaded: bool = False
+) -> tuple[np.ndarray, float]:
+    """Residual on a free hub, y = (θ, q), and its angular momentum."""
+    residual = _hub_residual if structure.linear else _compiled_hub
+    values, momentum = residual(structure, hub, y, yd, ydd, np.asarray(torque), _values(structure, loaded))
+    return np.asarray(values), float(momentum)
+
+
+def virtual_work(structure: Structure, q: Array) -> np.ndarray:
+    """Resultant of the structure's loads at the root, base axes, and their forces on the coordinates, (6 + n,).
+
+    F·δr + M·δθ from the places and the rotations themselves.
+    """
+    work, values = structure.work, structure.load_values
+    assert work is not None and values is not None
+    place, attitude = work.field.position, work.field.rotation
+    r, R, slope, turn = place(q), attitude(q), jacobian(place, q), jacobian(attitude, q)
+    spin = np.einsum("pabi,pcb->paci", turn, R)
+    angle = np.stack([spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0]], axis=1)
+    axes = np.where(work.follower[:, None, None], R, np.eye(3))
+    force, moment = (
+        np.einsum("p,pab,pb->pa", work.weight, axes, part) for part in np.split(values[work.load], 2, axis=1)
+    )
+    along = np.einsum("pai,pa->i", slope, force) + np.einsum("pai,pa->i", angle, moment)
+    return np.concatenate([force.sum(axis=0), (np.cross(r, force) + moment).sum(axis=0), along])
