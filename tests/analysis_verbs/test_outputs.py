@@ -1,4 +1,4 @@
-"""Inputs and outputs of the linearisation: slopes of the nonlinear model, whose outputs are those of the section forces."""
+"""Inputs and outputs of the linearisation: slopes of the nonlinear model, and outputs that the section forces have too."""
 
 from __future__ import annotations
 

@@ -103,7 +103,7 @@ def assemble(
         elasticity=elasticity,
         field=field,
         first_station=first_station,
-        sections=_sections(beam, at, field, (inertia.mass, station), (work, loaded_at), first_station),
+        sections=_sections(beam, at, field, (inertia.mass, station), loaded_at, first_station),
         history=history,
         work=work,
         load_values=None if history is None else history(np.zeros(())),
@@ -176,7 +176,7 @@ def _sections(
     at: Array,
     field: Field,
     particles: tuple[Array, Array],
-    loads: tuple[LoadWork | None, Array],
+    loaded: Array,
     first: int,
 ) -> Sections:
     """Sections at the root, on the base's side of its springs, and at the stations, with what is outboard of each."""
@@ -191,5 +191,5 @@ def _sections(
     return Sections(
         values=beam.section.at(np.append(0.0, at)),
         mass=beyond[:, particles[1]] * particles[0],
-        loaded=np.empty((len(stations), 0)) if loads[0] is None else beyond[:, loads[1]] * loads[0].weight,
+        loaded=beyond[:, loaded],
     )

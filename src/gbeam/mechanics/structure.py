@@ -37,7 +37,7 @@ class Sections:
     mass : (s, particles) kg
         Of the particles outboard of each section.
     loaded : (s, loaded points)
-        1, or m of a load per length, outboard of each section.
+        Share of each that lies outboard of each section.
     """
 
     values: SectionValues
