@@ -1,4 +1,4 @@
-"""Inputs and outputs of the linearisation: slopes of the nonlinear model, and outputs that the section forces have too."""
+"""Inputs and outputs of the linearisation: slopes of the nonlinear model, and the section forces."""
 
 from __future__ import annotations
 
