@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import jax
 import numpy as np
 import pytest
 import xarray as xr
@@ -99,6 +101,19 @@ def test_parts_print_their_shapes(every: dict[str, Any]) -> None:
     assert repr(response.base) == "BaseMotion(a_WO_B=(51, 3), w_WB_B=(51, 3), alpha_WB_B=(51, 3))"
     assert "section_force=(51, 4, 3)" in repr(response.loads) and len(repr(response.loads)) < 200
     assert repr(every["plan"].axes).endswith("control_point=0.15, warnings=())")
+
+
+def test_what_is_traced_prints_its_shapes(every: dict[str, Any]) -> None:
+    words = []
+
+    def peak(scale: Any) -> Any:
+        response = every["response"]
+        traced = replace(response, peaks=replace(response.peaks, max_abs=scale * response.peaks.max_abs))
+        words.append(repr(traced))
+        return traced.peaks.max_abs.sum()
+
+    assert float(jax.grad(peak)(1.0)) > 0
+    assert words[0].startswith("Response(name='flight', environment='flight'") and "displacement=(51, 3, 3)" in words[0]
 
 
 def test_a_study_prints_its_responses_and_comparisons(every: dict[str, Any]) -> None:

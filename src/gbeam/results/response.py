@@ -8,8 +8,9 @@ from typing import Protocol
 
 import numpy as np
 
+from gbeam.arrays.namespace import is_traced
 from gbeam.results.machine import AxesResult
-from gbeam.results.result import Figured, Floats, Part
+from gbeam.results.result import Figured, Floats, Part, brief
 from gbeam.results.section_forces import Influence, Loads
 
 
@@ -154,6 +155,8 @@ class Response(Figured):
         return self.displacement[:, -1]
 
     def __repr__(self) -> str:
+        if is_traced(self.peaks.max_abs):
+            return brief(self)
         of = f" {self.name!r}" if self.name else ""
         main = int(np.argmax(self.peaks.max_abs))
         step = "adaptive steps" if math.isnan(self.step) else f"{self.steps} steps of {1e3 * self.step:.4g} ms"
