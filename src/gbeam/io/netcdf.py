@@ -22,7 +22,7 @@ from gbeam.io.groups import Group, Variable
 from gbeam.io.hdf5 import write_groups
 from gbeam.io.machine import plan_group
 from gbeam.io.responses import response_group
-from gbeam.io.small_motions import campbell_group, critical_group, critical_map_group, deflection_group, modes_group
+from gbeam.io.steady import campbell_group, critical_group, critical_map_group, deflection_group, modes_group
 from gbeam.io.tables import models_group, placement_group, state_space_group
 from gbeam.results.comparison import Comparison
 from gbeam.results.machine import MachinePlan

@@ -12,11 +12,10 @@ from matplotlib.figure import Figure
 from gbeam.errors import InputError
 from gbeam.plots.comparison import plot_comparison, plot_shock
 from gbeam.plots.environment import plot_axes, plot_base, plot_hub
-from gbeam.plots.equilibrium import plot_critical_map, plot_static
 from gbeam.plots.files import save
 from gbeam.plots.loads import plot_loads, plot_loads_along
+from gbeam.plots.steady import plot_campbell, plot_critical_map, plot_modes, plot_static
 from gbeam.plots.tip import plot_tip
-from gbeam.plots.vibration import plot_campbell, plot_modes
 from gbeam.results.comparison import Comparison
 from gbeam.results.machine import MachinePlan
 from gbeam.results.response import Response
