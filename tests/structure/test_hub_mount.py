@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -23,9 +22,10 @@ from gbeam import (
     assemble,
     constant,
 )
-from gbeam.analysis.response.problem import free_hub
-from gbeam.mechanics.equations import coefficients, hub_kinetic, on_free_hub, on_prescribed_base
+from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.structure.loads import Load
+
+from ..lagrange import energy_of, hub_kinetic
 
 BOX, METAL = Section.general(AREA, INERTIA, INERTIA), Material(DENSITY, MODULUS)
 BEAM = Beam(LENGTH, BOX, METAL, [PointMass(LENGTH, 0.1)], 0.01)
@@ -40,28 +40,37 @@ def state(size: int) -> tuple[Any, Any, Any]:
     return jnp.asarray(y), jnp.asarray(yd), jnp.asarray(ydd)
 
 
+def grounded(structure: Any, y: Any) -> Any:
+    """Energy of the hub's spring, and of the beam in gravity, J; of a linear model to second order in q."""
+    inertia = structure.places if structure.linear else structure.inertia
+    moment = structure.mass @ inertia.positions(y[1:])
+    centre = HUB.mount.R_HB @ moment + jnp.array([0.5, 0.0, 0.0]) * structure.mass.sum()
+    c, s = jnp.cos(y[0]), jnp.sin(y[0])
+    turned = jnp.stack([c * centre[0] - s * centre[1], s * centre[0] + c * centre[1], centre[2]])
+    return 15.0 * y[0] ** 2 - jnp.asarray(GRAVITY) @ turned
+
+
 @pytest.mark.parametrize("name", MODELS)
 def test_a_free_hub_and_a_prescribed_one_are_one_thing(name: str) -> None:
     """The beam's rows are those on the prescribed base; the hub's row makes power equal to the rate of energy."""
-    structure, hub = assemble(BEAM, MODELS[name]), free_hub(HUB)
-    system = structure.system
+    structure = assemble(BEAM, MODELS[name])
 
-    def total(y: Any, yd: Any) -> Any:
-        energy = system.energy
-        return hub_kinetic(energy, hub, y, yd) + energy.potential(y[1:]) + hub.potential(energy, y)
+    @jax.jit
+    def all_of_it(structure: Any, energy: Any, y: Any, yd: Any, ydd: Any, torque: Any) -> Any:
+        def total(y: Any, yd: Any) -> Any:
+            moving = hub_kinetic(energy, 0.5, 200.0, HUB.mount.R_HB, y, yd)
+            return moving + energy.potential(y[1:]) + grounded(structure, y)
 
-    @eqx.filter_jit
-    def all_of_it(y: Any, yd: Any, ydd: Any, torque: Any) -> Any:
-        free = on_free_hub(system, hub, y, yd, ydd, torque)
+        free = OnHub(structure.on_free_hub(HUB), HUB.mount)(y, yd, ydd, (torque, None))
         base = HUB.mount.base(y[0], yd[0], ydd[0])
-        given = on_prescribed_base(system, y[1:], yd[1:], ydd[1:], base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
+        given = OnBase(structure.equations)(y[1:], yd[1:], ydd[1:], (base, None))
         return free, given, jax.jvp(total, (y, yd), (yd, ydd))[1]
 
     y, yd, ydd = state(structure.size + 1)
-    free, given, power = all_of_it(y, yd, ydd, jnp.asarray(11.0))
+    free, given, power = all_of_it(structure, energy_of(structure), y, yd, ydd, jnp.asarray(11.0))
     np.testing.assert_allclose(free[1:], given, rtol=1e-9, atol=1e-9)
     # r·ẏ is the rate of energy less what torque and dampers bring.
-    brought = 11.0 * yd[0] - 4.0 * yd[0] ** 2 - yd[1:] @ system.damping @ yd[1:]
+    brought = 11.0 * yd[0] - 4.0 * yd[0] ** 2 - yd[1:] @ structure.coefficients.damping @ yd[1:]
     assert float(free @ yd) == pytest.approx(float(power - brought), rel=1e-9)
 
 
@@ -73,7 +82,7 @@ def test_inward_is_a_negative_radius() -> None:
 
 def test_a_setting_angle_mixes_the_planes() -> None:
     """At 90° the section's z lies where y was: the lag and flap stiffnesses change places."""
-    both = coefficients(assemble(BEAM, Model("FOAM", 0, 1, 1)).system)
+    both = assemble(BEAM, Model("FOAM", 0, 1, 1)).coefficients
     bases = [Hub(radius=0.5, rate=constant(2.0), setting_angle=angle).base(0.0) for angle in (0.0, np.pi / 2)]
     flat, edge = (both.at(b.a_WO_B, b.w_WB_B, b.alpha_WB_B)[1] for b in bases)
     np.testing.assert_allclose(np.diag(flat)[::-1], np.diag(edge), rtol=1e-12)
@@ -94,17 +103,14 @@ def test_gravity_keeps_its_direction_while_a_prescribed_hub_turns() -> None:
 
 def test_a_moment_at_the_root_drives_the_hub_as_a_torque_does() -> None:
     loaded = Beam(LENGTH, BOX, METAL, loads=[Load(0.0, moment=(0.0, 0.0, 11.0)), Load(5.0, force=(1.0, 2.0, 3.0))])
-    system = assemble(loaded, Model("FOAM", 0, 1, 1)).system
-    hub = free_hub(Hub(radius=0.5, inertia=200.0, torque=constant(0.0)))
-    y, yd, ydd = (jnp.zeros(3) for _ in range(3))
-
-    @eqx.filter_jit
-    def row(torque: Any, applied: Any) -> Any:
-        return on_free_hub(system.under(applied), hub, y, yd, ydd, torque)[0]
+    structure = assemble(loaded, Model("FOAM", 0, 1, 1))
+    hub = Hub(radius=0.5, inertia=200.0, torque=constant(0.0))
+    y, yd, ydd = np.zeros((3, 3))
+    row = OnHub(structure.on_free_hub(hub), hub.mount)(y, yd, ydd, (0.0, structure.load_values))[0]
 
     # ... and a force F_y at x adds F_y (r + x).
     torque = 11.0 + 2.0 * 5.5
-    assert float(row(jnp.asarray(0.0), system.applied)) == pytest.approx(-torque, rel=1e-12)
+    assert row == pytest.approx(-torque, rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
-import jax.numpy as jnp
 import numpy as np
 import pytest
 from exact_beams import AREA, DENSITY, EI, INERTIA, LENGTH, MODULUS, with_bodies
-from gbeam.mechanics.energy import rest_matrices
 from scipy.optimize import brentq
 
-from gbeam import Beam, InputError, Material, Model, PointMass, Section, assemble, equilibrium
-from gbeam.mechanics.assembly import rest_modes
+from gbeam import Beam, InputError, Material, Model, PointMass, Section, assemble, solve_equilibrium
 from gbeam.motion import Base
 from gbeam.structure.loads import Load
 from gbeam.structure.support import Root
 
 BOX, METAL = Section.general(AREA, INERTIA, INERTIA), Material(DENSITY, MODULUS)
-STILL = Base(*[jnp.zeros(3)] * 3)
+STILL = Base(*np.zeros((3, 3)))
 TIP = PointMass(LENGTH, 0.1)
 SOFT = Root(rotation_y=5 * EI / LENGTH, translation_z=40 * EI / LENGTH**3)
 
 
 def frequencies(root: Root, model: Model) -> np.ndarray:
-    structure = assemble(Beam(LENGTH, BOX, METAL, [TIP], root=root), model)
-    return rest_modes(*rest_matrices(structure.system.energy))[0]
+    return assemble(Beam(LENGTH, BOX, METAL, [TIP], root=root), model).rest[0]
 
 
 @pytest.mark.parametrize("kind", ["TLAM", "FOAM", "SFOAM", "CFOAM", "exact"])
@@ -49,7 +45,7 @@ def test_a_stiff_beam_turns_by_a_large_angle_about_its_root() -> None:
     stiff = Section.general(AREA, 1e3 * INERTIA, 1e3 * INERTIA)
     beam = Beam(2.0, stiff, METAL, root=Root(rotation_y=100.0), loads=[Load(2.0, force=(0.0, 0.0, 80.0))])
     structure = assemble(beam, Model("exact", 0, 0, 2))
-    moved = structure.displacement(equilibrium(structure, STILL))[-1]
+    moved = structure.displacement(solve_equilibrium(structure, STILL).q)[-1]
     angle = brentq(lambda p: 100.0 * p - 160.0 * np.cos(p), 0, 2)
     np.testing.assert_allclose(moved, [2 * np.cos(angle) - 2, 0, 2 * np.sin(angle)], atol=2e-3)
 
@@ -60,7 +56,7 @@ def test_a_tip_force_moves_root_and_beam(kind: str) -> None:
     force = 1e-4
     beam = Beam(LENGTH, BOX, METAL, root=SOFT, loads=[Load(LENGTH, force=(0.0, 0.0, force))])
     structure = assemble(beam, Model(kind, 0, 0, 4, "adapted" if kind == "exact" else "clamped-free"))
-    moved = structure.displacement(equilibrium(structure, STILL))[-1]
+    moved = structure.displacement(solve_equilibrium(structure, STILL).q)[-1]
     wanted = force * (1 / SOFT.springs["translation_z"] + LENGTH**2 / SOFT.springs["rotation_y"] + LENGTH**3 / (3 * EI))
     assert float(moved[2]) == pytest.approx(wanted, rel=1e-3)
 
@@ -68,8 +64,8 @@ def test_a_tip_force_moves_root_and_beam(kind: str) -> None:
 def test_damping_counts_the_springs_modes() -> None:
     beam = Beam(LENGTH, BOX, METAL, [TIP], [0.01, 0.02, 0.03, 0.04], root=SOFT)
     structure = assemble(beam, Model("CFOAM", 0, 0, 2))
-    frequency, modes = rest_modes(*rest_matrices(structure.system.energy))
-    ratio = np.diag(modes.T @ np.asarray(structure.system.damping) @ modes) / (2 * frequency)
+    frequency, modes = structure.rest
+    ratio = np.diag(modes.T @ structure.coefficients.damping @ modes) / (2 * frequency)
     np.testing.assert_allclose(ratio, beam.damping_ratio, rtol=1e-9)
     assert structure.size == 4
 
