@@ -10,14 +10,14 @@ import pytest
 from gbeam.plots import plot_campbell
 from gbeam.results.steady.modal import Campbell
 
-from ..scenarios import SLEWING
+from ..scenarios import SLEWING, SLEWING_AND_FLYING
 
 
 @pytest.fixture
 def scenario(tmp_path, monkeypatch):
     """A slewing hub and a flight of the same beam, in the current folder."""
     monkeypatch.chdir(tmp_path)
-    Path("hub.toml").write_text(SLEWING)
+    Path("hub.toml").write_text(SLEWING_AND_FLYING)
 
 
 @pytest.fixture
@@ -159,6 +159,7 @@ def test_unknown_motion_and_time(call):
 
 @pytest.mark.slow
 def test_models(call):
+    Path("hub.toml").write_text(SLEWING)
     changes = ("motion.slew.rate.level=1 rad/s", "response.residual_from=30 s")
     status, facts, _ = call("models", *(word for change in changes for word in ("--set", change)))
     rows = {row["model"]: row for row in facts["rows"] if row["motion"] == "slew"}
