@@ -11,26 +11,16 @@ from gbeam import Hub, ResponseSettings, SmoothStep, simulate
 from gbeam.analysis.study.model_study import SHAPES_FINE, shape_tail
 from gbeam.cli import main
 
+from ..scenarios import APPENDAGE, SLEW, model, response
 from .beams import structure_2009
 
-SCENARIO = """\
-[beam]
-length = "8 m"
-section = { area = "7.2968e-5 m^2", inertia_y = "8.2189e-9 m^4", inertia_z = "8.2189e-9 m^4" }
-material = { density = "2766.7 kg/m^3", youngs_modulus = "6.8952e10 Pa" }
-damping_ratio = 0
-[model]
-kind = "FOAM"
-modes = { axial = 1, y = 2, z = 0 }
-[motion.slew]
-kind = "hub"
-radius = "0.5 m"
-rate = { profile = "smooth-step", level = "6 rad/s", duration = "4 s" }
-[response]
-duration = "8 s"
-tolerance = 1e-3
-residual_from = "5 s"
-"""
+SCENARIO = (
+    APPENDAGE
+    + model("FOAM", 1, 2, 0)
+    + SLEW.replace("60 rpm", "6 rad/s").replace("2 s", "4 s")
+    + response("8 s", residual_from="5 s")
+    + "tolerance = 1e-3\n"
+)
 
 
 @pytest.fixture

@@ -19,6 +19,8 @@ from gbeam.cli.verbs.place import parse
 from gbeam.motion import AxisLimit, MachineLimits
 from gbeam.numerics.solvers.bounded_search import coarse, refine
 
+from ..scenarios import FLIGHT, SPECIMEN, SPIN, model, response
+
 
 def only(spin: Any, width: float = 0.0596) -> Choice:
     return Choice(lambda mounting, w: spin(w), ("upright",), (width,), refined=False)
@@ -116,29 +118,14 @@ def test_refusals(structure: Any, flight: Any, spin: Any, settings: Any) -> None
     assert parse("tip=2, root-moment") == {"tip": 2.0, "root-moment": 1.0}
 
 
-SCENARIO = """\
-[beam]
-length = "300 mm"
-section = { shape = "rectangle", width = "20 mm", thickness = "4 mm" }
-material = { density = "2700 kg/m^3", youngs_modulus = "70 GPa" }
-damping_ratio = 0.01
-[model]
-kind = "FOAM"
-modes = { axial = 0, y = 1, z = 2 }
-[motion.flight]
-kind = "flight"
-acceleration = { z = { profile = "table", times = [0, 0.5, 1], values = ["5 g", "5 g", "7 g"] } }
-[motion.spin]
-kind = "centrifuge"
-tracks = "flight"
-arm = "3.3 m"
-control_point = "150 mm"
-inverse = "flat"
-gravity = false
-smoothing = "60 ms"
-[response]
-duration = "1.2 s"
-"""
+SCENARIO = (
+    SPECIMEN
+    + model("FOAM", 0, 1, 2)
+    + FLIGHT.replace('"constant", level = "6 g"', '"table", times = [0, 0.5, 1], values = ["5 g", "5 g", "7 g"]')
+    + SPIN
+    + 'smoothing = "60 ms"\n'
+    + response("1.2 s")
+)
 
 
 def test_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

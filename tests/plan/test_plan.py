@@ -12,6 +12,8 @@ from scipy.io import loadmat
 
 from gbeam.cli import main
 
+from ..scenarios import SPECIMEN, model
+
 PLAN = """\
 title = "plan"
 [motion.flight]
@@ -97,16 +99,7 @@ def test_exceeding_a_limit_is_status_1_unless_allowed(
     assert json.loads(capsys.readouterr().out)["outcome"] == "limits exceeded"
 
 
-BEAM = """\
-[beam]
-length = "300 mm"
-section = { shape = "rectangle", width = "20 mm", thickness = "4 mm" }
-material = { density = "2700 kg/m^3", youngs_modulus = "70 GPa" }
-damping_ratio = 0.01
-[model]
-kind = "FOAM"
-modes = { axial = 1, y = 1, z = 1 }
-"""
+BEAM = SPECIMEN + model("FOAM", 1, 1, 1)
 
 
 @pytest.mark.parametrize("verb", ["plan", "run"])
