@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from gbeam.errors import InputError
-from gbeam.scenario import build, json_schema, load, loads, template
+from gbeam.scenario import build, json_schema, load, loads, read_scenario, template
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 FILES = sorted(EXAMPLES.glob("*.toml"))
@@ -30,12 +30,12 @@ def test_builds(name: str) -> None:
 
 
 def test_tip_mass_variants() -> None:
-    built = build(load(EXAMPLES / "hubbeam2009_slew_3.toml", ["beam.masses[0].mass=0.5 kg"]))
+    built = read_scenario(EXAMPLES / "hubbeam2009_slew_3.toml", ["beam.masses[0].mass=0.5 kg"])
     assert (built.beam.masses[0].at, built.beam.masses[0].mass) == (8.0, 0.5)
 
 
 def test_flight_and_centrifuge_of_a_record() -> None:
-    built = build(load(EXAMPLES / "f16_8g_turn.toml"))
+    built = read_scenario(EXAMPLES / "f16_8g_turn.toml")
     assert built.tracks == {"centrifuge": "flight"}
     assert built.response.duration == pytest.approx(15.99)
     # The aircraft's z points down and its record reads -1 g in level flight; the beam's points up.
@@ -67,6 +67,6 @@ def test_schema_describes_every_field() -> None:
 
 def _references(node: Any) -> set[str]:
     if isinstance(node, dict):
-        here = {value for key, value in node.items() if key == "$ref"}
-        return here.union(*map(_references, node.values()))
+        own = {value for key, value in node.items() if key == "$ref"}
+        return own.union(*map(_references, node.values()))
     return set().union(*map(_references, node)) if isinstance(node, list) else set()

@@ -191,7 +191,7 @@ def _response(
     end = start + duration
     last = min((end_of_interval for _, _, end_of_interval in records), default=end)
     if end > last + 1e-6 * duration:
-        problem = f"asks for an end at {end:g} s, and the record ends at {last:g} s"
+        problem = f"reaches to {end:g} s, and the record ends at {last:g} s"
         fix = f"give {last - start:g} s or less, or leave it out"
         parts.errors.append(InputError("response.duration", problem, fix))
     if table.residual_from is not None and not start <= table.residual_from < end:
