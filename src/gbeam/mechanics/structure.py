@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import is_jax
+from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.errors import InputError
 from gbeam.mechanics.damping import damping_matrix, rest_modes
 from gbeam.mechanics.equations.hub import FreeHub, free_hub, ground_of
-from gbeam.mechanics.equations.linear import Coefficients, Geometric, coefficients
+from gbeam.mechanics.equations.linear import Coefficients, Geometric, LoadTerms, coefficients
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.rotation import Field
 from gbeam.mechanics.fields.taylor import Places
@@ -195,6 +195,24 @@ class Structure:
         from gbeam.mechanics.equations.dalembert import CompleteHub
 
         return CompleteHub(self.equations, hub.mount, ground_of(hub))  # type: ignore[arg-type]
+
+    def about(self, q: Array) -> tuple[Coefficients, Array]:
+        """Coefficients of small departures from coordinates `q` (n,), and the elastic forces there, (n,)."""
+        c = self.coefficients
+        if self.linear:
+            return c, c.stiffness @ q
+        from gbeam.mechanics.equations.expansion import elastic_about, loads_about, places_about
+
+        assert self.elasticity is not None
+        xp = namespace(c.mass, q)
+        places = Places(*(xp.asarray(x) for x in places_about(self.inertia, q)))
+        elastic, stiffness = c.stiffness @ q, c.stiffness
+        if not self.elasticity.field.linear_strains:
+            elastic, stiffness = (xp.asarray(x) for x in elastic_about(self.elasticity, q))
+        loads = None
+        if self.work is not None:
+            loads = LoadTerms(*(xp.asarray(x) for x in loads_about(self.work, q, self.load_values)))
+        return coefficients(self.mass, places, stiffness, damping=c.damping, loads=loads), elastic
 
     @cached_property
     def rest(self) -> tuple[Array, Array]:

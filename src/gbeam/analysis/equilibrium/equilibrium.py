@@ -6,12 +6,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from gbeam.arrays.namespace import namespace
 from gbeam.errors import ComputationError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.numerics.solvers.eigen import symmetric_modes
 
 Array = Any
+_ITERATIONS, _TRACED = 30, 8  # of Newton's method; where no number says that it has converged
 
 
 class Equilibrium(NamedTuple):
@@ -63,10 +65,7 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
         import jax.numpy as jnp
 
         return Equilibrium(jnp.linalg.solve(stiffness, force), True)
-    try:
-        q = np.linalg.solve(stiffness, force)
-    except np.linalg.LinAlgError:
-        q = np.full(len(force), np.nan)
+    q = _solved(np, stiffness, force)
     if np.isfinite(q).all():
         return Equilibrium(q, lowest_stiffness(c.mass, stiffness)[0] > 0)
     raise ComputationError(
@@ -78,27 +77,54 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
 
 def _along_a_path(structure: Structure, base: Base, values: Array | None) -> Equilibrium:
     """Newton's method from the straight beam; where one stride fails, along a path of growing load."""
-    from gbeam.analysis.equilibrium.newton import newton
-
-    equations = structure.equations
-    q, reached, stride, stiffness = np.zeros(structure.size), 0.0, 1.0, structure.coefficients.stiffness
+    straight = np.zeros(structure.size)
     if structure.traced:
-        found, _, _ = newton(equations, base, values, 1.0, q)
-        return Equilibrium(found, True)
+        return Equilibrium(_newton(structure, base, values, 1.0, straight)[0], True)
+    q, stiffness, reached, stride = straight, structure.coefficients.stiffness, 0.0, 1.0
     while reached < 1.0:
         attempt = min(reached + stride, 1.0)
-        found, ok, tangent = newton(equations, base, values, attempt, q)
-        if bool(ok):
-            q, stiffness, reached = np.asarray(found), np.asarray(tangent), attempt
-        else:
-            stride /= 4
-            if stride < 1e-4:
-                raise ComputationError(
-                    "not converged",
-                    f"no relative equilibrium beyond {reached:.4g} of the load: the beam buckles or diverges there; "
-                    f"the rate is {_rate(base):.4g} rad/s",
-                )
+        moved, tangent, ok = _newton(structure, base, values, attempt, q)
+        if ok:
+            q, stiffness, reached = moved, tangent, attempt
+            continue
+        stride /= 4
+        if stride < 1e-4:
+            raise ComputationError(
+                "not converged",
+                f"no relative equilibrium beyond {reached:.4g} of the load: the beam buckles or diverges there; "
+                f"the rate is {_rate(base):.4g} rad/s",
+            )
     return Equilibrium(q, bool(np.linalg.eigvalsh(stiffness + stiffness.T)[0] > 0))
+
+
+def _newton(
+    structure: Structure, base: Base, values: Array | None, share: float, q: Array
+) -> tuple[Array, Array, bool]:
+    """Solve at a share of all loads: accelerations and what is applied by the share, rates by its root.
+
+    Returns
+    -------
+    coordinates (n,), tangent stiffness (n, n), and whether the method converged
+    """
+    frozen = share * base.a_WO_B, np.sqrt(share) * base.w_WB_B, share * base.alpha_WB_B
+    loads = None if values is None else share * values
+    stiffness = structure.coefficients.stiffness
+    xp = namespace(stiffness, q)
+    for _ in range(_TRACED if structure.traced else _ITERATIONS):
+        c, elastic = structure.about(q)
+        _, stiffness, force = c.at(*frozen, loads)
+        correction = _solved(xp, stiffness, force - elastic)
+        q = q + correction
+        if not structure.traced and not np.abs(correction).max() > 1e-13 + 1e-12 * np.abs(q).max():
+            return q, stiffness, bool(np.isfinite(q).all())
+    return q, stiffness, False
+
+
+def _solved(xp: Any, matrix: Array, right: Array) -> Array:
+    try:
+        return xp.linalg.solve(matrix, right)
+    except np.linalg.LinAlgError:
+        return np.full(len(right), np.nan)
 
 
 def _rate(base: Base) -> float:

@@ -2,7 +2,7 @@
 
 Modes, Campbell diagrams, critical speeds and state-space models all read the same M, C, K: the derivatives of one
 residual with respect to ÿ, ẏ and y. Nothing here knows which model or which base it differentiates: a linear model's
-residual is differentiated by a complex step, a complete one's by JAX.
+residual is differentiated by a complex step, a complete one's is expanded about the point and is linear there.
 """
 
 from __future__ import annotations
@@ -81,33 +81,50 @@ def frozen(base: Base) -> BaseMotion:
 def _evaluated(structure: Structure, residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
     if structure.linear:
         return residual(y, yd, ydd, residual.unpack(u))
-    from gbeam.analysis.equilibrium.newton import evaluated
+    from gbeam.analysis.equilibrium.compiled import evaluated
 
     return np.asarray(evaluated(residual, y, yd, ydd, u))
 
 
 def _jacobian(structure: Structure, residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
-    n, z = len(y), np.concatenate([y, yd, ydd])
     if not structure.linear:
-        from gbeam.analysis.equilibrium.newton import jacobian
+        from gbeam.analysis.equilibrium.compiled import jacobian
 
-        return np.asarray(jacobian(residual, z, u))
+        return np.asarray(jacobian(residual, np.concatenate([y, yd, ydd]), u))
+    return _stepped(residual, y, yd, ydd, u)
+
+
+def _stepped(residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
+    """Derivatives of a linear model's residual, by a complex step."""
+    n = len(y)
 
     def stacked(x: Array) -> Array:
         return residual(x[:n], x[n : 2 * n], x[2 * n : 3 * n], residual.unpack(x[3 * n :]))
 
-    return complex_step(stacked, np.concatenate([z, u]))
+    return complex_step(stacked, np.concatenate([y, yd, ydd, u]))
 
 
 def linear_matrices(point: OperatingPoint) -> Linear:
     """Derivatives of the residual at an operating point."""
-    n, c = len(point.y), point.structure.coefficients
-    if point.structure.linear and isinstance(point.residual, OnBase):
-        base, loads = point.residual.unpack(point.u)
+    structure, residual, n = point.structure, point.residual, len(point.y)
+    if not structure.linear and (point.yd[point.first :].any() or point.ydd[point.first :].any()):
+        # The beam moves: how its places bend further matters.
+        return _split(_jacobian(structure, residual, point.y, point.yd, point.ydd, point.u), n)
+    # A complete model's small departures from where it rests are a linear model about that place.
+    c, q = structure.coefficients, point.q
+    if not structure.linear:
+        c, q = structure.about(q)[0], np.zeros(structure.size)
+    if isinstance(residual, OnBase):
+        base, loads = residual.unpack(point.u)
         velocity, stiffness, _ = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
-        inputs = c.input_matrix(point.y, point.yd, base.w_WB_B, loaded=loads is not None)
+        inputs = c.input_matrix(q, point.yd, base.w_WB_B, loaded=loads is not None)
         return Linear(c.mass, velocity, stiffness, inputs)
-    d = _jacobian(point.structure, point.residual, point.y, point.yd, point.ydd, point.u)
+    about = residual if structure.linear else OnHub(residual.equations.about(c), residual.mount)
+    y = np.concatenate([point.y[: point.first], q])
+    return _split(_stepped(about, y, point.yd, point.ydd, point.u), n)
+
+
+def _split(d: Array, n: int) -> Linear:
     return Linear(d[:, 2 * n : 3 * n], d[:, n : 2 * n], d[:, :n], -d[:, 3 * n :])
 
 
@@ -164,20 +181,26 @@ def on_base(structure: Structure, base: Base, q: Array | None = None, qd: Array 
     return OperatingPoint(structure, residual, at, moving, qdd, u, base)
 
 
+def _about_rest(structure: Structure, residual: OnHub, y: Array) -> tuple[OnHub, Array]:
+    """A linear residual about y, and y in its coordinates: its hub's row is the complete model's where nothing moves."""
+    if structure.linear:
+        return residual, y
+    c, _ = structure.about(y[1:])
+    return OnHub(residual.equations.about(c), residual.mount), np.append(y[0], np.zeros(structure.size))
+
+
 def needed_torque(point: OperatingPoint) -> float:
-    """Torque on a free hub that its state needs, N m."""
-    u = np.concatenate([np.zeros(1), point.u[1:]])
-    return float(_evaluated(point.structure, point.residual, point.y, point.yd, point.ydd, u)[0])
+    """Torque on a free hub that its state needs, the beam at rest relative to the hub, N m."""
+    assert isinstance(point.residual, OnHub)
+    residual, y = _about_rest(point.structure, point.residual, point.y)
+    return float(residual(y, point.yd, point.ydd, (0.0, residual.unpack(point.u)[1]))[0])
 
 
 def angular_momentum(point: OperatingPoint) -> float:
-    """Angular momentum that hub and beam have, N m s."""
-    equations = point.residual.equations
-    if point.structure.linear:
-        return float(equations.momentum(point.y, point.yd))
-    from gbeam.analysis.equilibrium.newton import momentum
-
-    return float(momentum(equations, point.y, point.yd))
+    """Angular momentum that hub and beam have, the beam at rest relative to the hub, N m s."""
+    assert isinstance(point.residual, OnHub)
+    residual, y = _about_rest(point.structure, point.residual, point.y)
+    return float(residual.equations.momentum(y, point.yd))
 
 
 def on_hub(
@@ -198,9 +221,11 @@ def on_hub(
     residual = OnHub(structure.on_free_hub(hub), hub.mount)
     y, yd, ydd = (np.append(x, beam) for x, beam in ((angle, at), (rate, moving), (acceleration, 0 * at)))
     u = residual.pack(0.0, structure.load_values)
-    if not rests:
+    if rests:
+        u[0] = needed_torque(OperatingPoint(structure, residual, y, yd, ydd, u, base))
+    else:
         ydd[1:] = _beam_acceleration(structure, residual, y, yd, ydd, u)
-    u[0] = _evaluated(structure, residual, y, yd, ydd, u)[0]
+        u[0] = _evaluated(structure, residual, y, yd, ydd, u)[0]
     return OperatingPoint(structure, residual, y, yd, ydd, u, base)
 
 

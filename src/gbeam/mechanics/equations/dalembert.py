@@ -13,8 +13,9 @@ import jax.numpy as jnp
 
 import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.arrays.tree import record
-from gbeam.mechanics.equations.hub import Ground
+from gbeam.mechanics.equations.hub import FreeHub, Ground, free_hub
 from gbeam.mechanics.equations.inertia import Elasticity, Inertia
+from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.equations.virtual_work import LoadWork
 from gbeam.motion.bases.base import Base
 
@@ -132,6 +133,10 @@ class CompleteHub:
         about = jnp.sum(self._levers(r) * force)
         turning = self.ground.torque(y[0], yd[0], ydd[0]) + about - torque - self._twist() @ forces[:6]
         return jnp.concatenate([turning[None], along + self.system._inside(q, qd) - forces[6:]])
+
+    def about(self, c: Coefficients) -> FreeHub:
+        """The same hub with a linear model on its rim."""
+        return free_hub(c, self.mount, self.ground)
 
     def momentum(self, y: Array, yd: Array) -> Array:
         """Angular momentum of hub and beam about the axis, N m s."""
