@@ -48,8 +48,8 @@ class Input:
 
             raise placed(self.scenario, [error]) from None
 
-    def motion(self, name: str | None, *, hubs_only: bool = False) -> tuple[str, Motion]:
-        """The motion of ``--motion``, and its name: without one the only one; with `hubs_only` the only hub.
+    def motion(self, name: str | None, *, kind: str = "") -> tuple[str, Motion]:
+        """The motion of ``--motion``, and its name: without one the only one, or the only one of a kind.
 
         Raises
         ------
@@ -61,11 +61,11 @@ class Input:
             if name not in motions:
                 raise InputError("--motion", f"is {name!r}", f"the scenario has {', '.join(motions)}")
             return name, motions[name]
-        hubs = {key: motion for key, motion in motions.items() if motion.kind == "hub"}
-        choice = hubs if hubs_only and hubs else motions
-        if len(choice) != 1 and not (hubs_only and not hubs):
+        alike = {key: motion for key, motion in motions.items() if motion.kind == kind}
+        choice = alike or motions
+        if len(choice) > 1 and (alike or not kind):
             raise InputError("--motion", "is missing", f"name one of {', '.join(choice)}")
-        # Without any hub the first motion is as good as another: the analysis refuses it with its reason.
+        # Without any of the kind the first motion is as good as another: it is refused with its reason.
         return next(iter(choice.items()))
 
     def time(self, text: str | None) -> float:

@@ -34,7 +34,7 @@ def campbell(
     """
     folder = out if out is not None or json else Path("out") / scenario.stem
     given = read("campbell", scenario, overrides, folder)
-    name, chosen = given.motion(motion, hubs_only=True)
+    name, chosen = given.motion(motion, kind="hub")
     low = 0.0 if start is None else number("--from", start, "angular rate")
     high = None if end is None else number("--to", end, "angular rate")
     if orders < 0:

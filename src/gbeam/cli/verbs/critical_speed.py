@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from gbeam.cli.console import Watch
-from gbeam.cli.inputs import Input, number, numbers, read
+from gbeam.cli.inputs import number, read
 from gbeam.cli.options import At, Json, Masses, MotionName, Out, Overrides, Positions, ScenarioFile, To, Vary
-from gbeam.cli.outputs import publish, show, write, write_json
+from gbeam.cli.outputs import show, write
+from gbeam.cli.verbs.critical_map import critical_map
 from gbeam.errors import InputError
 
 KINDS = {"rate": "angular rate", "loads": "ratio", "acceleration": "acceleration"}
@@ -42,8 +41,8 @@ def critical_speed(
     if masses is not None:
         if vary != "rate":
             raise InputError("--masses", f"stands beside --vary {vary}", "a map is of hub rates")
-        return _map(given, motion, masses, positions, upper, out, json)
-    name, chosen = given.motion(motion, hubs_only=True)
+        return critical_map(given, motion, masses, positions, upper, out, json)
+    name, chosen = given.motion(motion, kind="hub")
     time = given.time(at)
 
     from gbeam.analysis.equilibrium.operating_point import held_base
@@ -61,41 +60,4 @@ def critical_speed(
     facts = report.to_json(critical, name, vary)
     write(out, "critical_speed", facts)
     show(report.text(critical, name), facts, json)
-    return 0
-
-
-def _map(
-    given: Input,
-    motion: str | None,
-    masses: str,
-    positions: str | None,
-    upper: float | None,
-    out: Path | None,
-    json: bool,
-) -> int:
-    name, chosen = given.motion(motion, hubs_only=True)
-    case = given.case
-    kilograms = numbers("--masses", masses, "mass")
-    length = case.beam.length
-    places = [length * i / 8 for i in range(1, 9)] if positions is None else numbers("--positions", positions, "length")
-    if max(places) > length:
-        raise InputError("--positions", f"has {max(places):g} m, off the beam", f"give 0 to {length:g} m")
-
-    from gbeam.analysis.vibration.stability import critical_speed_map
-    from gbeam.report.steady import critical as report
-
-    with Watch(), given.placing():
-        critical = critical_speed_map(case.beam, case.model, chosen, kilograms, places, upper, name=name)
-    facts = report.map_json(critical)
-
-    def make(hidden: Path) -> None:
-        from gbeam.plots import save
-
-        write_json(hidden / "critical_speed.json", facts)
-        (hidden / "critical_speed.csv").write_text(report.map_csv(critical), encoding="utf-8")
-        save(critical.plot(title=case.title), hidden, "critical_speed")
-
-    if out is not None:
-        publish(out, make)
-    show(report.map_text(critical), facts, json)
     return 0

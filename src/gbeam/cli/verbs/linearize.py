@@ -46,7 +46,7 @@ def linearize(
     With --out writes linear.json and linear.mat. Exit status: 0 done, 1 there is no equilibrium, 2 the input is wrong.
     """
     given = read("linearize", scenario, overrides, out)
-    name, chosen = given.motion(motion, hubs_only=rate is not None)
+    name, chosen = given.motion(motion, kind="" if rate is None else "hub")
     time = given.time(at)
     steady = None if rate is None else number("--rate", rate, "angular rate")
     stations = [number("--strain-at", text, "length") for text in strain_at]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from gbeam.cli.inputs import Input, naming, number, read
+from gbeam.cli.inputs import naming, number, read
 from gbeam.cli.options import (
     CentrifugeName,
     Check,
@@ -39,22 +39,23 @@ def place(
     weights = parse(measure)
     widths = [number("--smoothing", text, "time") for text in smoothing]
     given = read("place", scenario, overrides, out)
-    name = _centrifuge(given, motion)
-    flight, current = given.case.motions[given.case.tracks[name]], given.case.motions[name]
+    name, current = given.motion(motion, kind="centrifuge")
 
     from gbeam.analysis.imitation import place as analysis
     from gbeam.analysis.imitation.choice import choice_of
-    from gbeam.motion import Centrifuge, Flight
+    from gbeam.motion import Centrifuge
     from gbeam.report.machine import placement as report
 
-    assert isinstance(flight, Flight) and isinstance(current, Centrifuge)  # the schema sees to it
+    if not isinstance(current, Centrifuge):
+        fix = "add one that tracks the flight; `gbeam new` shows how"
+        raise InputError(f"motion.{name}", "is no centrifuge to put a specimen on", fix)
     analysis.check_weights(weights, "--measure")
     with naming("--smoothing"):
         choice = choice_of(current, widths, limited=not ignore_limits)
     with given.placing():
         placement = analysis.place(
             given.case.assemble(),
-            flight,
+            current.flight,
             choice,
             given.case.response,
             weights,
@@ -80,15 +81,3 @@ def parse(measure: str) -> dict[str, float]:
                 "--measure", f"has the weight {weight.strip()!r}", 'write "tip=1, root-moment=0.5"'
             ) from None
     return weights
-
-
-def _centrifuge(given: Input, name: str | None) -> str:
-    """Name of the centrifuge of ``--motion``, or of the only one."""
-    names = list(given.case.tracks)
-    if not names:
-        raise InputError("motion", "has no centrifuge", "add one that tracks the flight; `gbeam new` shows how")
-    if name is None and len(names) > 1:
-        raise InputError("--motion", f"is missing, and there are {len(names)}", f"choose of {', '.join(names)}")
-    if name is not None and name not in names:
-        raise InputError("--motion", f"names no centrifuge {name!r}", f"choose of {', '.join(names)}")
-    return name or names[0]

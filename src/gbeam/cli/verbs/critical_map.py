@@ -1,0 +1,48 @@
+"""``gbeam critical-speed --masses``: critical hub rates against a mass on the beam and its position."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from gbeam.cli.console import Watch
+from gbeam.cli.inputs import Input, numbers
+from gbeam.cli.outputs import publish, show, write_json
+from gbeam.errors import InputError
+
+
+def critical_map(
+    given: Input,
+    motion: str | None,
+    masses: str,
+    positions: str | None,
+    upper: float | None,
+    out: Path | None,
+    json: bool,
+) -> int:
+    """Print and write the map; the arguments are those of :func:`~gbeam.cli.verbs.critical_speed.critical_speed`."""
+    name, chosen = given.motion(motion, kind="hub")
+    case = given.case
+    kilograms = numbers("--masses", masses, "mass")
+    length = case.beam.length
+    places = [length * i / 8 for i in range(1, 9)] if positions is None else numbers("--positions", positions, "length")
+    if max(places) > length:
+        raise InputError("--positions", f"has {max(places):g} m, off the beam", f"give 0 to {length:g} m")
+
+    from gbeam.analysis.vibration.stability import critical_speed_map
+    from gbeam.report.steady import critical as report
+
+    with Watch(), given.placing():
+        critical = critical_speed_map(case.beam, case.model, chosen, kilograms, places, upper, name=name)
+    facts = report.map_json(critical)
+
+    def make(hidden: Path) -> None:
+        from gbeam.plots import save
+
+        write_json(hidden / "critical_speed.json", facts)
+        (hidden / "critical_speed.csv").write_text(report.map_csv(critical), encoding="utf-8")
+        save(critical.plot(title=case.title), hidden, "critical_speed")
+
+    if out is not None:
+        publish(out, make)
+    show(report.map_text(critical), facts, json)
+    return 0
