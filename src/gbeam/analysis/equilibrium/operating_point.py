@@ -182,7 +182,7 @@ def on_base(structure: Structure, base: Base, q: Array | None = None, qd: Array 
 
 
 def _about_rest(structure: Structure, residual: OnHub, y: Array) -> tuple[OnHub, Array]:
-    """A linear residual about y, and y in its coordinates: its hub's row is the complete model's where nothing moves."""
+    """A linear residual about y, and y in its coordinates: where nothing moves its hub's row is the complete one's."""
     if structure.linear:
         return residual, y
     c, _ = structure.about(y[1:])
