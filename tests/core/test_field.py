@@ -3,36 +3,36 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from gbeam.mechanics.energy import rest_matrices, second_order
-from gbeam.mechanics.field import projected_field, rotation_matrix
 from scipy.integrate import solve_ivp
 from scipy.interpolate import BarycentricInterpolator
 
-from gbeam import Model, assemble
-from gbeam.analysis.response.simulation import displacement
-from gbeam.mechanics.assembly import Structure, rest_modes
-from gbeam.mechanics.equations import Damped, coefficients
+from gbeam import Model, Structure, assemble
 from gbeam.mechanics.fields.basis import bar_shapes, bending_shapes, legendre_shapes, quadrature
+from gbeam.mechanics.fields.exact import exact_field
+from gbeam.mechanics.fields.projected import projected_field
+from gbeam.mechanics.fields.rooted import RootedField
+from gbeam.mechanics.fields.rotation import Field, rotation_matrix
 
-from .helpers import beam, states
+from ..differences import hessian, jacobian
+from ..lagrange import quickly_compiled
+from ..specimens import LENGTH, SPRINGS, appendage, states
 
 ROUNDING = 1e-12
 SPECTRAL = 1e-9  # of the shapes' quadrature, at rotations of a radian
 ODE = 1e-9
-LENGTH = 8.0
 PLACE = 5.0  # where a body might sit: the axial strain vanishes at the tip
 STATIONS = np.linspace(0.5, 7.5, 8)
 
 
 @cache
 def exact(strain: int = 2, y: int = 3, z: int = 3) -> Structure:
-    return assemble(beam(), Model("exact", strain, y, z), STATIONS)
+    return assemble(appendage(), Model("exact", strain, y, z), STATIONS)
 
 
 def bent(structure: Structure, seed: int, strain: float = 0.01, angle: float = 0.8) -> np.ndarray:
@@ -42,23 +42,23 @@ def bent(structure: Structure, seed: int, strain: float = 0.01, angle: float = 0
     return states(sum(count), 1, 1.0, seed)[0] * scale
 
 
-@eqx.filter_jit
-def sampled(structure: Structure, q: jax.Array):  # type: ignore[no-untyped-def]
+def sampled(structure: Structure, q: np.ndarray) -> tuple[Any, ...]:
     field = structure.field
-    return field.position(q), field.rotation(q), field.strains(q), structure.system.energy.potential(q)
+    assert field is not None
+    return field.position(q), field.rotation(q), field.strains(q), structure.strain_energy(q)
 
 
 def nodes_of(structure: Structure) -> np.ndarray:
     """Positions of the quadrature nodes: the field's points before the stations, undeformed."""
-    r, *_ = sampled(structure, jnp.zeros(structure.size))
-    return np.asarray(r)[: structure.first_station, 0]
+    r, *_ = sampled(structure, np.zeros(structure.size))
+    return r[: structure.first_station, 0]
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_exact_sections_only_turn(seed: int) -> None:
     _, rotation, _, _ = sampled(exact(), bent(exact(), seed))
     np.testing.assert_allclose(
-        rotation @ jnp.swapaxes(rotation, 1, 2), np.broadcast_to(np.eye(3), rotation.shape), atol=ROUNDING
+        rotation @ np.swapaxes(rotation, 1, 2), np.broadcast_to(np.eye(3), rotation.shape), atol=ROUNDING
     )
     np.testing.assert_allclose(np.linalg.det(rotation), 1, atol=ROUNDING)
 
@@ -90,7 +90,7 @@ def test_planar_and_spatial_forms_agree_in_either_plane() -> None:
     wide = {"y": np.concatenate([q, none]), "z": np.concatenate([q[:2], none, q[2:]])}
     for plane, counts in (("y", (2, 3, 0)), ("z", (2, 0, 3))):
         flat, full = sampled(exact(*counts), q), sampled(exact(), wide[plane])
-        for ours, theirs in zip(jax.tree.leaves(flat), jax.tree.leaves(full), strict=True):
+        for ours, theirs in zip((*flat[:2], *flat[2], flat[3]), (*full[:2], *full[2], full[3]), strict=True):
             np.testing.assert_allclose(ours, theirs, atol=1e-10)
 
 
@@ -133,11 +133,11 @@ def test_exact_field_is_smooth_through_small_angles() -> None:
     structure = exact(0, 1, 1)
     direction = np.array([0.6, 0.8])
 
-    def tip(size: jax.Array) -> jax.Array:
+    def tip(size: Any) -> Any:
         q = size * direction
         return jnp.concatenate([structure.field.position(q)[-1], structure.field.strains(q).about_y[:1]])
 
-    second = jax.jit(jax.jacfwd(jax.jacfwd(tip)))
+    second = quickly_compiled(jax.jacfwd(jax.jacfwd(tip)))
     for switch in (1e-2, 1e-1):  # φ² = 1e-4 and 1e-2 at the tip
         below, above = (np.asarray(second(switch * (1 + side))) for side in (-1e-6, 1e-6))
         np.testing.assert_allclose(below, above, atol=1e-5)
@@ -148,9 +148,7 @@ def test_rotation_matrix_is_the_exponential() -> None:
     from scipy.spatial.transform import Rotation
 
     angles = np.concatenate([states(3, 5, 1.5, seed=5), states(3, 5, 1e-3, seed=6), np.zeros((1, 3))])
-    np.testing.assert_allclose(
-        rotation_matrix(jnp.array(angles)), Rotation.from_rotvec(angles).as_matrix(), atol=ROUNDING
-    )
+    np.testing.assert_allclose(rotation_matrix(angles), Rotation.from_rotvec(angles).as_matrix(), atol=ROUNDING)
 
 
 def test_projected_field_is_the_sum_of_shapes_and_the_foreshortening() -> None:
@@ -179,7 +177,7 @@ def test_projected_sections_follow_the_torsion_free_frame_to_second_order(moving
 
     The frame of the axis r(x; q), carried along without torsion, differs from `rotation` by O(q³): an eighth at half q.
     """
-    structure = assemble(beam(), Model("CFOAM", 1, 2, 2), [PLACE])
+    structure = assemble(appendage(), Model("CFOAM", 1, 2, 2), [PLACE])
     q = states(5, 1, 0.5, seed=8)[0] * moving
 
     def tangent(x: float, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -214,28 +212,110 @@ def test_projected_sections_follow_the_torsion_free_frame_to_second_order(moving
 
 def test_exact_field_to_second_order_has_foams_kinematics() -> None:
     """Where no load acts across the beam the coordinates do not matter: equal frequencies at a steady spin."""
-    foam = assemble(beam(), Model("FOAM", 2, 10, 0))
-    full = assemble(beam(), Model("exact", 3, 11, 0))
-    expanded = Damped(second_order(full.system.energy), full.system.damping)
+    structures = [assemble(appendage(), model) for model in (Model("FOAM", 2, 10, 0), Model("exact", 3, 11, 0))]
     spin, radius = np.array([0.0, 1.0, 2.0]), 0.5
     root = radius * np.array([-(spin @ spin), 0.0, 0.0])
-    found = []
-    for system in (foam.system, expanded):
-        velocity, stiffness, _ = coefficients(system).at(root, spin, jnp.zeros(3))
-        n, mass = velocity.shape[0], np.asarray(coefficients(system).mass)
+    frequencies = []
+    for c in (structure.coefficients for structure in structures):
+        velocity, stiffness, _ = c.at(root, spin, np.zeros(3))
+        n = len(velocity)
         first_order = np.block(
-            [[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(mass, np.hstack([stiffness, velocity]))]]
+            [[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(c.mass, np.hstack([stiffness, velocity]))]]
         )
-        found.append(np.sort(np.abs(np.linalg.eigvals(first_order).imag))[::2][:3])
-    np.testing.assert_allclose(found[0], found[1], rtol=2e-4)  # FOAM's ten modes at 2 rad/s
-    at_rest = [rest_modes(*rest_matrices(system.energy))[0][:3] for system in (foam.system, expanded)]
-    np.testing.assert_allclose(at_rest[0], at_rest[1], rtol=1e-7)
+        frequencies.append(np.sort(np.abs(np.linalg.eigvals(first_order).imag))[::2][:3])
+    np.testing.assert_allclose(*frequencies, rtol=2e-4)  # FOAM's ten modes at 2 rad/s
+    at_rest = [structure.rest[0][:3] for structure in structures]
+    np.testing.assert_allclose(*at_rest, rtol=1e-7)
 
 
-def test_displacement_history_in_blocks() -> None:
-    structure = assemble(beam(), Model("FOAM", 1, 1, 1), [2.0])
-    q = states(3, 5000, 0.1, seed=9)  # more than one block of the compiled length
-    history = displacement(structure, q)
-    assert history.shape == (5000, 2, 3)
-    for i in (0, 4095, 4096, 4999):
-        np.testing.assert_allclose(history[i], structure.displacement(q[i]), atol=1e-14)
+def test_displacement_history_is_that_of_its_moments() -> None:
+    for kind in ("FOAM", "CFOAM", "exact"):
+        structure = assemble(appendage(), Model(kind, 1, 1, 1), [2.0])
+        q = states(3, 5000, 0.1, seed=9)
+        history = structure.displacement(q)
+        assert history.shape == (5000, 2, 3)
+        for i in (0, 4095, 4096, 4999):
+            np.testing.assert_allclose(history[i], structure.displacement(q[i]), atol=1e-14)
+
+
+# --- Taylor polynomials at the straight beam
+
+
+def _fields() -> dict[str, Field]:
+    rule = quadrature(LENGTH, 6)
+    x = np.concatenate([rule.node, [PLACE, LENGTH]])
+    inner: dict[str, Field] = {
+        "FOAM": projected_field(LENGTH, rule, x, (1, 2, 2), foreshortening=True),
+        "TLAM": projected_field(LENGTH, rule, x, (1, 2, 2), foreshortening=False),
+        "exact": exact_field(LENGTH, rule, x, (1, 2, 2)),
+        "exact in a plane": exact_field(LENGTH, rule, x, (1, 2, 0)),
+    }
+    rooted = {
+        f"{name} on springs": RootedField(field, x, *SPRINGS.directions(), linear=name == "TLAM")
+        for name, field in inner.items()
+    }
+    return inner | rooted
+
+
+FIELDS = _fields()
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_polynomials_are_the_derivatives_of_places_rotations_and_strains(name: str) -> None:
+    field = FIELDS[name]
+    places, turns, slopes = field.places(), field.turns(), field.strain_slopes()
+    zero = np.zeros(places.first.shape[-1])
+    np.testing.assert_allclose(places.r0, field.position(zero), atol=1e-12)
+    np.testing.assert_allclose(places.first, jacobian(field.position, zero), atol=1e-12)
+    np.testing.assert_allclose(places.second, hessian(field.position, zero), atol=1e-11)
+    np.testing.assert_allclose(field.rotation(zero), np.broadcast_to(np.eye(3), (len(places.r0), 3, 3)), atol=1e-15)
+    np.testing.assert_allclose(turns.first, jacobian(field.rotation, zero), atol=1e-12)
+    np.testing.assert_allclose(turns.second, hessian(field.rotation, zero), atol=1e-11)
+    for i, slope in enumerate(slopes):
+        if np.size(slope):
+            strain = jacobian(lambda q, i=i: field.strains(q)[i], zero)
+            np.testing.assert_allclose(slope, strain, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_a_field_at_some_points_is_the_field_there(name: str) -> None:
+    field = FIELDS[name]
+    at = np.array([2, 5, 7])
+    some, q = field.sampled(at), states(field.places().first.shape[-1], 1, 0.2, seed=4)[0]
+    np.testing.assert_allclose(some.position(q), field.position(q)[at], atol=1e-14)
+    np.testing.assert_allclose(some.rotation(q), field.rotation(q)[at], atol=1e-14)
+    np.testing.assert_allclose(some.places().second, field.places().second[at], atol=1e-14)
+
+
+def test_places_follow_their_polynomial() -> None:
+    """Positions, velocities and accelerations along a path, by differentiating the path."""
+    places = FIELDS["exact on springs"].places()
+    q, qd, qdd = states(places.first.shape[-1], 3, 0.3, seed=6)
+
+    def path(t: Any) -> Any:
+        return places.positions(q + qd * t[0] + qdd * t[0] ** 2 / 2)
+
+    start = np.zeros(1)
+    derivatives = path(start), jacobian(path, start)[..., 0], hessian(path, start)[..., 0, 0]
+    for ours, theirs in zip(places.paths(q, qd, qdd), derivatives, strict=True):
+        np.testing.assert_allclose(ours, theirs, atol=1e-10)
+    np.testing.assert_allclose(places.slopes(q), jacobian(places.positions, q), atol=1e-12)
+
+
+def test_a_field_is_the_same_under_jax() -> None:
+    """The same lines serve JAX's arrays: positions and rotations compiled, and their derivatives by JAX."""
+    field = FIELDS["exact in a plane on springs"]
+    q = states(field.places().first.shape[-1], 1, 0.2, seed=5)[0]
+
+    @quickly_compiled
+    def compiled(field: Field, q: Any) -> Any:
+        def both(q: Any) -> Any:
+            return field.position(q), field.rotation(q)
+
+        return both(q), jax.jacfwd(both)(q)
+
+    (r, R), (dr, dR) = compiled(field, q)
+    np.testing.assert_allclose(r, field.position(q), atol=1e-13)
+    np.testing.assert_allclose(R, field.rotation(q), atol=1e-13)
+    np.testing.assert_allclose(dr, jacobian(field.position, q), atol=1e-12)
+    np.testing.assert_allclose(dR, jacobian(field.rotation, q), atol=1e-12)

@@ -6,24 +6,19 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from gbeam.mechanics.energy import rest_matrices
 from scipy.integrate import quad
 
-from gbeam import Beam, InputError, Material, Model, PointMass, Section, assemble
-from gbeam.mechanics.assembly import KINDS, rest_modes
+from gbeam import Beam, InputError, Model, PointMass, Section, Structure, assemble
 from gbeam.mechanics.fields.basis import bar_shapes, bending_shapes
+from gbeam.mechanics.models import KINDS
 
-from .helpers import TIP, beam
+from ..specimens import ALUMINIUM, TIP, appendage
+from ..specimens import STRIP_DENSITY as DENSITY
+from ..specimens import STRIP_LENGTH as L
+from ..specimens import STRIP_YOUNG as E
+from ..specimens import strip_beam as strip
 
 EXACT = 1e-10
-L, DENSITY, E = 0.3, 2700.0, 7e10
-ALUMINIUM = Material(DENSITY, E)
-
-
-def strip(**more: object) -> Beam:
-    """The beam of 2020 Table 1."""
-    return Beam(L, Section.rectangle(0.02, 0.004), ALUMINIUM, **more)  # type: ignore[arg-type]
-
 
 REFUSED: list[tuple[str, str, Callable[[], object]]] = [
     ("kind", "is 'foam'", lambda: Model("foam", 1, 1, 1)),
@@ -61,7 +56,7 @@ def test_table_of_models() -> None:
     assert [k for k, row in KINDS.items() if not row.truncated] == ["CFOAM", "exact"]
     assert [k for k, row in KINDS.items() if not row.hub_force] == ["SFOAM"]
     assert [k for k, row in KINDS.items() if not row.axial] == ["SFOAM"]
-    structure = assemble(beam(TIP), Model("SFOAM", 0, 2, 0))
+    structure = assemble(appendage(TIP), Model("SFOAM", 0, 2, 0))
     assert (structure.linear, structure.hub_force, structure.counts, structure.size) == (True, False, (0, 2, 0), 2)
 
 
@@ -79,9 +74,14 @@ def test_displacement_at_stations_is_the_shapes() -> None:
     np.testing.assert_allclose(moved, np.stack([1e-3 * s, 2e-3 * f, 3e-3 * f], axis=1), atol=1e-15)
 
 
+def at_rest(structure: Structure) -> tuple[np.ndarray, np.ndarray]:
+    """Mass and stiffness of the straight beam on a base at rest."""
+    return structure.coefficients.mass, structure.coefficients.stiffness
+
+
 def test_uniform_beam_has_closed_form_matrices_and_frequencies() -> None:
     """M = ρAL, K = diag(EA L k², EI_z λ⁴/L³, EI_y λ⁴/L³): 2020 (14), (22); I_y goes with z (its (8) swaps them)."""
-    mass, stiffness = rest_matrices(assemble(strip(), Model("FOAM", 2, 2, 2)).system.energy)
+    mass, stiffness = at_rest(assemble(strip(), Model("FOAM", 2, 2, 2)))
     area = 8e-5
     np.testing.assert_allclose(mass, DENSITY * area * L * np.eye(6), atol=1e-15)
     k = np.array([1, 3]) * np.pi / (2 * L)
@@ -94,7 +94,7 @@ def test_taper_and_point_mass_against_quadrature() -> None:
     """A taper with a corner: M = ∫ρA f fᵀ + m f(l) f(l)ᵀ and K = ∫EI f'' f''ᵀ by adaptive quadrature."""
     taper = Section.rectangle([0.03, 0.02, 0.02], [0.006, 0.004, 0.001], [0.0, 0.1, L])
     loaded = Beam(L, taper, ALUMINIUM, [PointMass(0.22, 0.05)])
-    mass, stiffness = rest_matrices(assemble(loaded, Model("FOAM", 0, 0, 2)).system.energy)
+    mass, stiffness = at_rest(assemble(loaded, Model("FOAM", 0, 0, 2)))
 
     def integral(entry: Callable[[float], float]) -> float:
         return sum(quad(entry, *panel, epsabs=0, epsrel=1e-12)[0] for panel in ((0, 0.1), (0.1, L)))
@@ -113,29 +113,23 @@ def test_taper_and_point_mass_against_quadrature() -> None:
 
 @pytest.mark.parametrize("ratio", [0.02, [0.01, 0.02, 0.03, 0.04, 0.05]])
 def test_modal_damping_ratios(ratio: float | list[float]) -> None:
-    system = assemble(beam(TIP, damping_ratio=ratio), Model("FOAM", 1, 2, 2)).system  # type: ignore[arg-type]
-    mass, stiffness = rest_matrices(system.energy)
-    frequency, modes = rest_modes(mass, stiffness)
-    modal = modes.T @ np.asarray(system.damping) @ modes
+    structure = assemble(appendage(TIP, damping_ratio=ratio), Model("FOAM", 1, 2, 2))
+    frequency, modes = structure.rest
+    modal = modes.T @ structure.coefficients.damping @ modes
     np.testing.assert_allclose(modal, np.diag(2 * np.broadcast_to(ratio, 5) * frequency), atol=1e-9)
 
 
 def test_rest_modes_are_normalised_and_ascending() -> None:
-    mass, stiffness = rest_matrices(assemble(beam(TIP), Model("exact", 1, 3, 2)).system.energy)
-    frequency, modes = rest_modes(mass, stiffness)
+    structure = assemble(appendage(TIP), Model("exact", 1, 3, 2))
+    (mass, stiffness), (frequency, modes) = at_rest(structure), structure.rest
     assert (np.diff(frequency) >= 0).all()
-    np.testing.assert_allclose(modes.T @ np.asarray(mass) @ modes, np.eye(6), atol=1e-10)
-    np.testing.assert_allclose(
-        modes.T @ np.asarray(stiffness) @ modes, np.diag(frequency**2), atol=1e-6 * frequency[-1] ** 2
-    )
+    np.testing.assert_allclose(modes.T @ mass @ modes, np.eye(6), atol=1e-10)
+    np.testing.assert_allclose(modes.T @ stiffness @ modes, np.diag(frequency**2), atol=1e-6 * frequency[-1] ** 2)
 
 
 def test_all_models_are_one_beam_at_rest() -> None:
     """Without a moving base all models have the same small vibrations; exact's shapes are others but span them."""
-    found = {
-        kind: rest_modes(*rest_matrices(assemble(strip(), Model(kind, axial, 0, 4)).system.energy))[0][:2]
-        for kind, axial in (("FOAM", 1), ("CFOAM", 1))
-    }
-    exact = rest_modes(*rest_matrices(assemble(strip(), Model("exact", 1, 0, 7)).system.energy))[0][:2]
-    for kind, frequency in found.items():
+    exact = assemble(strip(), Model("exact", 1, 0, 7)).rest[0][:2]
+    for kind in ("FOAM", "CFOAM"):
+        frequency = assemble(strip(), Model(kind, 1, 0, 4)).rest[0][:2]
         np.testing.assert_allclose(frequency, exact, rtol=1e-7, err_msg=kind)
