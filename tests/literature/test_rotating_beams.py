@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from functools import cache
 
-import jax
 import numpy as np
 import pytest
 import scipy.linalg
@@ -27,11 +26,11 @@ from gbeam import (
     simulate,
     solve_equilibrium,
 )
+from gbeam.analysis.equilibrium.operating_point import linear_matrices, on_base
 from gbeam.mechanics.equations.linear import Coefficients
-from gbeam.mechanics.equations.residuals import OnBase
 from gbeam.motion import Base
 
-from ..lagrange import quickly_compiled
+from .test_elastica import PLANAR
 
 # A beam of unit length, unit mass per length and unit EI: nondimensional, with EA = α², α the slenderness.
 ROUNDED = 6e-4  # published values have three decimals, in places rounded twice
@@ -181,35 +180,28 @@ def test_flap_and_chord_of_slenderness_70(speed: float, flap: float, chord: floa
 
 @cache
 def exact_chordwise(slenderness: float) -> Structure:
-    return assemble(unit_beam(slenderness), Model("exact", 4, 7, 0))
-
-
-@quickly_compiled
-def linearised(s: Structure, base: Base, q: jax.Array) -> tuple[jax.Array, ...]:
-    """M, G, K about a relative equilibrium."""
-    none = 0 * q
-
-    def residual(q: jax.Array, qd: jax.Array, qdd: jax.Array) -> jax.Array:
-        return OnBase(s.equations)(q, qd, qdd, (base, None))
-
-    return tuple(jax.jacfwd(residual, i)(q, none, none) for i in (2, 1, 0))
+    return assemble(unit_beam(slenderness), Model("exact", *PLANAR))
 
 
 def vibration_about_equilibrium(s: Structure, base: Base, count: int) -> np.ndarray:
-    M, G, K = (np.asarray(x) for x in linearised(s, base, solve_equilibrium(s, base).q))
-    return gyroscopic_frequencies(M, G, K, count)
+    at = linear_matrices(on_base(s, base))
+    return gyroscopic_frequencies(at.mass, at.velocity, at.stiffness, count)
 
 
 # --- the rotating bar, code_aster V3.04.104 and V3.04.105: u(x) = sin ax/(a cos aL) − x, a = ω √(ρ/E)
+
+
+def unit_bar() -> Beam:
+    return Beam(1.0, Section.general(1.0, 1e-4, 1e-4), Material(1.0, 1.0), [PointMass(1.0, 0.0)])
 
 
 @pytest.mark.parametrize("a", [0.1, 0.7])
 def test_rotating_bar(a: float) -> None:
     """Centrifugal force on the displaced bar, ω²(x + u): FOAM and exact share the formula, each to its own shapes."""
     base = spinning(a, axis=2)  # unit bar with EA = 1: a = ω
-    bar = Beam(1.0, Section.general(1.0, 1e-4, 1e-4), Material(1.0, 1.0))
+    bar = unit_bar()
     tip = np.tan(a) / a - 1
-    exact = assemble(bar, Model("exact", 8, 1, 0))
+    exact = assemble(bar, Model("exact", *PLANAR))
     q = solve_equilibrium(exact, base).q
     np.testing.assert_allclose(exact.displacement(q)[-1], [tip, 0, 0], atol=1e-9)
 
@@ -228,8 +220,7 @@ def test_rotating_bar(a: float) -> None:
 def test_rotating_bar_on_a_hub() -> None:
     """r'' + a² r = 0 with r(0) = R and r'(L) = 1."""
     a, radius = 0.5, 0.8
-    bar = Beam(1.0, Section.general(1.0, 1e-4, 1e-4), Material(1.0, 1.0))
-    exact = assemble(bar, Model("exact", 8, 1, 0))
+    exact = assemble(unit_bar(), Model("exact", *PLANAR))
     base = spinning(a, axis=2, radius=radius)
     B = (1 / a + radius * np.sin(a)) / np.cos(a)
     tip = radius * np.cos(a) + B * np.sin(a) - radius - 1
@@ -264,10 +255,11 @@ SPIN_UP = SmoothStep(6.0, 15.0)  # ψ' of ψ = 6/15 (t²/2 + (15/2π)² (cos(2π
 
 
 @cache
-def robot_arm() -> Structure:
+def robot_arm(counts: tuple[int, int, int] = (2, 5, 0)) -> Structure:
     """EA = 2.8e7 N, EI = 1.4e4 N m², ρA = 1.2 kg/m, L = 10 m; shear (GA = 1e7 N) and rotary inertia are left out."""
     section = Section.general(4e-4, 2e-7, 2e-7)
-    return assemble(Beam(10.0, section, Material(3000.0, 7e10)), Model("exact", 2, 5, 0))
+    none = PointMass(10.0, 0.0)  # the size of 2009's beam
+    return assemble(Beam(10.0, section, Material(3000.0, 7e10), [none]), Model("exact", *counts))
 
 
 @pytest.mark.slow
@@ -297,6 +289,7 @@ def across_slope(q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def test_steady_state_of_the_robot_arm() -> None:
     """At 6 rad/s: stretch tan(aL)/a − L = 5.143174550e-4 m, first in-plane frequency 4.51147 rad/s (independent)."""
     base = spinning(6.0, axis=2)
-    stretch = robot_arm().displacement(solve_equilibrium(robot_arm(), base).q)[-1, 0]
+    arm = robot_arm(PLANAR)
+    stretch = arm.displacement(solve_equilibrium(arm, base).q)[-1, 0]
     np.testing.assert_allclose(stretch, 5.143174550426011e-4, rtol=1e-6)
-    assert vibration_about_equilibrium(robot_arm(), base, 1)[0] == pytest.approx(4.51147, rel=2e-4)
+    assert vibration_about_equilibrium(arm, base, 1)[0] == pytest.approx(4.51147, rel=2e-4)
