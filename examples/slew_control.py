@@ -19,7 +19,7 @@ import scipy.linalg
 from gbeam import Beam, Hub, Material, Model, PointMass, Section, assemble, constant
 from gbeam.analysis.control.linearization import linearize
 from gbeam.analysis.vibration.modal import modes
-from gbeam.integrate import NonlinearSystem, State, integrate, newmark
+from gbeam.integrate import NonlinearEquations, integrate, newmark
 
 ANGLE = 1.0  # rad
 PUSH = 12.0  # s, of the unshaped torque: half forward, half back
@@ -37,22 +37,18 @@ def structure(kind: str, axial: int, y: int):
 HUB = Hub(radius=0.5, inertia=200.0, torque=constant(0.0))
 
 
-def tip(beam, q):
-    """Displacement of the tip along y over time, m."""
-    return np.asarray(jax.vmap(beam.displacement)(jnp.asarray(q)))[:, -1, 1]
-
-
 def simulate(beam, torque):
     """Motion of hub and beam (t, 1 + n) under torque(t, y, ẏ)."""
-    from gbeam.mechanics.equations import Hub, on_free_hub
 
-    def residual(y, yd, ydd, t):
-        hub = Hub(HUB.radius, HUB.inertia)
-        return on_free_hub(beam.system, hub, y, yd, ydd, torque(t, y, yd))
+    def residual(equations, y, yd, ydd, t):
+        return equations.residual(y, yd, ydd, torque(t, y, yd))
 
-    system = NonlinearSystem(residual, lambda t: t)
-    rest = State.rest(jnp.zeros(beam.size + 1))
-    found = integrate(system, newmark(), rest, step=STEP, count=round(END / STEP))
+    # The equations' arrays are arguments of the compiled program and not constants in it, which would take longer.
+    driven = jax.tree_util.Partial(residual, beam.on_free_hub(HUB))
+    rest = np.zeros(beam.size + 1)
+    found = integrate(
+        NonlinearEquations(driven, lambda t: t), newmark(), rest, rest, step=STEP, count=round(END / STEP)
+    )
     return found.time, found.q
 
 
@@ -112,7 +108,7 @@ def main() -> dict[str, float]:
         ("LQR", feedback(small, exact)),
     ):
         time, y = simulate(exact, torque)
-        swing, late = tip(exact, y[:, 1:]), time > 0.8 * END
+        swing, late = exact.displacement(y[:, 1:])[:, -1, 1], time > 0.8 * END
         left = np.ptp(swing[late]) / 2
         error = abs(y[-1, 0] - ANGLE)
         measured |= {f"{name} residual": float(left), f"{name} error": float(error)}

@@ -170,8 +170,10 @@ def _row(
     against = (nan, nan, nan, nan)
     if isinstance(reference, Response) and reference.outcome == "done":
         top, left = float(reference.peaks.max_abs[axis]), float(reference.peaks.residual_amplitude[axis])
-        # 40 samples to the lowest period: a cubic is wrong there by 1e-5 of a vibration, a straight line by 0.3 %.
-        there = CubicSpline(reference.time, reference.tip[:, axis])(it.time)
+        there = reference.tip[:, axis]
+        if not np.array_equal(reference.time, it.time):
+            # 40 samples to the lowest period: a cubic is wrong there by 1e-5 of a vibration, a straight line by 0.3 %.
+            there = CubicSpline(reference.time, there)(it.time)
         largest = float(np.abs(it.tip[:, axis] - there).max())
         after = it.time >= it.residual_from
         phase = _phase(it.time[after], it.tip[after, axis], there[after]) if after.sum() > 8 else nan
