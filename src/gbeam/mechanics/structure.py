@@ -104,6 +104,11 @@ class Structure:
     work: LoadWork | None = None
     load_values: Array | None = None
 
+    def __repr__(self) -> str:
+        shapes = ", ".join(f"{n} {way}" for n, way in zip(self.counts, ("axial", "y", "z"), strict=True) if n)
+        size = "traced" if self.traced else f"{float(self.coefficients.rigid[0]):.4g} kg"
+        return f"Structure({self.kind}, {self.size} coordinates{f' ({shapes})' if shapes else ''}, {size})"
+
     @classmethod
     def of_particles(
         cls,

@@ -117,11 +117,11 @@ def _answer(
     tail = shape_tail(structure, response)
     if tail <= SHAPES_FINE:
         return response
-    told = (
+    warning = (
         f"the last shapes of exact still move the tip by {tail:.2g} of the peak: it has not converged; "
         "raise model.modes"
     )
-    return replace(response, warnings=(*response.warnings, told))
+    return replace(response, warnings=(*response.warnings, warning))
 
 
 def shape_tail(structure: Structure, response: Response) -> float:
@@ -154,47 +154,51 @@ def _axis(moved: Floats) -> int:
 
 def _most_moved(answers: dict[tuple[str, str], tuple[Response | Failure, float]], name: str) -> int:
     """Axis along which the models that have an answer move the tip most."""
-    found = [it.peaks.max_abs for (_, where), (it, _) in answers.items() if where == name and isinstance(it, Response)]
+    found = [
+        answer.peaks.max_abs
+        for (_, where), (answer, _) in answers.items()
+        if where == name and isinstance(answer, Response)
+    ]
     return _axis(np.sum(found, axis=0)) if found else 0
 
 
 def _row(
-    kind: str, name: str, it: Response | Failure, seconds: float, reference: Response | Failure, axis: int
+    kind: str, name: str, answer: Response | Failure, seconds: float, reference: Response | Failure, axis: int
 ) -> ModelRow:
     nan = float("nan")
-    if not isinstance(it, Response) or it.outcome != "done":
-        warnings = it.warnings if isinstance(it, Response) else ()
-        return ModelRow(kind, name, it.outcome, it.message, warnings, seconds=seconds)
-    peak, residual = float(it.peaks.max_abs[axis]), float(it.peaks.residual_amplitude[axis])
-    angle = nan if it.hub is None or not np.isfinite(it.hub.drive_torque).all() else float(it.hub.angle[-1])
+    if not isinstance(answer, Response) or answer.outcome != "done":
+        warnings = answer.warnings if isinstance(answer, Response) else ()
+        return ModelRow(kind, name, answer.outcome, answer.message, warnings, seconds=seconds)
+    peak, residual = float(answer.peaks.max_abs[axis]), float(answer.peaks.residual_amplitude[axis])
+    angle = nan if answer.hub is None or not np.isfinite(answer.hub.drive_torque).all() else float(answer.hub.angle[-1])
     against = (nan, nan, nan, nan)
     if isinstance(reference, Response) and reference.outcome == "done":
         top, left = float(reference.peaks.max_abs[axis]), float(reference.peaks.residual_amplitude[axis])
         there = reference.tip[:, axis]
-        if not np.array_equal(reference.time, it.time):
+        if not np.array_equal(reference.time, answer.time):
             # 40 samples to the lowest period: a cubic is wrong there by 1e-5 of a vibration, a straight line by 0.3 %.
-            there = CubicSpline(reference.time, there)(it.time)
-        largest = float(np.abs(it.tip[:, axis] - there).max())
-        after = it.time >= it.residual_from
-        phase = _phase(it.time[after], it.tip[after, axis], there[after]) if after.sum() > 8 else nan
+            there = CubicSpline(reference.time, there)(answer.time)
+        largest = float(np.abs(answer.tip[:, axis] - there).max())
+        after = answer.time >= answer.residual_from
+        phase = _phase(answer.time[after], answer.tip[after, axis], there[after]) if after.sum() > 8 else nan
         if top > 0:
             against = (peak / top - 1, residual / left - 1 if left > 0 else nan, phase, largest / top)
     return ModelRow(
         model=kind,
         motion=name,
-        outcome=it.outcome,
-        message=it.message,
-        warnings=it.warnings,
+        outcome=answer.outcome,
+        message=answer.message,
+        warnings=answer.warnings,
         peak=peak,
-        time_of_peak=float(it.peaks.time_of_max[axis]),
+        time_of_peak=float(answer.peaks.time_of_max[axis]),
         peak_error=against[0],
         residual=residual,
         residual_error=against[1],
         phase=against[2],
         difference=against[3],
         hub_angle=angle,
-        error_estimate=it.error_estimate,
-        steps=it.steps,
+        error_estimate=answer.error_estimate,
+        steps=answer.steps,
         seconds=seconds,
     )
 

@@ -53,7 +53,9 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
             failures[name] = Failure(error.outcome, str(error))
     if not responses:
         first = next(iter(failures.values()))
-        raise ComputationError(first.outcome, "; ".join(f"motion.{n}: {it.message}" for n, it in failures.items()))
+        raise ComputationError(
+            first.outcome, "; ".join(f"motion.{n}: {failure.message}" for n, failure in failures.items())
+        )
     comparisons = tuple(
         compare(responses[flight], responses[name])
         for name, flight in case.tracks.items()

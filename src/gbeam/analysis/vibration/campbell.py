@@ -143,7 +143,7 @@ def campbell(
         there = track >= 0
         frequency[i, there], damping[i, there] = here.frequency[track[there]], here.damping_ratio[track[there]]
         alike[i] = value
-    rates = np.array([it.rate for it in followed])
+    rates = np.array([speed.rate for speed in followed])
     crossings = [
         crossing
         for k in range(kept)
@@ -159,7 +159,7 @@ def campbell(
         mac=alike,
         direction=coarse[0].direction[:kept],
         orders=tuple(orders),
-        crossings=tuple(sorted(crossings, key=lambda it: it.speed)),
+        crossings=tuple(sorted(crossings, key=lambda crossing: crossing.speed)),
         critical=lost if lost.value is not None else None,
     )
 
