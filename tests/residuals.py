@@ -57,6 +57,16 @@ def on_hub(
     return np.asarray(values), float(momentum)
 
 
+def gravity_potential(structure: Structure, hub: Hub, y: Array) -> Array:
+    """Energy of the beam in the hub's gravity, J; of a linear model to second order in q."""
+    places = structure.places if structure.linear else structure.inertia
+    assert places is not None
+    mount, total = hub.mount, structure.mass.sum()
+    x, y_, z = mount.R_HB @ (structure.mass @ places.positions(y[1:])) + total * mount.radius * np.array([1.0, 0, 0])
+    c, s = np.cos(y[0]), np.sin(y[0])
+    return -mount.gravity @ np.stack([c * x - s * y_, s * x + c * y_, z])
+
+
 def virtual_work(structure: Structure, q: Array) -> np.ndarray:
     """Resultant of the structure's loads at the root, base axes, and their forces on the coordinates, (6 + n,).
 
