@@ -14,7 +14,7 @@ from gbeam.integrate import linear
 from gbeam.integrate.equations import Drive, LinearEquations, NonlinearEquations
 from gbeam.integrate.schemes import Scheme
 
-CHUNK = 200  # steps per compiled call, and per look at whether to stop
+CHUNK = 100  # steps per compiled call, and per look at whether to stop
 _LINEAR_CHUNK = 500  # steps whose maps are found at once: as many as stay in a cache
 Floats = NDArray[np.float64]
 Piece = tuple[Any, ...]  # q, q̇, q̈ (k, n), and which of the steps were solved (k,)

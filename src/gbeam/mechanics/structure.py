@@ -183,10 +183,11 @@ class Structure:
         if self.linear:
             return self.coefficients
         from gbeam.mechanics.equations.dalembert import Complete
+        from gbeam.mechanics.equations.inertia import weighed
 
         assert self.inertia is not None and self.elasticity is not None
         stiffness = self.coefficients.stiffness if self.elasticity.field.linear_strains else None
-        return Complete(self.inertia, self.elasticity, self.coefficients.damping, stiffness, self.work)
+        return Complete(weighed(self.inertia), self.elasticity, self.coefficients.damping, stiffness, self.work)
 
     def on_free_hub(self, hub: Any) -> FreeHub | CompleteHub:
         """The equations with the angle of a free hub as one more coordinate.

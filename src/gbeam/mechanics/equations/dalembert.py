@@ -14,7 +14,7 @@ import jax.numpy as jnp
 import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.arrays.tree import record
 from gbeam.mechanics.equations.hub import FreeHub, Ground, free_hub
-from gbeam.mechanics.equations.inertia import Elasticity, Inertia
+from gbeam.mechanics.equations.inertia import Elasticity, Weighed
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.equations.virtual_work import LoadWork
 from gbeam.motion.bases.base import Base
@@ -28,7 +28,7 @@ class Complete:
 
     Parameters
     ----------
-    inertia : Inertia
+    inertia : Weighed
     elasticity : Elasticity
     damping : (n, n)
     stiffness : (n, n) or None
@@ -36,7 +36,7 @@ class Complete:
     work : LoadWork or None
     """
 
-    inertia: Inertia
+    inertia: Weighed
     elasticity: Elasticity
     damping: Array
     stiffness: Array | None
@@ -70,29 +70,31 @@ class Complete:
         w_WB_B, alpha_WB_B : (3,) angular velocity and acceleration of the base, base axes, rad/s, rad/s²
         load_values : (loads, 6), optional
         """
-        force, pull_back, _ = self._inertia_forces(q, qd, qdd, a_WO_B, w_WB_B, alpha_WB_B)
+        _, force, pull_back, _ = self.inertia_forces(q, qd, qdd, a_WO_B, w_WB_B, alpha_WB_B)
         (along,) = pull_back(force)
-        return along + self._inside(q, qd) - self._generalised(q, load_values)[6:]
+        return along + self.inside(q, qd) - self.generalised(q, load_values)[6:]
 
-    def _inertia_forces(
+    def inertia_forces(
         self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array
-    ) -> tuple[Array, Any, Array]:
-        """m a of the particles, (k, 3) N; the pull-back to the coordinates; the places, (k, 3) m."""
-        place = self.inertia.positions
+    ) -> tuple[Array, Array, Any, Array]:
+        """The points (p, 3), the inertia forces on them (p, 3), their pull-back to q, and the resultant (3,) N."""
+        place = self.inertia.points
         r, pull_back = jax.vjp(place, q)
 
         def moving(q: Array, qd: Array) -> Array:
             return jax.jvp(place, (q,), (qd,))[1]
 
         rd, rdd = jax.jvp(moving, (q, qd), (qd, qdd))
-        acceleration = a + _cross(alpha, r) + _cross(w, _cross(w, r) + 2 * rd) + rdd
-        return self.inertia.mass[:, None] * acceleration, pull_back, r
+        relative = _cross(alpha, r) + _cross(w, _cross(w, r) + 2 * rd) + rdd
+        return r, self.inertia.forces(relative, a), pull_back, self.inertia.total(relative, a)
 
-    def _inside(self, q: Array, qd: Array) -> Array:
+    def inside(self, q: Array, qd: Array) -> Array:
+        """Elastic and damping forces on the coordinates, (n,)."""
         elastic = self.stiffness @ q if self.stiffness is not None else jax.grad(self.elasticity.energy)(q)
         return elastic + self.damping @ qd
 
-    def _generalised(self, q: Array, load_values: Array | None) -> Array:
+    def generalised(self, q: Array, load_values: Array | None) -> Array:
+        """Resultant of the loads at the root, then their forces on the coordinates, (6 + n,)."""
         if self.work is None or load_values is None:
             return jnp.zeros(6 + self.size)
         return self.work.generalised(q, load_values)
@@ -127,12 +129,14 @@ class CompleteHub:
         """Residual (n + 1,) of hub and beam under a torque on the hub, N m, and load components (loads, 6)."""
         q, qd, qdd = y[1:], yd[1:], ydd[1:]
         base = self.base(y, yd, ydd)
-        force, pull_back, r = self.system._inertia_forces(q, qd, qdd, base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
+        r, force, pull_back, total = self.system.inertia_forces(q, qd, qdd, base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
         (along,) = pull_back(force)
-        forces = self.system._generalised(q, load_values)
-        about = jnp.sum(self._levers(r) * force)
+        forces = self.system.generalised(q, load_values)
+        axis, root = self.mount.R_HB[2], self.mount.radius * self.mount.R_HB[0]
+        # Of the forces about the axis: about the root, and of their resultant there.
+        about = jnp.sum(_cross(axis, r) * force) + _cross(axis, root[None])[0] @ total
         turning = self.ground.torque(y[0], yd[0], ydd[0]) + about - torque - self._twist() @ forces[:6]
-        return jnp.concatenate([turning[None], along + self.system._inside(q, qd) - forces[6:]])
+        return jnp.concatenate([turning[None], along + self.system.inside(q, qd) - forces[6:]])
 
     def about(self, c: Coefficients) -> FreeHub:
         """The same hub with a linear model on its rim."""
@@ -140,14 +144,10 @@ class CompleteHub:
 
     def momentum(self, y: Array, yd: Array) -> Array:
         """Angular momentum of hub and beam about the axis, N m s."""
-        r, rd = jax.jvp(self.system.inertia.positions, (y[1:],), (yd[1:],))
-        lever = self._levers(r)
-        velocity = lever * yd[0] + rd
-        return self.ground.inertia * yd[0] + jnp.sum(self.system.inertia.mass[:, None] * lever * velocity)
-
-    def _levers(self, r: Array) -> Array:
-        """e × (r_O + r), (k, 3) m."""
-        return _cross(self.mount.R_HB[2], r + self.mount.radius * self.mount.R_HB[0])
+        inertia = self.system.inertia.inertia
+        r, rd = jax.jvp(inertia.positions, (y[1:],), (yd[1:],))
+        lever = _cross(self.mount.R_HB[2], r + self.mount.radius * self.mount.R_HB[0])
+        return self.ground.inertia * yd[0] + jnp.sum(inertia.mass[:, None] * lever * (lever * yd[0] + rd))
 
     def _twist(self) -> Array:
         return jnp.concatenate([self.mount.radius * jnp.asarray(self.mount.R_HB)[1], jnp.asarray(self.mount.R_HB)[2]])

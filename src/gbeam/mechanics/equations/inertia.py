@@ -44,6 +44,49 @@ class Inertia:
 
 
 @record
+class Weighed:
+    """The same particles as D'Alembert's sum reads them in time steps: by points p(q), and what weighs these.
+
+    Where the particles' places are constant combinations r = C t(q) of nodal vectors, these are the points, and the
+    masses enter as CᵀmC and Cᵀm, found once; else the points are the particles.
+
+    Parameters
+    ----------
+    inertia : Inertia
+    pairs : (p, p) kg, or None
+        Σ m over the particles of the products of what two points bring to their places; None where they are the
+        particles themselves.
+    first : (p,) kg
+        Σ m of what each point brings.
+    """
+
+    inertia: Inertia
+    pairs: Array | None
+    first: Array
+
+    def points(self, q: Array) -> Array:
+        """The points at coordinates (n,), (p, 3)."""
+        return self.inertia.positions(q) if self.pairs is None else self.inertia.field.vectors(q)
+
+    def forces(self, relative: Array, root: Array) -> Array:
+        """Inertia forces on the points, (p, 3), from accelerations relative to the root's, (p, 3), and that, (3,)."""
+        own = self.first[:, None] * relative if self.pairs is None else self.pairs @ relative
+        return own + self.first[:, None] * root
+
+    def total(self, relative: Array, root: Array) -> Array:
+        """Their resultant, (3,) N."""
+        return self.first @ relative + self.inertia.mass.sum() * root
+
+
+def weighed(inertia: Inertia) -> Weighed:
+    """What the particles weigh at the points of their field."""
+    field, mass = inertia.field, inertia.mass
+    if inertia.offset is not None or not field.cumulates:
+        return Weighed(inertia, None, mass)
+    return Weighed(inertia, field.cumulative.T @ (mass[:, None] * field.cumulative), field.cumulative.T @ mass)
+
+
+@record
 class Elasticity:
     """The strain energy of a field, U = ½ ∫ EA ε² + EI_y κ_y² + EI_z κ_z² dx + ½ Σ k s² of the root's springs.
 

@@ -45,11 +45,17 @@ class ExactField:
 
     def position(self, q: Array) -> Array:
         """Positions of the points of the axis at coordinates (..., n), (..., points, 3) m."""
+        return self.cumulative @ self.vectors(q)
+
+    def vectors(self, q: Array) -> Array:
+        """Tangents (1 + ε) R e₁ at the quadrature nodes at coordinates (..., n), (..., g, 3)."""
         xp = namespace(self.cumulative, q)
         strain, y, z = at_nodes(self.nodal, q)
-        sinc, _, cosine = exponential_of(y**2 + z**2)
         stretch = 1 + strain
-        return self.cumulative @ xp.stack([stretch * cosine, stretch * sinc * z, -stretch * sinc * y], axis=-1)
+        if self.planar:  # one of the angles is zero
+            return xp.stack([stretch * xp.cos(y + z), stretch * xp.sin(z), -stretch * xp.sin(y)], axis=-1)
+        sinc, _, cosine = exponential_of(y**2 + z**2)
+        return xp.stack([stretch * cosine, stretch * sinc * z, -stretch * sinc * y], axis=-1)
 
     def rotation(self, q: Array, at: Any = slice(None)) -> Array:
         """Rotations of the sections `at` some points at coordinates (..., n), (..., points, 3, 3)."""
@@ -75,6 +81,11 @@ class ExactField:
     def sampled(self, at: Any) -> ExactField:
         """The same field at some of the points."""
         return replace(self, angle_y=self.angle_y[at], angle_z=self.angle_z[at], cumulative=self.cumulative[at])
+
+    @property
+    def cumulates(self) -> bool:
+        """The positions are sums of nodal vectors, `cumulative @ vectors(q)`."""
+        return True
 
     @property
     def linear_strains(self) -> bool:

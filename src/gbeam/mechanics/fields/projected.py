@@ -45,6 +45,10 @@ class ProjectedField:
             along = along - 0.5 * square @ self.cumulative.T
         return xp.stack([along, v, w], axis=-1)
 
+    def vectors(self, q: Array) -> Array:
+        """None: see `cumulates`."""
+        raise TypeError("the positions of this field are no plain sums of nodal vectors")
+
     def rotation(self, q: Array, at: Any = slice(None)) -> Array:
         """Rotations of the sections `at` some points at coordinates (..., n), (..., points, 3, 3), to second order.
 
@@ -72,6 +76,11 @@ class ProjectedField:
             slopes=self.slopes[:, at],
             cumulative=self.cumulative[at],
         )
+
+    @property
+    def cumulates(self) -> bool:
+        """The positions are no plain sums of nodal vectors."""
+        return False
 
     @property
     def linear_strains(self) -> bool:

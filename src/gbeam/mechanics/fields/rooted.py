@@ -53,6 +53,10 @@ class RootedField:
             return r + moved + xp.cross(turned[..., None, :], straight)
         return r @ xp.swapaxes(rotation_matrix(turned), -1, -2) + moved
 
+    def vectors(self, q: Array) -> Array:
+        """None: see `cumulates`."""
+        raise TypeError("the positions of this field are no plain sums of nodal vectors")
+
     def rotation(self, q: Array, at: Any = slice(None)) -> Array:
         """Rotations of the sections `at` some points at coordinates (..., n), (..., points, 3, 3)."""
         beam, root = self._split(q)
@@ -66,6 +70,11 @@ class RootedField:
     def sampled(self, at: Any) -> RootedField:
         """The same field at some of the points."""
         return replace(self, inner=self.inner.sampled(at), x=self.x[at])
+
+    @property
+    def cumulates(self) -> bool:
+        """The positions are no plain sums of nodal vectors."""
+        return False
 
     @property
     def linear_strains(self) -> bool:

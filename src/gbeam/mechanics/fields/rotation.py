@@ -53,6 +53,15 @@ class Field(Protocol):
         """Whether the strains are linear in q."""
         ...
 
+    @property
+    def cumulates(self) -> bool:
+        """Whether the positions are ``cumulative @ vectors(q)``."""
+        ...
+
+    def vectors(self, q: Array) -> Array:
+        """Nodal vectors (..., g, 3) at coordinates (..., n), where the field cumulates them."""
+        ...
+
     def places(self) -> Places:
         """Taylor polynomial of the positions at the straight beam."""
         ...
