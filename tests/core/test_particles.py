@@ -1,0 +1,172 @@
+"""A structure that is not a beam: whatever gives masses, places and their derivatives, or a geometric stiffness."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from gbeam import Flight, Hub, InputError, SmoothStep, Structure, campbell, modes, simulate, static
+from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
+from gbeam.mechanics.equations.linear import Geometric
+from gbeam.motion import Base, constant
+
+from ..specimens import HUB_RADIUS, hub_beam
+
+SAME = 1e-10  # relative
+SLEW = Hub(radius=HUB_RADIUS, rate=SmoothStep(3.0, 2.0))
+
+
+def geometric(structure: Structure) -> Geometric:
+    """Σ m H in the fields of unit inertial loads, particle by particle."""
+    axes = np.eye(3)
+    r0, second, mass = structure.places.r0, structure.places.second, structure.mass
+
+    def weighted(field: np.ndarray) -> np.ndarray:
+        return np.einsum("k,ka,kaij->ij", mass, field, second)
+
+    al = [weighted(np.cross(e, r0)) for e in axes]
+    ww = [[weighted(np.cross(e, np.cross(f, r0)) + np.cross(f, np.cross(e, r0))) / 2 for f in axes] for e in axes]
+    return Geometric(np.array([weighted(e + 0 * r0) for e in axes]), np.array(al), np.array(ww))
+
+
+@cache
+def beam() -> Structure:
+    return hub_beam("FOAM", 1, 2, 2, damping_ratio=0.01)
+
+
+@cache
+def particles(*, by_stress: bool) -> Structure:
+    """The particles of that beam, with their second derivatives or with the geometric stiffness in their place."""
+    whole = beam()
+    places = {"geometric": geometric(whole)} if by_stress else {"second": whole.places.second}
+    return Structure.of_particles(
+        whole.mass,
+        whole.places.r0,
+        whole.places.first,
+        whole.coefficients.stiffness,
+        damping_ratio=0.01,
+        **places,  # type: ignore[arg-type]
+    )
+
+
+@pytest.mark.parametrize("by_stress", [False, True])
+def test_particles_of_a_beam_are_the_beam(by_stress: bool) -> None:
+    ours, whole = particles(by_stress=by_stress), beam()
+    assert ours.size == whole.size and ours.length == pytest.approx(8.0, rel=0.01)  # the first one is not at the root
+    for name in ("mass", "damping", "stiffness", "gyroscopic", "k_ww", "k_al", "k_a", "f_ww", "f_al", "f_a", "rigid"):
+        theirs = getattr(whole.coefficients, name)
+        np.testing.assert_allclose(getattr(ours.coefficients, name), theirs, atol=1e-12 * max(np.abs(theirs).max(), 1))
+    spinning = Hub(radius=HUB_RADIUS, rate=constant(2.0))
+    found, wanted = modes(ours, spinning), modes(whole, spinning)
+    np.testing.assert_allclose(found.frequency, wanted.frequency, rtol=SAME)
+    np.testing.assert_allclose(found.damping_ratio, wanted.damping_ratio, rtol=1e-8)
+    assert found.direction == wanted.direction
+    rests = [static(s, acceleration=(1.0, 2.0, 3.0)) for s in (ours, whole)]
+    np.testing.assert_allclose(rests[0].q, rests[1].q, rtol=SAME)
+    np.testing.assert_allclose(rests[0].strain_energy, rests[1].strain_energy, rtol=SAME)
+    np.testing.assert_allclose(rests[0].tip[1:], rests[1].tip[1:], rtol=SAME)
+    assert rests[0].loads is None
+    curves = [campbell(s, SLEW, end=3.0, count=4, modes=3) for s in (ours, whole)]
+    np.testing.assert_allclose(curves[0].frequency, curves[1].frequency, rtol=SAME)
+
+
+@pytest.mark.parametrize("by_stress", [False, True])
+def test_particles_of_a_beam_respond_as_the_beam_does(by_stress: bool) -> None:
+    ours, theirs = (simulate(s, SLEW, duration=4.0, step=0.02) for s in (particles(by_stress=by_stress), beam()))
+    np.testing.assert_allclose(ours.q, theirs.q, atol=SAME * np.abs(theirs.q).max())
+    np.testing.assert_allclose(ours.tip[:, 1:], theirs.tip[:, 1:], atol=SAME * np.abs(theirs.tip).max())
+    assert ours.outcome == "done" and ours.error_estimate == pytest.approx(theirs.error_estimate, rel=1e-5)
+    assert ours.loads is None and theirs.loads is not None
+
+
+def test_particles_on_a_free_hub() -> None:
+    free = Hub(radius=HUB_RADIUS, inertia=200.0, torque=constant(20.0))
+    ours, theirs = (simulate(s, free, duration=1.0, step=0.02) for s in (particles(by_stress=True), beam()))
+    assert ours.hub is not None and theirs.hub is not None
+    np.testing.assert_allclose(ours.hub.angle, theirs.hub.angle, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(ours.q, theirs.q, atol=1e-9 * np.abs(theirs.q).max())
+
+
+def test_one_of_second_derivatives_and_geometric_stiffness() -> None:
+    whole = beam()
+    given = whole.mass, whole.places.r0, whole.places.first, whole.coefficients.stiffness
+    for both in ({}, {"second": whole.places.second, "geometric": geometric(whole)}):
+        with pytest.raises(InputError, match="exactly one"):
+            Structure.of_particles(*given, **both)  # type: ignore[arg-type]
+
+
+# --- a blade of cubic finite elements, without dimensions: ρA = EI = L = 1
+
+
+@cache
+def blade(tip: float = 0.0, elements: int = 24) -> Structure:
+    """Point masses at the Gauss points of Hermite's elements, held by their tension in unit inertial loads.
+
+    Coordinates are the deflections along z and the slopes of the nodes; a point mass at the tip.
+    """
+    h, size = 1 / elements, 2 * elements + 2
+    s, weight = (np.polynomial.legendre.leggauss(5)[0] + 1) / 2, np.polynomial.legendre.leggauss(5)[1] / 2
+    shape = [1 - 3 * s**2 + 2 * s**3, h * (s - 2 * s**2 + s**3), 3 * s**2 - 2 * s**3, h * (s**3 - s**2)]
+    slope = np.array([-6 * s + 6 * s**2, h * (1 - 4 * s + 3 * s**2), 6 * s - 6 * s**2, h * (3 * s**2 - 2 * s)]) / h
+    curve = np.array([-6 + 12 * s, h * (-4 + 6 * s), 6 - 12 * s, h * (6 * s - 2)]) / h**2
+    x = (np.arange(elements)[:, None] + s) * h
+    moved = np.zeros((elements, len(s), size))
+    stiffness, pushed, spun = np.zeros((3, size, size))
+    for k in range(elements):
+        own = slice(2 * k, 2 * k + 4)
+        moved[k, :, own] = np.transpose(shape)
+        stiffness[own, own] += (curve * weight * h) @ curve.T
+        # Tension of the mass outboard: an acceleration of the root pushes it, a spin pulls it out.
+        pushed[own, own] -= (slope * weight * h * (1 - x[k] + tip)) @ slope.T
+        spun[own, own] += (slope * weight * h * ((1 - x[k] ** 2) / 2 + tip)) @ slope.T
+    first = np.zeros((elements * len(s) + 1, 3, size))
+    first[:-1, 2] = moved.reshape(-1, size)
+    first[-1, 2, -2] = 1.0
+    a, ww = np.zeros((3, size, size)), np.zeros((3, 3, size, size))
+    a[0], ww[1, 1], ww[2, 2] = pushed, spun, spun
+    clamped = slice(2, None)
+    return Structure.of_particles(
+        np.append(np.tile(weight * h, elements), tip),
+        np.stack([np.append(x.ravel(), 1.0), *np.zeros((2, elements * len(s) + 1))], axis=1),
+        first[..., clamped],
+        stiffness[clamped, clamped],
+        geometric=Geometric(a[:, clamped, clamped], np.zeros((3, size - 2, size - 2)), ww[..., clamped, clamped]),
+        kind="finite elements",
+    )
+
+
+# Wright et al. (1982), J. Appl. Mech. 49, 197: flap against the speed, without and with a tip mass of the blade's mass.
+FLAP = {0: (3.516015, 22.034492, 61.697214), 6: (7.360373, 26.809082, 66.683914), 12: (13.17015, 37.603112, 79.614478)}
+TIP_MASS = {0: (1.5573, 16.25009), 5: (5.52185, 26.04153), 12: (12.48137, 50.85939)}
+
+
+def spin(rate: float) -> Hub:
+    return Hub(radius=0.0, rate=constant(float(rate)))
+
+
+@pytest.mark.parametrize("rate", FLAP)
+def test_rotating_blade_of_finite_elements(rate: float) -> None:
+    found = modes(blade(), spin(rate))
+    np.testing.assert_allclose(2 * np.pi * found.frequency[:3], FLAP[rate], rtol=1e-5)
+    assert found.model == "finite elements" and set(found.direction) == {"z"}
+
+
+@pytest.mark.parametrize("rate", TIP_MASS)
+def test_rotating_blade_of_finite_elements_with_a_tip_mass(rate: float) -> None:
+    found = 2 * np.pi * modes(blade(1.0), spin(rate)).frequency[:2]
+    np.testing.assert_allclose(found, TIP_MASS[rate], rtol=1e-4)
+
+
+def test_blade_of_finite_elements_under_steady_loads() -> None:
+    """At rest w L⁴/8EI; compressed, Greenhill's column."""
+    rest = static(blade(), acceleration=(0.0, 0.0, 1e-3))
+    assert rest.tip[2] == pytest.approx(-1e-3 / 8, rel=1e-6)
+    for push, stable in ((7.83, True), (7.84, False)):
+        assert solve_equilibrium(blade(), Base(np.array([push, 0.0, 0.0]), *np.zeros((2, 3)))).stable == stable
+    few = blade(elements=8)
+    diagram = campbell(few, spin(0.0), end=12.0, count=4, modes=2)
+    np.testing.assert_allclose(2 * np.pi * diagram.frequency[-1], FLAP[12][:2], rtol=3e-4)
+    held = simulate(few, Flight(z=constant(1e-3)), duration=1.0, step=0.02)
+    np.testing.assert_allclose(held.tip[:, 2], -1e-3 / 8, rtol=1e-6)
