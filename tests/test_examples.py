@@ -12,12 +12,12 @@ TIP_MASSES = ("0 kg", "0.1 kg", "0.5 kg")
 
 def run(name: str, *overrides: str) -> gbeam.Study:
     path = next(p for p in EXAMPLES if p.stem == name)
-    return gbeam.study(gbeam.build(gbeam.load(path, overrides)))
+    return gbeam.study(gbeam.read_scenario(path, overrides))
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
 def test_example_is_done_within_its_tolerance(path: Path) -> None:
-    case = gbeam.build(gbeam.load(path))
+    case = gbeam.read_scenario(path)
     answer = gbeam.study(case)
     assert {r.outcome for r in answer.responses.values()} == {"done"}
     for response in answer.responses.values():

@@ -18,9 +18,9 @@ from gbeam.integrate.schemes import Tableau
 
 Array = Any
 # By the order of the scheme, since a higher one takes longer steps: corrections per step, steps per Jacobian.
-CORRECTIONS, PER_JACOBIAN = {2: 3, 4: 5}, {2: 20, 4: 4}
+CORRECTIONS, PER_JACOBIAN = {2: 4, 4: 6}, {2: 20, 4: 4}
 PATIENT = 25  # corrections where those did not suffice
-ACCEPTED = 1e-6  # of the largest acceleration: the error that the last correction may leave
+ACCEPTED = 1e-8  # of the largest acceleration: the error that the last correction may leave
 _TOLERANCE, _ROUNDING, _ITERATIONS = 1e-9, 1e3, 25  # Newton's method proper
 
 
