@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import gbeam.arrays.jax_setup  # noqa: F401
-from gbeam import Beam, Hub, Material, Model, PointMass, Sine, SmoothStep, assemble, simulate
+from gbeam import Beam, Hub, InputError, Material, Model, PointMass, Sine, SmoothStep, assemble, simulate
 
 from ..lagrange import quickly_compiled
-from ..specimens import BOX, HUB_INERTIA, HUB_RADIUS, LENGTH, METAL
+from ..specimens import ALUMINIUM, BOX, HUB_INERTIA, HUB_RADIUS, LENGTH, METAL, STRIP
 
 AGREES = 1e-5  # relative, with central differences
 E = METAL.youngs_modulus
@@ -50,3 +50,24 @@ def test_a_batch_of_moduli_is_as_many_runs(name: str) -> None:
     for batched, modulus in zip(together, moduli, strict=True):
         alone = tip(modulus)
         np.testing.assert_allclose(batched, alone, atol=1e-8 * np.abs(alone).max())
+
+
+@pytest.mark.parametrize(
+    ("beam", "words"),
+    [
+        (lambda x: Beam(x, STRIP, ALUMINIUM), "length is traced by JAX"),
+        (lambda x: Beam(0.3, STRIP, ALUMINIUM, [PointMass(x, 0.1)]), r"masses\[0\].at is traced by JAX"),
+    ],
+)
+def test_what_places_the_shapes_cannot_be_traced(beam: Any, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        jax.grad(lambda x: assemble(beam(x), "FOAM", z=2).coefficients.mass.sum())(0.25)
+
+
+def test_adapted_shapes_cannot_be_traced() -> None:
+    def stiffness(modulus: Any) -> Any:
+        beam = Beam(0.3, STRIP, Material(2700.0, modulus))
+        return assemble(beam, "FOAM", z=2, shapes="adapted").coefficients.stiffness.sum()
+
+    with pytest.raises(InputError, match="shapes adapted to a beam that JAX traces"):
+        jax.grad(stiffness)(70e9)

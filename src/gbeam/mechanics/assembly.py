@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.errors import InputError
 from gbeam.mechanics.damping import damping_matrix
 from gbeam.mechanics.equations.inertia import Elasticity, Inertia
@@ -60,6 +60,7 @@ def assemble(
     if isinstance(model, str):
         model = Model(model, axial, y, z, shapes)
     row, counts = model.row, model.counts
+    _refuse_traced_places(beam, adapted=model.shapes == "adapted")
     at = _stations(beam, stations)
     bodies = [m.at for m in beam.masses]
     adapted = model.shapes == "adapted"
@@ -108,6 +109,23 @@ def assemble(
         work=work,
         load_values=None if history is None else history(np.zeros(())),
     )
+
+
+def _refuse_traced_places(beam: Beam, *, adapted: bool) -> None:
+    """Raise InputError where shapes and quadrature would need a number that JAX traces."""
+    places: dict[str, Any] = {
+        "length": beam.length,
+        **{f"masses[{i}].at": body.at for i, body in enumerate(beam.masses)},
+    }
+    places |= {f"loads[{i}].at": load.at for i, load in enumerate(beam.loads)}
+    for where, value in places.items():
+        if is_jax(value):
+            raise InputError(where, "is traced by JAX, and the shapes are placed by its number", "give a number")
+    if adapted and holds_jax(
+        beam.material.youngs_modulus, beam.material.density, list(beam.section.dimensions.values())
+    ):
+        fix = 'give shapes = "clamped-free"'
+        raise InputError("shapes", "adapted to a beam that JAX traces would be traced with it", fix)
 
 
 def _stations(beam: Beam, stations: ArrayLike) -> Array:
