@@ -177,7 +177,7 @@ def test_progress_is_told() -> None:
     told: list[tuple[str, float]] = []
     settings = ResponseSettings(duration=0.1, step=1e-3)
     simulate(strip(), flight(RAMP), settings, progress=lambda what, share: told.append((what, share)))
-    assert {what for what, _ in told} == {"integrating", "checking with half the step"}
+    assert {what for what, _ in told} == {"integrating", "checking with twice the step"}
     assert told[-1][1] == 1.0
 
 

@@ -108,6 +108,6 @@ def _acceleration(equations: LinearEquations | NonlinearEquations) -> Callable[[
     from gbeam.integrate.newton import accelerations
 
     def nonlinear(t: Any, q: Any, qd: Any) -> Any:
-        return accelerations(equations.residual, q, qd, jax.tree.map(lambda x: x[0], inputs(t)))
+        return accelerations(equations.residual, q[None], qd[None], inputs(t))[0]
 
     return nonlinear

@@ -124,40 +124,39 @@ def _nonlinear(
     equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, start: float, step: float, count: int
 ) -> Iterator[Piece]:
     import jax
-    import jax.numpy as jnp
 
     from gbeam.integrate import newton
 
-    scheme = scheme.ending()
     tableau, residual = scheme.tableau(step), equations.residual
-    first = jax.tree.map(lambda x: x[0], equations.drive(np.array([start])))
-    q, qd = jnp.asarray(q, dtype=float), jnp.asarray(qd, dtype=float)
-    qdd = newton.accelerations(residual, q, qd, first)
-    traced = isinstance(qdd, jax.core.Tracer)
-    read = (lambda x: x) if traced else np.asarray
-    yield *(read(x)[None] for x in (q, qd, qdd)), np.array([True])
-    x = jnp.broadcast_to(qdd, (len(scheme.offsets), len(q)))
-    carry = newton.Carry(jnp.asarray(tableau.first) @ jnp.stack([q, qd, qdd]), x, x)
+    qdd = newton.accelerations(residual, q[None], qd[None], equations.drive(np.array([start])))[0]
+    traced, xp = isinstance(qdd, jax.core.Tracer), jax.numpy
+    if not traced:
+        qdd, xp = np.asarray(qdd), np
+    yield *(xp.asarray(x, dtype=float)[None] for x in (q, qd, qdd)), np.array([True])
+    x = xp.broadcast_to(qdd, (len(scheme.offsets), len(q)))
+    carry = newton.Carry(tableau.first @ xp.stack([q, qd, qdd]), x, x)
     shape, corrections = (-1, newton.PER_JACOBIAN[scheme.order]), newton.CORRECTIONS[scheme.order]
     for times in _times(start, step, count, CHUNK):
         inside = slice(len(times))
         # Steps beyond the end fill the last chunk, so that one program serves every duration.
-        inputs = _stage_inputs(equations.drive, scheme, times[0] + step * np.arange(CHUNK), step)
+        filled = times[0] + step * np.arange(CHUNK)
+        inputs = _stage_inputs(equations.drive, scheme, filled, step)
+        at_ends = None if scheme.ends else equations.drive(filled + step)
         by_chunk = jax.tree.map(lambda leaf: leaf.reshape(*shape, *leaf.shape[1:]), inputs)
         solved: Any = np.ones(len(times), dtype=bool)
         if traced:
-            after, (*piece, left) = newton.steps(residual, tableau, carry, by_chunk, corrections)
-            fine = jnp.max(left.ravel()[inside]) <= newton.ACCEPTED
-            piece = [jnp.where(fine, values.reshape(CHUNK, -1)[inside], jnp.nan) for values in piece]
+            after, (*piece, left) = newton.steps(residual, tableau, carry, by_chunk, at_ends, corrections)
+            fine = xp.max(left[inside]) <= newton.ACCEPTED
+            piece = [xp.where(fine, values[inside], xp.nan) for values in piece]
         else:
-            for tries in (corrections, newton.PATIENT):
-                after, (*piece, left) = newton.quick(residual, tableau, carry, by_chunk, tries)
-                if np.all(np.asarray(left).ravel()[inside] <= newton.ACCEPTED):  # NaN is not
+            for tries in (corrections, *newton.PATIENT):
+                after, (*piece, left) = newton.quick(residual, tableau, carry, by_chunk, at_ends, tries)
+                if np.all(np.asarray(left)[inside] <= newton.ACCEPTED):  # NaN is not
                     break
             else:
-                after, (*piece, solved) = newton.safe(residual, tableau, carry, inputs)
+                after, (*piece, solved) = newton.safe(residual, tableau, carry, inputs, at_ends)
                 solved = np.asarray(solved)[inside]
-            piece = [np.asarray(values).reshape(CHUNK, -1)[inside] for values in piece]
+            piece = [np.asarray(values)[inside] for values in piece]
         carry = after
         yield *piece, solved
 

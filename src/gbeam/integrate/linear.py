@@ -59,17 +59,14 @@ def chunk(
     before, last = _recur(xp, maps, shifts, xp.reshape(z, (-1,)))
     x = solved[..., -1] - (solved[..., :-1] @ before[:, None, :, None])[..., 0]
     zs = xp.reshape(before, (count, m, n))
+    after = xp.reshape(last, (m, n))
+    ends = xp.tensordot(t.end_z, zs, axes=((1,), (1,))) + xp.tensordot(t.end_x, x, axes=((1,), (1,)))
+    q, qd = ends[0], ends[1]
     if scheme.ends:
-        q, qd = (
-            xp.tensordot(w[-1], zs, axes=((0,), (1,))) + xp.tensordot(c[-1], x, axes=((0,), (1,)))
-            for w, c in ((t.w_q, t.c_q), (t.w_v, t.c_v))
-        )
-        return xp.reshape(last, (m, n)), (q, qd, x[:, -1])
-    ends = xp.concatenate([before[1:], last[None]])
-    q, qd = ends[:, :n], ends[:, n : 2 * n]
+        return after, (q, qd, x[:, -1])
     c, k, f = equations.matrices(equations.drive(times + step))
     force = f - (k @ q[..., None] + c @ qd[..., None])[..., 0]
-    return xp.reshape(last, (m, n)), (q, qd, xp.linalg.solve(mass, force.T).T)
+    return after, (q, qd, xp.linalg.solve(mass, force.T).T)
 
 
 def _recur(xp: Any, maps: Array, shifts: Array, z: Array) -> tuple[Array, Array]:

@@ -18,8 +18,8 @@ from gbeam.integrate.schemes import Tableau
 
 Array = Any
 # By the order of the scheme, since a higher one takes longer steps: corrections per step, steps per Jacobian.
-CORRECTIONS, PER_JACOBIAN = {2: 4, 4: 6}, {2: 20, 4: 4}
-PATIENT = 25  # corrections where those did not suffice
+CORRECTIONS, PER_JACOBIAN = {2: 4, 4: 5}, {2: 20, 4: 4}
+PATIENT = 8, 25  # corrections where those did not suffice
 ACCEPTED = 1e-8  # of the largest acceleration: the error that the last correction may leave
 _TOLERANCE, _ROUNDING, _ITERATIONS = 1e-9, 1e3, 25  # Newton's method proper
 
@@ -40,6 +40,15 @@ def _stage_residual(residual: Any, t: Tableau, z: Array, inputs: Any, x: Array) 
     return jax.vmap(residual)(q, qd, x, inputs)
 
 
+def _inverse_jacobian(residual: Any, t: Tableau, z: Array, inputs: Any, x: Array) -> Array:
+    """Inverse Jacobian (s n, s n) of a step, with the derivatives of the residual between its stages for all of them."""
+    q, qd, qdd = (jnp.mean(values, axis=0) for values in (t.w_q @ z + t.c_q @ x, t.w_v @ z + t.c_v @ x, x))
+    between = jax.tree.map(lambda leaf: jnp.mean(leaf, axis=0), inputs)
+    by_state = jax.jacfwd(lambda state: residual(*state, between))(jnp.stack([q, qd, qdd]))
+    k, c, m = (by_state[:, i] for i in range(3))
+    return jnp.linalg.inv(jnp.kron(t.c_q, k) + jnp.kron(t.c_v, c) + jnp.kron(jnp.eye(len(x)), m))
+
+
 def _size(correction: Array, x: Array) -> Array:
     # An error in q̈ matters as it moves q: measure against what the step itself can move.
     return jnp.max(jnp.abs(correction)) / (1.0 + jnp.max(jnp.abs(x)))
@@ -52,20 +61,25 @@ def _left(last: Array, before: Array) -> Array:
 
 @jax.jit
 def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
-    """q̈ (n,) that the equations demand, which are linear in them."""
-    n = q.shape[0]
-    units = jnp.concatenate([jnp.zeros((1, n)), jnp.eye(n)])
-    forces = jax.vmap(lambda qdd: residual(q, qd, qdd, inputs))(units)
-    return jnp.linalg.solve((forces[1:] - forces[0]).T, -forces[0])
+    """q̈ that the equations demand, which are linear in them, at states (k, n) and inputs (k, ...): (k, n)."""
+
+    def at(q: Array, qd: Array, inputs: Any) -> Array:
+        def forces(qdd: Array) -> Array:
+            return residual(q, qd, qdd, inputs)
+
+        still = jnp.zeros_like(q)
+        return jnp.linalg.solve(jax.jacfwd(forces)(still), -forces(still))
+
+    return jax.vmap(at)(q, qd, inputs)
 
 
-def _next(t: Tableau, carry: Carry, x: Array) -> tuple[Carry, tuple[Array, Array, Array]]:
-    """The next carry, and q, q̇, q̈ at the end of the step, which is the last stage."""
-    q, qd = t.w_q[-1] @ carry.z + t.c_q[-1] @ x, t.w_v[-1] @ carry.z + t.c_v[-1] @ x
-    return Carry(t.g @ carry.z + t.d @ x, x, carry.x), (q, qd, x[-1])
+def _next(t: Tableau, carry: Carry, x: Array) -> tuple[Carry, Array, Array]:
+    """The next carry, and q, q̇ at the end of the step."""
+    q, qd = t.end_z @ carry.z + t.end_x @ x
+    return Carry(t.g @ carry.z + t.d @ x, x, carry.x), q, qd
 
 
-def steps(residual: Any, t: Tableau, carry: Carry, inputs: Any, corrections: Any) -> Any:
+def steps(residual: Any, t: Tableau, carry: Carry, inputs: Any, at_ends: Any, corrections: Any) -> Any:
     """Steps with a given number of corrections each.
 
     Parameters
@@ -73,25 +87,22 @@ def steps(residual: Any, t: Tableau, carry: Carry, inputs: Any, corrections: Any
     residual : callable record
         (q, q̇, q̈, inputs) -> (n,).
     t : Tableau
-        Whose last stage is the end of the step.
     inputs : arrays (chunks, steps, s, ...)
         At the stages; one Jacobian for each chunk.
+    at_ends : arrays (chunks · steps, ...) or None
+        Inputs at the ends of the steps; None where these are the last stages.
     corrections : int
         A plain number where the run is to be differentiated backwards.
 
     Returns
     -------
-    Carry, and q, q̇, q̈ at the ends (chunks, steps, n) with the relative error that each step's corrections left
+    Carry, and q, q̇, q̈ at the ends (chunks · steps, n) with the relative error that each step's corrections left
     """
     stages, n = carry.x.shape
 
     def chunk(carry: Carry, chunk_inputs: Any) -> Any:
         first = jax.tree.map(lambda leaf: leaf[0], chunk_inputs)
-
-        def flat(x: Array) -> Array:
-            return _stage_residual(residual, t, carry.z, first, x.reshape(stages, n)).ravel()
-
-        inverse = jnp.linalg.inv(jax.jacfwd(flat)((2 * carry.x - carry.before).ravel()))
+        inverse = _inverse_jacobian(residual, t, carry.z, first, 2 * carry.x - carry.before)
 
         def step(carry: Carry, at: Any) -> Any:
             def correct(_: Any, state: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
@@ -102,19 +113,21 @@ def steps(residual: Any, t: Tableau, carry: Carry, inputs: Any, corrections: Any
 
             far = jnp.full((), jnp.inf)
             x, last, before = jax.lax.fori_loop(0, corrections, correct, (2 * carry.x - carry.before, far, far))
-            after, ends = _next(t, carry, x)
-            return after, (*ends, _left(last, before))
+            after, q, qd = _next(t, carry, x)
+            return after, (q, qd, x[-1], _left(last, before))
 
         return jax.lax.scan(step, carry, chunk_inputs)
 
-    return jax.lax.scan(chunk, carry, inputs)
+    carry, by_chunk = jax.lax.scan(chunk, carry, inputs)
+    q, qd, qdd, left = (x.reshape(-1, *x.shape[2:]) for x in by_chunk)
+    return carry, (q, qd, qdd if at_ends is None else accelerations(residual, q, qd, at_ends), left)
 
 
 quick = jax.jit(steps)
 
 
 @jax.jit
-def safe(residual: Any, t: Tableau, carry: Carry, inputs: Any) -> Any:
+def safe(residual: Any, t: Tableau, carry: Carry, inputs: Any, at_ends: Any) -> Any:
     """Steps by Newton's method with as many iterations as each needs, the Jacobian renewed every fourth.
 
     Parameters and returns as for :func:`steps`, with (steps, ...) in place of (chunks, steps, ...) and, in place of the
@@ -141,7 +154,9 @@ def safe(residual: Any, t: Tableau, carry: Carry, inputs: Any) -> Any:
         far = jnp.array(jnp.inf)
         begin = (carry.x.ravel(), jnp.eye(stages * n), far, far, jnp.array(0))
         x, _, size, _, _ = jax.lax.while_loop(go_on, iterate, begin)
-        after, ends = _next(t, carry, x.reshape(stages, n))
-        return after, (*ends, (size <= _ROUNDING * _TOLERANCE) & jnp.all(jnp.isfinite(x)))
+        x = x.reshape(stages, n)
+        after, q, qd = _next(t, carry, x)
+        return after, (q, qd, x[-1], (size <= _ROUNDING * _TOLERANCE) & jnp.all(jnp.isfinite(x)))
 
-    return jax.lax.scan(step, carry, inputs)
+    carry, (q, qd, qdd, solved) = jax.lax.scan(step, carry, inputs)
+    return carry, (q, qd, qdd if at_ends is None else accelerations(residual, q, qd, at_ends), solved)

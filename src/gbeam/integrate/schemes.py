@@ -34,6 +34,8 @@ class Tableau:
     c_q, c_v : (s, s)
     g : (m, m)
     d : (m, s)
+    end_z, end_x : (2, m), (2, s)
+        q and q̇ at the end of the step, of z and x.
     first : (m, 3)
         The first z of the initial q, q̇, q̈.
     """
@@ -44,6 +46,8 @@ class Tableau:
     c_v: Floats
     g: Floats
     d: Floats
+    end_z: Floats
+    end_x: Floats
     first: Floats
 
 
@@ -66,23 +70,9 @@ class Scheme:
     offsets: tuple[float, ...]
     tableau: Callable[[float], Tableau]
 
-    def ending(self) -> Scheme:
-        """The same scheme with the end of the step as its last stage, so that the accelerations there are unknowns."""
-        if self.ends:
-            return self
-
-        def tableau(h: float) -> Tableau:
-            t, none = self.tableau(h), np.zeros((len(self.offsets), 1))
-            # The end depends on the stages, and nothing on its acceleration.
-            c_q, c_v = (np.block([[c, none], [d, 0.0]]) for c, d in ((t.c_q, t.d[:1]), (t.c_v, t.d[1:2])))
-            w_q, w_v = np.vstack([t.w_q, t.g[:1]]), np.vstack([t.w_v, t.g[1:2]])
-            return Tableau(w_q, w_v, c_q, c_v, t.g, np.hstack([t.d, np.zeros((len(t.d), 1))]), t.first)
-
-        return Scheme(self.name, self.order, (*self.offsets, 1.0), tableau)
-
     @property
     def ends(self) -> bool:
-        """Whether the last stage is the end of the step; else z begins with the q and q̇ of the end."""
+        """Whether the last stage is the end of the step, so that the equations hold there with its acceleration."""
         return self.offsets[-1] == 1.0
 
 
@@ -113,13 +103,16 @@ def _one_step(name: str, alpha_m: float, alpha_f: float, beta: float, gamma: flo
         )
         # Newmark's scheme carries nothing.
         m = 3 if alpha_m or alpha_f else 2
+        c_q, c_v = np.array([[h**2 * beta * share]]), np.array([[h * gamma * share]])
         return Tableau(
             w_q=np.eye(1, m),
             w_v=np.eye(1, m, k=1),
-            c_q=np.array([[h**2 * beta * share]]),
-            c_v=np.array([[h * gamma * share]]),
+            c_q=c_q,
+            c_v=c_v,
             g=rows[:m, :m],
             d=rows[:m, 3:],
+            end_z=np.eye(2, m),
+            end_x=np.concatenate([c_q, c_v]),
             first=first[:m],
         )
 
@@ -178,13 +171,16 @@ def gauss() -> Scheme:
     c = np.array([0.5 - root, 0.5 + root])
 
     def tableau(h: float) -> Tableau:
+        g, d = np.array([[1.0, h], [0.0, 1.0]]), np.stack([h**2 * 0.5 * (1 - c), np.full(2, 0.5 * h)])
         return Tableau(
             w_q=np.stack([np.ones(2), h * c], axis=1),
             w_v=np.array([[0.0, 1.0], [0.0, 1.0]]),
             c_q=h**2 * (a @ a),
             c_v=h * a,
-            g=np.array([[1.0, h], [0.0, 1.0]]),
-            d=np.stack([h**2 * 0.5 * (1 - c), np.full(2, 0.5 * h)]),
+            g=g,
+            d=d,
+            end_z=g,
+            end_x=d,
             first=np.eye(2, 3),
         )
 

@@ -19,7 +19,7 @@ from gbeam.mechanics.fields.exact import exact_field
 from gbeam.mechanics.fields.projected import projected_field
 from gbeam.mechanics.fields.rooted import RootedField
 from gbeam.mechanics.fields.rotation import Field, Strains
-from gbeam.mechanics.models import Model
+from gbeam.mechanics.models import Kind, Model
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.motion.profiles.piecewise import constant
 from gbeam.structure.beam import Beam
@@ -64,9 +64,8 @@ def assemble(
     at = _stations(beam, stations)
     bodies = [m.at for m in beam.masses]
     adapted = model.shapes == "adapted"
-    # Enough for the fourth powers of the highest shape (2009's tensors need 32 nodes for five modes).
     breaks = [*beam.section.stations, *(bodies if adapted else ())]
-    rule = quadrature(beam.length, 12 + 4 * max(counts), breaks)
+    rule = quadrature(beam.length, _nodes(row, max(counts), adapted=adapted), breaks)
     loaded = [load.at for load in beam.loads if load.at is not None]
     x = np.concatenate([rule.node, bodies, loaded, at])
     families = adapted_shapes(beam, rule, counts) if adapted else None
@@ -109,6 +108,15 @@ def assemble(
         work=work,
         load_values=None if history is None else history(np.zeros(())),
     )
+
+
+def _nodes(kind: Kind, shapes: int, *, adapted: bool) -> int:
+    """Nodes per panel, for integrals to rounding."""
+    # Products of two shapes and a power of x; polynomials as angles, whose sines are smooth.
+    if kind.truncated or (kind.exact and not adapted):
+        return 10 + 2 * shapes
+    # CFOAM's fourth powers of the highest shape (2009's tensors: 32 for five), sines of shapes that are no polynomials.
+    return 12 + 4 * shapes
 
 
 def _refuse_traced_places(beam: Beam, *, adapted: bool) -> None:

@@ -24,7 +24,7 @@ from gbeam.results.response import BaseMotion
 from gbeam.results.section_forces import Loads
 
 Array = Any
-_BLOCK = 1024  # times handled together: what stays in a cache, and one compiled shape for complete models
+_BLOCK = 256  # times handled together: what stays in a cache, and one compiled shape for complete models
 
 
 def section_forces(

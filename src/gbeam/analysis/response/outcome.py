@@ -80,6 +80,8 @@ def describe(
             f"the estimated error, {error:.2g} of the largest displacement, is above the tolerance "
             f'{settings.tolerance:g}; give a smaller step, or "auto"'
         )
+    if math.isnan(error):
+        warnings.append("no error could be estimated: the run with twice the step fails; give a smaller step")
     if (turned := turned_out_of_plane(structure, q)) > _NEAR:
         warnings.append(
             f"the beam's tangent turns by {np.degrees(turned):.0f}° out of one plane: straight back, at 180°, its "

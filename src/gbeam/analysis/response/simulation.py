@@ -96,8 +96,9 @@ def simulate(
     elif settings.step is not None:
         order = scheme_of(settings).order
         step = settings.duration / max(1, round(settings.duration / settings.step))
-        trajectory, check = run(step, "integrating"), run(step / 2, "checking with half the step")
-        error = difference(tip(trajectory), tip(check), 2) * 2**order / (2**order - 1)
+        trajectory, check = run(step, "integrating"), run(2 * step, "checking with twice the step")
+        whole = check.converged and not check.stopped
+        error = difference(tip(check), tip(trajectory), 2) / (2**order - 1) if whole else math.nan
     else:
         trajectory, step, error = refine(run, tip, coarse, scheme_of(settings).order, settings)
     # An automatic step is the coarse one halved: its stride brings every motion of a study back to the same times.
@@ -121,7 +122,8 @@ def _integrated(problem: Problem, settings: ResponseSettings, step: float, **how
         problem.q,
         xp.zeros_like(problem.q),
         step=step,
-        count=round(settings.duration / step),
+        # A step that does not divide the duration, twice the one given, goes beyond the end.
+        count=math.ceil(settings.duration / step - 1e-6),
         start=settings.start,
         **how,
     )

@@ -111,14 +111,15 @@ class FreeHub:
         """Residual (n + 1,) of hub and beam, y = (θ, q), under a torque on the hub, N m, and load components."""
         xp = namespace(self.mass, y, yd, ydd, torque, load_values)
         q, qd, qdd, rate, alpha = y[1:], yd[1:], ydd[1:], yd[0], ydd[0]
-        k2q, coupling = self.k2 @ q, self.b0 + self.b1 @ q
-        swept = self.f2 - k2q
+        # Products of constants with one vector stand together: one matrix product in a compiled step.
+        elastic, k2q, b1q = _rows(xp, q, self.stiffness, self.k2, self.b1)
+        damped, turned, b1qd = _rows(xp, qd, self.damping, self.gyroscopic, self.b1)
+        swept, coupling = self.f2 - k2q, self.b0 + b1q
         turning = self.ground.torque(y[0], rate, alpha) - torque
         turning = turning + (self.rigid + (self.f2 + swept) @ q) * alpha + coupling @ qdd
         if self.hub_force:
-            turning = turning + 2 * rate * (swept @ qd) + qd @ (self.b1 @ qd)
-        beam = self.mass @ qdd + self.damping @ qd + rate * (self.gyroscopic @ qd) + self.stiffness @ q
-        beam = beam - rate**2 * swept + alpha * coupling
+            turning = turning + 2 * rate * (swept @ qd) + qd @ b1qd
+        beam = self.mass @ qdd + damped + rate * turned + elastic - rate**2 * swept + alpha * coupling
         if self.weight is not None:
             about, along = self.weight.forces(y[0], q)
             turning, beam = turning - about, beam - along
@@ -132,6 +133,11 @@ class FreeHub:
         q, qd, rate = y[1:], yd[1:], yd[0]
         inertia = self.ground.inertia + self.rigid + (2 * self.f2 - self.k2 @ q) @ q
         return inertia * rate + (self.b0 + self.b1 @ q) @ qd
+
+
+def _rows(xp: Any, vector: Array, *matrices: Array) -> Any:
+    """Products of some (n, n) matrices with a vector, (n,) each."""
+    return xp.reshape(xp.concatenate(matrices) @ vector, (len(matrices), -1))
 
 
 def free_hub(c: Coefficients, mount: Any, ground: Ground, *, hub_force: bool = True) -> FreeHub:

@@ -38,23 +38,23 @@ class Places:
 
     def positions(self, q: Any) -> Any:
         """Places at coordinates (..., n), (..., p, 3) m."""
-        xp = namespace(self.first, q)
-        linear = xp.einsum("pai,...i->...pa", self.first, q)
-        return self.r0 + linear + 0.5 * _quadratic(xp, self.second, q, q)
+        return self.r0 + self._sum(q, 0.5 * _outer(q, q))
 
     def paths(self, q: Any, qd: Any, qdd: Any) -> tuple[Any, Any, Any]:
         """Places, velocities and accelerations relative to the base axes, (..., p, 3) each."""
-        xp = namespace(self.first, q)
-        slopes = self.slopes(q)
-        velocity, relative = (xp.einsum("...pai,...i->...pa", slopes, rate) for rate in (qd, qdd))
-        return self.positions(q), velocity, relative + _quadratic(xp, self.second, qd, qd)
+        return self.positions(q), self._sum(qd, _outer(q, qd)), self._sum(qdd, _outer(q, qdd) + _outer(qd, qd))
+
+    def _sum(self, linear: Any, quadratic: Any) -> Any:
+        """J·linear + H:quadratic, of (..., n) and (..., n, n): one matrix product over all times."""
+        xp = namespace(self.first, linear)
+        points, axes, n = self.first.shape
+        rows = xp.concatenate([linear, xp.reshape(quadratic, (*linear.shape[:-1], n * n))], axis=-1)
+        table = xp.concatenate([self.first, xp.reshape(self.second, (points, axes, n * n))], axis=-1)
+        return xp.reshape(rows @ xp.reshape(table, (points * axes, -1)).T, (*linear.shape[:-1], points, axes))
 
 
-def _quadratic(xp: Any, second: Any, left: Any, right: Any) -> Any:
-    """Contraction of second derivatives (p, 3, n, n) with two vectors (..., n), (..., p, 3)."""
-    points, axes, n, _ = second.shape
-    half = xp.reshape(right @ xp.reshape(second, (-1, n)).T, (*right.shape[:-1], points, axes, n))
-    return xp.einsum("...pai,...i->...pa", half, left)
+def _outer(left: Any, right: Any) -> Any:
+    return left[..., :, None] * right[..., None, :]
 
 
 @record
