@@ -6,6 +6,7 @@ What JAX traces has no value to check: it passes, so that objects can be built u
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 from gbeam.arrays.namespace import is_jax
@@ -39,3 +40,14 @@ def _number(where: str, value: Any, fix: str) -> float:
         return float(value)
     except (TypeError, ValueError):
         raise InputError(where, f"is {value!r}", fix) from None
+
+
+def choice(where: str, given: str, choices: Iterable[str]) -> None:
+    """Raise InputError unless the name is one of the choices."""
+    names = tuple(choices)
+    if given not in names:
+        import difflib
+
+        close = difflib.get_close_matches(str(given), names, n=1)
+        guess = f"did you mean {close[0]!r}? " if close else ""
+        raise InputError(where, f"is {given!r}", f"{guess}choose one of {', '.join(names)}")

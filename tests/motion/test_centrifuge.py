@@ -114,7 +114,6 @@ def test_sharp_corners_only_for_quasi_static_and_a_load_that_does_not_turn() -> 
         ({"arm": 0.0}, "arm", "positive"),
         ({"control_point": -0.1}, "control_point", "non-negative"),
         ({"mounting": "sideways"}, "mounting", "upright, inverted"),
-        ({"start": "rest"}, "spin_up", "both start and spin_up"),
         ({"arm": None}, "arm", "a machine as limits"),
         ({"idle": -1.0}, "idle", "positive"),
     ],

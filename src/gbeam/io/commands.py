@@ -10,6 +10,7 @@ from scipy.io import savemat
 from gbeam.results.machine import Commands, MachinePlan
 
 _UNITS = {"angle": "rad", "rate": "rad_per_s", "acceleration": "rad_per_s2"}
+_STILL = 1e-9  # rad/s, rad/s²: what is slower stands still
 COLUMNS = ("time_s", *(f"{quantity}{i}_{unit}" for quantity, unit in _UNITS.items() for i in (1, 2, 3)))
 FRAME = (
     "Frame: a1 points outward along the arm, a2 along its motion for a positive rate1, Z up.",
@@ -66,9 +67,13 @@ def write_commands(plan: MachinePlan, commands: Commands, folder: Path) -> list[
 
 def header(plan: MachinePlan, commands: Commands) -> list[str]:
     """What frame, units, zeros and signs the numbers have."""
+    first, last = plan.axes.span
     lines = [
         f"gbeam: axis motions of {plan.name}" + (f", which imitates {plan.tracks}" if plan.tracks else ""),
         f"Arm {plan.arm:g} m; sample time {commands.sample:g} s; {len(commands.time)} samples.",
+        f"Time is the flight's: it lasts from {first:.6g} to {last:.6g} s.",
+        f"Beginning, {_state(commands, 0)}.",
+        f"End, {_state(commands, -1)}.",
         "Units: time s, angles rad, rates rad/s, accelerations rad/s^2.",
         *FRAME,
     ]
@@ -76,3 +81,17 @@ def header(plan: MachinePlan, commands: Commands) -> list[str]:
     if plan.outcome != "done":
         lines.insert(1, f"{plan.outcome.upper()}: {plan.message}")
     return lines
+
+
+def _state(commands: Commands, sample: int) -> str:
+    """The axes at the first sample (0) or the last (-1): where a controller must bring them, or takes them over."""
+    rate, acceleration = commands.rate[sample], commands.acceleration[sample]
+    angles = ", ".join(f"axis {i + 1} at {commands.angle[sample, i]:.9g} rad" for i in (1, 2))
+    moving = np.abs(np.concatenate([rate, acceleration])).max() > _STILL
+    if not moving:
+        return f"{commands.time[sample]:.6g} s: STANDSTILL; {angles}"
+    rates = ", ".join(
+        f"axis {i + 1} at {w:.9g} rad/s and {a:.9g} rad/s^2"
+        for i, (w, a) in enumerate(zip(rate, acceleration, strict=True))
+    )
+    return f"{commands.time[sample]:.6g} s: TURNING; {angles}; {rates}"

@@ -34,11 +34,15 @@ def machine_variables(axes: AxesResult) -> dict[str, Variable]:
         "axis_angle": v(tm, axes.angle, "rad", "angle of the centrifuge's axes"),
         "axis_rate": v(tm, axes.rate, "rad s-1", "rate of the centrifuge's axes"),
         "axis_acceleration": v(tm, axes.acceleration, "rad s-2", "acceleration of the centrifuge's axes"),
+        **({} if axes.jerk is None else {"axis_jerk": v(tm, axes.jerk, "rad s-3", "jerk of the centrifuge's axes")}),
         "load_reference": v(ta, axes.reference, "m s-2", "load of the target at the control point"),
         "load_actual": v(ta, axes.actual, "m s-2", "load that the axes make at the control point"),
         "not_followed": flags(
             t, axes.not_followed, "whether the target is held instead of the flight's load", "follows_flight", "held"
         ),
+        "idle": v((), axes.idle, "m s-2", "least load that the target is held up to; 0 where there is none"),
+        "flight_from": v((), axes.span[0], "s", "first time of the flight, after the spin-up"),
+        "flight_to": v((), axes.span[1], "s", "last time of the flight, before the spin-down"),
         "control_point": v((), axes.control_point, "m", "control point, from the root along the beam"),
         **_limits(axes.limits),
         **_episodes(axes.episodes),

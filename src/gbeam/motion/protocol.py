@@ -33,3 +33,7 @@ class Motion(Protocol):
     def over(self, start: float, end: float) -> Self:
         """The same motion, prepared for times from `start` to `end`, s."""
         ...
+
+    def beyond(self, start: float, end: float) -> tuple[Any, Any]:
+        """How long the motion of a machine goes on before `start` and after `end`, to and from standstill, s."""
+        ...

@@ -103,9 +103,9 @@ class AxesResult(Part):
     reference, actual : (t, 3)
         Load at the control point, base axes, m/s²: the target, and what the axes make.
     not_followed : (t,) bool
-        Where the target is not the flight's load.
+        Where the target is not the flight's load, spin-up and spin-down among them.
     episodes : tuple of (start s, end s, reason)
-        The stretches of time in which it is not.
+        The stretches of the flight's time in which it is not.
     limits : tuple of LimitUse
         Rate, acceleration and jerk of every axis, used and allowed.
     shortfalls : tuple of Shortfall
@@ -114,6 +114,14 @@ class AxesResult(Part):
         From the root along the beam, m.
     warnings : tuple of str
         Where the inverse does not keep what it promises, by how much and why.
+    idle : float
+        Least load that the target is held up to, m/s²; zero where there is none.
+    jerk : (t, 3) or None
+        Of axes 1, 2, 3, rad/s³.
+    span : tuple of float
+        First and last time of the flight, s; before it the machine spins up, and after it it spins down.
+    start : str
+        How the machine begins: rest, pre-yawed or idle.
     """
 
     angle: Floats
@@ -127,6 +135,10 @@ class AxesResult(Part):
     shortfalls: tuple[Shortfall, ...] = ()
     control_point: float = math.nan
     warnings: tuple[str, ...] = ()
+    idle: float = 0.0
+    jerk: Floats | None = None
+    span: tuple[float, float] = (-math.inf, math.inf)
+    start: str = "idle"
 
     @property
     def within_limits(self) -> bool:
@@ -138,6 +150,25 @@ class AxesResult(Part):
         """The limits that are exceeded, by how much and when; empty where none is."""
         broken = [str(use) for use in self.limits if use.exceeded]
         return f"exceeds {'; '.join(broken)}" if broken else ""
+
+    @property
+    def limit_shares(self) -> dict[str, Floats]:
+        """Share of each limit that is given used over time, (t,), by axis and quantity: ``axis 2 jerk``."""
+        histories = {"rate": self.rate, "acceleration": self.acceleration, "jerk": self.jerk}
+        shares = {}
+        for use in self.limits:
+            if not math.isfinite(use.allowed):
+                continue
+            if use.quantity == "power":  # its constant, the arm's inertia, follows from the largest
+                used = np.abs(self.rate[:, 0] * self.acceleration[:, 0])
+                used = used * (use.used / max(float(used.max()), 1e-300))
+            else:
+                history = histories[use.quantity]
+                if history is None:
+                    continue
+                used = np.abs(history[:, int(use.axis[-1]) - 1])
+            shares[f"{use.axis} {use.quantity}"] = used / use.allowed
+        return shares
 
     @property
     def tracking_error(self) -> Floats:

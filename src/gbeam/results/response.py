@@ -138,6 +138,12 @@ class Response(Figured):
     base: BaseMotion
     peaks: Peaks
     integrator: str
+    @property
+    def flight_span(self) -> tuple[float, float]:
+        """First and last time of the flight, s: without the spin-up and the spin-down of a machine."""
+        first, last = float(self.time[0]), float(self.time[-1])
+        return (first, last) if self.axes is None else (max(first, self.axes.span[0]), min(last, self.axes.span[1]))
+
     step: float
     steps: int
     error_estimate: float

@@ -83,6 +83,7 @@ def centrifuge_of(table: schema.Centrifuge, flight: motion.Flight, span: tuple[f
         mounting=table.mounting,
         start=table.start,
         spin_up=table.spin_up,
+        spin_down=table.spin_down,
         clip=table.clip,
         span=span,
     )

@@ -54,7 +54,8 @@ control_point = "150 mm"  # point of the beam that feels the flight's load, from
 inverse = "flat"  # quasi-static | flat | exact | planned
 gravity = true  # the target is specific force (what accelerometers measure); gravity is there on the machine
 idle = "1.4 g"  # the target is held up to this
-# start = "rest"  # or "pre-yawed"; with spin_up = "10 s". Left out, the arm turns already
+start = "rest"  # from standstill to standstill; or "pre-yawed", or "idle": the arm turns already
+# spin_up = "10 s"  # before the flight, and spin_down after it; left out, found within the limits
 smoothing = "60 ms"  # width of the kernel that rounds the target's corners
 
 [response]

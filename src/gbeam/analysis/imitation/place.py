@@ -236,6 +236,9 @@ class _Carried:
     def over(self, start: float, end: float) -> Self:
         return self
 
+    def beyond(self, start: float, end: float) -> tuple[float, float]:
+        return self.centrifuge.beyond(start, end)
+
 
 def _verifications(
     structure: Structure,

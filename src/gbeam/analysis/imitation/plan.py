@@ -1,4 +1,4 @@
-"""The machine's side alone: a plan over its target's span, and commands at a controller's sample time."""
+"""The machine's side alone: a plan from standstill to standstill, and commands at a controller's sample time."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _FINE = 1e-3  # s: the angle of axis 1 is integrated on times no further apart
 
 
 def plan(name: str, motion: Centrifuge, tracks: str = "") -> MachinePlan:
-    """Plan one centrifuge over its target's span.
+    """Plan one centrifuge over its whole motion.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ def plan(name: str, motion: Centrifuge, tracks: str = "") -> MachinePlan:
     tracks : str
         Name of the flight.
     """
-    first, last = (float(end) for end in motion.target.span)
+    first, last = (float(end) for end in motion.extent)
     count = min(int(np.ceil((last - first) / _GRID)), _MOST)
     time = np.linspace(first, last, count + 1)
     axes = axes_result(motion, time)
@@ -38,11 +38,15 @@ def commands(motion: Centrifuge, sample: float) -> Commands:
     ----------
     motion : Centrifuge
     sample : float
-        s; the last sample is the last that lies within the target's span.
+        s; one sample is at the flight's first time. The first and the last are those at standstill, or the last that
+        lies within the flight where the machine begins and ends at idle.
     """
-    first, last = (float(end) for end in motion.target.span)
+    (first, _), (begin, end) = motion.target.span, motion.extent
+    still = motion.ends.start != "idle"
+    before, after = (float(time) / sample for time in (first - begin, end - first))
+    before, after = np.ceil(before - 1e-9), (np.ceil(after - 1e-9) if still else np.floor(after * (1 + 1e-12)))
     between = int(np.ceil(sample / _FINE))  # axis 1's angle is an integral: finer than the samples
-    count = int(np.floor((last - first) / sample * (1 + 1e-12)))
-    time = np.asarray(first + sample / between * np.arange(count * between + 1), dtype=np.float64)
+    steps = np.arange(-int(before) * between, int(after) * between + 1)
+    time = np.asarray(first + sample / between * steps, dtype=np.float64)
     histories = columns(motion.axes(time), time)
     return Commands(sample, time[::between], *(column[::between] for column in histories))

@@ -85,6 +85,10 @@ class Flight:
         """The flight itself: it needs no preparation."""
         return self
 
+    def beyond(self, start: float, end: float) -> tuple[float, float]:
+        """Nothing: a flight has no spin-up of its own."""
+        return 0.0, 0.0
+
 
 def body_rates(recorded: PiecewiseLinear, smoothing: float = 0.0) -> Profile:
     """Return recorded body rates without corners, ready to be differentiated.

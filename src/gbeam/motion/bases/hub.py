@@ -129,6 +129,10 @@ class Hub:
         """The hub itself: it needs no preparation."""
         return self
 
+    def beyond(self, start: float, end: float) -> tuple[float, float]:
+        """Nothing: a hub has no spin-up of its own."""
+        return 0.0, 0.0
+
     def _prescribed(self) -> Profile:
         if self.rate is None:
             raise InputError("rate", "is not given: how the hub turns is a result", "give rate, or simulate its motion")

@@ -3,41 +3,37 @@
 from __future__ import annotations
 
 import copy
-import difflib
-from collections.abc import Iterable
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from gbeam.arrays.namespace import as_array, namespace
+from gbeam.arrays.namespace import as_array
 from gbeam.arrays.tree import assign, record, static
-from gbeam.checks import positive
+from gbeam.checks import choice, positive
 from gbeam.errors import InputError
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
 from gbeam.motion.bases.flight import Flight
+from gbeam.motion.centrifuge.axis_motion import AxisMotion
 from gbeam.motion.centrifuge.course import Course, prepare
-from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse
+from gbeam.motion.centrifuge.ends import Ends
+from gbeam.motion.centrifuge.inverses.closed_form import Geometry
 from gbeam.motion.centrifuge.inverses.registry import INVERSES
 from gbeam.motion.centrifuge.machine.examples import Machine
-from gbeam.motion.centrifuge.machine.kinematics import Axes, control_point_load, forward, moved
-from gbeam.motion.centrifuge.machine.limits import Limits, MachineLimits, usage
-from gbeam.motion.centrifuge.spin_up import STARTS
-from gbeam.motion.centrifuge.target.reachability import shortfalls
-from gbeam.motion.centrifuge.target.target import Episode, Target
-from gbeam.motion.profiles.profile import sampled
-from gbeam.results.machine import LimitUse, Shortfall
+from gbeam.motion.centrifuge.machine.kinematics import forward, moved
+from gbeam.motion.centrifuge.machine.limits import Limits, MachineLimits
 
 MOUNTINGS = {"upright": 1.0, "inverted": -1.0}
 _GRID, _MOST = 1e-3, 200_000  # s between the times at which limits are looked at; most of them
 
 
 @record
-class Centrifuge:
+class Centrifuge(AxisMotion):
     """A beam on a three-axis centrifuge whose axes reproduce a flight's load at the control point.
 
-    The target and the axis motions belong to a span of time: `over` prepares them, as every analysis does for its own
-    times; with `span` they are there at once. What the axes do is known only then.
+    The machine spins up from standstill before the flight's first time, follows the flight, and spins down after its
+    last; its clock is the flight's. Target and axis motions belong to the flight's times: `over` prepares them, as
+    every analysis does for its own times; with `span` they are there at once. What the axes do is known only then.
 
     Parameters
     ----------
@@ -61,14 +57,15 @@ class Centrifuge:
     mounting : str
         ``upright`` or ``inverted``: which of the two mountings of the specimen in the gimbals.
     start : str
-        ``idle``: the arm turns from the first instant. ``rest`` or ``pre-yawed``: it spins up from standstill while the
-        target waits, over the time `spin_up`; see :mod:`gbeam.motion.centrifuge.spin_up`.
-    spin_up : float, optional
-        Time from standstill until the load is followed, s.
+        ``rest`` or ``pre-yawed``: from standstill to standstill; ``idle``: the motion begins and ends in the state
+        that it has at the flight's first and last time. See :class:`gbeam.motion.centrifuge.ends.Ends`.
+    spin_up, spin_down : float, optional
+        Time from standstill to the flight's first time, and from its last to standstill, s. Left out, the time in
+        which the arm turns once on the way, or as much more as nine tenths of every limit need.
     clip : bool
         Whether to carry on with a held target where the gimbals cannot reach; to give `idle` does so too.
     span : tuple of float, optional
-        First and last time to prepare for, s.
+        First and last time of the flight to prepare for, s.
 
     Raises
     ------
@@ -82,10 +79,9 @@ class Centrifuge:
     control_point: Any
     limits: Limits
     method: str = static()
-    beginning: str = static()
+    ends: Ends = static()
     idle: Any
     smoothing: Any
-    spin_up: Any
     clip: bool = static()
     course: Course | None
     _latest: ClassVar[Any] = None
@@ -102,19 +98,16 @@ class Centrifuge:
         idle: Any | None = None,
         smoothing: Any | None = 0.06,
         mounting: str = "upright",
-        start: str = "idle",
-        spin_up: Any | None = None,
+        start: str = "rest",
+        spin_up: float | None = None,
+        spin_down: float | None = None,
         clip: bool = False,
         span: tuple[float, float] | None = None,
     ) -> None:
         if not isinstance(flight, Flight):
             raise InputError("flight", f"is of type {type(flight).__name__}", "give the Flight whose load is tracked")
-        for name, value, choices in (
-            ("inverse", inverse, INVERSES), ("mounting", mounting, MOUNTINGS), ("start", start, STARTS),
-        ):  # fmt: skip
-            _choose(name, value, choices)
-        if (start == "idle") != (spin_up is None):
-            raise InputError("spin_up", f"does not go with start = {start}", "give both start and spin_up, or neither")
+        choice("inverse", inverse, INVERSES)
+        choice("mounting", mounting, MOUNTINGS)
         if isinstance(limits, Machine):
             arm, idle = limits.arm if arm is None else arm, limits.idle if idle is None else idle
             limits = limits.limits
@@ -128,10 +121,9 @@ class Centrifuge:
             control_point=_position(control_point),
             limits=limits if isinstance(limits, Limits) else Limits(limits),
             method=inverse,
-            beginning=start,
+            ends=Ends(start, spin_up, spin_down),
             idle=None if idle is None else positive("idle", idle, "m/s²"),
             smoothing=None if smoothing is None else positive("smoothing", smoothing, "s", zero=True),
-            spin_up=None if spin_up is None else positive("spin_up", spin_up, "s"),
             clip=bool(clip),
             course=None,
         )
@@ -144,7 +136,7 @@ class Centrifuge:
         return False
 
     def over(self, start: float, end: float) -> Self:
-        """The machine with its target and axis motions prepared for times from `start` to `end`, s.
+        """The machine with its target and axis motions prepared for the flight's times from `start` to `end`, s.
 
         It is itself if it is prepared for these times already; the last one prepared is kept.
 
@@ -182,8 +174,7 @@ class Centrifuge:
             "idle": self.idle,
             "smoothing": self.smoothing,
             "mounting": self.mounting,
-            "start": self.beginning,
-            "spin_up": self.spin_up,
+            **vars(self.ends),
             "clip": self.clip,
             "span": None if self.course is None else self.course.target.span,
         }
@@ -194,83 +185,15 @@ class Centrifuge:
         here = forward(self.axes(t), self.geometry.arm, self.geometry.gravity)
         return moved(here, self.control_point * np.array([-1.0, 0.0, 0.0]))
 
-    def axes(self, t: Any) -> Axes:
-        """States of the three axes at times `t` (s); :func:`gbeam.motion.axis_history` unwraps the angles."""
-        first, second, third = self._ready().derivatives(t, 2)
-        return Axes(*first[:2], *second, *third)
-
-    def axes_and_jerks(self, t: Any) -> tuple[Axes, Any]:
-        """States of the axes and their jerks (..., 3) rad/s³ at times `t` (s), from the closed forms."""
-        first, second, third = self._ready().derivatives(t, 3)
-        jerks = first[2], second[3], third[3]
-        return Axes(*first[:2], *second[:3], *third[:3]), namespace(*jerks).stack(jerks, axis=-1)
-
-    def reference(self, t: Any) -> Any:
-        """Load to be made at the control point at times `t` (s), base axes, m/s², shape (..., 3)."""
-        return self._ready().reference(t)
-
-    def actual(self, t: Any) -> Any:
-        """Load that the axes make at the control point at times `t` (s), base axes, m/s², shape (..., 3)."""
-        return self.actual_by(self.axes(t))
-
-    def actual_by(self, axes: Axes) -> Any:
-        """Load that given states of the axes make at the control point, base axes, m/s², shape (..., 3)."""
-        return control_point_load(axes, self.geometry.arm, self.geometry.gravity)
-
-    def tracking_error(self, t: Any) -> Any:
-        """Actual load less the reference at times `t` (s), base axes, m/s², shape (..., 3)."""
-        return self.actual(t) - self.reference(t)
-
-    def not_followed(self, t: Any) -> Any:
-        """Tell at which times `t` (s) the reference is not the flight's load."""
-        return self.target.not_followed(t)
-
-    def episodes(self) -> list[Episode]:
-        """Stretches of time in which it is not, with the reason."""
-        return self.target.episodes()
-
-    def usage(self) -> tuple[LimitUse, ...]:
-        """What the motion uses of the machine's limits, over the target's span."""
-        first, last = (float(end) for end in self.target.span)
-        time = sampled(first, last, max(_GRID, (last - first) / _MOST))
-        axes, jerk = self.axes_and_jerks(time)
-        rate = np.stack([axes.rate1, axes.rate2, axes.rate3], axis=1)
-        acceleration = np.stack([axes.acceleration1, axes.acceleration2, axes.acceleration3], axis=1)
-        return usage(time, rate, acceleration, jerk, self.limits)
-
-    def shortfalls(self) -> tuple[Shortfall, ...]:
-        """Where no such machine can make the flight's load, and what would help."""
-        return shortfalls(self.target, float(self.geometry.arm))
-
     @property
     def mounting(self) -> str:
         """Which of the two mountings of the specimen in the gimbals."""
         return next(name for name, sign in MOUNTINGS.items() if sign == self.geometry.sign)
 
-    @property
-    def target(self) -> Target:
-        """The load to be made, over the span that the machine is prepared for."""
-        return self._ready().target
-
-    @property
-    def inverse(self) -> Inverse:
-        """What makes axis motions of the target, likewise."""
-        return self._ready().inverse
-
-    @property
-    def breaks(self) -> Any:
-        """Times at which an integrator should stop and start afresh, s, shape (b,)."""
-        return self.target.load.breaks
-
-    def _ready(self) -> Course:
-        if self.course is None:
-            raise InputError("span", "is missing: the target belongs to a span of time", "give span, or use over(...)")
-        return self.course
-
     def _prepared(self, start: float, end: float) -> Course:
         return prepare(
-            self.flight.acceleration, self.geometry, self.limits, inverse=self.method, start=self.beginning,
-            idle=self.idle, smoothing=self.smoothing, spin_up=self.spin_up, clip=self.clip, span=(start, end),
+            self.flight.acceleration, self.geometry, self.limits, inverse=self.method, ends=self.ends, idle=self.idle,
+            smoothing=self.smoothing, clip=self.clip, span=(start, end),
         )  # fmt: skip
 
     def _changed(self, **fields: Any) -> Self:
@@ -281,12 +204,3 @@ class Centrifuge:
 
 def _position(control_point: Any) -> Any:
     return as_array(positive("control_point", control_point, "m", zero=True))
-
-
-def _choose(where: str, given: str, choices: Iterable[str]) -> None:
-    """Raise InputError unless the name is one of the choices."""
-    names = tuple(choices)
-    if given not in names:
-        close = difflib.get_close_matches(str(given), names, n=1)
-        guess = f"did you mean {close[0]!r}? " if close else ""
-        raise InputError(where, f"is {given!r}", f"{guess}choose one of {', '.join(names)}")

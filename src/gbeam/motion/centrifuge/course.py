@@ -1,37 +1,89 @@
-"""What a centrifuge does over one span of time."""
+"""What a centrifuge does for one flight: from standstill, over the flight's times, to standstill."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from gbeam.arrays.namespace import as_array, is_traced
-from gbeam.arrays.tree import record
+import numpy as np
+
+from gbeam.arrays.namespace import as_array, is_jax, is_traced, namespace
+from gbeam.arrays.tree import record, static
 from gbeam.errors import InputError
-from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse
+from gbeam.motion.centrifuge.ends import Ends
+from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse, Pose
 from gbeam.motion.centrifuge.inverses.registry import INVERSES
 from gbeam.motion.centrifuge.machine.limits import Limits
-from gbeam.motion.centrifuge.spin_up import Start, build_start
+from gbeam.motion.centrifuge.spin_up import Ramp, build_ramps
 from gbeam.motion.centrifuge.target.build import build_target
 from gbeam.motion.centrifuge.target.target import Target
 from gbeam.motion.profiles.profile import Profile
+from gbeam.numerics.series import where
 
 
 @record
 class Course:
-    """The target over a span, the inverse solved for it, and how the machine gets under way."""
+    """The target over a span, the inverse solved for it, and how the machine gets there from standstill and back."""
 
     target: Target
     inverse: Inverse
-    start: Start
+    geometry: Geometry
+    ramps: tuple[Ramp, Ramp] | None
+    start: str = static()
+
+    @property
+    def extent(self) -> tuple[Any, Any]:
+        """First and last time of the motion, s: of standstill, or of the flight where the machine begins at idle."""
+        if self.ramps is None:
+            return self.target.span if self.inverse.extent is None else self.inverse.extent
+        ends = tuple(ramp.still for ramp in self.ramps)
+        begin, end = ends if is_traced(*ends) else map(float, ends)
+        return begin, end
 
     def derivatives(self, t: Any, order: int) -> tuple[tuple[Any, ...], ...]:
         """Of the rate of axis 1 and of the angles of axes 2 and 3 at times `t` (s), each up to `order`."""
-        pose = self.start.pose(self.inverse, self.target.load, as_array(t), order)
-        return tuple(series.derivatives() for series in pose)
+        return tuple(series.derivatives() for series in self._pose(as_array(t), order))
+
+    def _pose(self, t: Any, order: int) -> Pose:
+        inverse, load = self.inverse, self.target.load
+        if self.ramps is None:
+            return inverse.pose(load, t if inverse.extent is None else namespace(t).clip(t, *inverse.extent), order)
+        first, last = (ramp.steady for ramp in self.ramps)
+        ways = list(zip(self.ramps, (t < first, t > last), strict=True))
+        for ramp, on_way in ways:
+            if not is_jax(on_way) and np.all(on_way):  # what the target costs is spared
+                return ramp.pose(t, order)
+        pose = inverse.pose(load, namespace(t, first, last).clip(t, first, last), order)
+        for ramp, on_way in ways:
+            if is_jax(on_way) or np.any(on_way):
+                rate, yaw, roll = (where(on_way, a, b) for a, b in zip(ramp.pose(t, order), pose, strict=True))
+                pose = rate, yaw, roll
+        return pose
 
     def reference(self, t: Any) -> Any:
-        """Load to be made at the control point at times `t` (s), base axes, m/s², shape (..., 3)."""
-        return self.start.load(self.target.load, as_array(t))
+        """Load to be made at the control point at times `t` (s), base axes, m/s², shape (..., 3).
+
+        Before the flight and after it, that of the flight's edge with its horizontal part reduced to what the arm's
+        rate makes of it.
+        """
+        now = as_array(t)
+        load = self.target.load(now)
+        first, last = self.target.span if self.ramps is None else (ramp.steady for ramp in self.ramps)
+        outside = (now < first) | (now > last)
+        if self.start == "idle" or not (is_jax(outside) or np.any(outside)):
+            return load
+        (rate, acceleration), *_ = self.derivatives(now, 1)
+        return namespace(load, rate).where(outside[..., None], self._partly(load, rate, acceleration), load)
+
+    def _partly(self, load: Any, rate: Any, acceleration: Any) -> Any:
+        """A load with only the part p of what is horizontal; what is across the beam keeps its direction."""
+        xp = namespace(load, rate)
+        gravity, across = self.geometry.gravity, xp.sum(load[..., 1:] ** 2, axis=-1)
+        made = self.geometry.arm * xp.hypot(rate**2, acceleration if self.start == "pre-yawed" else 0.0)
+        p = made / xp.sqrt(across + load[..., 0] ** 2 - gravity**2)
+        bent = across > 0
+        size = xp.sqrt(xp.maximum(across - gravity**2, 0.0) * p**2 + gravity**2)
+        factor = xp.where(bent, size / xp.sqrt(xp.where(bent, across, 1.0)), 0.0)
+        return load * xp.stack([p, factor, factor], axis=-1)
 
 
 def prepare(
@@ -40,31 +92,30 @@ def prepare(
     limits: Limits,
     *,
     inverse: str,
-    start: str,
+    ends: Ends,
     idle: Any | None,
     smoothing: Any | None,
-    spin_up: Any | None,
     clip: bool,
     span: tuple[float, float],
 ) -> Course:
-    """Build the target of a load over a span, s, and solve for the axis motions.
+    """Build the target of a load over a span, s, solve for the axis motions, and add how they begin and end.
 
     Parameters are those of :class:`gbeam.motion.Centrifuge`.
 
     Raises
     ------
     InputError
-        If the load cannot be followed, or the inverse cannot follow its corners.
+        If the load cannot be followed, the inverse cannot follow its corners, or the spin-up or spin-down is too short.
     """
     target = build_target(
-        load, span=span, idle=idle, smoothing=smoothing, gravity=geometry.gravity > 0, arm=geometry.arm, clip=clip,
-        spin_up=spin_up,
-    )  # fmt: skip
+        load, span=span, idle=idle, smoothing=smoothing, gravity=geometry.gravity > 0, arm=geometry.arm, clip=clip
+    )
     method = INVERSES[inverse]
     if not target.rounded and (target.turns or not method.follows_corners):
         raise InputError("smoothing", f"is missing: {inverse} cannot follow this load's corners", 'give "60 ms" or so')
     if method.solved and is_traced(target.load(span[0]), geometry.arm):
         fix = 'choose "flat" or "quasi-static", or prepare the machine of numbers: over(start, end)'
         raise InputError("inverse", f"is {inverse}, solved for numerically, and JAX traces the machine", fix)
-    beginning = build_start(start, target, geometry)
-    return Course(target, method.build(target, geometry, limits), beginning)
+    solved = method.build(target, geometry, limits, ends)
+    ramps = None if solved.extent is not None else build_ramps(target, solved, geometry, limits, ends)
+    return Course(target, solved, geometry, ramps, ends.start)

@@ -36,8 +36,12 @@ def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
         control_point=float(motion.control_point),
         warnings=(
             *_broken_promise(motion, time, reference, actual - reference, not_followed, limits),
-            *_short_spin_up(motion, limits),
+            *_short_ramps(motion),
         ),
+        idle=float(motion.target.idle),
+        jerk=jerk,
+        span=motion.target.span,
+        start=motion.ends.start,
     )
 
 
@@ -63,20 +67,21 @@ def _broken_promise(
     )
 
 
-def _short_spin_up(motion: Centrifuge, limits: tuple[LimitUse, ...]) -> tuple[str, ...]:
-    """Say how long a spin-up the arm's limits need, which no inverse knows; nothing where it is long enough."""
-    first, ready = float(motion.target.span[0]), float(motion.target.ready)
-    width = 2 * float(motion.target.half_width)
-    # Over the spin-up's length T the arm's acceleration and power go with 1/T, its jerk with 1/T².
-    short = [
-        use.share if use.quantity != "jerk" else np.sqrt(use.share)
-        for use in limits
-        if use.exceeded and use.time < ready and use.axis in ("axis 1", "arm") and use.quantity != "rate"
-    ]
-    if not short:
+def _short_ramps(motion: Centrifuge) -> tuple[str, ...]:
+    """Say how long a spin-up and a spin-down the limits need, which were given shorter; nothing where they are not."""
+    course = motion.course
+    if course is None or course.ramps is None:
         return ()
-    enough = np.ceil(100 * (max(short) * (ready - first - width) + width)) / 100
-    return (f'the arm exceeds its limits in the spin-up: spin_up = "{enough:g} s" or more would keep them',)
+    words, lead = [], float(course.target.half_width)
+    for name, ramp in zip(("spin-up", "spin-down"), course.ramps, strict=True):
+        longer = ramp.lengthened(motion.limits)
+        if longer.length > ramp.length:
+            enough = np.ceil(100 * (longer.length + lead)) / 100
+            key = name.replace("-", "_")
+            words.append(
+                f'the machine exceeds its limits in the {name}: {key} = "{enough:g} s" or more would keep them'
+            )
+    return tuple(words)
 
 
 def columns(axes: Axes, time: Floats) -> tuple[Floats, Floats, Floats]:

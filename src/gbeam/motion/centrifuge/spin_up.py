@@ -1,134 +1,117 @@
-"""How a centrifuge gets under way: it turns already, or it spins up from standstill while its target waits.
+"""Spin-up of a centrifuge from standstill before the flight, and spin-down to standstill after it.
 
-Over the spin-up the target stands still at the load that it has at the end, f₁ with the horizontal part H₁, and the
-arm's rate rises as ω1 = S(s) Ω, Ω = sqrt(H₁/R), s = (t − t₀)/T; S is flat to the fourth order at both ends, so that
-angles, rates, accelerations and jerks meet the inverse's. The reference on the way has the direction of f₁ (its
-part along the beam and across it rise together; gravity stays) and the size p H₁:
+Before the flight's first time and after its last the target stands still, at a load f₁ with the horizontal part H₁. On
+the way the arm turns at ω1 = S(s) Ω, Ω = sqrt(H₁/R), s from 0 at standstill to 1 where the inverse takes over; S is
+flat to the fourth order at both ends, so that angles, rates, accelerations and jerks meet the inverse's. The load on
+the way has the direction of f₁ (its part along the beam and across it rise together; gravity stays) and the size p H₁:
 
 - ``rest``: p = S². The arm's tangential acceleration R dω1/dt is ignored, as quasi-static does: axis 2 stands still.
 - ``pre-yawed``: p = sqrt(S⁴ + (S'/ΩT)²) and axis 2 lags by δ = atan2(dω1/dt, ω1²), so that the load has its direction
-  and size from the first instant. At standstill all of it is tangential: δ starts at 90°; docs/theory.md, section 8.4.
+  and size all the way. At standstill all of it is tangential: δ is 90°, docs/theory.md, section 8.4.
 """
 
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from gbeam.arrays.namespace import as_array, is_traced, namespace
-from gbeam.arrays.tree import assign, record, static
+from gbeam.arrays.tree import record, static
 from gbeam.errors import InputError
-from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse, Pose, across_beam, speed
+from gbeam.motion.centrifuge.ends import Ends
+from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse, Pose, across_beam
+from gbeam.motion.centrifuge.machine.limits import Limits, usage
 from gbeam.motion.centrifuge.target.target import Target
-from gbeam.motion.profiles.profile import Profile
-from gbeam.numerics.series import Series, arctan2, sqrt, square, stack, where
+from gbeam.numerics.series import Series, arctan2, sqrt, where
+from gbeam.results.machine import LimitUse
 
-STARTS = ("idle", "rest", "pre-yawed")
 # rad of ΩT, from which on p never falls: (ΩT)² >= −S''/2S³ everywhere, with S'' = 2520 s³ (1 − s)³ (1 − 2s).
 LEAST_TURNED = 2.982
-
-
-class Start(ABC):
-    """What a start makes of the axis motions of an inverse and of their reference load."""
-
-    @abstractmethod
-    def pose(self, inverse: Inverse, target: Profile, t: Any, order: int) -> Pose:
-        """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s), with derivatives up to `order`."""
-
-    @abstractmethod
-    def load(self, target: Profile, t: Any) -> Any:
-        """Reference load at the control point at times `t` (s), base axes, m/s², shape (..., 3)."""
+# rad of ΩT where no limit needs more: the arm turns once on the way, and its tangential load, at most
+# max(S')/ΩT = 2.461/4π of the horizontal one, stays below a fifth of it.
+USUAL_TURNED = 4 * math.pi
+_MARGIN = 0.9  # of a limit is used by a length that is found
+_SAMPLES = 401  # of a ramp
+# How a use of a limit falls with the length T: with what power of 1/T. The arm's rate does not.
+_ARM, _GIMBAL = {"acceleration": 1, "power": 1, "jerk": 2}, {"rate": 1, "acceleration": 2, "jerk": 3}
 
 
 @record
-class Turning(Start):
-    """The arm turns from the first instant: nothing is changed."""
-
-    def pose(self, inverse: Inverse, target: Profile, t: Any, order: int) -> Pose:
-        """The inverse's own."""
-        return inverse.pose(target, t, order)
-
-    def load(self, target: Profile, t: Any) -> Any:
-        """The target's own."""
-        return target(t)
-
-
-@record
-class SpinUp(Start):
-    """From standstill to an inverse's motion at a target that waits.
+class Ramp:
+    """From standstill to a steady state of the machine, or from there to standstill.
 
     Parameters
     ----------
-    geometry : Geometry
-    begin, end : float
-        Of the spin-up, s; the target stands still between.
-    turned : float
-        ΩT, rad: what the arm would turn by at its full rate.
+    still, steady : float
+        Times of standstill and of the steady state, s; a spin-down's `still` is the later.
+    rate, yaw, roll, across : float
+        Steady state: ω1 rad/s, θ2 and θ3 rad, the horizontal load across the beam m/s².
+    gravity : float
+        γ, m/s².
     yawed : bool
         Whether the lag of axis 2 makes up for the tangential acceleration.
     """
 
-    geometry: Geometry
-    begin: Any
-    end: Any
-    turned: Any
+    still: Any
+    steady: Any
+    rate: Any
+    yaw: Any
+    roll: Any
+    across: Any
+    gravity: float = static()
     yawed: bool = static()
 
-    def __post_init__(self) -> None:
-        assign(self, begin=as_array(self.begin), end=as_array(self.end), turned=as_array(self.turned))
-
-    def pose(self, inverse: Inverse, target: Profile, t: Any, order: int) -> Pose:
-        """The inverse's, its rate times S, its angles as the load on the way has them."""
-        now = as_array(t)
-        s = self._part(now, order)
-        rise = _rise(s)
-        still = inverse.pose(target, namespace(now, self.end).zeros_like(now) + self.end, 0)
-        rate, yaw, roll = inverse.pose(target, now, order)
-        # A plan need not stand still: its gimbals fade in. Angles are compared within half a turn.
-        yaw, roll = (_faded(rise, angle, rest.value) for angle, rest in zip((yaw, roll), still[1:], strict=True))
+    def pose(self, t: Any, order: int) -> Pose:
+        """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s), with derivatives up to `order`."""
+        s = (Series.variable(t, order) - self.still) / (self.steady - self.still)
+        s = where(s.value < 0, 0.0, where(s.value > 1, 1.0, s))
+        none = 0.0 * s
+        turned = self.rate * abs(self.steady - self.still)
+        share, yaw, roll = _rise(s) ** 2, none + self.yaw, none + self.roll
         if self.yawed:
             # tan δ = (dω1/dt)/ω1² = S'/(ΩT S²), with the powers of s and 1 − s that both hold taken out.
-            lag = math.pi / 2 - arctan2(self.turned * s**6 * _quotient(s) ** 2, 630 * (1 - s) ** 4)
-            yaw = yaw - lag
-        if self.geometry.gravity:
-            across = across_beam(target.series(now, order), self.geometry)
-            down = Series.of([self.geometry.gravity + 0.0 * across.value], order)
-            roll = roll + arctan2(down, self._share(s) * across) - arctan2(down, across)
-        return rise * rate, yaw, roll
+            lag = math.pi / 2 - arctan2(turned * s**6 * _quotient(s) ** 2, 630 * (1 - s) ** 4)
+            yaw = yaw - lag * namespace(self.steady).sign(self.steady - self.still)
+            share = s**4 * sqrt(s**12 * _quotient(s) ** 4 + (630 * (1 - s) ** 4 / turned) ** 2)
+        if self.gravity:
+            down = none + self.gravity
+            roll = roll + arctan2(down, share * self.across) - arctan2(down, none + self.across)
+        return _rise(s) * self.rate, yaw, roll
 
-    def load(self, target: Profile, t: Any) -> Any:
-        """The horizontal part of the target's, p of it, with gravity."""
-        now = as_array(t)
-        full, share = target.series(now, 0), self._share(self._part(now, 0))
-        horizontal = share * across_beam(full, self.geometry)
-        gravity = self.geometry.gravity
-        # Without gravity the root of a square, which has no derivative at standstill, is the size itself.
-        size = sqrt(horizontal * horizontal + gravity**2) if gravity else self.geometry.sign * horizontal
-        before2 = square(full[..., 1:])
-        before = sqrt(where(before2.value > 0, before2, 1.0))
-        return (full * stack([share, size / before, size / before])).value
+    @property
+    def length(self) -> float:
+        """From standstill to the steady state or back, s."""
+        return abs(float(self.steady) - float(self.still))
 
-    def _part(self, t: Any, order: int) -> Series:
-        """s, from 0 to 1."""
-        s = (Series.variable(t, order) - self.begin) / (self.end - self.begin)
-        return where(s.value < 0, 0.0, where(s.value > 1, 1.0, s))
+    def of_length(self, length: Any) -> Ramp:
+        """The same ramp with another length, s."""
+        xp = namespace(self.still, self.steady)
+        return replace(self, still=self.steady + xp.sign(self.still - self.steady) * length)
 
-    def _share(self, s: Series) -> Series:
-        """p, with s⁴ taken out of the root."""
-        if not self.yawed:
-            return _rise(s) ** 2
-        tangential = 630 * (1 - s) ** 4 / self.turned
-        return s**4 * sqrt(s**12 * _quotient(s) ** 4 + tangential**2)
+    def usage(self, limits: Limits) -> tuple[LimitUse, ...]:
+        """What the ramp uses of the machine's limits."""
+        first, last = sorted((float(self.still), float(self.steady)))
+        time = np.linspace(first, last, _SAMPLES)
+        arm, *gimbals = (series.derivatives() for series in self.pose(time, 3))
+        orders = zip(arm[:3], *(angle[1:] for angle in gimbals), strict=True)
+        rate, acceleration, jerk = (np.stack(each, axis=1) for each in orders)
+        return usage(time, rate, acceleration, jerk, limits)
 
-
-def _faded(rise: Series, angle: Series, rest: Any) -> Series:
-    """From an angle at rest to one that moves, by the shorter way round."""
-    away = angle - rest
-    xp = namespace(away.value)
-    return rest + rise * (away - 2 * math.pi * xp.round(away.value / (2 * math.pi)))
+    def lengthened(self, limits: Limits, share: float = 1.0) -> Ramp:
+        """The ramp, as much longer as it must be to use no more than a share of any limit."""
+        ramp = self
+        for _ in range(50):
+            factor = 0.0
+            for use in ramp.usage(limits):
+                power = (_ARM if use.axis in ("axis 1", "arm") else _GIMBAL).get(use.quantity)
+                factor = max(factor, 0.0 if power is None else (use.share / share) ** (1 / power))
+            if factor <= 1:
+                break
+            ramp = ramp.of_length(ramp.length * factor * (1 + 1e-4))
+        return ramp
 
 
 def _quotient(s: Series) -> Series:
@@ -141,36 +124,45 @@ def _rise(s: Series) -> Series:
     return s**5 * _quotient(s)
 
 
-def build_start(kind: str, target: Target, geometry: Geometry) -> Start:
-    """Make the start of a motion.
-
-    Parameters
-    ----------
-    kind : str
-        One of ``STARTS``.
-    target : Target
-        Built with a `spin_up` unless it is idle.
-    geometry : Geometry
+def build_ramps(
+    target: Target, inverse: Inverse, geometry: Geometry, limits: Limits, ends: Ends
+) -> tuple[Ramp, Ramp] | None:
+    """Spin-up and spin-down around an inverse; None for a machine that begins and ends at idle.
 
     Raises
     ------
     InputError
-        If the kind is unknown, the target has no spin-up, or a pre-yawed one so short that the load would overshoot.
+        If a given time is so short that the specimen would be loaded beyond what the flight begins or ends with, or
+        none is given and JAX traces a machine that has limits.
     """
-    if kind not in STARTS:
-        raise InputError("start", f"is {kind!r}", f"choose one of {', '.join(STARTS)}")
-    first, ready, width = target.span[0], target.ready, 2 * target.half_width
-    if (kind == "idle") != (ready == first):
-        raise InputError("spin_up", f"does not go with start = {kind}", "give both start and spin_up, or neither")
-    if kind == "idle":
-        return Turning()
-    end = ready - width  # from there on the target's corner is being rounded
-    full = speed(target.load.series(first, 0), geometry).value
-    turned, yawed = full * (end - first), kind == "pre-yawed"
-    if yawed and not is_traced(turned) and turned < LEAST_TURNED:
+    if ends.start == "idle":
+        return None
+    up = _build("spin_up", target, inverse, geometry, limits, ends)
+    return up, _build("spin_down", target, inverse, geometry, limits, ends)
+
+
+def _build(name: str, target: Target, inverse: Inverse, geometry: Geometry, limits: Limits, ends: Ends) -> Ramp:
+    outward, edge = (-1.0, target.span[0]) if name == "spin_up" else (1.0, target.span[1])
+    # From here on outwards the target stands still: a corner at the flight's edge is rounded within half a width of it.
+    lead = target.half_width
+    steady = as_array(edge + outward * lead)
+    rate, yaw, roll = (part.value for part in inverse.pose(target.load, steady, 0))
+    across = across_beam(target.load.series(steady, 0), geometry).value
+    parts = (rate, yaw, roll, across, geometry.gravity, ends.start == "pre-yawed")
+    ramp = Ramp(steady + outward * USUAL_TURNED / rate, steady, *parts)
+    given, traced = getattr(ends, name), is_traced(rate, steady)
+    if given is None:
+        if not traced:
+            return ramp.lengthened(limits, _MARGIN)
+        if np.isfinite(np.asarray(limits.axes)).any() or np.isfinite(limits.power):
+            raise InputError(name, "is found within the limits, and JAX traces the machine", f"give {name}, s")
+        return ramp
+    if not traced and rate * (given - lead) < LEAST_TURNED:
+        enough = np.ceil(100 * (LEAST_TURNED / rate + lead)) / 100
         raise InputError(
-            "spin_up",
-            f"is {ready - first:.3g} s, so short that a pre-yawed start would overshoot its load",
-            f'give "{np.ceil(10 * (LEAST_TURNED / full + width)) / 10:g} s" or more, or start = "rest"',
+            name,
+            f"is {given:.3g} s, so short that the arm's own acceleration would load the specimen beyond the flight's "
+            f"{'first' if outward < 0 else 'last'} load",
+            f'give "{enough:g} s" or more, or leave it out',
         )
-    return SpinUp(geometry, first, end, turned, yawed)
+    return ramp.of_length(given - lead)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gbeam.report.machine import limits
-from gbeam.report.machine.tracking import not_followed_stretches, tracking
+from gbeam.report.machine.tracking import ends, ends_line, not_followed_stretches, tracking
 from gbeam.results.machine import MachinePlan
 
 if TYPE_CHECKING:
@@ -28,7 +28,8 @@ def table(title: str, plans: Iterable[MachinePlan]) -> RenderableType:
     for plan in plans:
         axes = plan.axes
         parts += ["", Text(f"{plan.name} ({plan.arm:g} m, tracks {plan.tracks}): {plan.outcome}")]
-        lines: list[RenderableType] = [limits.table(axes.limits), Text(_followed(plan))]
+        words = ends_line(plan.time, axes), _followed(plan)
+        lines: list[RenderableType] = [limits.table(axes.limits), *map(Text, words)]
         lines += [
             Text(f"target held {start:.3f} to {end:.3f} s: {reason}")
             for start, end, reason in not_followed_stretches(axes)[:EPISODES]
@@ -65,6 +66,7 @@ def _plan(plan: MachinePlan) -> dict[str, Any]:
     return {
         "tracks": plan.tracks,
         "arm": plan.arm,
+        **ends(plan.time, axes),
         "outcome": plan.outcome,
         "message": plan.message,
         "warnings": list(axes.warnings),

@@ -53,6 +53,18 @@ def tracking(time: Floats, axes: AxesResult) -> Tracking:
     return Tracking(float(error[i]), float(time[i]), float(error[i]) / size if size > 0 else np.nan)
 
 
+def ends(time: Floats, axes: AxesResult) -> dict[str, float | str]:
+    """How the machine begins, and its times to the flight and from its end, s, as `time` has them; zero at idle."""
+    up, down = (max(float(each), 0.0) for each in (axes.span[0] - time[0], time[-1] - axes.span[1]))
+    return {"start": axes.start, "spin_up": up, "spin_down": down}
+
+
+def ends_line(time: Floats, axes: AxesResult) -> str:
+    """The same in words."""
+    how = "turning already" if axes.start == "idle" else "from standstill to standstill"
+    return f"{how}, from {time[0]:.3f} to {time[-1]:.3f} s on the flight's clock"
+
+
 def not_followed_stretches(axes: AxesResult) -> list[tuple[float, float, str]]:
     """Stretches in which the target is not the flight's load, s, those that overlap joined with their reasons."""
     joined: list[tuple[float, float, str]] = []

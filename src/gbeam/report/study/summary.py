@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from gbeam.report.machine import limits
-from gbeam.report.machine.tracking import not_followed_stretches, tracking
+from gbeam.report.machine.tracking import ends_line, not_followed_stretches, tracking
 from gbeam.report.study import comparison
 from gbeam.report.words import number, sentence
 from gbeam.results.machine import AxesResult
@@ -129,6 +129,7 @@ def _hub(hub: HubResult) -> str:
 def _tracking(response: Response, axes: AxesResult) -> Iterator[str]:
     error = tracking(response.time, axes)
     if error.fraction < ROUNDING:
+    yield ends_line(response.time, axes)
         yield "load followed exactly"
     elif math.isfinite(error.max):
         yield (

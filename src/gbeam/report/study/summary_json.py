@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.report.machine import limits
-from gbeam.report.machine.tracking import peak, tracking
+from gbeam.report.machine.tracking import ends, peak, tracking
 from gbeam.report.study import comparison
 from gbeam.results.machine import AxesResult
 from gbeam.results.response import HubResult, Response
@@ -105,3 +105,4 @@ def _centrifuge(time: Floats, axes: AxesResult) -> dict[str, Any]:
         "not_followed": [{"start": start, "end": end, "reason": reason} for start, end, reason in axes.episodes],
         "shortfalls": [asdict(shortfall) for shortfall in axes.shortfalls],
     }
+        **ends(time, axes),

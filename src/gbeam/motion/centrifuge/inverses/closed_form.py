@@ -47,6 +47,11 @@ class Inverse(ABC):
     within: ClassVar[float]
     unless: ClassVar[str]
 
+    @property
+    def extent(self) -> tuple[float, float] | None:
+        """First and last time of a motion that has its own beginning and end, s; None where they are to be added."""
+        return None
+
     @abstractmethod
     def pose(self, target: Profile, t: Any, order: int) -> Pose:
         """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s), with derivatives up to `order`."""

@@ -63,7 +63,8 @@ def exact(target: Target, geometry: Geometry) -> Exact:
     InputError
         If the load turns too sharply for the arm, with the smoothing that it needs.
     """
-    first, last = (float(end) for end in target.span)
+    # A corner at either end is rounded within half a width of it; beyond, the target stands still.
+    first, last = target.span[0] - float(target.half_width), target.span[1] + float(target.half_width)
     lag: Spline | None = None
     for step in _STEPS:
         if lag is not None and (last - first) / step > _MOST:

@@ -48,6 +48,12 @@ class Planned(Inverse):
     unless: ClassVar[str] = "no motion near by does better"
     axes: Spline
 
+    @property
+    def extent(self) -> tuple[float, float]:
+        """First and last time of the plan, s."""
+        first, pieces = float(self.axes.start), len(self.axes.coefficients) - PIECE + 1
+        return first, first + pieces * float(self.axes.step)
+
     def pose(self, target: Profile, t: Any, order: int) -> Pose:
         """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s)."""
         axes = self.axes.series(t, order)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
+from gbeam.motion.centrifuge.ends import Ends
 from gbeam.motion.centrifuge.inverses.closed_form import Flat, Geometry, Inverse, QuasiStatic
 from gbeam.motion.centrifuge.inverses.exact import exact
 from gbeam.motion.centrifuge.inverses.planned import planned
@@ -18,20 +19,21 @@ class Method(NamedTuple):
     Parameters
     ----------
     build : callable
+        Of target, geometry, limits and ends; an inverse that plans its own ends says so by its `extent`.
     follows_corners : bool
         Whether it can follow corners of a load that does not turn.
     solved : bool
         Whether it is solved for numerically, and so needs numbers.
     """
 
-    build: Callable[[Target, Geometry, Limits], Inverse]
+    build: Callable[[Target, Geometry, Limits, Ends], Inverse]
     follows_corners: bool
     solved: bool
 
 
 INVERSES: dict[str, Method] = {
-    "quasi-static": Method(lambda target, geometry, limits: QuasiStatic(geometry), True, False),
-    "flat": Method(lambda target, geometry, limits: Flat(geometry), False, False),
-    "exact": Method(lambda target, geometry, limits: exact(target, geometry), False, True),
-    "planned": Method(planned, False, True),
+    "quasi-static": Method(lambda target, geometry, limits, ends: QuasiStatic(geometry), True, False),
+    "flat": Method(lambda target, geometry, limits, ends: Flat(geometry), False, False),
+    "exact": Method(lambda target, geometry, limits, ends: exact(target, geometry), False, True),
+    "planned": Method(lambda target, geometry, limits, ends: planned(target, geometry, limits), False, True),
 }
