@@ -46,7 +46,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.mechanics.structure import Structure as Structure
     from gbeam.motion.bases.flight import Flight as Flight
     from gbeam.motion.bases.hub import Hub as Hub
-    from gbeam.motion.bases.record import read_record as read_record
+    from gbeam.motion.bases.records.record import read_record as read_record
     from gbeam.motion.centrifuge.centrifuge import Centrifuge as Centrifuge
     from gbeam.motion.centrifuge.machine.examples import machines as machines
     from gbeam.motion.centrifuge.machine.limits import AxisLimit as AxisLimit
@@ -125,7 +125,7 @@ _HOME = {
     "nonlinear_system": "analysis.control.nonlinear",
     "place": "analysis.imitation.place",
     "plan": "analysis.imitation.plan",
-    "read_record": "motion.bases.record",
+    "read_record": "motion.bases.records.record",
     "read_scenario": "scenario.build",
     "simulate": "analysis.response.simulation",
     "smoothed": "motion.profiles.profile",

@@ -13,7 +13,7 @@ import pytest
 from gbeam import Flight, InputError
 from gbeam.motion.bases.conditioning import dropout
 from gbeam.motion.bases.flight import body_rates
-from gbeam.motion.bases.record import Conditioning, FlightRecord, Rates, read_flight
+from gbeam.motion.bases.records.record import Conditioning, FlightRecord, Rates, read_flight
 
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 NAMES = ("time_s", "n_x_g", "-n_y_g", "-n_z_g")
@@ -128,7 +128,7 @@ def test_body_rates_turn_the_base() -> None:
     record = fly(F16, rates=Rates("p_rad_s", "-q_rad_s", "-r_rad_s", "rad/s"))
     assert record.rates is not None
     flight = Flight(acceleration=record.acceleration, rates=body_rates(record.rates))
-    t = jnp.linspace(1.2, 15.0, 200)
+    t = np.linspace(1.2, 15.0, 200)
     base, h = flight.base(t), 1e-4
     np.testing.assert_allclose(base.w_WB_B, record.rates(t), atol=0.05)
     slope = (flight.base(t + h).w_WB_B - flight.base(t - h).w_WB_B) / (2 * h)

@@ -9,7 +9,7 @@ from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
 from gbeam.motion.bases.flight import Flight
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.bases.mount import Mount
-from gbeam.motion.bases.record import read_record
+from gbeam.motion.bases.records.record import read_record
 from gbeam.motion.centrifuge.centrifuge import Centrifuge
 from gbeam.motion.centrifuge.inverses.registry import INVERSES
 from gbeam.motion.centrifuge.machine.examples import Machine, machines

@@ -7,10 +7,10 @@ from typing import Any
 from gbeam import motion
 from gbeam.motion import Profile
 from gbeam.motion.bases.flight import body_rates
-from gbeam.motion.bases.record import Conditioning, FlightRecord, Rates, read_flight
+from gbeam.motion.bases.records.record import Conditioning, FlightRecord, Rates, read_flight
 from gbeam.scenario import schema
 from gbeam.scenario.collect import Collector
-from gbeam.scenario.schema.motion import Record
+from gbeam.scenario.schema.record import Record
 
 
 def flights_and_hubs(
@@ -174,7 +174,16 @@ def _record(table: Record) -> FlightRecord:
         rates = Rates(table.p, table.q, table.r, table.rate_unit)
     conditioning = Conditioning(table.cutoff, table.resample, table.despike, table.skip_checks)
     return read_flight(
-        table.file, table.time, table.x, table.y, table.z, table.unit, rates=rates, conditioning=conditioning
+        table.file,
+        table.time,
+        table.x,
+        table.y,
+        table.z,
+        table.unit,
+        rates=rates,
+        conditioning=conditioning,
+        time_unit=table.time_unit,
+        quantity=table.quantity,
     )
 
 

@@ -1,4 +1,4 @@
-"""What a record goes through before it is flown: does it look sound, are there spikes, filter, resampling."""
+"""What a record's samples go through: dropouts and spikes found, filter, resampling."""
 
 from __future__ import annotations
 
@@ -13,68 +13,8 @@ from gbeam.numerics.intervals import true_runs
 Floats = NDArray[np.float64]
 
 STANDARD_GRAVITY = 9.80665  # m/s²
-FEWEST = 6  # samples
-SLOWEST = 5.0  # Hz
-LARGEST = 50 * STANDARD_GRAVITY
-_BEGINS = 3.0  # g0: above that, no flight begins
-_TRUST = "if the record is right as it is, add skip_checks = true"
 _WINDOW, _OUTLIER = 3, 6.0  # samples either side; deviations from the window's median
 _LEAST_JUMP = 0.5  # m/s²: a smaller step is no dropout and no spike
-
-
-def refuse_unsound(time: Floats, load: Floats, names: tuple[str, str, str], unit: str, numbers: list[int]) -> None:
-    """Raise InputError if a record is too coarse, too large for its unit, or holds a sensor's dropout.
-
-    Parameters
-    ----------
-    time : (t,) s
-    load : (t, 3) m/s²
-    names : tuple of str
-        Columns of x, y and z.
-    unit : str
-        As declared.
-    numbers : list of int
-        Row in the file of every sample.
-    """
-    step = float(np.median(np.diff(time)))
-    if step > 1 / SLOWEST:
-        raise InputError(
-            "record.time",
-            f"has a sample every {step:g} s ({1 / step:g} Hz), too coarse for the corners of a manoeuvre",
-            f"export the record at 20 Hz or more; {_TRUST}",
-        )
-    size = np.linalg.norm(load, axis=1)
-    i = int(size.argmax())
-    if size[i] > LARGEST:
-        raise InputError(
-            "record.unit",
-            f"is {unit}, which makes {size[i] / STANDARD_GRAVITY:.3g} g of row {numbers[i]}, at {time[i]:g} s",
-            f'a record in m/s^2 wants unit = "m/s^2"; {_TRUST}' if unit == "g" else _TRUST,
-        )
-    first_second = size[: max(int(1 / step), 4)] / _scale(unit)
-    at_start = float(np.median(first_second))
-    if (unit == "g" and at_start > _BEGINS) or (unit != "g" and np.abs(first_second - 1).max() < 0.03):
-        other = "m/s^2" if unit == "g" else "g"
-        raise InputError(
-            "record.unit",
-            f"is {unit}, and the record begins at {at_start:.4g} {unit}: level flight is 1 g, which is 9.81 m/s^2",
-            f'a record in {other} wants unit = "{other}"; {_TRUST}',
-        )
-    for axis, (values, name) in enumerate(zip(load.T, names, strict=True)):
-        still = dropout(values, step)
-        if still is not None:
-            first, last = still
-            raise InputError(
-                f"record.{'xyz'[axis]}",
-                f"column {name.lstrip('-')!r} stands still at {values[first] / _scale(unit):g} {unit} "
-                f"from {time[first]:g} s to {time[last]:g} s "
-                f"(rows {numbers[first]} to {numbers[last]}): the sensor dropped out",
-                f"mend or cut the record there; {_TRUST}",
-            )
-
-
-def _scale(unit: str) -> float:
-    return STANDARD_GRAVITY if unit == "g" else 1.0
 
 
 def dropout(values: Floats, step: float) -> tuple[int, int] | None:

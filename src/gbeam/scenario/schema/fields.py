@@ -130,19 +130,19 @@ Stiffness = Annotated[float, Quantity("stiffness", "positive")]
 RotationalStiffness = Annotated[float, Quantity("rotational stiffness", "positive")]
 
 # A union would report the errors of both branches; the tags pick one, and explain drops them from the place.
-_ONE_OR_LIST = Discriminator(lambda value: "list" if isinstance(value, (list, tuple)) else "one")
+ONE_OR_LIST = Discriminator(lambda value: "list" if isinstance(value, (list, tuple)) else "one")
 Lengths = Annotated[
     Annotated[Length, Tag("one")] | Annotated[tuple[Length, ...], Field(min_length=1), Tag("list")],
-    _ONE_OR_LIST,
+    ONE_OR_LIST,
 ]
 Areas = Annotated[
-    Annotated[Area, Tag("one")] | Annotated[tuple[Area, ...], Field(min_length=1), Tag("list")], _ONE_OR_LIST
+    Annotated[Area, Tag("one")] | Annotated[tuple[Area, ...], Field(min_length=1), Tag("list")], ONE_OR_LIST
 ]
 SecondMoments = Annotated[
     Annotated[SecondMoment, Tag("one")] | Annotated[tuple[SecondMoment, ...], Field(min_length=1), Tag("list")],
-    _ONE_OR_LIST,
+    ONE_OR_LIST,
 ]
 Ratios = Annotated[
     Annotated[Ratio, Tag("one")] | Annotated[tuple[Ratio, ...], Field(min_length=1), Tag("list")],
-    _ONE_OR_LIST,
+    ONE_OR_LIST,
 ]

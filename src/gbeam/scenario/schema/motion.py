@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Discriminator, Field, StrictBool, ValidationInfo, model_validator
+from pydantic import Discriminator, Field, StrictBool, model_validator
 from pydantic_core import PydanticCustomError
 
 from gbeam.scenario.schema.fields import (
@@ -21,62 +20,12 @@ from gbeam.scenario.schema.fields import (
     wrong,
 )
 from gbeam.scenario.schema.profile import AccelerationProfile, RateProfile, TorqueProfile
-from gbeam.scenario.text.suggest import closest
+from gbeam.scenario.schema.record import Record
 
 
 def _missing(first: str, second: str) -> tuple[Loc, PydanticCustomError]:
     hint = f"add one of them: {first} = ... or {second} = ..."
     return (), wrong(f"{first} or {second} is missing", hint, mark="key")
-
-
-def _existing(file: str, info: ValidationInfo) -> str:
-    """Resolve `file` against the scenario's folder, which load passes as context."""
-    path = Path((info.context or {}).get("folder", ".")) / file
-    if path.is_file():
-        return str(path)
-    folder = path.parent
-    neighbours = sorted(p.name for p in folder.iterdir() if p.is_file()) if folder.is_dir() else []
-    near = closest(path.name, neighbours)
-    looked = f"it is looked for in {folder}"
-    raise wrong("there is no file {value}", f"did you mean {str(Path(file).with_name(near))!r}?" if near else looked)
-
-
-class Record(Table):
-    """A measured flight: a CSV file whose first line names the columns."""
-
-    file: Annotated[str, AfterValidator(_existing)] = Field(
-        description="CSV file, relative to the folder of the scenario file"
-    )
-    time: str = Field(description="name of the column of times, s")
-    x: str = Field(description='column of the x component, along the beam; "-" in front changes the sign, "0" is none')
-    y: str = Field(description='column of the y component, along the width; "-" in front changes the sign, "0" is none')
-    z: str = Field(description='column of the z component, through the thickness; "-" and "0" likewise')
-    unit: Literal["g", "m/s^2"] = Field(description="unit of the components: g is 9.80665 m/s^2")
-    p: str | None = Field(
-        default=None, description="column of the body rate about x; p, q and r fly the specimen with them"
-    )
-    q: str | None = Field(default=None, description='column of the body rate about y; "-" and "0" as for x, y and z')
-    r: str | None = Field(default=None, description='column of the body rate about z; "-" and "0" likewise')
-    rate_unit: Literal["rad/s", "deg/s"] | None = Field(default=None, description="unit of p, q and r")
-    cutoff: Annotated[float, Quantity("frequency", "positive")] | None = Field(
-        default=None, description="cut-off of a zero-phase low-pass, -6 dB, such as 5 Hz; none if left out"
-    )
-    resample: Annotated[float, Quantity("frequency", "positive")] | None = Field(
-        default=None, description="new sampling rate, such as 200 Hz; the record's own if left out"
-    )
-    despike: StrictBool = Field(default=False, description="replace single samples far off their neighbours")
-    skip_checks: StrictBool = Field(
-        default=False, description="take the record as it is: no look at its size, sampling rate and dropouts"
-    )
-
-    @model_validator(mode="after")
-    def _rates_together(self) -> Record:
-        given = [name for name in ("p", "q", "r", "rate_unit") if getattr(self, name) is not None]
-        if given and len(given) < 4:
-            missing = next(name for name in ("p", "q", "r", "rate_unit") if name not in given)
-            hint = 'give p, q and r ("0" for none) and rate_unit = "rad/s" or "deg/s"'
-            refuse([((), wrong(f"{missing} is missing beside {given[0]}", hint, mark="key"))])
-        return self
 
 
 class Components(Table):

@@ -85,6 +85,11 @@ class Environments(_Titled):
             message = f"names a {target.kind}, not a flight" if target else "names no motion"
             hint = advise(motion.tracks, flights) if flights else "add a motion of kind flight"
             yield ("motion", name, "tracks"), wrong(f"{{value}} {message}", hint)
+        record = getattr(self.motion.get(motion.tracks), "record", None)
+        if record is not None and record.quantity == "acceleration" and motion.gravity:
+            message = f"is true, and the record of {motion.tracks!r} holds acceleration, not specific force"
+            hint = "write gravity = false, or add gravity to the record: its direction changes as the aircraft turns"
+            yield ("motion", name, "gravity"), wrong(message, hint)
 
 
 class Scenario(Environments, _Structure):

@@ -1,0 +1,187 @@
+"""Does a record look like a flight: spikes, unit and sign by physics, dropouts; each can be skipped by its name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.errors import InputError
+from gbeam.motion.bases.conditioning import STANDARD_GRAVITY, dropout, spikes, without_spikes
+from gbeam.motion.bases.records.units import UNITS
+
+Floats = NDArray[np.float64]
+
+CHECKS = ("sampling", "spikes", "unit", "sign", "dropouts")
+LARGEST = 50.0  # g
+_FRAGMENT = 2.0  # s
+_BEGINS = 3.0  # g: above that, no flight begins
+_OUTSTANDING = 1.5  # a spike that much above the rest would be the record's peak
+_LEVEL = (0.75, 1.35)  # g: level flight, thrust included
+_BEGINS_LEVEL = (0.7, 1.6)  # g
+_SOME, _HARDLY = 0.05, 0.02  # of the record
+_TURNED = 0.7  # of the load: within 45° of upwards or downwards
+_NEVER = 0.7  # g: what stays below does not fly level anywhere
+_PILOTED = 12.0  # g: no aircraft, and few rockets
+_ACCELERATION = 'if it is acceleration without gravity, add quantity = "acceleration"'
+
+
+@dataclass(frozen=True)
+class Samples:
+    """What is checked.
+
+    Parameters
+    ----------
+    time : (t,) s
+    load : (t, 3) m/s², base axes
+    names : dict of str to str
+        Columns of x, y and z, with their signs.
+    unit : str
+        That the load was read in, a key of ``UNITS["acceleration"]``.
+    specific : bool
+        Specific force, 1 g upwards in level flight; else acceleration.
+    place : callable
+        Where a sample is in its file, in words.
+    """
+
+    time: Floats
+    load: Floats
+    names: dict[str, str]
+    unit: str
+    specific: bool
+    place: Callable[[int], str]
+
+    def said(self, value: float) -> str:
+        """A load, m/s², in the record's unit."""
+        return f"{value / UNITS['acceleration'][self.unit]:.4g} {self.unit}"
+
+
+def refuse_unsound(record: Samples, skip: Collection[str]) -> None:
+    """Raise InputError if a record does not look like a flight's; single samples far off are judged first.
+
+    A fragment of less than 2 s need hold no level flight: of that only the size is judged, and dropouts.
+
+    Parameters
+    ----------
+    record : Samples
+    skip : collection of str
+        Checks left out, of :data:`CHECKS`.
+    """
+    odd = spikes(record.load)
+    calm = without_spikes(record.time, record.load, odd)
+    size = np.linalg.norm(calm, axis=1)
+    whole = float(record.time[-1] - record.time[0]) >= _FRAGMENT
+    if "spikes" not in skip and whole:
+        _check_spikes(record, odd, size)
+    if "unit" not in skip:
+        _check_size(record, size)
+    if "unit" not in skip and whole and record.specific:
+        _check_level(record, size)
+    if "sign" not in skip and whole and record.specific:
+        _check_sign(record, calm[:, 2], size)
+    if "dropouts" not in skip:
+        _check_dropouts(record)
+
+
+def _trust(check: str, otherwise: str = "if the record is right as it is") -> str:
+    return f'{otherwise}, add skip_checks = ["{check}"]'
+
+
+def _check_spikes(record: Samples, odd: NDArray[np.bool_], size: Floats) -> None:
+    """Refuse a spike that would be the record's peak."""
+    high = np.linalg.norm(record.load, axis=1)
+    i = int(np.argmax(np.where(odd.any(axis=1), high, 0)))
+    rest, largest = size.max(), LARGEST * STANDARD_GRAVITY
+    if not odd[i].any() or not (high[i] > _OUTSTANDING * rest or high[i] > largest >= rest):
+        return
+    axis = int(np.argmax(np.where(odd[i], np.abs(record.load[i]), 0)))
+    name = record.names["xyz"[axis]].lstrip("-")
+    raise InputError(
+        f"record.{'xyz'[axis]}",
+        f"column {name!r} has {odd.any(axis=1).sum()} sample(s) that look like spikes: the load is "
+        f"{record.said(high[i])} at {record.time[i]:g} s ({record.place(i)}), {record.said(size[i])} beside it",
+        f"add despike = true, which replaces them; {_trust('spikes')}",
+    )
+
+
+def _check_size(record: Samples, size: Floats) -> None:
+    """Refuse a load that nothing withstands in the declared unit."""
+    i = int(size.argmax())
+    if size[i] > LARGEST * STANDARD_GRAVITY:
+        raise InputError(
+            "record.unit",
+            f"is {record.unit}, which makes {size[i] / STANDARD_GRAVITY:.3g} g of {record.place(i)}, "
+            f"at {record.time[i]:g} s",
+            f"{_wants('m/s^2')}; {_trust('unit')}" if record.unit == "g" else _trust("unit"),
+        )
+
+
+def _check_level(record: Samples, size: Floats) -> None:
+    """Refuse a load that is level flight in the other unit and no flight in the declared one."""
+    other = "g" if record.unit == "m/s^2" else "m/s^2"
+    in_g = size / STANDARD_GRAVITY
+    as_other = in_g * UNITS["acceleration"][other] / UNITS["acceleration"][record.unit]
+    first = slice(max(int(1 / np.median(np.diff(record.time))), 4))
+    begins, begins_as_other = float(np.median(in_g[first])), float(np.median(as_other[first]))
+    peak, here, there = in_g.max(), _share(in_g, _LEVEL), _share(as_other, _LEVEL)
+    if record.unit == "g":
+        # Level at 9.8 and nowhere at 1; a rocket that passes 9.8 g has been at less.
+        doubtful = begins > _BEGINS or (there > _SOME and here < _HARDLY and peak > _PILOTED)
+    else:
+        # What is level at 0.1 g either pulls more than 1 g to stay in the air, or is in g.
+        level_in_g = peak < _LEVEL[1] or _BEGINS_LEVEL[0] < begins_as_other < _BEGINS_LEVEL[1]
+        doubtful = peak < _NEVER or (there > _SOME and level_in_g)
+    if doubtful:
+        raise InputError(
+            "record.unit",
+            f"is {record.unit}, and the record begins at {record.said(begins * STANDARD_GRAVITY)} and reaches "
+            f"{record.said(size.max())}, {peak:.3g} g: level flight is 1 g, which is 9.81 m/s^2",
+            f"{_wants(other)}; {_ACCELERATION}; {_trust('unit')}",
+        )
+
+
+def _wants(unit: str) -> str:
+    return f'a record in {unit} wants unit = "{unit}"'
+
+
+def _share(size: Floats, band: tuple[float, float]) -> float:
+    return float(np.mean((size > band[0]) & (size < band[1])))
+
+
+def _check_sign(record: Samples, upwards: Floats, size: Floats) -> None:
+    """Refuse a record whose level flight, where it is along z, is more often downwards than upwards."""
+    in_g = size / STANDARD_GRAVITY
+    level = (in_g > _LEVEL[0]) & (in_g < _LEVEL[1])
+    down, up = level & (upwards < -_TURNED * size), level & (upwards > _TURNED * size)
+    if down.mean() < _SOME or down.sum() <= up.sum():
+        return
+    i, name = int(down.argmax()), record.names["z"]
+    turned = name[1:].strip() if name.startswith("-") else f"-{name}"
+    raise InputError(
+        "record.z",
+        f"is {record.said(upwards[i])} at {record.time[i]:g} s ({record.place(i)}), and downwards for "
+        f"{100 * down.sum() / level.sum():.0f} % of level flight, which is 1 g upwards, along +z",
+        f'write z = "{turned}"; {_ACCELERATION}; {_trust("sign", "if the specimen hangs upside down")}',
+    )
+
+
+def _check_dropouts(record: Samples) -> None:
+    step = float(np.median(np.diff(record.time)))
+    for values, (axis, name) in zip(record.load.T, record.names.items(), strict=True):
+        still = dropout(values, step)
+        if still is not None:
+            first, last = still
+            raise InputError(
+                f"record.{axis}",
+                f"column {name.lstrip('-')!r} stands still at {record.said(values[first])} "
+                f"from {record.time[first]:g} s to {record.time[last]:g} s "
+                f"({_rows(record.place(first), record.place(last))}): the sensor dropped out",
+                f"mend or cut the record there; {_trust('dropouts')}",
+            )
+
+
+def _rows(first: str, last: str) -> str:
+    word, number = first.split()
+    return f"{word}s {number} to {last.split()[1]}"

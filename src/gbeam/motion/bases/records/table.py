@@ -1,0 +1,195 @@
+"""Named columns of a file, whatever its kind: found by name, with a sign, as finite numbers."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.errors import InputError
+
+Floats = NDArray[np.float64]
+
+_NO_COLUMN = "0"
+_LISTED = 30  # names in a message
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of a record.
+
+    Parameters
+    ----------
+    name : str
+        As in the file.
+    read : callable
+        Returns the samples: text as in the file, or numbers.
+    unit : str
+        As the file spells it; empty if it states none.
+    aliases : tuple of str
+        Other names it goes by, such as ``a_z`` for ``a_z [g]``.
+    """
+
+    name: str
+    read: Callable[[], Sequence[str] | NDArray[Any]]
+    unit: str = ""
+    aliases: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns of one file.
+
+    Parameters
+    ----------
+    columns : tuple of Column
+    rows : sequence of int or None
+        Row of every sample in a text file; None where the file has no rows.
+    """
+
+    columns: tuple[Column, ...]
+    rows: Sequence[int] | None = None
+
+    def place(self, i: int) -> str:
+        """Where sample `i` is in the file, in words."""
+        return f"sample {i + 1}" if self.rows is None else f"row {self.rows[i]}"
+
+    def column(self, axis: str, name: str) -> Column:
+        """Find a column by its name, or else by an alias.
+
+        Parameters
+        ----------
+        axis : str
+            Key of the scenario's record that names it.
+        name : str
+
+        Raises
+        ------
+        InputError
+            If no column or several have that name.
+        """
+        found = [one for one in self.columns if one.name == name]
+        found = found or [one for one in self.columns if name in one.aliases]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            raise InputError(f"record.{axis}", f"names {name!r}, given {len(found)} times", "name each column once")
+        names = [one.name for one in self.columns]
+        every = [*names, *(alias for one in self.columns for alias in one.aliases)]
+        close = difflib.get_close_matches(name, every, n=1)
+        guess = f"did you mean {close[0]!r}? " if close else ""
+        more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
+        listed = ", ".join(names[:_LISTED]) + more
+        raise InputError(f"record.{axis}", f"names no column {name!r}", f"{guess}the columns are {listed}")
+
+    def numbers(self, axis: str, name: str) -> Floats:
+        """Return a column as finite numbers, shape (t,)."""
+        samples = self.column(axis, name).read()
+        if isinstance(samples, np.ndarray):
+            values = np.asarray(samples, dtype=np.float64)
+        else:
+            try:
+                values = np.array(samples, dtype=np.float64)
+            except ValueError:
+                values = np.array([_number(cell) for cell in samples])
+        bad = np.flatnonzero(~np.isfinite(values))
+        if bad.size:
+            i = int(bad[0])
+            cell = samples[i]
+            if isinstance(cell, str) and not _is_number(cell):
+                shown, what = repr(cell) if cell else "empty", "a number"
+            else:
+                shown, what = str(cell), "a finite number"
+            raise InputError(f"record.{axis}", f"{self.place(i)}, column {name!r} is {shown}", f"put {what} there")
+        return values
+
+    def vector(self, names: dict[str, str], count: int) -> Floats:
+        """Stack components, each a column with its sign.
+
+        Parameters
+        ----------
+        names : dict of str to str
+            Column by axis; a leading ``-`` changes the sign, ``0`` is a component that is zero. A column whose own
+            name begins with a dash is taken at its name.
+        count : int
+            Number of samples, t.
+
+        Returns
+        -------
+        (t, 3) array
+        """
+        parts = []
+        for axis, name in names.items():
+            sign, column = self._signed(name)
+            values = np.zeros(count) if column is None else sign * self.numbers(axis, column)
+            if len(values) != count:
+                raise InputError(
+                    f"record.{axis}", f"column {column!r} has {len(values)} samples, the time {count}", "name another"
+                )
+            parts.append(values)
+        return np.stack(parts, axis=-1)
+
+    def stated_units(self, names: dict[str, str]) -> Iterator[tuple[str, str]]:
+        """Columns of some components or of the time, each with the unit that the file states; see :meth:`vector`."""
+        for axis, name in names.items():
+            _, column = self._signed(name)
+            if column is not None and (unit := self.column(axis, column).unit):
+                yield column, unit
+
+    def _signed(self, name: str) -> tuple[float, str | None]:
+        known = {word for one in self.columns for word in (one.name, *one.aliases)}
+        if name in known:
+            return 1.0, name
+        if name == _NO_COLUMN:
+            return 1.0, None
+        return (-1.0, name[1:].strip()) if name.startswith("-") else (1.0, name)
+
+
+def array_columns(
+    name: str, shape: tuple[int, ...], read: Callable[[], NDArray[Any]], *, unit: str = "", matlab: bool = False
+) -> list[Column]:
+    """Columns of one array of a file: itself if it is a vector, its vectors if it is a matrix, else none.
+
+    Parameters
+    ----------
+    name : str
+        Path of the array in its file; the last word is an alias.
+    shape : tuple of int
+    read : callable
+        Returns the array.
+    unit : str
+        As in :class:`Column`.
+    matlab : bool
+        Paths have dots, and the first vector of a matrix is ``acc(:,1)``; else slashes, and ``acc[:,0]``.
+    """
+    short = name.rpartition("." if matlab else "/")[2]
+    long = [size for size in shape if size > 1]
+    if len(long) == 1:
+        return [Column(name, lambda: read().ravel(), unit, (short,))]
+    if len(shape) != 2 or len(long) != 2:
+        return []
+    across = int(shape[1] <= shape[0])  # the axis that counts the vectors
+
+    def vector(k: int) -> Column:
+        index = f"{k + matlab},:" if across == 0 else f":,{k + matlab}"
+        index = f"({index})" if matlab else f"[{index}]"
+        return Column(name + index, lambda: np.take(read(), k, axis=across), unit, (short + index,))
+
+    return [vector(k) for k in range(shape[across])]
+
+
+def _number(cell: str) -> float:
+    return float(cell) if _is_number(cell) else math.nan
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,97 @@
+"""Units that a record may be in, and how files spell them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from gbeam.errors import InputError
+from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
+
+# Per quantity, the units that a scenario may name and their size in SI.
+UNITS: dict[str, dict[str, float]] = {
+    "acceleration": {"g": STANDARD_GRAVITY, "m/s^2": 1.0},
+    "rate": {"rad/s": 1.0, "deg/s": math.pi / 180},
+    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0},
+}
+# Spellings after _plain; where the unit is none of the above, a record in it is refused.
+_SPELLINGS: dict[str, dict[str, str]] = {
+    "acceleration": {
+        **dict.fromkeys(("g", "g0", "gn", "gs", "g's", "-", "1"), "g"),  # a load factor has no dimension
+        **dict.fromkeys(("m/s^2", "m/s2", "m/s/s", "ms^-2", "ms-2", "m/sec^2", "m/sec2", "mps2"), "m/s^2"),
+        **{unit: unit for unit in ("mg", "ft/s^2", "ft/s2", "mm/s^2", "mm/s2", "cm/s^2", "cm/s2", "in/s^2", "gal")},
+    },
+    "rate": {
+        **dict.fromkeys(("rad/s", "rads-1", "rads^-1", "rad/sec", "rps"), "rad/s"),
+        **dict.fromkeys(("deg/s", "degs-1", "degs^-1", "deg/sec", "°/s", "degrees/s", "degree/s", "dps"), "deg/s"),
+        "rpm": "rpm",
+    },
+    "time": {
+        **dict.fromkeys(("s", "sec", "secs", "second", "seconds"), "s"),
+        **dict.fromkeys(("ms", "msec", "millisecond", "milliseconds"), "ms"),
+        **dict.fromkeys(("us", "usec", "microsecond", "microseconds"), "us"),
+        **dict.fromkeys(("min", "mins", "minute", "minutes"), "min"),
+        **{unit: unit for unit in ("h", "hour", "hours", "day", "days", "ns", "nanoseconds")},
+    },
+}
+
+
+def is_unit(text: str) -> bool:
+    """Whether a cell of a file is a unit of time, acceleration or rate, perhaps in brackets."""
+    return any(_canonical(text, quantity) is not None for quantity in _SPELLINGS)
+
+
+def unit_of(
+    key: str, quantity: str, declared: str | None, stated: Iterable[tuple[str, str]], *, trust: bool
+) -> str | None:
+    """Return the unit that the scenario and the file agree on, a key of ``UNITS[quantity]``; None if neither has one.
+
+    Parameters
+    ----------
+    key : str
+        Of the scenario's record: ``unit``, ``rate_unit`` or ``time_unit``.
+    quantity : str
+        A key of :data:`UNITS`.
+    declared : str or None
+        By the scenario.
+    stated : iterable of (str, str)
+        Columns and the units that the file gives for them; spellings that are not known are ignored.
+    trust : bool
+        Believe the scenario where they disagree.
+
+    Raises
+    ------
+    InputError
+        If the scenario names a unit that is not in the list, or the file another than the scenario.
+    """
+    units = UNITS[quantity]
+    declared = declared.replace("²", "^2") if declared else None
+    if declared is not None and declared not in units:
+        raise InputError(f"record.{key}", f"is {declared!r}", f"choose {' or '.join(units)}")
+    if declared is not None and trust:
+        return declared
+    unit = declared
+    for column, text in stated:
+        found = _canonical(text, quantity)
+        if found is None:
+            continue
+        if found not in units:
+            raise InputError(
+                f"record.{key}",
+                f"is {unit or 'missing'}, and the file gives column {column!r} in {text}",
+                f"convert the column to {' or '.join(units)}",
+            )
+        if unit is not None and found != unit:
+            raise InputError(
+                f"record.{key}",
+                f"is {unit}, and the file gives column {column!r} in {text}",
+                f'write {key} = "{found}"; if the file is wrong, add skip_checks = ["unit"]',
+            )
+        unit = found
+    return unit
+
+
+def _canonical(text: str, quantity: str) -> str | None:
+    words = text.strip().strip("[]()").replace("²", "^2").replace("**", "^").replace("µ", "u").replace("μ", "u")
+    words = words.split(" since ")[0]  # "seconds since 2024-01-01", as netCDF has it
+    return _SPELLINGS[quantity].get("".join(words.replace("·", "").replace("*", "").lower().split()))

@@ -1,0 +1,261 @@
+"""One table of numbers in every dialect and kind of file that is read: the same record comes out of each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gbeam.errors import InputError
+from gbeam.motion import STANDARD_GRAVITY
+from gbeam.motion.bases.records.record import Conditioning, FlightRecord, Rates, read_flight
+
+NAMES = ("t", "a_x", "a_y", "a_z")
+T = np.arange(240) / 100
+_DRIFT = np.random.default_rng(9).normal(0, 0.002, (240, 3)).cumsum(axis=0) + np.array([0.1, -0.05, 1.0])
+NUMBERS = np.column_stack([T, np.round(_DRIFT, 5)])
+
+
+def lines(
+    delimiter: str = ",",
+    decimal: str = ".",
+    header: tuple[str, ...] = NAMES,
+    before: tuple[str, ...] = (),
+    units: str = "",
+    clock: float = 1.0,
+    after: str = "",
+) -> str:
+    """The table as text; `clock` is the unit of time in seconds, `after` ends every row of numbers."""
+    numbers = NUMBERS / [clock, 1, 1, 1]
+    rows = [delimiter.join(f"{x:.16g}".replace(".", decimal) for x in row) + after for row in numbers]
+    return "\n".join([*before, delimiter.join(header), *([units] if units else []), *rows, ""])
+
+
+TEXT: dict[str, str | bytes] = {
+    "commas": lines(),
+    "commas and spaces": lines(", "),
+    "semicolons": lines(";"),
+    "semicolons, decimal commas": lines(";", ","),
+    "tabs": lines("\t"),
+    "tabs, decimal commas": lines("\t", ","),
+    "white space": lines("   "),
+    "white space, decimal commas": lines("  ", ","),
+    "white space, units in the names": lines("  ", ",", ("t [s]", "a_x [g]", "a_y [g]", "a_z [g]")),
+    "quoted decimal commas": "\n".join(f'"{line}"' for line in lines('","', ",").splitlines()),
+    "trailing delimiters": lines(";", ",", after=";"),
+    "Windows line ends": lines().replace("\n", "\r\n"),
+    "blank lines": lines().replace("\n", "\n\n"),
+    "empty rows of a spreadsheet": lines(";", ",", before=(";;;",)) + ";;;\n;;;\n",
+    "comments": lines(before=("# Flight 12; 3 May", "% 100 Hz", "// body, axes, of the, aircraft", "; x forward", "")),
+    "comments, semicolons": lines(";", ",", before=("#a;b;c;d", "; Flight 12", "% 1,5 g")),
+    "preamble without marks": lines(";", ",", before=("Flight 12", "Pilot: N.N.; 100 Hz")),
+    "header in a comment, as savetxt": lines(header=("# t", *NAMES[1:])),
+    "header in a comment of semicolons": lines(header=("; t", *NAMES[1:])),
+    "comments between rows": lines().replace("\n0.5,", "\n# event 3\n0.5,"),
+    "row of units": lines(";", ",", units="s;g;g;g"),
+    "row of units in brackets": lines("\t", units="[s]\t[g]\t[g]\t[g]"),
+    "row of units below a header in a comment": lines(header=("# t", *NAMES[1:]), units="s,g,g,g"),
+    "units in the names": lines(header=("t [s]", "a_x [g]", "a_y (g)", "a_z [-]")),
+    "index without a name": ";" + lines(";", ",").replace("\n", "\n1;")[:-2],
+    "milliseconds": lines(header=("t [ms]", *NAMES[1:]), clock=1e-3),
+    "milliseconds in a row of units": lines(";", ",", units="ms;g;g;g", clock=1e-3),
+    "Latin-1": lines(before=("# Höhe über Grund, 20 °C",)).encode("latin-1"),
+    "UTF-8 with its mark": lines(before=("# Höhe",)).encode("utf-8-sig"),
+    "UTF-16": lines(";", ",").encode("utf-16"),
+    "UTF-16, big-endian": lines("\t").encode("utf-16-be"),
+    "UTF-16, little-endian with its mark": b"\xff\xfe" + lines().encode("utf-16-le"),
+}
+
+
+def fly(path: Path, names: tuple[str, ...] = NAMES, unit: str = "g", **options: object) -> FlightRecord:
+    return read_flight(path, *names, unit, **options)  # type: ignore[arg-type,misc]
+
+
+def check(record: FlightRecord) -> None:
+    np.testing.assert_allclose(record.acceleration.times, NUMBERS[:, 0], rtol=1e-13, atol=1e-15)
+    np.testing.assert_array_equal(record.acceleration.values, STANDARD_GRAVITY * NUMBERS[:, 1:])
+
+
+@pytest.mark.parametrize("dialect", TEXT)
+def test_every_dialect_is_read_to_the_same_numbers(tmp_path: Path, dialect: str) -> None:
+    text = TEXT[dialect]
+    path = tmp_path / "record.csv"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    record = fly(path)
+    check(record)
+    assert record.notes == (("time in ms, as the file says",) if "milliseconds" in dialect else ())
+
+
+@pytest.mark.parametrize(("unit", "clock"), [("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("min", 60.0)])
+def test_time_in_the_unit_that_the_scenario_names(tmp_path: Path, unit: str, clock: float) -> None:
+    path = tmp_path / "record.txt"
+    path.write_text(lines("\t", ",", clock=clock))
+    check(fly(path, time_unit=unit))
+
+
+def v7_mat(path: Path) -> tuple[str, ...]:
+    import scipy.io
+
+    t, x, y, z = NUMBERS.T
+    scipy.io.savemat(path, {"t": t, "rec": {"a_x": x, "body": {"a_y": y}}, "acc": np.stack([x, z], 1), "word": "F-16"})
+    return "t", "rec.a_x", "a_y", "acc(:,2)"
+
+
+def v73_mat(path: Path) -> tuple[str, ...]:
+    import h5py
+
+    with h5py.File(path, "w", userblock_size=512) as file:  # MATLAB stores matrices transposed
+        file["t"], file["rec/a_x"] = NUMBERS[:, :1].T, NUMBERS[:, 1:2].T
+        file["acc"] = NUMBERS[:, 2:].T
+        file["#refs#/a"] = NUMBERS
+    with path.open("r+b") as file:
+        file.write(b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM")
+    return "t", "rec.a_x", "acc(:,1)", "acc(:,2)"
+
+
+def hdf5(path: Path) -> tuple[str, ...]:
+    import h5py
+
+    with h5py.File(path, "w") as file:
+        file["t"], file["imu/a_x"], file["imu/raw/y"] = NUMBERS[:, 0], NUMBERS[:, 1], -NUMBERS[:, 2:3]
+        file["all"] = NUMBERS.T  # channels along the first axis
+        file["imu/a_x"].attrs["units"] = np.bytes_("g")
+        file["serial"] = 12
+    return "t", "a_x", "-imu/raw/y", "all[3,:]"
+
+
+def netcdf_4(path: Path) -> tuple[str, ...]:
+    import xarray as xr
+
+    t, x, y, z = NUMBERS.T
+    data = xr.Dataset({"x": ("time", x, {"units": "g"}), "y": ("time", y), "z": ("time", z)}, {"time": t})
+    data["time"].attrs["units"] = "seconds since 2024-05-03"
+    data.to_netcdf(path, engine="h5netcdf")
+    return "time", "x", "y", "z"
+
+
+def netcdf_3(path: Path) -> tuple[str, ...]:
+    from scipy.io import netcdf_file
+
+    with netcdf_file(path, "w") as file:
+        file.createDimension("time", len(T))
+        for name, values in zip(NAMES, NUMBERS.T, strict=True):
+            file.createVariable(name, "d", ("time",))[:] = values
+        file.variables["a_z"].units = "g"
+    return NAMES
+
+
+def uff(path: Path) -> tuple[str, ...]:
+    """Data sets 58 laid out by hand after their definition (Format lines of SDRC): x and y as text, z binary."""
+
+    def header(name: str, direction: int, kind: str) -> str:
+        axis = f"{0:5d}{0:5d}{0:5d} {'NONE':20s} "
+        return "\n".join(
+            [
+                f"{-1:6d}", kind, name, "NONE", "03-May-24 12:00:00", "NONE", "NONE",
+                f"{1:5d}{0:10d}{0:5d}{0:10d} {'NONE':10s}{12:10d}{direction:4d} {'NONE':10s}{0:10d}{0:4d}",
+                f"{4:10d}{len(T):10d}{1:10d}{0:13.5e}{0.01:13.5e}{0:13.5e}",
+                *(f"{code:10d}{axis}{unit:20s}" for code, unit in ((17, "s"), (12, "g"), (0, "NONE"), (0, "NONE"))), "",
+            ]
+        )  # fmt: skip
+
+    with path.open("wb") as file:
+        for name, direction, values in (("Nose", 1, NUMBERS[:, 1]), ("NONE", -2, NUMBERS[:, 2])):
+            rows = ["".join(f"{x:20.12e}" for x in row) for row in values.reshape(-1, 4)]
+            file.write("\n".join([header(name, direction, f"{58:6d}") + rows[0], *rows[1:], f"{-1:6d}\n"]).encode())
+        raw = NUMBERS[:, 3].astype("<f8").tobytes()
+        kind = f"{58:6d}b{1:6d}{2:6d}{11:12d}{len(raw):12d}{0:6d}{0:6d}{0:12d}{0:12d}"
+        file.write(header("NONE", 3, kind).encode() + raw + f"\n{-1:6d}\n".encode())
+    return "time", "Nose", "12-Y", "12+Z"
+
+
+BINARY: dict[str, tuple[str, Callable[[Path], tuple[str, ...]]]] = {
+    "MAT": ("r.mat", v7_mat),
+    "MAT 7.3": ("r.MAT", v73_mat),
+    "HDF5": ("r.h5", hdf5),
+    "netCDF-4": ("r.nc", netcdf_4),
+    "netCDF-3": ("r.nc", netcdf_3),
+}
+
+
+@pytest.mark.parametrize("kind", BINARY)
+def test_every_kind_of_file_is_read_to_the_same_numbers(tmp_path: Path, kind: str) -> None:
+    name, write = BINARY[kind]
+    names = write(tmp_path / name)
+    check(fly(tmp_path / name, names))
+    with pytest.raises(InputError, match=r"record.z names no column 'a_q'; .*the columns are"):
+        fly(tmp_path / name, (*names[:3], "a_q"))
+
+
+def test_universal_files_are_read_to_their_digits(tmp_path: Path) -> None:
+    names = uff(tmp_path / "r.unv")
+    record = fly(tmp_path / "r.unv", names)
+    np.testing.assert_allclose(record.acceleration.times, T, rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(record.acceleration.values, STANDARD_GRAVITY * NUMBERS[:, 1:], rtol=1e-11)
+    with pytest.raises(InputError, match=r"columns are time, Nose, 12-Y, 12\+Z"):
+        fly(tmp_path / "r.unv", ("t", *names[1:]))
+
+
+def test_packed_values_are_unpacked_and_missing_ones_refused(tmp_path: Path) -> None:
+    import h5py
+
+    with h5py.File(tmp_path / "r.nc", "w") as file:
+        file["t"] = T
+        file["z"] = np.round(NUMBERS[:, 3] * 1e5 - 1000).astype(np.int32)
+        file["z"].attrs.update(scale_factor=1e-5, add_offset=0.01, _FillValue=np.int32(-9999))
+    values = fly(tmp_path / "r.nc", ("t", "0", "0", "z")).acceleration.values[:, 2]
+    np.testing.assert_allclose(values, STANDARD_GRAVITY * NUMBERS[:, 3], rtol=1e-12)
+    with h5py.File(tmp_path / "r.nc", "r+") as file:
+        file["z"][7] = -9999
+    with pytest.raises(InputError, match=r"record.z sample 8, column 'z' is nan"):
+        fly(tmp_path / "r.nc", ("t", "0", "0", "z"))
+
+
+@pytest.mark.parametrize(
+    ("text", "where", "words"),
+    [
+        (lines(header=("t", "a_x", "a_y", "a_z [m/s²]")), "record.unit", ["is g", "'a_z' in m/s²", 'unit = "m/s^2"']),
+        (lines(units="s,ft/s^2,ft/s^2,ft/s^2"), "record.unit", ["ft/s^2", "convert"]),
+        (lines(header=("t [h]", *NAMES[1:])), "record.time_unit", ["in h", "convert"]),
+        (lines(";", ",").replace("\n0,5;", "\n0.5;"), "record.time", ["row 3", "'0,01'"]),
+        (lines(header=("1", "2", "3", "4")), "record.file", ["no header line"]),
+        (lines(decimal=","), "record.file", ["no header line with 8 names"]),
+        (lines(units="-0.01,,,"), "record.z", ["row 2, column 'a_z' is empty"]),
+        (lines(header=("t", "a_z [g]", "a_x", "a_z [m/s^2]")), "record.z", ["'a_z', given 2 times"]),
+    ],
+)
+def test_files_that_disagree_are_refused(tmp_path: Path, text: str, where: str, words: list[str]) -> None:
+    path = tmp_path / "record.csv"
+    path.write_text(text)
+    with pytest.raises(InputError) as caught:
+        fly(path, ("t", "0", "0", "a_z"))
+    assert caught.value.where == where
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_a_unit_stated_wrongly_by_the_file_can_be_overridden(tmp_path: Path) -> None:
+    path = tmp_path / "record.csv"
+    path.write_text(lines(header=("t [ms]", "a_x", "a_y", "a_z [m/s^2]")))
+    with pytest.raises(InputError, match=r'skip_checks = \["unit"\]'):
+        fly(path)
+    check(fly(path, time_unit="s", conditioning=Conditioning(skip_checks=("unit",))))
+
+
+def test_rates_in_another_unit_than_the_file_states(tmp_path: Path) -> None:
+    path = tmp_path / "record.csv"
+    path.write_text(lines(header=("t", "a_x", "p [deg/s]", "a_z")))
+    with pytest.raises(InputError, match=r'record.rate_unit is rad/s, .* write rate_unit = "deg/s"'):
+        fly(path, ("t", "a_x", "0", "a_z"), rates=Rates("p", "0", "0", "rad/s"))
+    assert fly(path, ("t", "a_x", "0", "a_z"), rates=Rates("p", "0", "0", "deg/s")).rates is not None
+
+
+@pytest.mark.parametrize("name", ["r.mat", "r.h5", "r.nc", "r.uff"])
+def test_files_that_are_not_what_their_names_say(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text(lines())
+    for path in (tmp_path / name, tmp_path / f"none.{name}"):
+        with pytest.raises(InputError) as caught:
+            fly(path)
+        assert caught.value.where == "record.file"

@@ -1,0 +1,157 @@
+"""Records judged by physics: true flights pass in either unit, wrong units, signs, times and spikes are refused."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from gbeam.errors import InputError
+from gbeam.motion import STANDARD_GRAVITY
+from gbeam.motion.bases.records.record import Conditioning, FlightRecord, read_flight
+
+DATA = Path(__file__).parents[2] / "examples" / "data"
+STEP = 0.02
+UNITS = {"g": 1.0, "m/s^2": STANDARD_GRAVITY}
+OTHER = {"g": "m/s^2", "m/s^2": "g"}
+Floats = NDArray[np.float64]
+
+
+def along(*corners: tuple[float, float], x: float = 0.0, y: float = 0.0) -> Floats:
+    """A load through corners (s, g) in z, with some turbulence."""
+    time = np.arange(0, corners[-1][0], STEP)
+    noise = 0.01 * np.random.default_rng(1).normal(size=(len(time), 3))
+    return np.stack([0 * time + x, 0 * time + y, np.interp(time, *np.transpose(corners))], axis=1) + noise
+
+
+def recorded(name: str) -> Floats:
+    table = np.genfromtxt(DATA / name, delimiter=",", names=True)[::2]
+    return np.stack([table["n_x_g"], -table["n_y_g"], -table["n_z_g"]], axis=1)
+
+
+# Specific force, g, in base axes, every 0.02 s.
+FLIGHTS: dict[str, Floats] = {
+    "F-16, 8 g turn": recorded("f16_8g_turn.csv"),
+    "F-16, pulls and push": recorded("f16_pulls_and_push.csv"),
+    "10 g pull, then 3.55 g": along((0, 1), (3, 1), (4.3, 10), (6, 10), (8, 1), (10, 3.55), (12, 1), (15, 1)),
+    "6 g turn": along((0, 1), (2, 1), (4, 6), (12, 6), (14, 1), (16, 1), x=0.3),
+    "level cruise": along((0, 1), (20, 1)),
+    "9 g from the third to the last second": along((0, 1.2), (1, 1.2), (3, 9), (20, 9), (21, 2)),
+    "rocket from its pad to 6 g": along((0, 1), (2, 1), (2.1, 1.4), (40, 6), (40.2, 0), (60, 0))[:, [2, 1, 0]],
+    "rocket ascent, 0 to 6 g": along((0, 0), (20, 6))[:, [2, 1, 0]],
+    "parabolic flight": along((0, 1), (5, 1), (8, 1.8), (25, 1.8), (28, 0), (50, 0), (53, 1.8), (70, 1.8), (75, 1)),
+    "push to -2.2 g": along((0, 1), (5, 1), (7, -2.2), (9, 1), (12, 1)),
+    "inverted for a while": along((0, 1), (10, 1), (11, -1), (15, -1), (16, 1), (20, 1)),
+    "helicopter in turbulence": along((0, 1), (30, 1)) + 0.15 * np.sin(np.arange(1500)[:, None] * [1.0, 1.3, 0.7]),
+}
+
+
+def write(folder: Path, load: Floats, unit: str = "g", step: float = STEP) -> Path:
+    path = folder / "record.csv"
+    rows = np.column_stack([step * np.arange(len(load)), UNITS[unit] * load])
+    np.savetxt(path, rows, delimiter=",", header="t,x,y,z", comments="", fmt="%.8g")
+    return path
+
+
+def fly(path: Path, unit: str, z: str = "z", **options: object) -> FlightRecord:
+    return read_flight(path, "t", "x", "y", z, unit, **options)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("name", FLIGHTS)
+def test_true_flights_pass_in_either_unit(tmp_path: Path, name: str, unit: str) -> None:
+    record = fly(write(tmp_path, FLIGHTS[name], unit), unit)
+    np.testing.assert_allclose(record.acceleration.values, STANDARD_GRAVITY * FLIGHTS[name], rtol=1e-6, atol=1e-7)
+
+
+@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("name", FLIGHTS)
+def test_the_wrong_unit_is_refused(tmp_path: Path, name: str, unit: str) -> None:
+    if name == "rocket ascent, 0 to 6 g" and unit == "m/s^2":
+        return  # 0 to 59 g looks like a rocket's too
+    path = write(tmp_path, FLIGHTS[name], unit)
+    declared = OTHER[unit]
+    with pytest.raises(InputError) as caught:
+        fly(path, declared)
+    assert caught.value.where == "record.unit"
+    assert f'unit = "{unit}"' in caught.value.fix and 'skip_checks = ["unit"]' in caught.value.fix
+    kept = fly(path, declared, conditioning=Conditioning(skip_checks=("unit",)))
+    wrong = UNITS[unit] * FLIGHTS[name] * STANDARD_GRAVITY / UNITS[declared]
+    np.testing.assert_allclose(kept.acceleration.values, wrong, rtol=1e-6, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", [name for name in FLIGHTS if "rocket" not in name and "last" not in name])
+def test_level_flight_downwards_is_the_wrong_sign(tmp_path: Path, name: str) -> None:
+    path = write(tmp_path, FLIGHTS[name])
+    with pytest.raises(InputError, match=r'record.z is -.* of level flight, .* write z = "z".*\["sign"\]'):
+        fly(path, "g", z="-z")
+    fly(path, "g", z="-z", conditioning=Conditioning(skip_checks=("sign",)))
+
+
+def test_a_beam_that_points_up_or_hangs_has_no_sign_to_check(tmp_path: Path) -> None:
+    load = FLIGHTS["6 g turn"][:, [2, 1, 0]]
+    fly(write(tmp_path, load), "g")
+    fly(write(tmp_path, -load), "g")
+
+
+def test_acceleration_has_no_level_flight(tmp_path: Path) -> None:
+    turn = FLIGHTS["6 g turn"] - [0.3, 0, 1]
+    for unit in UNITS:
+        path = write(tmp_path, 0.1 * turn, unit)
+        fly(path, unit, quantity="acceleration")
+    with pytest.raises(InputError, match='quantity = "acceleration"'):
+        fly(path, "m/s^2")
+
+
+@pytest.mark.parametrize(
+    ("declared", "true", "words"),
+    [("s", 1e-3, "is the time in ms?"), ("s", 60.0, "is the time in min?"), ("ms", 1.0, "is the time in s?")],
+)
+def test_an_implausible_interval_asks_for_the_unit_of_time(
+    tmp_path: Path, declared: str, true: float, words: str
+) -> None:
+    path = write(tmp_path, FLIGHTS["6 g turn"], step=STEP / true)
+    with pytest.raises(InputError, match=r"record\.time .*sampling") as caught:
+        fly(path, "g", time_unit=declared)
+    assert words in caught.value.fix
+    unit = words.split()[-1].rstrip("?")
+    assert fly(path, "g", time_unit=unit).acceleration.times[-1] == pytest.approx(16 - STEP)
+    if declared == "s":
+        fly(path, "g", conditioning=Conditioning(skip_checks=("sampling", "spikes")))
+
+
+SPOILT: dict[str, Callable[[Floats], None]] = {
+    "too large for any unit": lambda z: z.__setitem__(400, 500.0),
+    "largest by far": lambda z: z.__setitem__(400, 20.0),
+    "two": lambda z: z.__setitem__([100, 400], [-30.0, 900.0]),
+    "in the first second, of the wrong sign": lambda z: z.__setitem__(slice(3, 4), -60.0),
+}
+
+
+@pytest.mark.parametrize("name", SPOILT)
+def test_a_spike_is_offered_despike_before_anything_else(tmp_path: Path, name: str) -> None:
+    load = FLIGHTS["6 g turn"].copy()
+    SPOILT[name](load[:, 2])
+    path = write(tmp_path, load)
+    with pytest.raises(InputError, match=r"record.z column 'z' has . sample\(s\) that look like spikes: .*despike = t"):
+        fly(path, "g", z="-z")  # a wrong sign besides
+    mended = fly(path, "g", conditioning=Conditioning(despike=True))
+    assert np.abs(mended.acceleration.values / STANDARD_GRAVITY - FLIGHTS["6 g turn"]).max() < 0.1
+    kept = fly(path, "g", conditioning=Conditioning(skip_checks=("spikes", "unit")))
+    np.testing.assert_allclose(kept.acceleration.values, STANDARD_GRAVITY * load, rtol=1e-6, atol=1e-7)
+
+
+def test_the_unit_is_judged_without_small_spikes(tmp_path: Path) -> None:
+    load = FLIGHTS["level cruise"].copy()
+    load[500, 2] = 1.3
+    assert "despike = true" in fly(write(tmp_path, load), "g").notes[0]
+    with pytest.raises(InputError, match=r"record\.unit"):
+        fly(write(tmp_path, load), "m/s^2")
+
+
+def test_a_check_that_does_not_exist_cannot_be_skipped(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"record.skip_checks names no check 'units'; choose of sampling, spikes"):
+        fly(write(tmp_path, FLIGHTS["6 g turn"]), "g", conditioning=Conditioning(skip_checks=("units",)))
