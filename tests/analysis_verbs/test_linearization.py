@@ -11,7 +11,9 @@ from gbeam.analysis.control.linearization import linearize
 from gbeam.analysis.control.nonlinear import nonlinear_system
 from gbeam.analysis.control.reduction import balanced_truncation, modal_truncation
 from gbeam.analysis.equilibrium.compiled import evaluated
-from gbeam.analysis.equilibrium.operating_point import linear_matrices, on_base, on_hub, operating_point
+from gbeam.analysis.equilibrium.hub_point import on_hub
+from gbeam.analysis.equilibrium.operating_point import operating_point
+from gbeam.analysis.equilibrium.point import linear_matrices, on_base
 from gbeam.analysis.vibration.modal import modes
 from gbeam.motion import Base, Hub, constant
 

@@ -26,7 +26,7 @@ from gbeam import (
     simulate,
     solve_equilibrium,
 )
-from gbeam.analysis.equilibrium.operating_point import linear_matrices, on_base
+from gbeam.analysis.equilibrium.point import linear_matrices, on_base
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.motion import Base
 

@@ -20,7 +20,7 @@ from gbeam.motion import (
     tabulated,
     vector,
 )
-from gbeam.motion.centrifuge.spin_up import LEAST_TURNED, USUAL_TURNED
+from gbeam.motion.centrifuge.inverses.spin_up import LEAST_TURNED, USUAL_TURNED
 
 G, R = STANDARD_GRAVITY, 3.3
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"

@@ -129,9 +129,9 @@ def _nonlinear(
 
     tableau, residual = scheme.tableau(step), equations.residual
     qdd = newton.accelerations(residual, q[None], qd[None], equations.drive(np.array([start])))[0]
-    traced, xp = isinstance(qdd, jax.core.Tracer), jax.numpy
-    if not traced:
-        qdd, xp = np.asarray(qdd), np
+    traced = isinstance(qdd, jax.core.Tracer)
+    xp: Any = jax.numpy if traced else np
+    qdd = xp.asarray(qdd)
     yield *(xp.asarray(x, dtype=float)[None] for x in (q, qd, qdd)), np.array([True])
     x = xp.broadcast_to(qdd, (len(scheme.offsets), len(q)))
     carry = newton.Carry(tableau.first @ xp.stack([q, qd, qdd]), x, x)

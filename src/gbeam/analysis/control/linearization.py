@@ -8,14 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.equilibrium.operating_point import (
-    OperatingPoint,
-    linear_matrices,
-    on_base,
-    on_hub,
-    operating_point,
-    steady_base,
-)
+from gbeam.analysis.equilibrium.hub_point import on_hub
+from gbeam.analysis.equilibrium.operating_point import operating_point
+from gbeam.analysis.equilibrium.point import OperatingPoint, linear_matrices, on_base, steady_base
 from gbeam.analysis.vibration.stability import hub_of
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record

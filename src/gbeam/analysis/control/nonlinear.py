@@ -14,7 +14,8 @@ from gbeam.analysis.control.linearization import (
     output_signals,
     outputs_of,
 )
-from gbeam.analysis.equilibrium.operating_point import REST, on_base, on_hub
+from gbeam.analysis.equilibrium.hub_point import on_hub
+from gbeam.analysis.equilibrium.point import REST, on_base
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.results.steady.state_space import Gauge, import_control

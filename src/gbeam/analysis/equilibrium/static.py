@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from gbeam.analysis.equilibrium.equilibrium import lowest_stiffness
-from gbeam.analysis.equilibrium.operating_point import OperatingPoint, beam_block, on_base, operating_point
+from gbeam.analysis.equilibrium.operating_point import operating_point
+from gbeam.analysis.equilibrium.point import OperatingPoint, beam_block, on_base
 from gbeam.errors import InputError
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.equilibrium.operating_point import linear_matrices, on_base, on_hub, steady_base
+from gbeam.analysis.equilibrium.hub_point import on_hub
+from gbeam.analysis.equilibrium.point import linear_matrices, on_base, steady_base
 from gbeam.analysis.vibration.modal import modes_at
 from gbeam.analysis.vibration.speeds import largest_rate
 from gbeam.analysis.vibration.stability import critical_speed, hub_of

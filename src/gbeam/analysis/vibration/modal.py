@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.equilibrium.operating_point import Linear, OperatingPoint, linear_matrices, operating_point
+from gbeam.analysis.equilibrium.operating_point import operating_point
+from gbeam.analysis.equilibrium.point import Linear, OperatingPoint, linear_matrices
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.solvers.eigen import symmetric_modes

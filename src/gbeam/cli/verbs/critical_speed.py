@@ -45,7 +45,7 @@ def critical_speed(
     name, chosen = given.motion(motion, kind="hub")
     time = given.time(at)
 
-    from gbeam.analysis.equilibrium.operating_point import held_base
+    from gbeam.analysis.equilibrium.point import held_base
     from gbeam.analysis.vibration import stability
     from gbeam.report.steady import critical as report
 

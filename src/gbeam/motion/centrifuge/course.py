@@ -12,8 +12,8 @@ from gbeam.errors import InputError
 from gbeam.motion.centrifuge.ends import Ends
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse, Pose
 from gbeam.motion.centrifuge.inverses.registry import INVERSES
+from gbeam.motion.centrifuge.inverses.spin_up import Ramp, build_ramps
 from gbeam.motion.centrifuge.machine.limits import Limits
-from gbeam.motion.centrifuge.spin_up import Ramp, build_ramps
 from gbeam.motion.centrifuge.target.build import build_target
 from gbeam.motion.centrifuge.target.target import Target
 from gbeam.motion.profiles.profile import Profile

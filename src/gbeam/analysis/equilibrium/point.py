@@ -1,0 +1,179 @@
+"""Operating points: a model's equations, frozen at one instant of its base's motion, and their derivatives there.
+
+Modes, Campbell diagrams, critical speeds and state-space models all read the same M, C, K: the derivatives of one
+residual with respect to ÿ, ẏ and y. Nothing here knows which model or which base it differentiates: a linear model's
+residual is differentiated by a complex step, a complete one's is expanded about the point and is linear there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
+from gbeam.mechanics.equations.residuals import OnBase, OnHub
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.bases.base import Base
+from gbeam.motion.protocol import Motion
+from gbeam.numerics.complex_step import complex_step
+from gbeam.results.response import BaseMotion
+
+Array = Any
+REST = Base(*np.zeros((3, 3)))
+
+
+class Linear(NamedTuple):
+    """M δÿ + C δẏ + K δy = B δu; C holds damping and gyroscopic coupling. (n, n), (n, n), (n, n), (n, inputs)."""
+
+    mass: Array
+    velocity: Array
+    stiffness: Array
+    inputs: Array
+
+
+@dataclass(frozen=True, eq=False)
+class OperatingPoint:
+    """A state (y, ẏ, ÿ; u) at which a residual vanishes, and the base's motion there.
+
+    Parameters
+    ----------
+    structure : Structure
+    residual : OnBase or OnHub
+    y, yd, ydd : (n,) beam coordinates; on a free hub (n + 1,), the hub's angle first
+    u : (inputs,) as the residual packs them
+    base : Base
+        Frozen motion of the root.
+    """
+
+    structure: Structure
+    residual: OnBase | OnHub
+    y: Array
+    yd: Array
+    ydd: Array
+    u: Array
+    base: Base
+
+    @property
+    def first(self) -> int:
+        """Index of the beam's first coordinate in y."""
+        return self.residual.first
+
+    @property
+    def q(self) -> Array:
+        """Coordinates of the beam, (n,)."""
+        return self.y[self.first :]
+
+    @property
+    def frozen(self) -> BaseMotion:
+        """The base's motion as a record."""
+        return frozen(self.base)
+
+
+def frozen(base: Base) -> BaseMotion:
+    """Base motion as a record of the results."""
+    return BaseMotion(*(np.asarray(x) for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
+
+
+def evaluated_at(structure: Structure, residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
+    if structure.linear:
+        return residual(y, yd, ydd, residual.unpack(u))
+    from gbeam.analysis.equilibrium.compiled import evaluated
+
+    return np.asarray(evaluated(residual, y, yd, ydd, u))
+
+
+def _jacobian(structure: Structure, residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
+    if not structure.linear:
+        from gbeam.analysis.equilibrium.compiled import jacobian
+
+        return np.asarray(jacobian(residual, np.concatenate([y, yd, ydd]), u))
+    return _stepped(residual, y, yd, ydd, u)
+
+
+def _stepped(residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
+    """Derivatives of a linear model's residual, by a complex step."""
+    n = len(y)
+
+    def stacked(x: Array) -> Array:
+        return residual(x[:n], x[n : 2 * n], x[2 * n : 3 * n], residual.unpack(x[3 * n :]))
+
+    return complex_step(stacked, np.concatenate([y, yd, ydd, u]))
+
+
+def linear_matrices(point: OperatingPoint) -> Linear:
+    """Derivatives of the residual at an operating point."""
+    structure, residual, n = point.structure, point.residual, len(point.y)
+    if not structure.linear and (point.yd[point.first :].any() or point.ydd[point.first :].any()):
+        # The beam moves: how its places bend further matters.
+        return _split(_jacobian(structure, residual, point.y, point.yd, point.ydd, point.u), n)
+    # A complete model's small departures from where it rests are a linear model about that place.
+    c, q = structure.coefficients, point.q
+    if not structure.linear:
+        c, q = structure.about(q)[0], np.zeros(structure.size)
+    if isinstance(residual, OnBase):
+        base, loads = residual.unpack(point.u)
+        velocity, stiffness, _ = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
+        inputs = c.input_matrix(q, point.yd, base.w_WB_B, loaded=loads is not None)
+        return Linear(c.mass, velocity, stiffness, inputs)
+    about = residual if structure.linear else OnHub(residual.equations.about(c), residual.mount)
+    y = np.concatenate([point.y[: point.first], q])
+    return _split(_stepped(about, y, point.yd, point.ydd, point.u), n)
+
+
+def _split(d: Array, n: int) -> Linear:
+    return Linear(d[:, 2 * n : 3 * n], d[:, n : 2 * n], d[:, :n], -d[:, 3 * n :])
+
+
+def beam_block(point: OperatingPoint) -> tuple[Array, Array]:
+    """M and K of the beam's own coordinates about an operating point."""
+    linear, i = linear_matrices(point), point.first
+    return linear.mass[i:, i:], linear.stiffness[i:, i:]
+
+
+def frozen_base(motion: Motion, time: float) -> Base:
+    """Base motion at one time, arrays (3,)."""
+    base = motion.base(np.array([time]))
+    return Base(*(np.asarray(x)[0] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
+
+
+def steady_base(hub: Any, rate: float) -> Base:
+    """Base motion of a hub that turns at a constant rate, rad/s, at angle zero."""
+    return hub.mount.base(np.zeros(()), np.asarray(float(rate)), np.zeros(()))
+
+
+def held_base(motion: Motion | None, time: float) -> Base:
+    """Base motion at one time; that of a free hub held at rest, at angle zero; at rest where there is no motion."""
+    if motion is None:
+        return REST
+    return steady_base(motion, 0.0) if motion.free else frozen_base(motion, time)
+
+
+def placed(structure: Structure, base: Base, q: Array | None, qd: Array | None) -> tuple[Array, Array, bool]:
+    """Coordinates and rates, those of the relative equilibrium unless given; and whether that is where they are."""
+    at = solve_equilibrium(structure, base).q if q is None else np.asarray(q, dtype=float)
+    moving = 0 * at if qd is None else np.asarray(qd, dtype=float)
+    return at, moving, q is None and qd is None
+
+
+def beam_acceleration(
+    structure: Structure, residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array
+) -> Array:
+    """q̈ that the beam's equations ask for, the hub's acceleration being given, (n,)."""
+    n, i = len(y), residual.first
+    still = np.where(np.arange(n) < i, ydd, 0.0)
+    mass = _jacobian(structure, residual, y, yd, still, u)[i:, 2 * n + i : 3 * n]
+    return np.linalg.solve(mass, -evaluated_at(structure, residual, y, yd, still, u)[i:])
+
+
+def on_base(structure: Structure, base: Base, q: Array | None = None, qd: Array | None = None) -> OperatingPoint:
+    """Operating point on a base with a frozen motion.
+
+    At its relative equilibrium, or with the coordinates and rates `q`, `qd` (n,) and the accelerations that follow.
+    """
+    at, moving, rests = placed(structure, base, q, qd)
+    residual = OnBase(structure.equations)
+    u, still = residual.pack(base, structure.load_values), np.zeros_like(at)
+    qdd = still if rests else beam_acceleration(structure, residual, at, moving, still, u)
+    return OperatingPoint(structure, residual, at, moving, qdd, u, base)

@@ -1,0 +1,88 @@
+"""Where a relative equilibrium is lost as a quantity is raised from zero."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from gbeam.analysis.equilibrium.equilibrium import lowest_stiffness
+from gbeam.analysis.equilibrium.point import Linear, OperatingPoint, linear_matrices, on_base
+from gbeam.analysis.vibration.modal import directions, eigenvalues, growth_limit, modes_at
+from gbeam.errors import ComputationError
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.bases.base import Base
+from gbeam.numerics.solvers.roots import brent
+from gbeam.results.steady.stability import Critical
+
+SCAN = 64  # points at which a loss is looked for before its root is closed in on
+UNSYMMETRIC = 1e-9  # of K: above it the loads follow the beam
+
+
+def _margin(linear: Linear) -> float:
+    """Positive while the equilibrium is stable, rad²/s²; its root is where it stops."""
+    stiffness = linear.stiffness
+    if np.abs(stiffness - stiffness.T).max() <= UNSYMMETRIC * np.abs(stiffness).max():
+        return lowest_stiffness(linear.mass, stiffness)[0]
+    value, _ = eigenvalues(linear)
+    return float((growth_limit(value, np.abs(value).max()) - value.real).min())
+
+
+def _point(structure: Structure, base: Base) -> OperatingPoint | None:
+    try:
+        return on_base(structure, base)
+    except ComputationError:
+        return None
+
+
+def first_loss_along(
+    path: Callable[[float], tuple[Structure, Base]], upper: float, quantity: str, unit: str
+) -> Critical:
+    """Raise a quantity from zero until the relative equilibrium is lost.
+
+    Parameters
+    ----------
+    path : callable
+        Of the quantity that is raised: the structure, with its loads, and the base motion.
+    upper : float
+        End of the search.
+    quantity, unit : str
+        For the result.
+
+    Returns
+    -------
+    Critical
+        The first loss on a grid of 64 points, closed in to 1e-11 by Brent's method.
+    """
+
+    def margin(value: float) -> float:
+        point = _point(*path(value))
+        return -1.0 if point is None else _margin(linear_matrices(point))
+
+    def answer(value: float | None, kind: str, direction: str, reason: str) -> Critical:
+        return Critical(quantity, unit, value, upper, kind, direction, reason, structure.kind)
+
+    structure, _ = path(0.0)
+    grid = np.linspace(0.0, upper, SCAN + 1)
+    margins = np.array([margin(float(value)) for value in grid])
+    lost = np.flatnonzero(margins < 0)
+    if not lost.size:
+        why = f"{structure.kind} keeps its equilibrium at every {quantity} up to {upper:.4g} {unit}"
+        return answer(None, "none", "", why)
+    first = int(lost[0])
+    if first == 0:
+        return answer(0.0, "divergence", "", "the beam is unstable before anything moves")
+    root = brent(margin, float(grid[first - 1]), float(grid[first]), xtol=1e-11)
+    point = _point(*path(root)) or on_base(*path(float(grid[first - 1])))
+    beyond = _point(*path(root * (1 + 1e-5)))
+    if beyond is None:
+        kind, direction = "no equilibrium", ""
+    else:
+        grown = modes_at(structure, beyond).instabilities
+        kind, direction = (grown[0].kind, grown[0].direction) if grown else ("divergence", "")
+    if kind == "divergence":
+        linear = linear_matrices(point)
+        _, mode = lowest_stiffness(linear.mass, linear.stiffness)
+        direction = directions(structure, point, mode[:, None])[0]
+    along = f" along {direction}" if direction else ""
+    return answer(root, kind, direction, f"{structure.kind}: {kind}{along} at {root:.6g} {unit}")
