@@ -19,7 +19,7 @@ def test_python_blocks_run(capsys: pytest.CaptureFixture[str], monkeypatch: pyte
     for block in blocks("python"):
         assert len(block.strip().splitlines()) <= 12
         exec(compile(block, "README.md", "exec"), {})
-    assert "agrees with" in capsys.readouterr().out
+    assert "reproduced as" in capsys.readouterr().out
 
 
 def test_linked_files_exist() -> None:

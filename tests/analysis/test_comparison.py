@@ -21,7 +21,7 @@ def test_same_response_has_no_difference() -> None:
     assert not compared.difference.any()
     assert compared.covered.all()
     np.testing.assert_allclose(compared.peak_flight, [0, 2e-3, 3e-3], rtol=1e-12)
-    assert "agrees with flight within 0" in compared.verdict
+    assert "reproduced as 3.358 mm (0.0 %)" in compared.verdict  # the vector's, not z's 3 mm
 
 
 def test_difference_is_centrifuge_less_flight() -> None:
@@ -32,7 +32,7 @@ def test_difference_is_centrifuge_less_flight() -> None:
     np.testing.assert_allclose(compared.relative[2], 0.01, rtol=1e-12)
     assert np.isnan(compared.relative[0])  # nothing in flight to compare with
     assert (compared.flight, compared.centrifuge) == ("flight", "arm")
-    assert "along z on arm" in compared.verdict
+    assert compared.peaks["tip"].ratio > 1.007
 
 
 def test_held_times_do_not_count() -> None:
@@ -46,7 +46,7 @@ def test_held_times_do_not_count() -> None:
 def test_nothing_covered() -> None:
     compared = compare(made("flight", TIME, WAVE), made("arm", TIME, WAVE, held=TIME > -1))
     assert np.isnan(compared.max_difference).all() and np.isnan(compared.rms_difference).all()
-    assert "never carries flight's load" in compared.verdict
+    assert "reproduced as" in compared.verdict  # the verdict is about the whole flight
 
 
 def test_other_times_are_interpolated_and_the_later_ones_left_out() -> None:

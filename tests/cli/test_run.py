@@ -10,6 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from gbeam.analysis.response import simulation
@@ -42,7 +43,83 @@ def test_json_contract(fast: Path, gbeam: Call) -> None:
     assert (comparison["flight"], comparison["centrifuge"]) == ("flight", "spin")
     assert comparison["relative"]["z"] < 1e-3 and comparison["covered"] == 1
     assert comparison["relative"]["y"] is None  # there is none along y
+    assert comparison["accepted"] is None and comparison["criteria"] == []
+    for name, unit in {"tip": "m", "root_force": "N", "root_moment": "N m", "stress": "Pa"}.items():
+        pair = comparison["peaks"][name]
+        assert set(pair) == {"flight", "machine", "ratio", "time_flight", "time_machine", "unit"}
+        assert pair["unit"] == unit and pair["ratio"] == pytest.approx(1, abs=2e-3)
+    accounting = comparison["accounting"]
+    assert accounting["tolerance"] == 0.05 and accounting["followed_share"] == 1 and accounting["not_followed"] == []
+    assert accounting["units"] == {"load": "m/s^2", "time": "s"}
+    (peak,) = accounting["peaks"]
+    assert peak["load"] == pytest.approx(6 * 9.80665) == peak["reproduced"] and peak["reason"] is None
+    # The arm's load along the beam goes with the radius: across the arm it stays the same to second order.
+    assert peak["spread"]["root"] == pytest.approx(np.hypot(1, 0.15 / 3.3) - 1, rel=1e-3)
     assert not Path("out").exists()
+
+
+def test_accepted_or_not(fast: Path, gbeam: Call) -> None:
+    accept = ["--set", "motion.spin.accept.peaks=1 %", "--set", "motion.spin.accept.tip=2 %"]
+    good = gbeam("run", fast, *accept, "--json")
+    assert good.status == 0 and good.json["comparisons"][0]["accepted"] is True
+    # A smaller limit than the arm's geometry allows.
+    bad = gbeam("run", fast, *accept, "--set", "motion.spin.accept.spread=0.01 %", "--json", "--ignore-limits")
+    assert bad.status == 1 and bad.json["outcome"] == "done"
+    assert bad.err == "gbeam: motion.spin not accepted: spread 0.103 % (limit 0.01 %)\n"
+    (comparison,) = bad.json["comparisons"]
+    assert comparison["accepted"] is False
+    assert [each["passed"] for each in comparison["criteria"]] == [True, True, False]
+    tip = comparison["criteria"][0]
+    assert (tip["name"], tip["limit"], tip["passed"]) == ("tip", 0.02, True) and abs(tip["value"]) < 2e-3
+
+
+def test_accept_in_words(fast: Path, gbeam: Call, without_figures: None) -> None:
+    answer = gbeam("run", fast, "--set", "motion.spin.accept.followed=90 %")
+    assert answer.status == 0 and "accepted: followed 100 % (at least 90 %)" in answer.out
+
+
+PULLS = """{ z = { profile = "sum", terms = [
+  { profile = "constant", level = "1 g" },
+  { profile = "trapezoid", level = "9 g", jerk = "9 g/s", start = "0.5 s", hold = "0.5 s" },
+  { profile = "trapezoid", level = "2.55 g", jerk = "9 g/s", start = "4 s", hold = "0.1 s" } ] } }"""
+
+
+@pytest.fixture
+def pulls(fast: Path) -> Path:
+    """Level flight with a pull to 10 g, and a second one to 3.55 g that is over in 0.67 s."""
+    text = fast.read_text().replace('{ z = { profile = "constant", level = "6 g" } }', PULLS)
+    text = text.replace("gravity = false", 'gravity = true\nidle = "1.4 g"\nsmoothing = "60 ms"')
+    fast.write_text(text.replace('duration = "0.5 s"', 'duration = "6 s"\nintegrator = "gauss"'))
+    return fast
+
+
+def test_a_short_second_pull_is_accounted_for(pulls: Path, gbeam: Call) -> None:
+    (comparison,) = gbeam("run", pulls, "--json").json["comparisons"]
+    accounting = comparison["accounting"]
+    assert [peak["load"] / 9.80665 for peak in accounting["peaks"]] == pytest.approx([10, 3.55], rel=1e-3)
+    assert [peak["time"] for peak in accounting["peaks"]] == pytest.approx([1.5, 4.283], abs=0.01)
+    first, second = accounting["peaks"]
+    assert first["ratio"] == pytest.approx(1, abs=0.02)
+    if second["reason"] is not None:
+        assert "not the 3.55 g at 4.28 s" in comparison["verdict"]
+        (missed,) = (each for each in accounting["not_followed"] if each["reason"] == second["reason"])
+        assert missed["flight_peak"] == pytest.approx(second["load"])
+    for each in accounting["not_followed"]:  # what is called below idle is below it
+        assert each["reason"] != "below idle" or each["flight_peak"] <= 1.4 * 9.80665
+
+
+def test_the_peak_is_that_of_the_whole_flight(pulls: Path, gbeam: Call) -> None:
+    """A machine that spins up from rest: no peak of the flight vanishes in that."""
+    start = ["--set", "motion.spin.start=rest", "--set", "motion.spin.spin_up=3 s"]
+    flown = gbeam("run", pulls, *start, "--json").json
+    (comparison,) = flown["comparisons"]
+    tip = comparison["peaks"]["tip"]
+    assert tip["flight"] == pytest.approx(flown["motions"]["flight"]["tip"]["z"]["max_abs"], rel=1e-3)
+    assert tip["time_flight"] == pytest.approx(flown["motions"]["flight"]["tip"]["z"]["time_of_max"], abs=0.01)
+    first = comparison["accounting"]["peaks"][0]
+    assert first["load"] == pytest.approx(98.0665, rel=1e-3)
+    lost = "flight's load peak of 10 g at 1.50 s is not reproduced"
+    assert comparison["verdict"].startswith(lost) == (abs(first["ratio"] - 1) > 0.05)
 
 
 def test_json_of_a_hub(hub: Path, gbeam: Call) -> None:
@@ -57,7 +134,7 @@ def test_json_of_a_hub(hub: Path, gbeam: Call) -> None:
 def test_files(fast: Path, gbeam: Call) -> None:
     answer = gbeam("run", fast, "--set", "motion.flight.acceleration.z.level=3 g")
     assert answer.status == 0
-    assert "agrees with flight" in " ".join(answer.out.split())
+    assert "Tip: flight's peak 0.87" in " ".join(answer.out.split())
     folder = Path("out/fast")
     pictures = ["tip", "axes_spin", "comparison_spin", "shock_spin"]
     pictures += [f"{what}_{motion}" for what in ("base", "loads") for motion in ("flight", "spin")]

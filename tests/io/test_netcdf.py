@@ -13,8 +13,10 @@ import xarray as xr
 
 from gbeam.errors import InputError
 from gbeam.io import netcdf as store
-from gbeam.results.comparison import Comparison, RootHistory, RootLoads, Sizes, Statistics
+from gbeam.results.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
+from gbeam.results.comparison import Comparison
 from gbeam.results.machine import AxesResult, LimitUse, Shortfall
+from gbeam.results.measures import RootHistory, RootLoads, Sizes, Statistics
 from gbeam.results.response import BaseMotion, HubResult, Peaks, Response
 from gbeam.results.section_forces import Loads
 from gbeam.results.study import Failure, Study
@@ -40,6 +42,14 @@ SHORTFALLS = (
         0.3, 0.4, "too sharp for the arm", 0.35, 302.0, 128.0, "m/s^4", 'smoothing = "142 ms" or more is trackable'
     ),
 )
+
+PAIRS = {"tip": PeakPair(2.0, 2.1, 0.3, 0.4), "stress": PeakPair()}
+ACCOUNTING = Accounting(
+    0.05, 4.0, 14.0, (0.0, 1.0), 0.5,
+    (LoadPeak(0.2, 80.0, 0.2, 79.0, 0.02, (0.01, -0.02), (0.0, 0.0)),
+     LoadPeak(0.7, 60.0, 0.7, 30.0, 0.5, (0.01, -0.02), (0.0, 0.0), "corner")),
+    (NotFollowed(0.5, 1.0, "corner", 60.0),),
+)  # fmt: skip
 
 
 def _random(*shape: int) -> np.ndarray:
@@ -88,8 +98,9 @@ def study() -> Study:
     history = RootHistory(*(_random(T, 3) for _ in range(4)))
     root = RootLoads(*(abs(_random(3)) for _ in range(6)), 1.0, 2.0, 3.0, history)
     comparison = Comparison(
-        "flight", "spin", TIME, _random(T, 3), ~held, *(abs(_random(3)) for _ in range(4)), stations=split, root=root
-    )
+        "flight", "spin", TIME, _random(T, 3), ~held, *(abs(_random(3)) for _ in range(4)), PAIRS, ACCOUNTING,
+        {"tip": 0.02}, stations=split, root=root,
+    )  # fmt: skip
     return Study("a title", responses, (comparison,))
 
 
@@ -120,7 +131,14 @@ def test_xarray_reads_what_was_written(study: Study, tree: xr.DataTree) -> None:
     np.testing.assert_array_equal(tree["comparisons/spin/difference"], study.comparisons[0].difference)
     assert flight.attrs["warnings"] == "one\ntwo"
     assert np.isnan(flight.attrs["error_estimate"])
-    assert tree["comparisons/spin"].attrs["verdict"] == study.comparisons[0].verdict
+    compared = tree["comparisons/spin"]
+    assert compared.attrs["verdict"] == study.comparisons[0].verdict == tree.attrs["verdict"]
+    assert compared.attrs["accepted"] == "false" and "Study 'a title': done" in tree.attrs["summary"]
+    assert [float(compared[name]) for name in ("tip_flight", "tip_machine", "tip_time_machine")] == [2.0, 2.1, 0.4]
+    assert np.isnan(compared["stress_flight"]) and float(compared["followed_share"]) == 0.5
+    np.testing.assert_array_equal(compared["load_peak_flight"], [80.0, 60.0])
+    assert list(compared["load_peak_reason"].values) == ["", "corner"]
+    assert float(compared["not_followed_to"][0]) == 1.0
 
 
 def test_histories_at_the_root_of_a_comparison(study: Study, tree: xr.DataTree) -> None:

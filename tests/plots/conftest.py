@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from gbeam.results.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
 from gbeam.results.comparison import Comparison
 from gbeam.results.machine import AxesResult
 from gbeam.results.response import BaseMotion, HubResult, Peaks, Response
@@ -54,5 +55,13 @@ def study() -> Study:
     slew = replace(_response("slew", "hub", 1.0), hub=hub)
     difference = 0.1 * flight.tip
     peaks = np.abs(flight.tip).max(axis=0)
-    comparison = Comparison("flight", "spin", TIME, difference, ~held, 0.1 * peaks, 0.05 * peaks, peaks, peaks)
+    accounting = Accounting(
+        0.05, 3.0, 14.0, (0.0, 2.0), 0.85,
+        (LoadPeak(0.0, 60.0, 2.0, 60.6, 0.01, (0.02, -0.01), (0.0, 0.0)),),
+        (NotFollowed(0.5, 0.8, "below idle", 60.0),),
+    )  # fmt: skip
+    pairs = {"tip": PeakPair(1e-3, 1.1e-3, 0.75, 0.75)}
+    comparison = Comparison(
+        "flight", "spin", TIME, difference, ~held, 0.1 * peaks, 0.05 * peaks, peaks, peaks, pairs, accounting
+    )
     return Study("a title", {"flight": flight, "spin": spin, "slew": slew}, (comparison,))

@@ -17,8 +17,8 @@ from matplotlib.image import imread
 from gbeam import InputError
 from gbeam.plots import plot_axes, plot_base, plot_comparison, plot_hub, plot_shock, plot_tip, write_plots
 from gbeam.plots.style import COLUMNS, line, panels, styled
-from gbeam.results.comparison import Mismatch, RootHistory, RootLoads, Shock
 from gbeam.results.machine import MachinePlan
+from gbeam.results.measures import Mismatch, RootHistory, RootLoads, Shock
 from gbeam.results.section_forces import Loads
 from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.study import Study

@@ -100,7 +100,7 @@ def test_parts_print_their_shapes(every: dict[str, Any]) -> None:
     response = every["response"]
     assert repr(response.base) == "BaseMotion(a_WO_B=(51, 3), w_WB_B=(51, 3), alpha_WB_B=(51, 3))"
     assert "section_force=(51, 4, 3)" in repr(response.loads) and len(repr(response.loads)) < 200
-    assert repr(every["plan"].axes).endswith("control_point=0.15, warnings=())")
+    assert "control_point=0.15, warnings=()" in repr(every["plan"].axes)
 
 
 def test_what_is_traced_prints_its_shapes(every: dict[str, Any]) -> None:
@@ -121,4 +121,4 @@ def test_a_study_prints_its_responses_and_comparisons(every: dict[str, Any]) -> 
     study = gb.Study("title", {"flight": response}, (gb.compare(response, response),))
     lines = repr(study).splitlines()
     assert lines[0] == "Study 'title': done" and lines[1].startswith("Response 'flight' (flight, FOAM): done")
-    assert lines[-1].startswith("Comparison: tip displacement along z on the second flight agrees with flight")
+    assert lines[-1].startswith("Comparison: tip: flight's peak ") and "reproduced as" in lines[-1]

@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
-from gbeam.io.groups import AXIS, Group, Variable, coordinate, flags, variable
-from gbeam.results.comparison import Comparison, RootHistory, Shock, Statistics
+from collections.abc import Mapping
+
+from gbeam.io.groups import AXIS, Group, Variable, coordinate, flags, variable, words
+from gbeam.results.accounting import Accounting, PeakPair
+from gbeam.results.comparison import Comparison
+from gbeam.results.measures import RootHistory, Shock, Statistics
 
 _A, _TA = ("axis",), ("time", "axis")
 _SECTION_AXES = "S: axes of the deformed root section"
+_LARGEST = {
+    "tip": ("m", "displacement of the tip"),
+    "root_force": ("N", "force at the root"),
+    "root_moment": ("N m", "moment at the root"),
+    "stress": ("Pa", "normal stress"),
+}
 
 
 def comparison_group(comparison: Comparison) -> Group:
@@ -35,7 +45,49 @@ def comparison_group(comparison: Comparison) -> Group:
     if comparison.shock is not None:
         data |= _shock(comparison.shock)
         coordinates |= coordinate("frequency", comparison.shock.frequency, "Hz", "frequency of the oscillators")
-    return Group(data, coordinates, {"flight": flight, "centrifuge": centrifuge, "verdict": comparison.verdict})
+    data |= _whole_flight(comparison.peaks) | _accounting(comparison.accounting)
+    accepted = {None: "", True: "true", False: "false"}[comparison.accepted]
+    attrs = {"flight": flight, "centrifuge": centrifuge, "verdict": comparison.verdict, "accepted": accepted}
+    return Group(data, coordinates, attrs)
+
+
+def _whole_flight(peaks: Mapping[str, PeakPair]) -> dict[str, Variable]:
+    data = {}
+    for name, pair in peaks.items():
+        unit, what = _LARGEST[name]
+        for place in ("flight", "machine"):
+            data[f"{name}_{place}"] = variable((), getattr(pair, place), unit, f"largest {what}, {place}")
+            data[f"{name}_time_{place}"] = variable((), getattr(pair, f"time_{place}"), "s", f"when that is, {place}")
+    return data
+
+
+def _accounting(accounting: Accounting) -> dict[str, Variable]:
+    v = variable
+    data = {
+        "tolerance_load": v((), accounting.allowed, "m s-2", "error of the load that counts as following"),
+        "followed_share": v((), accounting.followed_share, "1", "share of the flight's time that is followed"),
+    }
+    if accounting.peaks:  # netCDF takes a dimension of length zero for an unlimited one
+        p, rows = ("load_peak",), accounting.peaks
+        data |= {
+            "load_peak_time": v(p, [each.time for each in rows], "s", "peak of the flight's load above idle"),
+            "load_peak_flight": v(p, [each.load for each in rows], "m s-2", "its size"),
+            "load_peak_machine": v(p, [each.reproduced for each in rows], "m s-2", "what the machine makes of it"),
+            "load_peak_error": v(p, [each.error for each in rows], "1", "difference as vectors over its size"),
+            "load_peak_spread": v(
+                ("load_peak", "end"), [each.spread for each in rows], "1", "load at root and tip over that, less one"
+            ),
+            "load_peak_reason": words(p, [each.reason for each in rows], "why it is not reproduced; empty where it is"),
+        }
+    if accounting.not_followed:
+        n, runs = ("not_followed",), accounting.not_followed
+        data |= {
+            "not_followed_from": v(n, [each.start for each in runs], "s", "start of a stretch that is not followed"),
+            "not_followed_to": v(n, [each.end for each in runs], "s", "its end"),
+            "not_followed_reason": words(n, [each.reason for each in runs], "why it is not followed"),
+            "not_followed_peak": v(n, [each.flight_peak for each in runs], "m s-2", "largest load of the flight in it"),
+        }
+    return data
 
 
 def _statistics(comparison: Comparison, parts: Statistics) -> dict[str, Variable]:

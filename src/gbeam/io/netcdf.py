@@ -1,8 +1,9 @@
 """Results as netCDF files, which xarray, MATLAB and h5py open, and as xarray's own objects.
 
-A study is one file: the root says what was computed and from what; ``motions/NAME`` holds the response in one
-environment and ``comparisons/NAME`` what a centrifuge's response is compared with. Any other result is a file without
-groups. Variables are SI and carry ``units``, ``long_name`` and, for vectors, the ``frame`` of their components.
+A study is one file: the root says what was computed, from what, and the verdict; ``motions/NAME`` holds the response
+in one environment and ``comparisons/NAME`` what a centrifuge's response is compared with. Any other result is a file
+without groups. Variables are SI and carry ``units``, ``long_name`` and, for vectors, the ``frame`` of their components.
+``xarray.open_datatree`` opens all of it, ``xarray.open_dataset`` one group.
 """
 
 from __future__ import annotations
@@ -149,6 +150,8 @@ def _study(study: Study, provenance: Provenance) -> dict[str, Group]:
     attrs = {
         "title": study.title,
         "outcome": study.outcome,
+        "verdict": "\n".join(each.verdict for each in study.comparisons),
+        "summary": repr(study),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
         "gbeam_version": version("gbeam"),
         "jax_version": version("jax"),

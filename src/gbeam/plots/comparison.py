@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
 from gbeam.plots.style import REFERENCE, colour, heading, legend, line, panels, scale_to, shade, show_zero, styled
-from gbeam.results.comparison import Comparison, Shock
+from gbeam.results.comparison import Comparison
+from gbeam.results.measures import Shock
 from gbeam.results.result import Floats
 
 _Lines = tuple[str, dict[str, Floats]]  # what is drawn, with its unit; values by name

@@ -81,6 +81,11 @@ def build(scenario: schema.Scenario) -> Case:
         response=response,
         tracks={name: table.tracks for name, table in scenario.motion.items() if isinstance(table, schema.Centrifuge)},
         stations=scenario.response.stations or (),
+        accept={
+            name: table.accept.given
+            for name, table in scenario.motion.items()
+            if isinstance(table, schema.Centrifuge) and table.accept is not None
+        },
     )
 
 

@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
+from gbeam.analysis.imitation.accounting import History, account
+from gbeam.analysis.imitation.peak_pairs import peak_pairs
+from gbeam.checks import positive
+from gbeam.errors import InputError
 from gbeam.numerics.filters.low_pass import low_pass
 from gbeam.numerics.filters.oscillators import largest_riding_acceleration
-from gbeam.results.comparison import Comparison, Mismatch, RootHistory, RootLoads, Shock, Sizes, Statistics
+from gbeam.results.accounting import CRITERIA, TOLERANCE, Accounting
+from gbeam.results.comparison import Comparison
+from gbeam.results.measures import Mismatch, RootHistory, RootLoads, Shock, Sizes, Statistics
 from gbeam.results.response import BaseMotion, Response
 from gbeam.results.result import Flags, Floats
 
@@ -15,9 +23,16 @@ QUALITY = 10.0  # of the oscillators of the shock response spectrum
 _SPECTRUM = 60  # frequencies
 _HIGHEST = 1 / 8  # of the sampling rate: above, the peaks between samples are missed
 _FEWEST = 16  # samples worth filtering
+_ROUNDING = 1e-12  # of the last time
 
 
-def compare(flight: Response, centrifuge: Response) -> Comparison:
+def compare(
+    flight: Response,
+    centrifuge: Response,
+    *,
+    tolerance: float = TOLERANCE,
+    accept: Mapping[str, float] | None = None,
+) -> Comparison:
     """Compare the response on a centrifuge with that in the flight it imitates.
 
     Parameters
@@ -25,32 +40,51 @@ def compare(flight: Response, centrifuge: Response) -> Comparison:
     flight, centrifuge : Response
         Sampled at any times; the flight's are interpolated where they differ. A response without a name goes by its
         environment.
+    tolerance : float
+        Share of the flight's largest load by which the machine's may differ and count as following.
+    accept : mapping of str to float, optional
+        Limits that decide whether the imitation is accepted, as shares: ``tip``, ``root_force``, ``root_moment`` and
+        ``stress`` of the change of the largest size over the flight, ``peaks`` of the error of every peak of the load,
+        ``spread`` of the load along the specimen at these, ``followed`` the least share of the time.
 
     Returns
     -------
     Comparison
-        Over the centrifuge's times, without those at which its target was held. Root loads and spectra need the
-        responses' loads, the mismatch's bounds their influence, trend and vibration their frequencies.
+        Over the flight's times: peaks and accounting of all of them, the rest without those at which the target was
+        held. Root loads and spectra need the responses' loads, the mismatch's bounds their influence, trend and
+        vibration their frequencies.
+
+    Raises
+    ------
+    InputError
+        If a limit has no such name, or is not positive.
     """
-    time = centrifuge.time[centrifuge.time <= flight.time[-1] * (1 + 1e-12)]
-    n = len(time)
+    limits = _limits(accept)
+    share = positive("tolerance", tolerance, "of the flight's largest load")
+    first, last = flight.time[0], flight.time[-1]
+    slack = _ROUNDING * max(abs(first), abs(last))
+    begin, end = np.searchsorted(centrifuge.time, (first - slack, last + slack))
+    during = slice(int(begin), int(end))  # spin-up and spin-down are not the flight's
+    time = centrifuge.time[during]
+    if not len(time):
+        raise InputError("centrifuge", "has no time in common with the flight", "compute both for the same times")
 
     def in_flight(values: Floats) -> Floats:
         return _sampled(time, flight.time, values)
 
-    reference, actual = in_flight(flight.displacement), centrifuge.displacement[:n]
-    covered = np.ones(n, dtype=bool) if centrifuge.axes is None else ~centrifuge.axes.not_followed[:n]
+    reference, actual = in_flight(flight.displacement), centrifuge.displacement[during]
+    covered = np.ones(len(time), dtype=bool) if centrifuge.axes is None else ~centrifuge.axes.not_followed[during]
     difference = actual[:, -1] - reference[:, -1]
     root, shock = None, None
     if flight.loads is not None and centrifuge.loads is not None and covered.any():
         a, b = flight.loads, centrifuge.loads
         history = RootHistory(
-            in_flight(a.section_force[:, 0]), b.section_force[:n, 0],
-            in_flight(a.section_moment[:, 0]), b.section_moment[:n, 0],
+            in_flight(a.section_force[:, 0]), b.section_force[during, 0],
+            in_flight(a.section_moment[:, 0]), b.section_moment[during, 0],
         )  # fmt: skip
-        root = _root(covered, history, in_flight(a.stress[:, 0]), b.stress[:n, 0])
-        shock = _shock(time, covered, in_flight(a.acceleration[:, -1]), b.acceleration[:n, -1])
-    names = _names(flight, centrifuge)
+        root = _root(covered, history, in_flight(a.stress[:, 0]), b.stress[during, 0])
+        shock = _shock(time, covered, in_flight(a.acceleration[:, -1]), b.acceleration[during, -1])
+    names, gradient = _names(flight, centrifuge), in_flight(_gradient(flight.base))
     return Comparison(
         flight=names[0],
         centrifuge=names[1],
@@ -61,10 +95,43 @@ def compare(flight: Response, centrifuge: Response) -> Comparison:
         rms_difference=_rms(difference, covered),
         peak_flight=_largest(reference[:, -1], covered),
         peak_centrifuge=_largest(actual[:, -1], covered),
+        peaks=peak_pairs(flight, centrifuge, during),
+        accounting=_accounting(time, in_flight(flight.base.a_WO_B), gradient, centrifuge, during, share),
+        accept=limits,
         stations=_statistics(time, covered, reference, actual, centrifuge),
-        mismatch=_mismatch(covered, flight, centrifuge, in_flight(_gradient(flight.base)), n),
+        mismatch=_mismatch(covered, centrifuge, gradient, during),
         root=root,
         shock=shock,
+    )
+
+
+def _limits(accept: Mapping[str, float] | None) -> dict[str, float]:
+    limits = {}
+    for name, limit in ({} if accept is None else accept).items():
+        if name not in CRITERIA:
+            raise InputError("accept", f"has {name!r}", f"choose from {', '.join(CRITERIA)}")
+        limits[name] = float(positive(f"accept.{name}", limit, "(a share)"))
+    return limits
+
+
+def _accounting(
+    time: Floats, load: Floats, gradient: Floats, centrifuge: Response, during: slice, tolerance: float
+) -> Accounting:
+    """Of a flight's load at the root and its gradient along the specimen, at the times `during` the flight."""
+    length, axes = float(centrifuge.stations[-1]), centrifuge.axes
+    root, spun = centrifuge.base.a_WO_B[during], _gradient(centrifuge.base)[during]
+    flight = History(load, load, load + length * gradient)
+    if axes is None:
+        return account(time, flight, History(root, root, root + length * spun), tolerance=tolerance)
+    return account(
+        time,
+        flight,
+        History(axes.actual[during], root, root + length * spun),
+        tolerance=tolerance,
+        idle=axes.idle,
+        target=axes.reference[during],
+        episodes=axes.episodes,
+        shares={name: each[during] for name, each in axes.limit_shares.items()},
     )
 
 
@@ -129,11 +196,11 @@ def _gradient(base: BaseMotion) -> Floats:
     return np.stack([-(wy**2 + wz**2), wx * wy + alz, wx * wz - aly], axis=1)
 
 
-def _mismatch(covered: Flags, flight: Response, centrifuge: Response, in_flight: Floats, n: int) -> Mismatch | None:
+def _mismatch(covered: Flags, centrifuge: Response, in_flight: Floats, during: slice) -> Mismatch | None:
     if centrifuge.axes is None or not np.isfinite(centrifuge.axes.control_point) or not covered.any():
         return None
     at, length = centrifuge.axes.control_point, float(centrifuge.stations[-1])
-    gradient = _gradient(centrifuge.base)[:n] - in_flight
+    gradient = _gradient(centrifuge.base)[during] - in_flight
     largest, influence = _largest(gradient, covered), centrifuge.influence
     unknown = np.full(3, np.nan)
 

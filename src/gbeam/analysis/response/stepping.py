@@ -44,8 +44,6 @@ def first_step(structure: Structure, settings: ResponseSettings) -> float:
     return settings.duration / (2 * math.ceil(settings.duration / largest / 2))
 
 
-def difference(coarse: Floats, fine: Floats, ratio: int) -> float:
-    """Largest difference of two tip histories at the coarse one's times, over the largest displacement."""
 def covering(settings: ResponseSettings, motion: Motion, unit: float) -> ResponseSettings:
     """The settings of a run over a machine's whole motion: whole `unit` s before the flight's times and after them."""
     beyond = motion.beyond(settings.start, settings.start + settings.duration)
@@ -70,6 +68,8 @@ def during(trajectory: Trajectory, settings: ResponseSettings) -> tuple[Trajecto
     return replace(trajectory, **histories), part
 
 
+def difference(coarse: Floats, fine: Floats, ratio: int) -> float:
+    """Largest difference of two tip histories at the coarse one's times, over the largest displacement."""
     n = min(len(coarse), (len(fine) - 1) // ratio + 1)
     size = np.abs(fine).max()
     return float(np.abs(coarse[:n] - fine[: (n - 1) * ratio + 1 : ratio]).max() / size) if size > 0 else 0.0

@@ -32,6 +32,9 @@ class Case:
         Name of the flight that each centrifuge tracks.
     stations : tuple of float
         Positions of output from the root besides the tip, m.
+    accept : mapping of str to mapping of str to float
+        By the centrifuge's name, the limits that decide whether it is accepted, and ``tolerance``: see
+        :func:`gbeam.compare`.
     """
 
     title: str
@@ -41,6 +44,7 @@ class Case:
     response: ResponseSettings
     tracks: Mapping[str, str] = field(default_factory=dict)
     stations: tuple[float, ...] = ()
+    accept: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     def assemble(self, stations: ArrayLike | None = None) -> Structure:
         """Put the beam into its model.

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from gbeam.analysis.imitation.comparison import compare
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.study.case import Case
 from gbeam.errors import ComputationError
+from gbeam.results.accounting import TOLERANCE
+from gbeam.results.comparison import Comparison
 from gbeam.results.response import Response
 from gbeam.results.study import Failure, Study
 
@@ -57,8 +59,13 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
             first.outcome, "; ".join(f"motion.{n}: {failure.message}" for n, failure in failures.items())
         )
     comparisons = tuple(
-        compare(responses[flight], responses[name])
+        _compared(responses[flight], responses[name], case.accept.get(name, {}))
         for name, flight in case.tracks.items()
         if {flight, name} <= responses.keys() and responses[flight].outcome == responses[name].outcome == "done"
     )
     return Study(case.title, responses, comparisons, failures)
+
+
+def _compared(flight: Response, centrifuge: Response, accept: Mapping[str, float]) -> Comparison:
+    limits = dict(accept)
+    return compare(flight, centrifuge, tolerance=limits.pop("tolerance", TOLERANCE), accept=limits)

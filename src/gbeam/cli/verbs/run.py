@@ -25,7 +25,8 @@ def run(
     """Compute the response in every environment of a scenario, and compare them.
 
     Writes result.nc and plots into --out, by default out/ and the scenario's name; with --json only if --out is
-    given. Exit status: 0 done, 1 the computation failed or a machine's limit is exceeded, 2 the input is wrong.
+    given. Exit status: 0 done, 1 the computation failed, a machine's limit is exceeded or a [motion.NAME.accept] is not
+    met, 2 the input is wrong.
     """
     folder = out if out is not None or json else Path("out") / scenario.stem
     given = read("run", scenario, overrides, folder)
@@ -61,4 +62,7 @@ def run(
     for name, which in broken.items():
         if which:
             complain(f"motion.{name} limits exceeded: {which}" + (" (allowed)" if ignore_limits else ""))
-    return 0 if answer.outcome == "done" and (ignore_limits or not any(broken.values())) else FAILED
+    refused = [each for each in answer.comparisons if each.accepted is False]
+    for each in refused:
+        complain(f"motion.{each.centrifuge} not accepted: {', '.join(str(c) for c in each.criteria if not c.passed)}")
+    return 0 if answer.outcome == "done" and not refused and (ignore_limits or not any(broken.values())) else FAILED

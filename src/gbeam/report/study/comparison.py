@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
-
+from gbeam.report.study import accounting
 from gbeam.report.words import xyz
-from gbeam.results.comparison import Comparison, Mismatch, RootLoads, Sizes
+from gbeam.results.comparison import Comparison
+from gbeam.results.measures import Mismatch, RootLoads, Sizes
+from gbeam.results.verdict import metres, percent
 
 _PLACES = ("flight", "centrifuge", "difference")
 
@@ -19,6 +20,13 @@ def to_json(comparison: Comparison) -> dict[str, Any]:
         "flight": comparison.flight,
         "centrifuge": comparison.centrifuge,
         "verdict": comparison.verdict,
+        "accepted": comparison.accepted,
+        "criteria": [
+            {"name": each.name, "limit": each.limit, "value": each.value, "passed": each.passed}
+            for each in comparison.criteria
+        ],
+        "peaks": accounting.peaks_to_json(comparison.peaks),
+        "accounting": accounting.to_json(comparison.accounting),
         "covered": float(comparison.covered.mean()),
         "max_difference": xyz(comparison.max_difference),
         "rms_difference": xyz(comparison.rms_difference),
@@ -64,13 +72,17 @@ def _root(root: RootLoads) -> dict[str, Any]:
 
 
 def lines(comparison: Comparison) -> Iterator[str]:
-    """Root loads, vibration, and a bound on what the mismatch field can do."""
+    """What was accepted, load peaks, differences, vibration, and a bound on what the mismatch field can do."""
     main = comparison.main_axis
-    if comparison.root is not None:
-        root, bent = comparison.root, int(np.argmax(comparison.root.moment_flight))
+    if comparison.accept:
+        yield f"{'accepted' if comparison.accepted else 'not accepted'}: {', '.join(map(str, comparison.criteria))}"
+    yield from accounting.lines(comparison.accounting)
+    yield from accounting.peak_lines(comparison.peaks)
+    if comparison.covered.any():
+        root = "" if comparison.root is None else f", root moment by up to {percent(comparison.root.moment_agreement)}"
         yield (
-            f"root moment {root.moment_flight[bent]:.4g} N m in flight, {root.moment_centrifuge[bent]:.4g} N m on the "
-            f"centrifuge; stress {1e-6 * root.stress_flight:.4g} and {1e-6 * root.stress_centrifuge:.4g} MPa"
+            f"while the target is the flight's load: tip differs along {'xyz'[main]} by up to "
+            f"{metres(comparison.max_difference[main])}, {percent(comparison.relative[main])} of its peak{root}"
         )
     if comparison.stations is not None:
         both = comparison.stations.flight, comparison.stations.centrifuge

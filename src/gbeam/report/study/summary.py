@@ -45,7 +45,7 @@ def table(study: Study) -> RenderableType:
     for name, failure in study.failures.items():
         parts += ["", _heading(name, "", failure.outcome), _indented(Text(sentence(failure.message), style="red"))]
     for each in study.comparisons:
-        parts += ["", Text(sentence(each.verdict), style="bold")]
+        parts += ["", Text(sentence(each.verdict), style="bold red" if each.accepted is False else "bold")]
         parts += [_indented(Text(line)) for line in comparison.lines(each)]
     return Group(*parts)
 
@@ -127,9 +127,9 @@ def _hub(hub: HubResult) -> str:
 
 
 def _tracking(response: Response, axes: AxesResult) -> Iterator[str]:
+    yield ends_line(response.time, axes)
     error = tracking(response.time, axes)
     if error.fraction < ROUNDING:
-    yield ends_line(response.time, axes)
         yield "load followed exactly"
     elif math.isfinite(error.max):
         yield (

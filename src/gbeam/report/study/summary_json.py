@@ -99,10 +99,10 @@ def _centrifuge(time: Floats, axes: AxesResult) -> dict[str, Any]:
         }
 
     return {
+        **ends(time, axes),
         "axes": {str(i + 1): peaks(i) for i in range(3)},
         "tracking_error": asdict(tracking(time, axes)),
         "limits": limits.to_json(axes),
         "not_followed": [{"start": start, "end": end, "reason": reason} for start, end, reason in axes.episodes],
         "shortfalls": [asdict(shortfall) for shortfall in axes.shortfalls],
     }
-        **ends(time, axes),

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, Field, StrictBool, model_validator
 from pydantic_core import PydanticCustomError
 
+from gbeam.scenario.schema.accept import Accept
 from gbeam.scenario.schema.fields import (
     Acceleration,
     Duration,
@@ -150,6 +151,7 @@ class Centrifuge(Table):
         default_factory=Limits, description="what the machine can do: { axis1, axis2, axis3, inertia, power }"
     )
     commands: Commands | None = Field(default=None, description="axis motions for the controller: { sample }")
+    accept: Accept | None = Field(default=None, description="how well it must reproduce the flight: { tip, peaks }")
 
     @model_validator(mode="after")
     def _some_arm(self) -> Centrifuge:

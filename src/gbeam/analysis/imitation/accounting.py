@@ -1,0 +1,204 @@
+"""What a machine makes of every part of a flight's load: its peaks, its stretches, and what comes on top."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.numerics.intervals import true_runs
+from gbeam.numerics.prominence import separate_peaks
+from gbeam.results.accounting import Accounting, LoadPeak, NotFollowed, Preload
+from gbeam.results.result import Flags, Floats
+
+_DIP = 0.9  # of the lower of two maxima: a load that falls further between them makes them two peaks
+_SLACK = 1e-9  # of idle: a load held at it is not above it
+_BOUND, _BEYOND = 0.99, 1.001  # shares of a limit between which it is what hinders the axis
+_NEAR = 0.25  # s: so far from a stretch a limit may be used up because of it
+_CORNER, _BELOW = "corner", "below idle"
+_NAMES = (_CORNER, _BELOW, "gimbals", "left out", "spin-up")
+
+Codes = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class History:
+    """Load of one environment along a rigid specimen over time.
+
+    Parameters
+    ----------
+    load : (t, 3)
+        In flight that of the root, which the machine gives to its control point; m/s².
+    root, tip : (t, 3)
+        At both ends, m/s².
+    """
+
+    load: Floats
+    root: Floats
+    tip: Floats
+
+    @property
+    def size(self) -> Floats:
+        """Of the load, (t,) m/s²."""
+        return np.asarray(np.linalg.norm(self.load, axis=1))
+
+    def spread(self, i: int) -> tuple[float, float]:
+        """Size of the load at the root and at the tip over that in between, less one, at a sample."""
+        own, *ends = (float(np.linalg.norm(each[i])) for each in (self.load, self.root, self.tip))
+        root, tip = (end / own - 1 if own > 0 else np.nan for end in ends)
+        return root, tip
+
+
+def account(
+    time: Floats,
+    flight: History,
+    machine: History,
+    *,
+    tolerance: float,
+    idle: float = 0.0,
+    target: Floats | None = None,
+    episodes: tuple[tuple[float, float, str], ...] = (),
+    shares: Mapping[str, Floats] | None = None,
+) -> Accounting:
+    """Account for every part of a flight's load.
+
+    Parameters
+    ----------
+    time : (t,)
+        Of the flight, s.
+    flight, machine : History
+        At these times.
+    tolerance : float
+        Share of the flight's largest load.
+    idle : float
+        Least load that the machine makes, m/s².
+    target : (t, 3), optional
+        Load that the machine is to make, m/s².
+    episodes : tuple of (start s, end s, reason)
+        Where that is not the flight's load.
+    shares : mapping of str to (t,), optional
+        Share of each of the machine's limits that is used over time, by name.
+
+    Returns
+    -------
+    Accounting
+    """
+    size, made = flight.size, machine.size
+    allowed = tolerance * float(size.max())
+    above = idle * (1 + _SLACK)
+    edges = np.concatenate([time[:1], (time[1:] + time[:-1]) / 2, time[-1:]])
+    low = (size < above) & (idle > 0)
+    limits = {} if shares is None else shares
+    missed = _apart(machine.load, flight.load) > allowed
+    held = np.zeros(len(time), bool) if target is None else _apart(target, flight.load) > allowed
+    reasons = _reasons(time, low, held, episodes)
+    for run in true_runs(missed & ~low):  # what goes on without a break has one reason
+        kinds, counts = np.unique(reasons[run], return_counts=True)
+        reasons[run] = kinds[counts.argmax()]
+    stretches = tuple(
+        NotFollowed(
+            float(edges[run.start]),
+            float(edges[run.stop]),
+            _named(_NAMES[reasons[run.start]], limits, _widened(time, run)),
+            float(size[run].max()),
+        )
+        for run in _runs(np.where(missed, reasons, -1))
+    )
+    duration = float(time[-1] - time[0])
+    lost = sum(each.end - each.start for each in stretches)
+    floor = max(above, _SLACK * float(size.max()))
+    return Accounting(
+        tolerance=tolerance,
+        allowed=allowed,
+        idle=idle,
+        span=(float(time[0]), float(time[-1])),
+        followed_share=1 - lost / duration if duration > 0 else float(not missed.any()),
+        peaks=tuple(
+            _peak(time, flight, machine, top, basin, allowed, _NAMES[reasons[top]], limits)
+            for top, basin in separate_peaks(size, floor, _DIP)
+        ),
+        not_followed=stretches,
+        preloads=tuple(_preloads(edges, time, size, made, np.maximum(size, idle) + allowed)),
+    )
+
+
+def _apart(one: Floats, other: Floats) -> Floats:
+    return np.asarray(np.linalg.norm(one - other, axis=1))
+
+
+def _reasons(time: Floats, low: Flags, held: Flags, episodes: tuple[tuple[float, float, str], ...]) -> Codes:
+    """Why the load would not be followed at each time, as an index of the names: those of the target come first."""
+    codes = np.full(len(time), _NAMES.index(_CORNER))
+    for start, end, why in episodes:
+        inside = (time >= start) & (time <= end)
+        if "gimbals" in why:
+            codes[inside] = _NAMES.index("gimbals")
+        elif why == _BELOW:  # a load above idle is no load below it, whatever the target makes of it
+            codes[inside & held] = _NAMES.index("left out")
+        else:
+            codes[inside] = _NAMES.index(why if why in _NAMES else "left out")
+    codes[low] = _NAMES.index(_BELOW)
+    return codes
+
+
+def _runs(codes: Codes) -> Iterator[slice]:
+    """Runs of equal codes, without those that are negative."""
+    edges = np.concatenate([[0], np.flatnonzero(np.diff(codes)) + 1, [len(codes)]])
+    for start, stop in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
+        if codes[start] >= 0:
+            yield slice(start, stop)
+
+
+def _widened(time: Floats, run: slice) -> slice:
+    first, last = time[run.start] - _NEAR, time[run.stop - 1] + _NEAR
+    return slice(int(np.searchsorted(time, first)), int(np.searchsorted(time, last, side="right")))
+
+
+def _named(reason: str, shares: Mapping[str, Floats], around: slice) -> str:
+    """The reason; in place of a corner the machine's limits that are used up around it."""
+    if reason != _CORNER:
+        return reason
+    used = {name: float(share[around].max()) for name, share in shares.items()}
+    return ", ".join(name for name, share in used.items() if _BOUND <= share <= _BEYOND) or _CORNER
+
+
+def _peak(
+    time: Floats,
+    flight: History,
+    machine: History,
+    top: int,
+    basin: slice,
+    allowed: float,
+    reason: str,
+    shares: Mapping[str, Floats],
+) -> LoadPeak:
+    """What the machine makes of the flight's peak at sample `top`, which has the samples of `basin`."""
+    size, made = flight.size[basin], machine.size[basin]
+    own = top - basin.start
+    (near,) = (run for run in true_runs(size >= _DIP * size[own]) if run.start <= own < run.stop)
+    i = near.start + int(np.argmax(made[near]))
+    load, reproduced = float(size[own]), float(made[i])
+    # The law of cosines, the angle being that of both loads at the same time.
+    dot = float(flight.load[basin.start + i] @ machine.load[basin.start + i])
+    product = float(size[i] * made[i])
+    cosine = min(dot / product, 1.0) if product > 0 else 1.0
+    error = float(np.hypot(reproduced - load, np.sqrt(2 * reproduced * load * (1 - cosine)))) / load
+    return LoadPeak(
+        time=float(time[top]),
+        load=load,
+        time_machine=float(time[basin.start + i]),
+        reproduced=reproduced,
+        error=error,
+        spread=machine.spread(basin.start + i),
+        spread_flight=flight.spread(top),
+        reason=_named(reason, shares, basin) if error * load > allowed else "",
+    )
+
+
+def _preloads(edges: Floats, time: Floats, size: Floats, made: Floats, most: Floats) -> Iterator[Preload]:
+    for run in true_runs(made > most):
+        i = run.start + int(np.argmax((made - most)[run]))
+        ends = float(edges[run.start]), float(edges[run.stop])
+        yield Preload(*ends, float(time[i]), float(made[i]), float(size[i]))

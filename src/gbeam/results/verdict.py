@@ -1,0 +1,129 @@
+"""The sentence that says how well a machine reproduces a flight, from the accounting of all of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from gbeam.results.accounting import Accounting, LoadPeak, PeakPair
+
+STANDARD_GRAVITY = 9.80665  # m/s²: loads are written in g
+_FINEST = 1e-3  # how well a load peak is said to be reproduced at most
+_APART = 0.1  # s: the machine's peak has a time of its own
+
+
+def verdict(
+    flight: str, machine: str, peaks: Mapping[str, PeakPair], accounting: Accounting, within: float | None = None
+) -> str:
+    """Return one sentence about the whole flight.
+
+    Parameters
+    ----------
+    flight, machine : str
+        Names of the motions.
+    peaks : mapping of str to PeakPair
+        ``tip``, and where they are known ``root_moment``.
+    accounting : Accounting
+    within : float, optional
+        Share by which the tip's peak may differ and count as reproduced; by default the load's tolerance.
+
+    Returns
+    -------
+    str
+        The flight's largest load peak first, where that is not reproduced; then the tip's and the root moment's peaks,
+        how many load peaks are reproduced and how well, the time followed and why the rest is not, and what the
+        specimen is loaded with beyond flight and idle.
+    """
+    return "; ".join(_parts(flight, machine, peaks, accounting, accounting.tolerance if within is None else within))
+
+
+def _parts(
+    flight: str, machine: str, peaks: Mapping[str, PeakPair], accounting: Accounting, within: float
+) -> Iterator[str]:
+    main = accounting.main
+    if main is not None and main.reason:
+        yield (
+            f"{flight}'s load peak of {in_g(main.load)} at {main.time:.2f} s is not reproduced: {machine} makes "
+            f"{in_g(main.reproduced)} ({main.reason})"
+        )
+    yield _tip(flight, machine, peaks["tip"], within)
+    moment = peaks.get("root_moment", PeakPair())
+    if math.isfinite(moment.ratio):
+        yield f"root moment {change(moment.ratio)}"
+    yield _load_peaks(accounting)
+    yield from _missed(accounting, main)
+    yield _time(accounting)
+    if accounting.preloads:
+        worst = max(accounting.preloads, key=lambda each: each.load - max(each.flight, accounting.idle))
+        yield (
+            f"preload: {machine} makes {in_g(worst.load)} at {worst.time:.2f} s, where {flight} has "
+            f"{in_g(worst.flight)}{f' and idle is {in_g(accounting.idle)}' if accounting.idle else ''}"
+        )
+
+
+def _tip(flight: str, machine: str, tip: PeakPair, within: float) -> str:
+    made = metres(tip.machine)
+    if not math.isfinite(tip.ratio):
+        return f"tip: not moved by {flight}, by up to {made} on {machine}"
+    begin = f"tip: {flight}'s peak {metres(tip.flight)} at {tip.time_flight:.2f} s"
+    when = f" at {tip.time_machine:.2f} s" if abs(tip.time_machine - tip.time_flight) > _APART else ""
+    if abs(tip.ratio - 1) <= within:
+        return f"{begin} reproduced as {made} ({change(tip.ratio)}){when}"
+    return f"{begin} not reproduced: {made} on {machine} ({change(tip.ratio)}){when}"
+
+
+def _load_peaks(accounting: Accounting) -> str:
+    count, above = len(accounting.peaks), f" above {in_g(accounting.idle)}" if accounting.idle else ""
+    if not count:
+        return f"no load peak{above}"
+    good = [peak for peak in accounting.peaks if not peak.reason]
+    noun = "load peak" if count == 1 else "load peaks"
+    within = f" within {percent(max(_FINEST, *(peak.error for peak in good)), up=True)}" if good else ""
+    return f"{len(good)} of {count} {noun}{above} reproduced{within}"
+
+
+def _missed(accounting: Accounting, main: LoadPeak | None) -> Iterator[str]:
+    """The largest of the other peaks that are not reproduced."""
+    others = [peak for peak in accounting.missed if peak is not main]
+    if others:
+        worst = max(others, key=lambda peak: peak.load)
+        yield f"not the {in_g(worst.load)} at {worst.time:.2f} s: {in_g(worst.reproduced)} ({worst.reason})"
+
+
+def _time(accounting: Accounting) -> str:
+    followed = f"{100 * accounting.followed_share:.0f} % of the time followed"
+    shares = accounting.shares
+    if len(shares) == 1:
+        return f"{followed}; the rest is {next(iter(shares))}"
+    # What rounds to nothing is listed among the stretches.
+    parts = [f"{percent(share)} {reason}" for reason, share in shares.items() if share >= 0.005]
+    return f"{followed}, {', '.join(parts)}" if parts else followed
+
+
+def in_g(load: float) -> str:
+    """Write a load, m/s², in g."""
+    return f"{load / STANDARD_GRAVITY:.3g} g"
+
+
+def metres(length: float) -> str:
+    """Write a length in m, or in mm below 1 m."""
+    return f"{length:.4g} m" if abs(length) >= 1 else f"{1e3 * length:.4g} mm"
+
+
+def change(ratio: float) -> str:
+    """Write by how much a ratio differs from one, with its sign."""
+    share = 100 * (ratio - 1)
+    if abs(share) < 0.05:
+        return "0.0 %"
+    return f"{share:+.0f} %" if abs(share) >= 10 else f"{share:+.1f} %"
+
+
+def percent(share: float, *, up: bool = False) -> str:
+    """Write a share with two digits and no exponent; rounded `up` where it is a bound."""
+    if not math.isfinite(share):
+        return "an unknown share"
+    value = 100 * share
+    if up and value > 0:
+        unit = 10.0 ** (math.floor(math.log10(value)) - 1)
+        value = math.ceil(value / unit - 1e-9) * unit
+    return f"{float(f'{value:.2g}'):g} %"

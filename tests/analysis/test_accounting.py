@@ -1,0 +1,204 @@
+"""A flight made of known pieces: the accounting finds exactly those, and why the machine does not make some."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gbeam import Comparison, InputError, Response, compare
+from gbeam.report.study.accounting import lines, to_json
+from gbeam.results.machine import AxesResult, LimitUse
+from gbeam.results.response import BaseMotion
+
+from .helpers import LENGTH, made
+
+G = 9.80665
+STEP = 0.004
+IDLE = 1.4
+# Duration, s; flight's and machine's load, g; why it is not followed. The largest is 10 g, and 5 % of it 0.5 g.
+PIECES = (
+    (2.0, 0.5, 1.4, "below idle"),
+    (1.0, 4.0, 4.1, ""),
+    (1.0, 0.5, 1.4, "below idle"),
+    (1.0, 10.0, 8.0, "axis 1 acceleration"),
+    (1.0, 1.2, 1.4, ""),
+    (0.5, 3.55, 1.4, "left out"),
+    (1.5, 0.5, 3.16, "below idle"),
+    (1.0, 5.0, 5.0, "gimbals"),
+    (1.0, 1.3, 1.4, ""),
+    (1.0, 6.0, 7.0, "corner"),
+)
+ENDS = np.cumsum([piece[0] for piece in PIECES])
+TIME = STEP * (np.arange(round(ENDS[-1] / STEP)) + 0.5)
+WHICH = np.searchsorted(ENDS, TIME)
+ZERO = np.zeros((len(TIME), 3))
+
+
+def along_z(sizes: np.ndarray) -> np.ndarray:
+    return G * sizes[:, None] * [0.0, 0.0, 1.0]
+
+
+def flight_of(load: np.ndarray) -> Response:
+    """A flight whose tip and root moment go with the load."""
+    return replace(made("flight", TIME, 1e-4 * load), base=BaseMotion(load, ZERO, ZERO))
+
+
+@pytest.fixture(scope="module")
+def pair() -> tuple[Response, Response]:
+    flown, spun = (np.array([piece[k] for piece in PIECES])[WHICH] for k in (1, 2))
+    load, actual = along_z(flown), along_z(spun)
+    skew = WHICH == 7  # of the right size, and a third of a right angle off
+    actual[skew] = 5 * G * np.array([0.0, np.sin(np.pi / 6), np.cos(np.pi / 6)])
+    target = np.where((WHICH == 5)[:, None], along_z(np.full(len(TIME), IDLE)), load)
+    acceleration = np.where(WHICH == 3, 20.0, 5.0)[:, None] * [1.0, 0.0, 0.0]
+    limits = (LimitUse("axis 1", "acceleration", "rad/s^2", 20.0, 20.0, 5.0),)
+    episodes = ((4.0, 7.0, "below idle"), (8.0, 9.0, "out of reach of the gimbals"), (5.9, 7.1, "below idle"))
+    axes = AxesResult(
+        ZERO, ZERO, acceleration, target, actual, np.isin(WHICH, (5, 7)), episodes, limits, control_point=0.0,
+        idle=IDLE * G,
+    )  # fmt: skip
+    spin = replace(made("arm", TIME, 1e-4 * actual), base=BaseMotion(actual, ZERO, ZERO), axes=axes)
+    return flight_of(load), spin
+
+
+@pytest.fixture(scope="module")
+def compared(pair: tuple[Response, Response]) -> Comparison:
+    return compare(*pair)
+
+
+def test_every_peak_above_idle(compared: Comparison) -> None:
+    high = [k for k, piece in enumerate(PIECES) if piece[1] > IDLE]
+    peaks = compared.accounting.peaks
+    assert [peak.time for peak in peaks] == pytest.approx([ENDS[k - 1] + STEP / 2 for k in high])
+    assert [peak.load / G for peak in peaks] == pytest.approx([PIECES[k][1] for k in high])
+    assert [peak.reproduced / G for peak in peaks] == pytest.approx([PIECES[k][2] for k in high])
+    assert [peak.reason for peak in peaks] == [PIECES[k][3] for k in high]
+    # The same size in another direction: the chord of 30°.
+    errors = [abs(PIECES[k][2] / PIECES[k][1] - 1) if k != 7 else 2 * np.sin(np.pi / 12) for k in high]
+    assert [peak.error for peak in peaks] == pytest.approx(errors)
+
+
+def test_stretches_and_share(compared: Comparison) -> None:
+    accounting, start = compared.accounting, np.append(0.0, ENDS)
+    missed = [k for k, piece in enumerate(PIECES) if piece[3]]
+    found = [(each.reason, each.flight_peak / G) for each in accounting.not_followed]
+    assert found == [(PIECES[k][3], pytest.approx(PIECES[k][1])) for k in missed]
+    edges = [(each.start, each.end) for each in accounting.not_followed]
+    expected = np.clip([(start[k], ENDS[k]) for k in missed], *accounting.span)
+    np.testing.assert_allclose(edges, expected, atol=1e-12)
+    lost = sum(end - begin for begin, end in expected)
+    assert accounting.followed_share == pytest.approx(1 - lost / (TIME[-1] - TIME[0]))
+    assert sum(accounting.shares.values()) == pytest.approx(1 - accounting.followed_share)
+
+
+def test_preload_is_what_exceeds_flight_and_idle(compared: Comparison) -> None:
+    first, second = compared.accounting.preloads
+    assert (first.load / G, first.flight / G) == pytest.approx((3.16, 0.5))
+    assert (first.start, first.end) == pytest.approx((6.5, 8.0))
+    assert second.load / G == pytest.approx(7.0)
+
+
+def test_verdict_begins_with_the_peak_that_is_missed(compared: Comparison) -> None:
+    verdict = compared.verdict
+    assert verdict.startswith("flight's load peak of 10 g at 4.00 s is not reproduced: arm makes 8 g (axis 1 acc")
+    assert "tip: flight's peak 9.807 mm at 4.00 s not reproduced: 7.845 mm on arm (-20 %)" in verdict
+    assert "; 1 of 5 load peaks above 1.4 g reproduced within 2.5 %; not the 6 g at 10.00 s: 7 g (corner); " in verdict
+    assert "; preload: arm makes 3.16 g at 6.50 s, where flight has 0.5 g and idle is 1.4 g" in verdict
+    assert "not the" not in compare(*reproduced()).verdict
+    text = "\n".join(lines(compared.accounting))
+    assert "load peak 3.55 g at 6.00 s: not reproduced, 1.4 g (-61 %): left out" in text
+    assert "load peak 5 g at 8.00 s: not reproduced, 5 g (0.0 %, as a vector 52 %): gimbals" in text
+    assert "not followed 8.000 to 9.000 s: gimbals, flight's load up to 5 g" in text
+
+
+def reproduced() -> tuple[Response, Response]:
+    """A flight of 10 g between two times of 1 g, on a machine that idles at 1.4 g and makes 9.9 g."""
+    high = (TIME > 4.0) & (TIME < 6.0)
+    load, actual = (along_z(np.where(high, *each)) for each in ((10.0, 0.5), (9.9, 1.4)))
+    axes = AxesResult(ZERO, ZERO, ZERO, actual, actual, ~high, ((0.0, 4.0, "below idle"),), idle=IDLE * G)
+    arm = replace(made("arm", TIME, 1e-4 * actual), base=BaseMotion(actual, ZERO, ZERO), axes=axes)
+    return flight_of(load), arm
+
+
+def test_verdict_of_what_is_reproduced() -> None:
+    compared = compare(*reproduced())
+    assert compared.verdict == (
+        "tip: flight's peak 9.807 mm at 4.00 s reproduced as 9.709 mm (-1.0 %); "
+        "1 of 1 load peak above 1.4 g reproduced within 1 %; 18 % of the time followed; the rest is below idle"
+    )
+    assert compared.accepted is None
+    strict = compare(*reproduced(), accept={"tip": 0.005})
+    assert "not reproduced: 9.709 mm on arm (-1.0 %)" in strict.verdict and strict.accepted is False
+
+
+def test_accepted_by_each_limit(pair: tuple[Response, Response]) -> None:
+    one = {"tip": 0.011, "peaks": 0.011, "spread": 1e-9, "followed": 0.18}
+    good = compare(*reproduced(), accept=one)
+    assert good.accepted is True and all(each.passed for each in good.criteria)
+    for name, limit in {"tip": 0.009, "peaks": 0.009, "followed": 0.19}.items():
+        bad = compare(*reproduced(), accept=one | {name: limit})
+        assert bad.accepted is False and [each.name for each in bad.criteria if not each.passed] == [name]
+    # What is not known is not accepted.
+    unknown = compare(*reproduced(), accept={"root_moment": 0.5})
+    assert unknown.accepted is False and str(unknown.criteria[0]) == "root_moment unknown (limit 50 %)"
+
+
+@pytest.mark.parametrize("accept", [{"tips": 0.1}, {"tip": -0.1}, {"tip": float("nan")}])
+def test_limits_that_mean_nothing(accept: dict[str, float]) -> None:
+    with pytest.raises(InputError, match="accept"):
+        compare(*reproduced(), accept=accept)
+
+
+def test_the_tolerance_decides(pair: tuple[Response, Response]) -> None:
+    wide = compare(*pair, tolerance=0.5).accounting
+    assert wide.followed_share == pytest.approx(1.0) and not wide.missed and not wide.preloads
+    assert to_json(wide)["tolerance_load"] == pytest.approx(5 * G)
+    with pytest.raises(InputError, match="tolerance"):
+        compare(*pair, tolerance=0.0)
+
+
+def test_spread_along_a_specimen_on_an_arm() -> None:
+    """Along the arm the load goes with the radius: −x_c/R at the root, (L − x_c)/R at the tip."""
+    flight, arm = reproduced()
+    radius, at = 3.3, 0.1
+    rate = np.sqrt(np.linalg.norm(arm.axes.actual, axis=1) / radius)  # type: ignore[union-attr]
+    inwards = -(rate**2)[:, None] * [1.0, 0.0, 0.0]
+    axes = replace(arm.axes, actual=radius * inwards, reference=radius * inwards, control_point=at)  # type: ignore[type-var]
+    base = BaseMotion((radius - at) * inwards, rate[:, None] * [0.0, 0.0, 1.0], ZERO)
+    (peak,) = compare(flight, replace(arm, axes=axes, base=base)).accounting.peaks
+    assert peak.spread == pytest.approx((-at / radius, (LENGTH - at) / radius))
+    assert peak.spread_flight == (0.0, 0.0)
+    about_y = np.tile([0.0, 1.0, 0.0], (len(TIME), 1))
+    turning = replace(flight, base=replace(flight.base, w_WB_B=about_y))
+    (peak,) = compare(turning, arm).accounting.peaks
+    assert peak.spread_flight[1] == pytest.approx(np.hypot(1, LENGTH / (10 * G)) - 1)
+
+
+def test_spin_up_is_not_the_flight(pair: tuple[Response, Response]) -> None:
+    """A machine's response from standstill to standstill, on the flight's clock: the same comparison."""
+    flight, arm = reproduced()
+    before = STEP * (np.arange(-300, 0) + 0.5)
+    time = np.concatenate([before, TIME, TIME[-1] + STEP * np.arange(1, 301)])
+    n = len(before)
+
+    def longer(values: np.ndarray) -> np.ndarray:
+        return np.concatenate([values[:1] + 0 * values[:n], values, values[-1:] + 0 * values[:n]])
+
+    axes = arm.axes
+    assert axes is not None
+    parts = {name: longer(getattr(axes, name)) for name in ("angle", "rate", "acceleration", "reference", "actual")}
+    whole = replace(
+        arm,
+        time=time,
+        displacement=longer(arm.displacement) * np.where(time < 0, 9.0, 1.0)[:, None, None],
+        base=BaseMotion(*map(longer, (arm.base.a_WO_B, arm.base.w_WB_B, arm.base.alpha_WB_B))),
+        axes=replace(axes, not_followed=longer(axes.not_followed), **parts),
+    )
+    one, two = compare(flight, arm), compare(flight, whole)
+    assert two.verdict == one.verdict
+    np.testing.assert_array_equal(two.time, TIME)
+    np.testing.assert_array_equal(two.difference, one.difference)
+    with pytest.raises(InputError, match="no time in common"):
+        compare(flight, replace(whole, time=time + 1000.0))
