@@ -128,10 +128,10 @@ def _nonlinear(
     from gbeam.integrate import newton
 
     tableau, residual = scheme.tableau(step), equations.residual
-    qdd = newton.accelerations(residual, q[None], qd[None], equations.drive(np.array([start])))[0]
+    qdd = newton.accelerations(residual, q[None], qd[None], equations.drive(np.array([start])))
     traced = isinstance(qdd, jax.core.Tracer)
     xp: Any = jax.numpy if traced else np
-    qdd = xp.asarray(qdd)
+    qdd = xp.asarray(qdd)[0]
     yield *(xp.asarray(x, dtype=float)[None] for x in (q, qd, qdd)), np.array([True])
     x = xp.broadcast_to(qdd, (len(scheme.offsets), len(q)))
     carry = newton.Carry(tableau.first @ xp.stack([q, qd, qdd]), x, x)
