@@ -15,7 +15,9 @@ from gbeam.results.verdict import verdict
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Comparison(Figured):
-    """How a centrifuge's response differs from the flight's that it imitates, where its target is the flight's load.
+    """How a centrifuge's response differs from the flight's that it imitates.
+
+    Peaks and accounting are those of the whole flight; differences are taken where the target is the flight's load.
 
     Parameters
     ----------

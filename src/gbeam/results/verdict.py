@@ -9,6 +9,7 @@ from gbeam.results.accounting import Accounting, LoadPeak, PeakPair
 
 STANDARD_GRAVITY = 9.80665  # m/s²: loads are written in g
 _FINEST = 1e-3  # how well a load peak is said to be reproduced at most
+_TIMES = 3.0  # from here on a ratio says more than a change of so many per cent
 _APART = 0.1  # s: the machine's peak has a time of its own
 
 
@@ -111,8 +112,10 @@ def metres(length: float) -> str:
 
 
 def change(ratio: float) -> str:
-    """Write by how much a ratio differs from one, with its sign."""
+    """Write by how much a ratio differs from one, with its sign; the ratio where it is large."""
     share = 100 * (ratio - 1)
+    if ratio >= _TIMES:
+        return f"× {ratio:.2g}" if ratio < 100 else f"× {ratio:.0f}"
     if abs(share) < 0.05:
         return "0.0 %"
     return f"{share:+.0f} %" if abs(share) >= 10 else f"{share:+.1f} %"

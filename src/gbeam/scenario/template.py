@@ -57,6 +57,8 @@ idle = "1.4 g"  # the target is held up to this
 start = "rest"  # from standstill to standstill; or "pre-yawed", or "idle": the arm turns already
 # spin_up = "10 s"  # before the flight, and spin_down after it; left out, found within the limits
 smoothing = "60 ms"  # width of the kernel that rounds the target's corners
+# Limits of the differences from flight; one that is not kept ends in exit status 1. Also root_force, stress, tolerance
+# accept = { tip = "5 %", root_moment = "5 %", peaks = "5 %", spread = "10 %", followed = "50 %" }
 
 [response]
 duration = "6 s"  # may be left out beside a record

@@ -18,7 +18,7 @@ _SLACK = 1e-9  # of idle: a load held at it is not above it
 _BOUND, _BEYOND = 0.99, 1.001  # shares of a limit between which it is what hinders the axis
 _NEAR = 0.25  # s: so far from a stretch a limit may be used up because of it
 _CORNER, _BELOW = "corner", "below idle"
-_NAMES = (_CORNER, _BELOW, "gimbals", "left out", "spin-up")
+_NAMES = (_CORNER, _BELOW, "gimbals", "left out")
 
 Codes = NDArray[np.intp]
 
@@ -138,7 +138,7 @@ def _reasons(time: Floats, low: Flags, held: Flags, episodes: tuple[tuple[float,
         elif why == _BELOW:  # a load above idle is no load below it, whatever the target makes of it
             codes[inside & held] = _NAMES.index("left out")
         else:
-            codes[inside] = _NAMES.index(why if why in _NAMES else "left out")
+            codes[inside] = _NAMES.index("left out")
     codes[low] = _NAMES.index(_BELOW)
     return codes
 
