@@ -20,9 +20,9 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.analysis.control.reduction import modal_truncation as modal_truncation
     from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium as solve_equilibrium
     from gbeam.analysis.equilibrium.static import static as static
+    from gbeam.analysis.imitation.choice import Choice as Choice
     from gbeam.analysis.imitation.choice import choice_of as choice_of
     from gbeam.analysis.imitation.comparison import compare as compare
-    from gbeam.analysis.imitation.place import Choice as Choice
     from gbeam.analysis.imitation.place import place as place
     from gbeam.analysis.imitation.plan import commands as commands
     from gbeam.analysis.imitation.plan import plan as plan
@@ -81,7 +81,7 @@ _HOME = {
     "Beam": "structure.beam",
     "Case": "analysis.study.case",
     "Centrifuge": "motion.centrifuge.centrifuge",
-    "Choice": "analysis.imitation.place",
+    "Choice": "analysis.imitation.choice",
     "Comparison": "results.comparison",
     "ComputationError": "errors",
     "Flight": "motion.bases.flight",

@@ -47,7 +47,7 @@ def spin(flight: Flight) -> Callable[..., Centrifuge]:
     ) -> Centrifuge:
         return Centrifuge(
             flight, arm=3.3, control_point=control_point, limits=limits, smoothing=smoothing,
-            mounting="upright" if sign == 1 else "inverted", span=(0.5, 2.0),
+            mounting="upright" if sign == 1 else "inverted", span=(0.2, 2.3),
         )  # fmt: skip
 
     return make

@@ -6,18 +6,23 @@ Mounting and width are searched for within the machine's limits; what breaks the
 from __future__ import annotations
 
 import json
+import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from gbeam import ComputationError, InputError
-from gbeam.analysis.imitation.place import Choice, place
+from gbeam import InputError
+from gbeam.analysis.imitation.choice import Choice
+from gbeam.analysis.imitation.place import place
 from gbeam.cli import main
 from gbeam.cli.verbs.place import parse
 from gbeam.motion import AxisLimit, MachineLimits
 from gbeam.numerics.solvers.bounded_search import coarse, refine
+from gbeam.results.machine import LimitUse
+from gbeam.results.placement import MEASURES, Candidate, Placement
 
 from ..scenarios import FLIGHT, SPECIMEN, SPIN, model, response
 
@@ -88,9 +93,10 @@ def test_no_option_within_the_limits_is_an_outcome_that_names_the_nearest(
 ) -> None:
     limits = MachineLimits(AxisLimit(rate=1.0), axis2=AxisLimit(jerk=1.0))
     choice = Choice(lambda mounting, w: spin(w, limits=limits), ("upright",), (0.06, 0.24))
-    with pytest.raises(ComputationError, match=r"none of 2.*nearest comes upright, 240 ms: axis 1 rate") as caught:
-        place(structure, flight, choice, settings, {"tip": 1.0}, current=spin())
-    assert caught.value.outcome == "limits exceeded"
+    placement = place(structure, flight, choice, settings, {"tip": 1.0}, current=spin(), check=True)
+    assert placement.outcome == "limits exceeded" and len(placement.options) == 2 and not placement.verifications
+    assert re.match(r"none of 2.*nearest comes upright, 240 ms: axis 1 rate", placement.message)
+    assert not placement.changes
 
 
 def test_search_finds_an_inner_minimum_and_stops_at_what_is_allowed() -> None:
@@ -138,9 +144,46 @@ def test_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     limit = ["--set", "motion.spin.limits.axis2.jerk=1 rad/s^3"]
     assert main([*command, *limit, "--smoothing", "60 ms", "--json"]) == 1
     answer = capsys.readouterr()
-    assert json.loads(answer.out)["outcome"] == "limits exceeded" and "nearest comes upright, 60 ms" in answer.err
+    facts = json.loads(answer.out)
+    assert facts["outcome"] == "limits exceeded" and "nearest comes upright, 60 ms" in answer.err
+    assert len(facts["options"]) == 2 and all(each["exceeded"] for each in facts["options"]) and facts["set"] == []
+    assert main([*command, *limit, "--smoothing", "60 ms", "--write", "--out", str(tmp_path / "out")]) == 1
+    assert "  inverted, 60 ms: " in capsys.readouterr().out and file.read_text(encoding="utf-8") == SCENARIO
+    assert json.loads((tmp_path / "out" / "place.json").read_text())["outcome"] == "limits exceeded"
     assert main([*command, *limit, "--smoothing", "60 ms", "--ignore-limits"]) == 0
     assert "exceeds axis 2 jerk" in capsys.readouterr().out
     for words in (["1 kg"], ["0 s", "1 s"], ["1 s", "2 s", "3 s"]):
         assert main([*command, *(part for each in words for part in ("--smoothing", each))]) == 2
         assert "--smoothing" in capsys.readouterr().err
+
+
+def test_the_answer_is_applied(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "s.toml"
+    file.write_text(SCENARIO.replace('"150 mm"', '"150 mm"  # by the middle'), encoding="utf-8")
+    command = ["place", str(file), "--measure", "vibration", "--smoothing", "60 ms"]
+    assert main([*command, "--json"]) == 0
+    first = json.loads(capsys.readouterr().out)
+    assert first["set"] == ["motion.spin.control_point=217.943 mm"] and first["written"] is None
+    for measure in MEASURES:  # all of them, before and after
+        assert first["mismatch"]["current"][measure] > 0 and first["total_error"]["best"][measure] > 0
+    assert first["verifications"]["best"]["vibration"] < 0.1 * first["verifications"]["current"]["vibration"]
+    assert main([*command, "--no-proof", "--set", first["set"][0], "--json"]) == 0
+    again = json.loads(capsys.readouterr().out)
+    assert again["set"] == [] and "best placement already" in again["message"]
+    assert main([*command, "--no-proof", "--write"]) == 0
+    words = capsys.readouterr().out
+    assert '--set "motion.spin.control_point=217.943 mm"' in words and f"written to {file}" in words
+    assert file.read_text(encoding="utf-8") == SCENARIO.replace('"150 mm"', '"217.943 mm"  # by the middle')
+    assert main([*command, "--no-proof", "--write"]) == 0 and "already" in capsys.readouterr().out
+
+
+def test_a_placement_says_when_the_load_itself_dominates() -> None:
+    jerk = LimitUse("axis 2", "jerk", "rad/s^3", 10.0, 10.0, 1.25)
+    best = Candidate("upright", 0.06, 0.22, 0.001, 0.041, (1.0, 2.0, 0.0), 1.0, most_used=jerk, tracking=0.04)
+    before = replace(best, control_point=0.15, mismatch=0.01, total_error=0.043)
+    placement = Placement("f", "s", {"tip": 1.0}, 0.3, best, (best,), 0.15, {}, before=before)
+    assert placement.changes == {"control_point": "220 mm"}
+    assert "no lever" in placement.message and "makes 4 %, and axis 2 jerk 10 of 10" in placement.message
+    assert replace(placement, before=replace(before, total_error=0.08)).message == ""
+    rounded = replace(best, smoothing=0.0600001)  # never less than what keeps the limits
+    assert replace(placement, best=rounded, before=replace(before, smoothing=0.12)).changes["smoothing"] == "60.01 ms"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -9,6 +10,10 @@ from gbeam.results.machine import LimitUse
 from gbeam.results.result import Part, Result
 
 MEASURES = ("root-shear", "root-moment", "vibration", "tip")
+EXCEEDED = "limits exceeded"  # an outcome
+_LEVER = 0.1  # least part of the total error that a move must save to be worth it
+_FULL = 0.99  # share of a limit from which on it is used up
+_SAME = 1e-3  # of the length: control points nearer than this are one
 
 
 @dataclass(frozen=True, repr=False)
@@ -33,6 +38,10 @@ class Candidate(Part):
         Largest share of a limit of the machine that is used; zero where it has none.
     exceeded : tuple of LimitUse
         The limits that it breaks.
+    most_used : LimitUse or None
+        The limit of which the largest share is used.
+    tracking : float
+        Weighted measure of what smoothing and tracking alone change of the load, which no control point changes.
     """
 
     mounting: str
@@ -43,6 +52,8 @@ class Candidate(Part):
     accelerations: tuple[float, float, float]
     share: float = 0.0
     exceeded: tuple[LimitUse, ...] = ()
+    most_used: LimitUse | None = None
+    tracking: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -62,6 +73,8 @@ class Verification:
         carries the same load at the control point without turning.
     moment_difference : float
         Largest difference of the bending moment at the root, N m.
+    force_difference : float
+        Largest difference of the shear force at the root, N.
     """
 
     name: str
@@ -69,6 +82,7 @@ class Verification:
     tip_difference: float
     vibration: float
     moment_difference: float
+    force_difference: float = math.nan
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -89,14 +103,20 @@ class Placement(Result):
     current : float
         The scenario's control point, m.
     values : mapping of str to (mapping of str to float)
-        For ``best``, ``current`` and ``middle`` of the beam: each measure of the mismatch field, as a fraction of
-        flight's peak.
+        For ``best``, ``current`` (the scenario's own mounting, smoothing and control point) and ``middle`` of the beam:
+        each measure of the mismatch field, as a fraction of flight's peak.
     verifications : tuple of Verification
         Empty where there was none.
     refused : tuple of str
         Candidates that could not be built, and why.
     widths : tuple of float
         First and last width of smoothing that was tried, s.
+    totals : mapping of str to (mapping of str to float)
+        As `values`, with what smoothing and tracking change of the load.
+    before : Candidate or None
+        The scenario's own.
+    outcome : str
+        done, or limits exceeded where every candidate breaks a limit: the best is then the nearest.
     """
 
     flight: str
@@ -110,6 +130,47 @@ class Placement(Result):
     verifications: tuple[Verification, ...] = field(default=())
     refused: tuple[str, ...] = ()
     widths: tuple[float, float] = (0.0, 0.0)
+    totals: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    before: Candidate | None = None
+    outcome: str = "done"
+
+    @property
+    def changes(self) -> dict[str, str]:
+        """What to change of the centrifuge, as in a scenario; empty where it is the best already, or none may be."""
+        best, before = self.best, self.before
+        if self.outcome != "done":
+            return {}
+        found = {}
+        if abs(best.control_point - self.current) > _SAME * self.length:
+            found["control_point"] = f"{1e3 * best.control_point:.6g} mm"
+        if before is not None and best.mounting != before.mounting:
+            found["mounting"] = best.mounting
+        if before is not None and abs(best.smoothing - before.smoothing) > 1e-3 * before.smoothing:
+            # Upwards: rounding must not sharpen the corners of a machine at its limit.
+            found["smoothing"] = f"{math.ceil(1e5 * best.smoothing - 1e-6) / 100:g} ms"
+        return found
+
+    @property
+    def message(self) -> str:
+        """Why none is allowed and which comes nearest; or why placing saves little, and what dominates."""
+        best, before = self.best, self.before
+        if self.outcome != "done":
+            broken = "; ".join(str(use) for use in best.exceeded)
+            return (
+                f"none of {len(self.options)} options keeps the machine's limits; nearest comes {best.mounting}, "
+                f'{1e3 * best.smoothing:.4g} ms: {broken}; try wider smoothing or inverse = "planned"'
+            )
+        if not self.changes:
+            return "the scenario has the best placement already"
+        if before is None or before.exceeded or best.total_error <= (1 - _LEVER) * before.total_error:
+            return ""
+        most = best.most_used
+        limit = f", and {most} leaves no more" if most is not None and most.share >= _FULL else ""
+        return (
+            f"placing is no lever here: it brings the measure from {100 * before.total_error:.3g} to "
+            f"{100 * best.total_error:.3g} % of flight's peak; what the load itself differs by at the control point "
+            f"makes {100 * best.tracking:.3g} %{limit}"
+        )
 
     @property
     def fraction(self) -> float:

@@ -2,14 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
-from gbeam.analysis.imitation.place import Choice
 from gbeam.errors import InputError
 from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge
 from gbeam.numerics.solvers.bounded_search import coarse
 
 _FACTOR = 4.0  # of the centrifuge's own smoothing, either way
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What may be chosen beside the control point.
+
+    Parameters
+    ----------
+    make : callable
+        Of mounting and width of smoothing, s: a centrifuge that tracks the flight; InputError where it cannot.
+    mountings : tuple of str
+        The scenario's own first.
+    widths : tuple of float
+        Tried with every mounting, ascending, s.
+    refined : bool
+        Whether to search on between the best of them and its neighbours.
+    limited : bool
+        Whether the machine's limits must be kept.
+    """
+
+    make: Callable[[str, float], Centrifuge]
+    mountings: tuple[str, ...]
+    widths: tuple[float, ...]
+    refined: bool = True
+    limited: bool = True
 
 
 def choice_of(centrifuge: Centrifuge, smoothing: Sequence[float] = (), *, limited: bool = True) -> Choice:
@@ -21,7 +46,7 @@ def choice_of(centrifuge: Centrifuge, smoothing: Sequence[float] = (), *, limite
         Prepared for the times that are looked at.
     smoothing : sequence of float
         Width of the kernel to keep, s, or the two ends of a range; without it from a quarter to four times the
-        centrifuge's own.
+        centrifuge's own, or, where the axis motions are planned within the limits and need no smoothing, its own.
     limited : bool
         Whether the machine's limits must be kept.
 
@@ -35,10 +60,13 @@ def choice_of(centrifuge: Centrifuge, smoothing: Sequence[float] = (), *, limite
     if len(smoothing) == 2 and min(smoothing) <= 0:
         raise InputError("smoothing", f"is {min(smoothing):g} s", "give two positive widths")
     own = float(centrifuge.smoothing or 0.0)
-    ends = sorted(smoothing) or [own / _FACTOR, own * _FACTOR]
+    searched = [own] if centrifuge.method == "planned" else [own / _FACTOR, own * _FACTOR]
+    ends = sorted(smoothing) or searched
     widths = coarse(ends[0], ends[-1])
 
     def make(mounting: str, width: float) -> Centrifuge:
+        if mounting == centrifuge.mounting and width == own:
+            return centrifuge  # which need not be planned again
         return centrifuge.altered(mounting=mounting, smoothing=width)
 
     others = tuple(name for name in MOUNTINGS if name != centrifuge.mounting)

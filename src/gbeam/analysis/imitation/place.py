@@ -8,52 +8,21 @@ give the best such point within the machine's limits is searched for, each with 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from gbeam.analysis.imitation.comparison import CUTOFF, compare
+from gbeam.analysis.imitation.choice import Choice
+from gbeam.analysis.imitation.place_check import verify
 from gbeam.analysis.imitation.place_measures import Answers, Histories
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.simulation import simulate
-from gbeam.arrays.namespace import namespace
-from gbeam.arrays.tree import record
-from gbeam.errors import ComputationError, InputError
+from gbeam.errors import InputError
 from gbeam.mechanics.structure import Structure
-from gbeam.motion import Base, Centrifuge, Flight
+from gbeam.motion import Centrifuge, Flight
 from gbeam.motion.centrifuge.machine.limits import exceeded
-from gbeam.numerics.filters.low_pass import low_pass
 from gbeam.numerics.solvers.bounded_search import refine
-from gbeam.results.placement import MEASURES, Candidate, Placement, Verification
-
-EXCEEDED = "limits exceeded"  # an outcome
-
-
-@dataclass(frozen=True)
-class Choice:
-    """What may be chosen beside the control point.
-
-    Parameters
-    ----------
-    make : callable
-        Of mounting and width of smoothing, s: a centrifuge that tracks the flight; InputError where it cannot.
-    mountings : tuple of str
-        The scenario's own first.
-    widths : tuple of float
-        Tried with every mounting, ascending, s.
-    refined : bool
-        Whether to search on between the best of them and its neighbours.
-    limited : bool
-        Whether the machine's limits must be kept.
-    """
-
-    make: Callable[[str, float], Centrifuge]
-    mountings: tuple[str, ...]
-    widths: tuple[float, ...]
-    refined: bool = True
-    limited: bool = True
+from gbeam.results.placement import EXCEEDED, MEASURES, Candidate, Placement
 
 
 def place(
@@ -83,18 +52,22 @@ def place(
         displacement). For each option they choose the control point by what Δa does, and then the option by that
         together with what smoothing and tracking change of the load.
     current : Centrifuge
-        The scenario's own: its control point is compared with.
+        The scenario's own, which the answer is compared with.
     names : tuple of str
         Of flight and centrifuge.
     check : bool
-        Whether to check the answer, the current control point and the middle of the beam by simulation.
+        Whether to check the answer, the current placement and the middle of the beam by simulation.
+
+    Returns
+    -------
+    Placement
+        Its outcome is ``limits exceeded`` where every option exceeds the machine's limits; the best is then the
+        nearest, and nothing is simulated.
 
     Raises
     ------
     InputError
         If a measure is unknown or none has weight, or no option can be built: the first one's reason.
-    ComputationError
-        If every option exceeds the machine's limits (outcome ``limits exceeded``); it names the nearest.
     """
     check_weights(weights)
     trials = _Trials(structure, flight, choice, settings, weights)
@@ -106,31 +79,31 @@ def place(
     if choice.refined:
         leader = trials.ranked()[0].candidate.mounting
         refine(lambda width: trials(leader, width), choice.widths)
-    ranked = trials.ranked()
-    best = ranked[0]
-    if best.candidate.exceeded and choice.limited:
-        broken = "; ".join(str(use) for use in best.candidate.exceeded)
-        raise ComputationError(
-            EXCEEDED,
-            f"motion.{names[1]}: none of {len(ranked)} options keeps the machine's limits; nearest comes "
-            f"{best.candidate.mounting}, {1e3 * best.candidate.smoothing:.4g} ms: {broken}; "
-            'try wider smoothing or inverse = "planned"',
-        )
-    length, at = structure.length, best.candidate.control_point
-    places = {"best": at, "current": float(current.control_point), "middle": length / 2}
-    verifications = _verifications(structure, flight, best.centrifuge, settings, places) if check else ()
+    ranked, before = trials.ranked(), trials.assess(current, at=float(current.control_point))
+    best, middle = ranked[0], structure.length / 2
+    allowed = not (best.candidate.exceeded and choice.limited)
+    places = {"best": (best, best.candidate.control_point), "current": (before, before.candidate.control_point)}
+    places["middle"] = best, middle
+    machines = {name: each.centrifuge.altered(control_point=at) for name, (each, at) in places.items()}
+    values, totals = (
+        {name: {m: h.size(at, total) for m, h in each.histories.items()} for name, (each, at) in places.items()}
+        for total in (False, True)
+    )
     return Placement(
         flight=names[0],
         centrifuge=names[1],
         weights=dict(weights),
-        length=length,
+        length=structure.length,
         best=best.candidate,
         options=tuple(trial.candidate for trial in ranked),
-        current=places["current"],
-        values={name: {m: h.size(x, False) for m, h in best.histories.items()} for name, x in places.items()},
-        verifications=verifications,
+        current=before.candidate.control_point,
+        values=values,
+        totals=totals,
+        before=before.candidate,
+        verifications=verify(structure, flight, machines, settings) if check and allowed else (),
         refused=tuple(trials.refused),
         widths=(choice.widths[0], choice.widths[-1]),
+        outcome="done" if allowed else EXCEEDED,
     )
 
 
@@ -165,7 +138,7 @@ class _Trials:
         """Weighted measure at the best control point, and the largest share of a limit."""
         if (mounting, width) not in self.evaluated:
             try:
-                self.evaluated[mounting, width] = self._evaluate(mounting, width)
+                self.evaluated[mounting, width] = self.assess(self.choice.make(mounting, width))
             except InputError as error:
                 self.refused.append(f"{mounting}, {1e3 * width:.4g} ms: {error}")
                 self.reasons.append(error)
@@ -183,26 +156,33 @@ class _Trials:
 
         return sorted(self.evaluated.values(), key=rank)
 
-    def _evaluate(self, mounting: str, width: float) -> _Evaluated:
+    def assess(self, centrifuge: Centrifuge, *, at: float | None = None) -> _Evaluated:
+        """Evaluate a centrifuge with its best control point, or with one that is given, m."""
         import scipy.optimize
 
-        centrifuge = self.choice.make(mounting, width).over(*self.span)
-        histories, accelerations = self.answers.histories(self.flight, centrifuge)
+        machine = centrifuge.over(*self.span)
+        histories, accelerations = self.answers.histories(self.flight, machine)
 
-        def size(at: float, total: bool = False) -> float:
-            return sum(weight * histories[name].size(at, total) for name, weight in self.weights.items())
+        def size(x: float, total: bool = False) -> float:
+            return sum(weight * histories[name].size(x, total) for name, weight in self.weights.items())
 
-        least = scipy.optimize.minimize_scalar(
-            size, bounds=(0, self.length), method="bounded", options={"xatol": 1e-7 * self.length}
-        )
-        at, uses = float(least.x), centrifuge.usage()
-        share = max(use.share for use in uses)
-        broken = exceeded(uses)
+        if at is None:
+            at = float(
+                scipy.optimize.minimize_scalar(
+                    size, bounds=(0, self.length), method="bounded", options={"xatol": 1e-7 * self.length}
+                ).x
+            )
+        uses = machine.usage()
+        most = max(uses, key=lambda use: use.share)
         return _Evaluated(
-            Candidate(mounting, width, at, size(at), size(at, True), accelerations, share, broken),
+            Candidate(
+                machine.mounting, float(machine.smoothing or 0.0), at, size(at), size(at, True), accelerations,
+                most.share, exceeded(uses), most_used=most,
+                tracking=sum(w * histories[name].error for name, w in self.weights.items()),
+            ),
             histories,
-            centrifuge,
-        )
+            machine,
+        )  # fmt: skip
 
 
 def check_weights(weights: Mapping[str, float], where: str = "measure") -> None:
@@ -214,54 +194,3 @@ def check_weights(weights: Mapping[str, float], where: str = "measure") -> None:
             raise InputError(where, f"gives {name} the weight {weight:g}", "give weights of 0 or more")
     if not any(weights.values()):
         raise InputError(where, "has no weight", "give one measure a weight above 0")
-
-
-@record
-class _Carried:
-    """A base in translation with the load that a centrifuge makes at its control point: no mismatch anywhere."""
-
-    kind: ClassVar[str] = "flight"
-    free: ClassVar[bool] = False
-    centrifuge: Centrifuge
-
-    def base(self, t: Any) -> Base:
-        load = self.centrifuge.actual(t)
-        none = namespace(load).zeros_like(load)
-        return Base(load, none, none)
-
-    @property
-    def breaks(self) -> Any:
-        return self.centrifuge.breaks
-
-    def over(self, start: float, end: float) -> Self:
-        return self
-
-    def beyond(self, start: float, end: float) -> tuple[float, float]:
-        return self.centrifuge.beyond(start, end)
-
-
-def _verifications(
-    structure: Structure,
-    flight: Flight,
-    centrifuge: Centrifuge,
-    settings: ResponseSettings,
-    places: Mapping[str, float],
-) -> tuple[Verification, ...]:
-    """The model's own response at each control point against that in flight."""
-    in_flight = simulate(structure, flight, settings)
-    carried = simulate(structure, _Carried(centrifuge), settings)
-    step = float(in_flight.time[1] - in_flight.time[0])
-    cutoff = CUTOFF * float(in_flight.frequencies[0]) / (2 * np.pi)
-    verifications = []
-    for name, at in places.items():
-        response = simulate(structure, centrifuge.altered(control_point=at), settings)
-        comparison = compare(in_flight, response)
-        swing = (response.tip - carried.tip)[:, 1:]
-        swing = swing - low_pass(swing, step, cutoff)
-        moment = np.nan if comparison.root is None else float(comparison.root.moment_difference[1:].max())
-        apart, swung = (
-            float(np.linalg.norm(values[comparison.covered], axis=1).max())
-            for values in (comparison.difference[:, 1:], swing)
-        )
-        verifications.append(Verification(name, at, apart, swung, moment))
-    return tuple(verifications)

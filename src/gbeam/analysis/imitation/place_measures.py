@@ -28,8 +28,15 @@ class Histories:
 
     def size(self, at: float, total: bool) -> float:
         """Largest size with the control point at `at` m, over flight's peak; in `total` with the load's error at C."""
-        values = self.linear - at * self.uniform + (self.at_control_point if total else 0.0)
-        return float(np.sqrt(np.sum(values**2, axis=-1)).max(initial=0.0)) / self.scale
+        return self._largest(self.linear - at * self.uniform + (self.at_control_point if total else 0.0))
+
+    @property
+    def error(self) -> float:
+        """The same of the load's error at C alone, which no control point changes."""
+        return self._largest(self.at_control_point)
+
+    def _largest(self, values: Floats) -> float:
+        return float(np.linalg.norm(values, axis=-1).max(initial=0.0)) / self.scale
 
 
 class Answers:

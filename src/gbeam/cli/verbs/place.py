@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
-from gbeam.cli.inputs import naming, number, read
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from gbeam.cli.failures import FAILED, complain
+from gbeam.cli.inputs import Input, naming, number, read
 from gbeam.cli.options import (
     CentrifugeName,
     Check,
@@ -14,7 +20,7 @@ from gbeam.cli.options import (
     ScenarioFile,
     Widths,
 )
-from gbeam.cli.outputs import show, write
+from gbeam.cli.outputs import publish, show, write
 from gbeam.errors import InputError
 
 
@@ -30,9 +36,14 @@ def place(
     out: Out = None,
     json: Json = False,
     ignore_limits: IgnoreLimits = False,
+    write_back: Annotated[
+        bool,
+        Parameter(name="--write", negative="", show_default=False, help="Write the answer into the scenario file."),
+    ] = False,
 ) -> int:
     """Find the control point, mounting and smoothing that change the specimen's response least.
 
+    Prints the --set options that apply the answer; --write writes it into the scenario file, whose comments stay.
     Options that exceed the machine's limits are listed but not chosen, unless --ignore-limits is given. With --out also
     writes place.json. Exit status: 0 done, 1 every option exceeds the limits, 2 the input is wrong.
     """
@@ -63,10 +74,26 @@ def place(
             names=(given.case.tracks[name], name),
             check=check,
         )
-    facts = report.to_json(placement)
+    written = _apply(given, scenario, name, placement.changes) if write_back and placement.changes else None
+    facts = report.to_json(placement, written)
     write(out, "place", facts)
-    show(report.text(placement), facts, json)
+    show(report.text(placement, written), facts, json)
+    if placement.outcome != "done":
+        complain(f"{placement.outcome}: motion.{name}: {placement.message}")
+        return FAILED
     return 0
+
+
+def _apply(given: Input, file: Path, name: str, changes: dict[str, str]) -> str:
+    """Write the changes of one centrifuge into the scenario file; return its name."""
+    from gbeam.scenario.text.edit import edited
+
+    source = given.scenario.source
+    assert source is not None  # it was read from a file
+    text, place = edited(source, ("motion", name), changes), file.resolve()
+    with naming("--write"):
+        publish(place.parent, lambda hidden: (hidden / place.name).write_bytes(text.encode()))
+    return str(file)
 
 
 def parse(measure: str) -> dict[str, float]:

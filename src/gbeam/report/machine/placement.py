@@ -5,17 +5,24 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from gbeam.report.words import sentence
 from gbeam.results.placement import Candidate, Placement
 
-_PLACES = ("best", "current", "middle")
+_PLACES = ("current", "best", "middle")
 _LISTED = 6  # candidates of either kind
 
 
-def to_json(placement: Placement) -> dict[str, Any]:
+def settings(placement: Placement) -> list[str]:
+    """The answer as ``KEY=VALUE`` of ``--set``."""
+    return [f"motion.{placement.centrifuge}.{key}={value}" for key, value in placement.changes.items()]
+
+
+def to_json(placement: Placement, written: str | None = None) -> dict[str, Any]:
     """Placement as JSON: SI units; fractions are of flight's peaks."""
     best = placement.best
     return {
-        "outcome": "done",
+        "outcome": placement.outcome,
+        "message": placement.message,
         "flight": placement.flight,
         "centrifuge": placement.centrifuge,
         "measure": dict(placement.weights),
@@ -25,34 +32,51 @@ def to_json(placement: Placement) -> dict[str, Any]:
         "smoothing": best.smoothing,
         "smoothing_range": list(placement.widths),
         "current_control_point": placement.current,
+        "set": settings(placement),
+        "written": written,
         "mismatch": {place: dict(values) for place, values in placement.values.items()},
+        "total_error": {place: dict(values) for place, values in placement.totals.items()},
         "options": [asdict(candidate) for candidate in placement.options],
+        "before": None if placement.before is None else asdict(placement.before),
         "verifications": {check.name: asdict(check) for check in placement.verifications},
         "vibration_gain_over_middle": placement.vibration_gain,
         "refused": list(placement.refused),
     }
 
 
-def text(placement: Placement) -> str:
-    """The best placement, what the mismatch does at it, the simulations that check it, and the other candidates."""
+def text(placement: Placement, written: str | None = None) -> str:
+    """The best placement and how to apply it, every measure before and after, the simulations, the other candidates."""
     best = placement.best
     parts = {name: weight for name, weight in placement.weights.items() if weight}
     measure = (
         " + ".join(f"{weight:g} × {name}" for name, weight in parts.items()) if len(parts) > 1 else next(iter(parts))
     )
+    nearest = "" if placement.outcome == "done" else " (nearest to the limits, which none keeps)"
     lines = [
-        f"{placement.centrifuge}, tracking {placement.flight}: least {measure}",
+        f"{placement.centrifuge}, tracking {placement.flight}: least {measure}{nearest}",
         f"  control point  {1e3 * best.control_point:.2f} mm from the root, {placement.fraction:.4f} of the length "
         f"(now {1e3 * placement.current:.2f} mm)",
         f"  mounting       {best.mounting}",
         f"  smoothing      {1e3 * best.smoothing:.4g} ms{_range(placement)}",
-        "",
-        "What the mismatch field does, of flight's peak".ljust(56) + "best       current    middle",
     ]
+    if placement.changes:
+        flags = " ".join(f'--set "{each}"' for each in settings(placement))
+        lines.append(f"  to apply it    {flags}")
+        lines.append(f"                 {f'written to {written}' if written else 'or place again with --write'}")
+    if placement.message and placement.outcome == "done":
+        lines += ["", sentence(placement.message)]
+    return "\n".join([*lines, *_measures(placement), *_verified(placement), *_candidates(placement, measure)])
+
+
+def _measures(placement: Placement) -> list[str]:
+    """Every measure at every place: the mismatch field alone, and with the load's own error at the control point."""
+    lines = ["", "Of flight's peak".ljust(19) + "".join(each.ljust(39) for each in ("mismatch field", "with tracking"))]
+    lines.append(" " * 19 + 2 * "".join(place.ljust(13) for place in ("now", "placed", "at mid-span")))
     for name in placement.values["best"]:
-        row = "".join(f"{100 * placement.values[place][name]:<9.3g}% " for place in _PLACES)
-        lines.append(f"  {name:<54}{row}")
-    return "\n".join([*lines, *_verified(placement), *_candidates(placement, measure)])
+        rows = (placement.values, placement.totals)
+        cells = [f"{100 * each[place][name]:.3g} %" if each else "–" for each in rows for place in _PLACES]
+        lines.append(f"  {name:<17}" + "".join(cell.ljust(13) for cell in cells))
+    return [line.rstrip() for line in lines]
 
 
 def _range(placement: Placement) -> str:
@@ -70,12 +94,21 @@ def _range(placement: Placement) -> str:
 def _verified(placement: Placement) -> list[str]:
     if not placement.verifications:
         return []
-    lines = ["", "Checked by simulation, against flight"]
-    lines += [
-        f"  {check.name:<8} {1e3 * check.control_point:8.2f} mm: tip within {1e3 * check.tip_difference:.4g} mm, "
-        f"vibration {1e3 * check.vibration:.3g} mm, root moment within {check.moment_difference:.3g} N m"
-        for check in placement.verifications
+    checks = {check.name: check for check in placement.verifications}
+    lines = [
+        "",
+        "By simulation, largest difference from flight",
+        " " * 19 + "tip          vibration    root shear   moment",
     ]
+    for place, label in zip(_PLACES, ("now", "placed", "at mid-span"), strict=True):
+        check = checks[place]
+        values = (
+            f"{1e3 * check.tip_difference:.4g} mm",
+            f"{1e3 * check.vibration:.3g} mm",
+            f"{check.force_difference:.3g} N",
+            f"{check.moment_difference:.3g} N m",
+        )
+        lines.append(f"  {label:<17}" + "".join(value.ljust(13) for value in values).rstrip())
     gain = placement.vibration_gain
     return [*lines, f"  {gain:.3g} times less vibration than with the control point at mid-span"]
 

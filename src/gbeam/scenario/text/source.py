@@ -41,12 +41,13 @@ class Source:
     overrides: tuple[Override, ...] = ()
 
     @cached_property
-    def _places(self) -> dict[Path, Place]:
+    def places(self) -> dict[Path, Place]:
+        """Where each entry of the text stands."""
         # Imported where something is wrong: what is right needs no places.
         from gbeam.scenario.text.locate_json import locate_json
         from gbeam.scenario.text.locate_toml import locate_toml
 
-        return locate_json(self.text) if _is_json(self.text) else locate_toml(self.text)
+        return locate_json(self.text) if is_json(self.text) else locate_toml(self.text)
 
     def raw(self, path: Path) -> Any:
         """Return what is written at `path`, None if nothing is."""
@@ -64,9 +65,9 @@ class Source:
         if override is not None:
             return Diagnostic(self.name, path_text(path), message, hint, override=override.text)
         nearest = path  # the entry itself, or the innermost table or list around it that is written
-        while nearest and nearest not in self._places:
+        while nearest and nearest not in self.places:
             nearest = nearest[:-1]
-        place = self._places.get(nearest)
+        place = self.places.get(nearest)
         span = Span(1, 1, 2) if place is None else place.key if mark == "key" or nearest != path else place.value
         return at_span(self.name, self.text, span, path_text(path), message, hint)
 
@@ -75,7 +76,7 @@ class Source:
         if above:
             return above[-1]
         below = [change for change in self.overrides if path and change.path[: len(path)] == path]
-        return below[-1] if below and path not in self._places else None
+        return below[-1] if below and path not in self.places else None
 
 
 def at_span(name: str, text: str, span: Span, path: str, message: str, hint: str) -> Diagnostic:
@@ -104,7 +105,7 @@ def read_text(path: File) -> str:
 def parse(name: str, text: str) -> dict[str, Any]:
     """Parse TOML, or JSON if the text begins with a brace; a ScenarioError says where the syntax is wrong."""
     try:
-        return json.loads(text) if _is_json(text) else tomllib.loads(text)
+        return json.loads(text) if is_json(text) else tomllib.loads(text)
     except json.JSONDecodeError as error:
         line, column, message = error.lineno, error.colno, error.msg
     except tomllib.TOMLDecodeError as error:
@@ -116,11 +117,12 @@ def parse(name: str, text: str) -> dict[str, Any]:
         else:
             lines = text.rstrip("\n").split("\n")
             line, column = len(lines), len(lines[-1]) + 1
-    language = "JSON" if _is_json(text) else "TOML"
+    language = "JSON" if is_json(text) else "TOML"
     problem = message[:1].lower() + message[1:]
     span = Span(line, column, column + 1)
     raise ScenarioError([at_span(name, text, span, "", f"{problem}", f"this is not valid {language}")])
 
 
-def _is_json(text: str) -> bool:
+def is_json(text: str) -> bool:
+    """Tell whether a scenario is JSON, not TOML."""
     return text.lstrip().startswith("{")  # no TOML document begins with a brace

@@ -1,0 +1,96 @@
+"""A placement checked by simulation: the model's own response at a control point, against that in flight."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from gbeam.analysis.imitation.comparison import CUTOFF, compare
+from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.simulation import simulate
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record
+from gbeam.mechanics.structure import Structure
+from gbeam.motion import Base, Centrifuge, Flight
+from gbeam.numerics.filters.low_pass import low_pass
+from gbeam.results.placement import Verification
+from gbeam.results.response import Response
+from gbeam.results.result import Floats
+
+
+@record
+class _Carried:
+    """A base in translation with the load that a centrifuge makes at its control point: no mismatch anywhere."""
+
+    kind: ClassVar[str] = "flight"
+    free: ClassVar[bool] = False
+    centrifuge: Centrifuge
+
+    def base(self, t: Any) -> Base:
+        load = self.centrifuge.actual(t)
+        none = namespace(load).zeros_like(load)
+        return Base(load, none, none)
+
+    @property
+    def breaks(self) -> Any:
+        return self.centrifuge.breaks
+
+    def over(self, start: float, end: float) -> Self:
+        return self
+
+    def beyond(self, start: float, end: float) -> tuple[float, float]:
+        return self.centrifuge.beyond(start, end)
+
+
+def verify(
+    structure: Structure, flight: Flight, machines: Mapping[str, Centrifuge], settings: ResponseSettings
+) -> tuple[Verification, ...]:
+    """Simulate flight and machines, and compare.
+
+    Parameters
+    ----------
+    structure : Structure
+    flight : Flight
+    machines : mapping of str to Centrifuge
+        Prepared for the settings' span, by the names of their places.
+    settings : ResponseSettings
+    """
+    in_flight = simulate(structure, flight, settings)
+    cutoff = CUTOFF * float(in_flight.frequencies[0]) / (2 * np.pi)
+    carried: dict[int, Response] = {}  # machines at different control points share their axis motions
+    verifications = []
+    for name, machine in machines.items():
+        response, motion = simulate(structure, machine, settings), id(machine.course)
+        if motion not in carried:
+            carried[motion] = simulate(structure, _Carried(machine), settings)
+        comparison = compare(in_flight, response)
+        swing = response.tip - _sampled(response.time, carried[motion])
+        swing -= low_pass(swing, float(response.time[1] - response.time[0]), cutoff)
+        compared = np.isin(response.time, comparison.time[comparison.covered])
+        force, moment = np.nan, np.nan
+        if comparison.root is not None:
+            root = comparison.root
+            force, moment = (float(each[1:].max()) for each in (root.force_difference, root.moment_difference))
+        verifications.append(
+            Verification(
+                name,
+                float(machine.control_point),
+                _largest(comparison.difference[comparison.covered]),
+                _largest(swing[compared]),
+                moment,
+                force,
+            )
+        )
+    return tuple(verifications)
+
+
+def _sampled(time: Floats, response: Response) -> Floats:
+    """The tip of a response at the times of another, whose automatic step may differ."""
+    return np.column_stack([np.interp(time, response.time, along) for along in response.tip.T])
+
+
+def _largest(vectors: Floats) -> float:
+    """Of the parts across the beam."""
+    return float(np.linalg.norm(vectors[:, 1:], axis=1).max(initial=0.0))
