@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.signal import find_peaks
 
 from gbeam import Comparison, InputError, Response, compare
+from gbeam.analysis.imitation.accounting import History, account
 from gbeam.report.study.accounting import lines, to_json
 from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.response import BaseMotion
 
 from .helpers import LENGTH, made
 
+DATA = Path(__file__).parents[2] / "examples" / "data"
 G = 9.80665
 STEP = 0.004
 IDLE = 1.4
@@ -202,3 +206,27 @@ def test_spin_up_is_not_the_flight(pair: tuple[Response, Response]) -> None:
     np.testing.assert_array_equal(two.difference, one.difference)
     with pytest.raises(InputError, match="no time in common"):
         compare(flight, replace(whole, time=time + 1000.0))
+
+
+@pytest.mark.parametrize(("name", "count"), [("f16_8g_turn", 5), ("f16_pulls_and_push", 7)])
+def test_no_peak_of_a_record_is_missing(name: str, count: int) -> None:
+    """Against SciPy's peaks of the load's logarithm, in which a dip of a tenth is a prominence."""
+    record = np.genfromtxt(DATA / f"{name}.csv", delimiter=",", names=True)
+    time, load = record["time_s"], -G * np.stack([record[f"n_{axis}_g"] for axis in "xyz"], axis=1)
+    size = np.linalg.norm(load, axis=1)
+    # At the ends and below idle as low as nothing: both separate.
+    level = np.log(np.where(size > IDLE * G, size, 1e-3))
+    tops, _ = find_peaks(np.pad(level, 1, constant_values=-9.0), prominence=-np.log(0.9))
+    flown = History(load, load, load)
+    accounting = account(time, flown, flown, tolerance=0.05, idle=IDLE * G)
+    assert [peak.time for peak in accounting.peaks] == pytest.approx(time[tops - 1].tolist(), abs=0.011)
+    assert [peak.load for peak in accounting.peaks] == pytest.approx(size[tops - 1].tolist())
+    assert len(accounting.peaks) == count and accounting.main.load == size.max()  # type: ignore[union-attr]
+    low = account(time, flown, still(load), tolerance=0.05, idle=IDLE * G).not_followed
+    assert {each.reason for each in low} == {"below idle", "corner"}
+    assert all((each.flight_peak > IDLE * G) == (each.reason == "corner") for each in low)
+
+
+def still(load: np.ndarray) -> History:
+    """A machine that makes no load at all."""
+    return History(0 * load, 0 * load, 0 * load)

@@ -180,11 +180,9 @@ def _peak(
     (near,) = (run for run in true_runs(size >= _DIP * size[own]) if run.start <= own < run.stop)
     i = near.start + int(np.argmax(made[near]))
     load, reproduced = float(size[own]), float(made[i])
-    # The law of cosines, the angle being that of both loads at the same time.
-    dot = float(flight.load[basin.start + i] @ machine.load[basin.start + i])
-    product = float(size[i] * made[i])
-    cosine = min(dot / product, 1.0) if product > 0 else 1.0
-    error = float(np.hypot(reproduced - load, np.sqrt(2 * reproduced * load * (1 - cosine)))) / load
+    # Sizes at their own times, directions at the same one.
+    turned = flight.load[basin.start + i] * (load / size[i])
+    error = float(np.linalg.norm(machine.load[basin.start + i] - turned)) / load
     return LoadPeak(
         time=float(time[top]),
         load=load,
