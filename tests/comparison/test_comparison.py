@@ -13,6 +13,7 @@ from scipy.linalg import expm
 from gbeam import Comparison, InputError, compare, simulate
 from gbeam.numerics.filters.low_pass import low_pass
 from gbeam.numerics.filters.oscillators import displacement, largest_riding_acceleration, riding_acceleration
+from gbeam.report.study.comparison import lines
 
 M, L, EI = 2700 * 0.02 * 0.004, 0.3, 70e9 * 0.02 * 0.004**3 / 12
 
@@ -27,6 +28,15 @@ def compared(pair: tuple[Any, Any]) -> Comparison:
     return compare(*pair)
 
 
+@pytest.mark.parametrize(("at", "advised"), [(0.15, True), (0.2, False), (0.218, False), (0.22, False), (0.24, True)])
+def test_what_is_placed_is_not_to_be_placed_again(compared: Comparison, at: float, advised: bool) -> None:
+    assert compared.mismatch is not None
+    moved = replace(compared, mismatch=replace(compared.mismatch, control_point=at))
+    assert ("gbeam place" in " ".join(lines(moved))) is advised
+    small = replace(moved, peak_flight=1000 * moved.peak_flight)
+    assert "gbeam place" not in " ".join(lines(small))
+
+
 def test_mismatch_bounds_are_those_of_a_uniform_cantilever(compared: Comparison) -> None:
     mismatch = compared.mismatch
     assert mismatch is not None and mismatch.control_point == 0.15 and mismatch.length == L
@@ -36,6 +46,7 @@ def test_mismatch_bounds_are_those_of_a_uniform_cantilever(compared: Comparison)
     np.testing.assert_allclose(mismatch.tip_bound[2], M * L**5 / EI * abs(11 / 120 - 1 / 16) * gradient, rtol=2e-3)
     np.testing.assert_allclose(mismatch.tip_envelope.max(axis=0), mismatch.tip_bound)
     assert mismatch.max_acceleration[2] == pytest.approx(0.15 * gradient)
+    assert mismatch.best == pytest.approx((2 / 3 * L, 11 / 15 * L), rel=2e-3)
     np.testing.assert_allclose(
         mismatch.field(np.array([0.15, 0.3]))[:, :, 2].T, [0 * mismatch.gradient[:, 2], 0.15 * mismatch.gradient[:, 2]]
     )

@@ -86,6 +86,9 @@ class Mismatch(Part):
         The same of the moment at the root, in the plane of x and the axis, N m: m L³ |1/3 − ξ/2| max|gradient|.
     length : float
         Of the beam, L, m.
+    best : tuple of float
+        From the control point with the least moment at the root to that with the least displacement of the tip, m;
+        that with the least vibration of a uniform cantilever lies between.
     """
 
     control_point: float
@@ -96,6 +99,13 @@ class Mismatch(Part):
     force_bound: Floats
     moment_bound: Floats
     length: float
+    best: tuple[float, float] = (-np.inf, np.inf)
+
+    @property
+    def placed(self) -> bool:
+        """Whether the control point is among the best, within a hundredth of the length."""
+        slack = 0.01 * self.length
+        return self.best[0] - slack <= self.control_point <= self.best[1] + slack
 
     @property
     def tip_envelope(self) -> Floats:

@@ -17,6 +17,7 @@ from gbeam.results.comparison import Comparison
 from gbeam.results.measures import Mismatch, RootHistory, RootLoads, Shock, Sizes, Statistics
 from gbeam.results.response import BaseMotion, Response
 from gbeam.results.result import Flags, Floats
+from gbeam.results.section_forces import Influence
 
 CUTOFF = 0.5  # of the lowest natural frequency: trend below, elastic vibration above
 QUALITY = 10.0  # of the oscillators of the shock response spectrum
@@ -216,7 +217,17 @@ def _mismatch(covered: Flags, centrifuge: Response, in_flight: Floats, during: s
         force_bound=unknown if influence is None else bound(influence.force_linear, influence.force_uniform),
         moment_bound=unknown if influence is None else bound(influence.moment_linear, influence.moment_uniform),
         length=length,
+        best=(-np.inf, np.inf) if influence is None else _best_control_points(influence),
     )
+
+
+def _best_control_points(influence: Influence) -> tuple[float, float]:
+    """Where a field g (x − x_c) across the beam leaves the root without moment, or the tip where it is; both ends."""
+    uniform = np.concatenate([influence.moment_uniform[1:], influence.tip_uniform[1:]])
+    linear = np.concatenate([influence.moment_linear[1:], influence.tip_linear[1:]])
+    felt = uniform != 0  # a model may have no shapes along y
+    points = linear[felt] / uniform[felt]
+    return float(points.min()), float(points.max())
 
 
 def _root(covered: Flags, history: RootHistory, stress_flight: Floats, stress_centrifuge: Floats) -> RootLoads:

@@ -12,6 +12,7 @@ from gbeam.results.measures import Mismatch, RootLoads, Sizes
 from gbeam.results.verdict import metres, percent
 
 _PLACES = ("flight", "centrifuge", "difference")
+_FELT = 0.01  # of flight's peak: a mismatch that bends the tip by less is no reason to move the specimen
 
 
 def to_json(comparison: Comparison) -> dict[str, Any]:
@@ -92,8 +93,10 @@ def lines(comparison: Comparison) -> Iterator[str]:
             f"(above {comparison.stations.cutoff:.3g} Hz, zero phase)"
         )
     if comparison.mismatch is not None:
-        bound = comparison.mismatch.tip_bound[main]
+        mismatch = comparison.mismatch
+        felt = mismatch.tip_bound[main] > _FELT * comparison.peak_flight[main]
+        advice = "; `gbeam place` finds the best control point" if felt and not mismatch.placed else ""
         yield (
-            f"mismatch up to {comparison.mismatch.max_acceleration[main]:.3g} m/s² along the beam, which bends the tip "
-            f"by up to {1e3 * bound:.3g} mm quasi-statically; `gbeam place` finds the best control point"
+            f"mismatch up to {mismatch.max_acceleration[main]:.3g} m/s² along the beam, which bends the tip "
+            f"by up to {1e3 * mismatch.tip_bound[main]:.3g} mm quasi-statically{advice}"
         )
