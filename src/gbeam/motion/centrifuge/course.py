@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -107,15 +108,21 @@ def prepare(
     InputError
         If the load cannot be followed, the inverse cannot follow its corners, or the spin-up or spin-down is too short.
     """
-    target = build_target(
-        load, span=span, idle=idle, smoothing=smoothing, gravity=geometry.gravity > 0, arm=geometry.arm, clip=clip
-    )
+    build = partial(
+        build_target, load, span=span, idle=idle, smoothing=smoothing, gravity=geometry.gravity > 0, arm=geometry.arm,
+        clip=clip,
+    )  # fmt: skip
+    target = build()
     method = INVERSES[inverse]
     if not target.rounded and (target.turns or not method.follows_corners):
         raise InputError("smoothing", f"is missing: {inverse} cannot follow this load's corners", 'give "60 ms" or so')
     if method.solved and is_traced(target.load(span[0]), geometry.arm):
         fix = 'choose "flat" or "quasi-static", or prepare the machine of numbers: over(start, end)'
         raise InputError("inverse", f"is {inverse}, solved for numerically, and JAX traces the machine", fix)
+    left: list[tuple[float, float]] = []
+    while method.leaves_out is not None and (more := method.leaves_out(target, geometry)):
+        left += more
+        target = build(leave_out=left)
     solved = method.build(target, geometry, limits, ends)
     ramps = None if solved.extent is not None else build_ramps(target, solved, geometry, limits, ends)
     return Course(target, solved, geometry, ramps, ends.start)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import as_array, is_jax
-from gbeam.numerics.series import Series, compose
+from gbeam.numerics.series import Series, compose, where
 
 TURN = 2 * pi
 
@@ -98,3 +98,17 @@ def soft_floor(value: Any, floor: Any, band: Any) -> Any:
     x = (value - floor) / band
     ramp = compose(hann_orders(0, x.order, x.value), x) if isinstance(x, Series) else hann(0, x)
     return ramp * band + floor
+
+
+def soft_step(value: Series, middle: Any, band: Any) -> Series:
+    """Return a twice differentiable step from 0 to 1.
+
+    Parameters
+    ----------
+    value : Series, any shape
+    middle, band : float
+        In the unit of `value`: the step is 0 below middle − band/2 and 1 above middle + band/2.
+    """
+    x = (value - middle) / band
+    # Beyond half a unit the integral of the kernel no longer rises; its rounding there is no step.
+    return where(x.value <= -0.5, 0.0, where(x.value >= 0.5, 1.0, compose(hann_orders(1, 1 + x.order, x.value), x)))

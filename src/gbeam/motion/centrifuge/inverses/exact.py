@@ -17,17 +17,20 @@ from numpy.typing import NDArray
 from gbeam.arrays.tree import record
 from gbeam.errors import InputError
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse, Pose, gimbals
+from gbeam.motion.centrifuge.target.load_limits import PARTED
 from gbeam.motion.centrifuge.target.reachability import sharp_turns, size_and_rates
 from gbeam.motion.centrifuge.target.target import Target
 from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.bspline import PIECE, Grid, Normal, Spline
+from gbeam.numerics.intervals import true_runs
 from gbeam.numerics.series import sin_cos, sqrt, square
 
 # Of the horizontal load: refined until this is reached. The third derivative of a rounded record jumps wherever a knot
 # enters the kernel, and the collocation is of third order there; on a smooth load it is far better.
 TRACKING = 1e-7
-ACCEPTED = 1e-4  # what is still a solution, with a warning
+ACCEPTED = 1e-2  # what is still a solution, with a warning; where more is missed the load cannot be followed
 _STEPS = (8e-3, 4e-3, 2e-3, 1e-3, 5e-4)  # s between knots
+_FIRST = 2  # of these show where the load cannot be followed
 _MOST = 60_000  # pieces
 _NEAR, _CLOSE = 1e-6, 1e-10  # rad: largest change of the lag in a step that is taken whole, and in the last one
 _POINTS = np.array([0.5 - np.sqrt(3) / 6, 0.5 + np.sqrt(3) / 6])
@@ -63,8 +66,7 @@ def exact(target: Target, geometry: Geometry) -> Exact:
     InputError
         If the load turns too sharply for the arm, with the smoothing that it needs.
     """
-    # A corner at either end is rounded within half a width of it; beyond, the target stands still.
-    first, last = target.span[0] - float(target.half_width), target.span[1] + float(target.half_width)
+    first, last = _times(target)
     lag: Spline | None = None
     for step in _STEPS:
         if lag is not None and (last - first) / step > _MOST:
@@ -78,6 +80,29 @@ def exact(target: Target, geometry: Geometry) -> Exact:
     if not error <= ACCEPTED:
         raise _refusal(target, geometry, grid, errors)
     return Exact(geometry, lag)
+
+
+def unfollowable(target: Target, geometry: Geometry) -> list[tuple[float, float]]:
+    """Stretches, s, that no smooth motion follows and that a target with an idle level can leave out.
+
+    The return above idle with the largest load is not among them: without it nothing would be left of the flight.
+    """
+    if not target.idle > 0:
+        return []
+    lag: Spline | None = None
+    for step in _STEPS[:_FIRST]:
+        grid = Grid(*_times(target), step, _POINTS)
+        lag, errors = _solve(grid, target, geometry, lag)
+    bad, followed = ~(errors.ravel() <= ACCEPTED), ~np.asarray(target.not_followed(grid.time))
+    size = np.linalg.norm(target.flight(np.clip(grid.time, *target.span)), axis=1)
+    above, peak = true_runs(size > PARTED * float(target.idle)), int(np.argmax(size))
+    returns = [run for run in above if bad[run].any() and followed[run].any() and not run.start <= peak < run.stop]
+    return [(float(grid.time[run.start]), float(grid.time[run.stop - 1])) for run in returns]
+
+
+def _times(target: Target) -> tuple[float, float]:
+    """Where the target may change, s: a corner at either end of the span is rounded within half a width of it."""
+    return target.span[0] - float(target.half_width), target.span[1] + float(target.half_width)
 
 
 def _solve(grid: Grid, target: Target, geometry: Geometry, start: Spline | None) -> tuple[Spline, Floats]:
@@ -101,7 +126,7 @@ def _solve(grid: Grid, target: Target, geometry: Geometry, start: Spline | None)
     sine, cosine, dlag, turn, residual = state(c)
     for _ in range(40):
         by_lag = cosine * (dlag + turn) - sine**2 * turn / (2 * cosine) + growth * sine
-        normal = Normal(grid.pieces, 1)
+        normal = Normal(grid.pieces)
         normal.add(by_lag[..., None] * value + sine[..., None] * slope, -residual)
         for piece, bend in bends:
             normal.add_row(piece, bend, -float(bend @ (c[:PIECE] if piece == 0 else c[-PIECE:])))

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from gbeam.motion.centrifuge.ends import Ends
 from gbeam.motion.centrifuge.inverses.closed_form import Flat, Geometry, Inverse, QuasiStatic
-from gbeam.motion.centrifuge.inverses.exact import exact
+from gbeam.motion.centrifuge.inverses.exact import exact, unfollowable
 from gbeam.motion.centrifuge.inverses.planned import planned
 from gbeam.motion.centrifuge.machine.limits import Limits
 from gbeam.motion.centrifuge.target.target import Target
@@ -24,16 +24,19 @@ class Method(NamedTuple):
         Whether it can follow corners of a load that does not turn.
     solved : bool
         Whether it is solved for numerically, and so needs numbers.
+    leaves_out : callable, optional
+        Of target and geometry: stretches, s, that it cannot follow and that the target is to leave out.
     """
 
     build: Callable[[Target, Geometry, Limits, Ends], Inverse]
     follows_corners: bool
     solved: bool
+    leaves_out: Callable[[Target, Geometry], list[tuple[float, float]]] | None = None
 
 
 INVERSES: dict[str, Method] = {
     "quasi-static": Method(lambda target, geometry, limits, ends: QuasiStatic(geometry), True, False),
     "flat": Method(lambda target, geometry, limits, ends: Flat(geometry), False, False),
-    "exact": Method(lambda target, geometry, limits, ends: exact(target, geometry), False, True),
     "planned": Method(lambda target, geometry, limits, ends: planned(target, geometry, limits), False, True),
+    "exact": Method(lambda target, geometry, limits, ends: exact(target, geometry), False, True, unfollowable),
 }

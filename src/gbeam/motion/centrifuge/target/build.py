@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,33 +13,41 @@ from gbeam.arrays.namespace import is_traced
 from gbeam.checks import positive
 from gbeam.errors import InputError
 from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
-from gbeam.motion.centrifuge.target.load_floor import LoadFloor
+from gbeam.motion.centrifuge.target.gentle_path import gentle, off_axis, unwrapped
 from gbeam.motion.centrifuge.target.load_limits import (
+    LEAST_IDLE,
     MIN_TRANSVERSE_LOAD,
-    OPPOSED,
-    hold_idle,
-    keep_in_reach,
-    nearest_to_zero,
+    PARTED,
     refuse_far,
     refuse_reversal,
+    refuse_singular,
+    refuse_undirected,
 )
-from gbeam.motion.centrifuge.target.smooth_hold import smooth_hold, without_gaps
+from gbeam.motion.centrifuge.target.nearest_load import NearestLoad
+from gbeam.motion.centrifuge.target.stretches import (
+    BELOW_IDLE,
+    GIMBALS,
+    LEFT_OUT,
+    merged_edges,
+    padded_rows,
+    stretches,
+)
 from gbeam.motion.centrifuge.target.target import Target
-from gbeam.motion.profiles.hold import hold_until
+from gbeam.motion.profiles.clamp import clamped
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.profiles.profile import Profile, sampled, smoothed
+from gbeam.numerics.intervals import joined, true_runs
 
 _GRID = 0.01  # s, spacing of knots where a load without smoothing is held
 _CURVE = 0.002  # s, the same along a curved profile
-_PER_WIDTH = 6  # knots per width of the smoothing kernel
-_NEAR_ZERO = 0.02  # of the peak load
-_ALONG_BEAM = 1e-3  # of the peak load
-LEAST_IDLE = 1.1  # g, with gravity
-# The guard lies wholly between gravity and the least load across the beam: it leaves every reachable load as it is.
-_FLOOR, _BAND = 1.03 * STANDARD_GRAVITY, 0.04 * STANDARD_GRAVITY
+_PER_WIDTH = 12  # knots per width of the smoothing kernel
+_PATH = 0.25  # of the smoothing kernel: what rounds the path
+_QUICK = 0.1  # s: time scale of the path where no arm is given
+_ROUNDING = 1e-9
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+Stretches = Sequence[tuple[float, float]]
 
 
 def build_target(
@@ -49,18 +59,18 @@ def build_target(
     gravity: bool,
     arm: Any | None = None,
     clip: bool = False,
-    spin_up: float | None = None,
+    leave_out: Stretches = (),
 ) -> Target:
-    """Make of a flight's load one that a centrifuge can follow.
+    """Make of a flight's load the nearest one that a centrifuge can follow, at every time.
 
-    Loads below idle are raised to it in their own direction, those across the beam that gravity alone exceeds
-    are bridged; a load that needs neither is kept as it is. Corners are then rounded by a Hann kernel.
+    The flight's corners are rounded by a Hann kernel. Where the load is then at least idle and in reach of the gimbals,
+    it is the target. Below idle, the target's size is idle; where the gimbals do not reach, the part along the beam is
+    kept and the part across it raised. The direction on the way is near the flight's, without changes quicker than the
+    period 2π √(R/idle) of an arm at idle; where it is that of the flight, path and flight meet without a corner.
+    Before the span the load is that of its first time, after it that of its last.
 
-    While the load is held, only what an arm at idle could follow is followed: changes of direction faster than the
-    period 2π √(R/idle), the quickest oscillation of the load with −ä ≤ a²/R, are smoothed, and visits to the flight's
-    load shorter than half of it are left out.
-
-    A load whose values JAX traces has no numbers to decide on: it is taken to be one that needs no hold.
+    A load whose values JAX traces has no numbers to decide on: it is taken to be one that needs no hold, and to stand
+    still beyond the span.
 
     Parameters
     ----------
@@ -75,79 +85,101 @@ def build_target(
     gravity : bool
         Gravity is there on the machine and `raw` is specific force.
     arm : float, optional
-        R, m; without it a held load follows every change of direction.
+        R, m; without it the path follows all but the quickest changes of direction.
     clip : bool
-        Whether to carry on with a held target where the gimbals cannot reach; to give `idle` does so too.
-    spin_up : float, optional
-        Time that the machine takes from standstill, s: until then the load waits at the one that it has at its end.
+        Whether to carry on with the nearest load where the gimbals cannot reach; to give `idle` does so too.
+    leave_out : sequence of (start, end), optional
+        Stretches, s, in which the load is not followed above idle either, for an inverse that cannot: each is widened
+        to the whole return above idle that it is a part of.
 
     Raises
     ------
     InputError
-        If a number is impossible, or the load cannot be followed: it comes near zero, reverses through
-        zero, or is out of reach throughout.
+        If a number is impossible, or the load cannot be followed: it has no direction; without idle, it comes near
+        zero, reverses through zero or is out of reach; without gravity, it is along the beam on its way.
     """
-    first, final = span
-    if not (np.isfinite(first) and np.isfinite(final) and final > first):
-        raise InputError("span", f"is {first:g} s to {final:g} s", "end after the start")
+    first, last = span
+    if not (np.isfinite(first) and np.isfinite(last) and last > first):
+        raise InputError("span", f"is {first:g} s to {last:g} s", "end after the start")
     width = 0.0 if smoothing is None else positive("smoothing", smoothing, "s", zero=True)
     least = None if idle is None else positive("idle", idle, "m/s²")
     if gravity and least is not None and least < LEAST_IDLE * STANDARD_GRAVITY:
         raise InputError(
             "idle", f"is {least / STANDARD_GRAVITY:.3g} g and gravity 1 g", f"give at least {LEAST_IDLE} g"
         )
-    # The corner at which the load leaves the one that it waited at is over when the spin-up is.
-    ready = first if spin_up is None else first + _spin_up(spin_up, width, final - first)
-    waiting = raw if spin_up is None else hold_until(ready - width / 2, raw)
+    made = partial(
+        Target, flight=raw, idle=0.0 if least is None else least, gravity=STANDARD_GRAVITY if gravity else 0.0,
+        half_width=width / 2, span=(float(first), float(last)),
+    )  # fmt: skip
     if is_traced(raw(first), width):
-        load = smoothed(waiting, width) if is_traced(width) or width else waiting
+        load = smoothed(raw, width) if is_traced(width) or width else raw
         if gravity:
-            load = LoadFloor(load, _FLOOR, _BAND)
-        none = np.zeros(3)
-        parts = (load, raw, waiting, np.array([first, final]), none, none)
-        return _target(*parts, least, gravity, width, (first, final), ready, rounded=True, turns=True)
-    times = _knots(raw, ready - width / 2, final + width / 2, width / _PER_WIDTH or _GRID)
-    own = np.asarray(raw(times))
-    held, low, far = _hold(times, own, least, gravity)
+            load = _nearest(load, None, None, None, gravity)
+        none = padded_rows([]), merged_edges([], last)
+        return made(load=load, corners=raw, stretches=none[0], edges=none[1], rounded=True, turns=True)
+    corners = clamped(raw, first, last)
+    flight = smoothed(corners, width) if width else corners
+    times = _knots(corners, first, last, width / _PER_WIDTH or _GRID)
+    own = np.asarray(flight(times))
+    size, across = np.linalg.norm(own, axis=1), np.linalg.norm(own[:, 1:], axis=1)
+    far = across < MIN_TRANSVERSE_LOAD * (1 - _ROUNDING) if gravity else np.zeros(times.size, bool)
     if far.any() and least is None and not clip:
-        refuse_far(times, own, far)
-    if least is not None and arm is not None and (low | far).any():
-        period = 2 * np.pi * np.sqrt(_number(arm) / least)
-        altered = without_gaps(times, low | far, period / 2)
-        held = smooth_hold(times, held, altered, period, least, MIN_TRANSVERSE_LOAD if gravity else 0.0)
-        low = altered & ~far
-    times, held, low, far = _padded(times, held, low, far)
-    corners = PiecewiseLinear(times, held) if (low | far).any() else waiting
-    load = smoothed(corners, width) if width else corners
-    _refuse_singular(times, load, (ready, final), least, gravity)
-    if gravity:
-        load = LoadFloor(load, _FLOOR, _BAND)
-    steady = held if gravity else held / np.maximum(np.linalg.norm(held, axis=1), 1e-12)[:, None]
-    parts = (load, raw, corners, times, _running(low), _running(far))
-    rounded = width > 0 or not _has_corners(load, first, final)
-    turns = bool(np.max(np.abs(steady - steady[0])) > 1e-9)
-    return _target(*parts, least, gravity, width, (first, final), ready, rounded=rounded, turns=turns)
+        given = np.asarray(corners(times))
+        far |= np.linalg.norm(given[:, 1:], axis=1) < MIN_TRANSVERSE_LOAD * (1 - _ROUNDING)
+        refuse_far(times, given, far)
+    low = np.zeros(times.size, bool) if least is None else size < least * (1 - _ROUNDING)
+    gate = _gate(times, size, least, leave_out)
+    out = np.zeros(times.size, bool) if gate is None else np.asarray(gate(times)) == 0
+    load = _nearest(flight, None, None, None, gravity)
+    if (low | far | out).any():
+        if least is not None:
+            refuse_undirected(own, least)
+            if not gravity and not across.any():
+                refuse_reversal(times, own, least)
+        path = _path(times, own, low | out, far, least, gravity, arm)
+        load = _nearest(flight, smoothed(path, _PATH * width) if width else path, gate, least, gravity)
+    values = np.asarray(load(times))
+    if not gravity:
+        refuse_singular(times, values, least)
+    steady = values if gravity else values / np.maximum(np.linalg.norm(values, axis=1), 1e-12)[:, None]
+    reasons = np.select([low, out, far], [BELOW_IDLE, LEFT_OUT, GIMBALS], -1)
+    rows = stretches(times, reasons, size - (least or 0.0), across - MIN_TRANSVERSE_LOAD, corners)
+    return made(
+        load=load, corners=corners, stretches=padded_rows(rows), edges=merged_edges(rows, last),
+        rounded=width > 0 or not _has_corners(load, first, last),
+        turns=bool(np.max(np.abs(steady - steady[0])) > 1e-9),
+    )  # fmt: skip
 
 
-def _target(
-    load: Profile, flight: Profile, corners: Profile, times: Floats, low: Any, far: Any, idle: Any, gravity: bool,
-    width: Any, span: tuple[float, float], ready: float, *, rounded: bool, turns: bool,
-) -> Target:  # fmt: skip
-    return Target(
-        load=load,
-        flight=flight,
-        corners=corners,
-        idle=0.0 if idle is None else idle,
-        gravity=STANDARD_GRAVITY if gravity else 0.0,
-        times=times,
-        below_idle=low,
-        out_of_reach=far,
-        half_width=width / 2,
-        span=(float(span[0]), float(span[1])),
-        ready=float(ready),
-        rounded=rounded,
-        turns=turns,
-    )
+def _nearest(flight: Profile, path: Profile | None, gate: Profile | None, idle: float | None, gravity: bool) -> Profile:
+    """The nearest load; the flight's own where nothing limits it."""
+    if not gravity and path is None:
+        return flight
+    return NearestLoad(
+        flight, path, gate, 0.0 if idle is None else idle, MIN_TRANSVERSE_LOAD if gravity else 0.0,
+        has_idle=idle is not None, has_least=gravity,
+    )  # fmt: skip
+
+
+def _path(
+    times: Floats, own: Floats, held: Flags, far: Flags, idle: float | None, gravity: bool, arm: Any | None
+) -> PiecewiseLinear:
+    """Angles about the beam and from it, (k, 2), on knots: the flight's where followed, gentle between."""
+    whole = MIN_TRANSVERSE_LOAD if idle is None else idle
+    scale = _QUICK if arm is None else float(np.sqrt(_number(arm) / whole))
+    across = np.linalg.norm(own[:, 1:], axis=1)
+    about, weight = unwrapped(times, own[:, 2], own[:, 1], whole)
+    about = gentle(times, about, weight, _and_next(~(held | far)) & (weight > 0), scale)
+    away, weight = unwrapped(times, across, own[:, 0], whole)
+    away = gentle(times, away, weight, _and_next(~held), scale)
+    if not gravity:
+        away = np.where(held, off_axis(away), away)
+    return PiecewiseLinear(*_padded(times, np.stack([about, away], axis=1)))
+
+
+def _and_next(flags: Flags) -> Flags:
+    """The knots and their neighbours: between them the load may cross idle."""
+    return np.asarray(flags | np.append(flags[1:], False) | np.append(False, flags[:-1]))
 
 
 def _number(arm: Any) -> float:
@@ -156,39 +188,26 @@ def _number(arm: Any) -> float:
     return float(arm)
 
 
-def _spin_up(given: float, width: float, duration: float) -> float:
-    """Return the time to spin up, s; InputError if it is not well within the duration and above the smoothing."""
-    time = float(positive("spin_up", given, "s"))
-    if not 2 * width <= time < duration:
-        limits = f"from {2 * width:g} s (twice the smoothing) " if width else ""
-        raise InputError("spin_up", f"is {time:g} s of {duration:g} s", f"give a time {limits}to below {duration:g} s")
-    return time
+def _gate(times: Floats, size: Floats, idle: float | None, leave_out: Stretches) -> PiecewiseLinear | None:
+    """One, and zero over the returns above idle that are to be left out; it changes while the load is below idle."""
+    if idle is None or not leave_out:
+        return None
+    # Every knot of a return is open or closed; from one return to the next the gate is straight.
+    gate = np.full(times.size, np.nan)
+    for run in joined(true_runs(size > PARTED * idle), np.arange(times.size, dtype=float), 4):
+        left = any(times[run.start] <= end and start <= times[run.stop - 1] for start, end in leave_out)
+        gate[run] = 0.0 if left else 1.0
+    known = np.isfinite(gate)
+    return PiecewiseLinear(times[known], gate[known]) if known.any() else None
 
 
-def _hold(times: Floats, load: Floats, idle: float | None, gravity: bool) -> tuple[Floats, Flags, Flags]:
-    """Load held at idle and within the gimbals' reach; which knots were below idle, which out of reach."""
-    held, low = (load, np.zeros(times.size, bool)) if idle is None else hold_idle(times, load, idle)
-    if not gravity:
-        return held, low, np.zeros(times.size, bool)
-    held, far = keep_in_reach(times, held)
-    if idle is not None and far.any():
-        again, _ = hold_idle(times, held, idle)
-        held = np.where(far[:, None], again, held)
-    return held, low, far
-
-
-def _padded(times: Floats, *columns: NDArray[Any]) -> tuple[NDArray[Any], ...]:
+def _padded(times: Floats, values: Floats) -> tuple[Floats, Floats]:
     """Repeat the last knot, later and later, up to a round number: loads that differ in width share their programs."""
     count, step = times.size, times[-1] - times[-2]
     size = 1 << (count - 1).bit_length()
     size = 3 * size // 4 if count <= 3 * size // 4 else size
     later = times[-1] + step * np.arange(1, size - count + 1)
-    unchanged = [np.concatenate([column, np.repeat(column[-1:], size - count, axis=0)]) for column in columns]
-    return np.append(times, later), *unchanged
-
-
-def _running(changed: Flags) -> Floats:
-    return np.append(0.0, np.cumsum(changed))
+    return np.append(times, later), np.concatenate([values, np.repeat(values[-1:], size - count, axis=0)])
 
 
 def _knots(raw: Profile, start: float, end: float, step: float) -> Floats:
@@ -199,36 +218,6 @@ def _knots(raw: Profile, start: float, end: float, step: float) -> Floats:
     after = np.clip(np.searchsorted(own, grid), 1, own.size - 1)
     distance = np.minimum(np.abs(grid - own[after - 1]), np.abs(own[after] - grid))
     return np.union1d(own, grid[distance > step / 4])
-
-
-def _refuse_singular(
-    times: Floats, load: Profile, span: tuple[float, float], idle: float | None, gravity: bool
-) -> None:
-    """Refuse a load that comes so near to zero, or to the beam's axis, that the axes would have to spin."""
-    fine = np.unique(np.concatenate([times, (times[1:] + times[:-1]) / 2]))
-    points = np.asarray(load(fine))
-    clock = np.clip(fine, *span)  # the load before the start counts as the load at the start
-    if gravity:
-        refuse_reversal(clock, points[:, 1:], 2 * OPPOSED * STANDARD_GRAVITY)
-        return
-    peak = float(np.max(np.linalg.norm(points, axis=1)))
-    if idle is None:
-        when, distance = nearest_to_zero(clock, points)
-        if distance <= _NEAR_ZERO * peak:
-            raise InputError(
-                "tracks",
-                f"has next to no load at {when:.3f} s, where the arm's acceleration is singular",
-                'set idle = "1.4 g", or what the machine idles at',
-            )
-    else:
-        refuse_reversal(clock, points, 2 * OPPOSED * idle)
-    when, distance = nearest_to_zero(clock, points[:, 1:])
-    if distance < _ALONG_BEAM * peak and np.any(points[:, 1:]):
-        raise InputError(
-            "tracks",
-            f"loads the beam along its axis only at {when:.3f} s, where the roll axis has no defined angle",
-            "add a steady load across the beam, or leave the components across it at zero throughout",
-        )
 
 
 def _has_corners(load: Profile, start: float, end: float) -> bool:

@@ -1,4 +1,4 @@
-"""Where a centrifuge cannot follow: loads below idle, and loads across the beam that gravity alone exceeds.
+"""Which loads no centrifuge makes: those near zero, along the beam, or across it below gravity.
 
 All on knots, when a target is built; vectors in base axes, m/s².
 """
@@ -10,90 +10,43 @@ from numpy.typing import NDArray
 
 from gbeam.errors import InputError
 from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
-from gbeam.motion.profiles.hann import soft_floor
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-IDLE_BAND = 0.1  # of idle: how softly the hold sets in
+LEAST_IDLE = 1.1  # g, with gravity
+IDLE_BAND = 0.2  # of idle: how softly the hold sets in, by at most 1.5 % of idle
 UNTOUCHED = 1 + IDLE_BAND / 2  # times idle: a larger load is not raised
+PARTED = 0.97  # times idle: two returns above idle between which the load is smaller are two
 UNDIRECTED = 0.05  # of idle: a smaller load has no direction worth following
+# The beam stays horizontal, so that gravity always acts across it: no attitude gives less than one g there, and near
+# one g the gimbals would have to turn infinitely fast.
 MIN_TRANSVERSE_LOAD = 1.05 * STANDARD_GRAVITY  # least load across the beam that the gimbals make where gravity acts
+REACH_BAND = 0.1  # of it: likewise
 OPPOSED = 0.1  # two unit vectors whose chord passes this near to zero count as opposite
+_NEAR_ZERO = 0.02  # of the peak load
+_ALONG_BEAM = 1e-3  # of the peak load
 
 
-def hold_idle(times: Floats, load: Floats, idle: float) -> tuple[Floats, Flags]:
-    """Raise loads below `idle` to it, keeping their direction.
-
-    Parameters
-    ----------
-    times : array, shape (k,)
-        s.
-    load : array, shape (k, 3)
-    idle : float
-        m/s².
-
-    Returns
-    -------
-    tuple of array (k, 3) and of bool (k,)
-        The held load, and which knots differ from `load`.
-
-    Raises
-    ------
-    InputError
-        If no knot has a direction, or a load too small to have one lies between opposite ones.
-    """
-    size = np.linalg.norm(load, axis=1)
-    directed = size >= UNDIRECTED * idle
-    if not directed.any():
+def refuse_undirected(load: Floats, idle: float) -> None:
+    """Raise InputError if no load (k, 3) is large enough to have a direction."""
+    if not np.any(np.linalg.norm(load, axis=1) >= UNDIRECTED * idle):
         raise InputError(
             "tracks",
             f"stays below {UNDIRECTED * idle / STANDARD_GRAVITY:.2g} g, too little to have a direction",
             "track a motion with a load, or lower idle",
         )
-    unit = load / np.where(directed, size, 1.0)[:, None]
-    filled = _between(times, unit, directed)
-    refuse_reversal(times, filled, OPPOSED)
-    direction = filled / np.linalg.norm(filled, axis=1)[:, None]
-    held = np.asarray(soft_floor(size, idle, IDLE_BAND * idle))
-    altered = (held - size > 1e-9 * idle) | ~directed
-    return np.where(altered[:, None], held[:, None] * direction, load), altered
 
 
-def keep_in_reach(times: Floats, load: Floats) -> tuple[Floats, Flags]:
-    """Replace loads across the beam that the gimbals cannot make where gravity acts.
-
-    The beam stays horizontal, so that gravity always acts across it: no attitude gives less than one g
-    there, and near one g the gimbals would have to turn infinitely fast. Such knots get the straight line
-    between the reachable ones either side, pushed out to `MIN_TRANSVERSE_LOAD` where it cuts below; the component along
-    the beam is kept.
-
-    Returns
-    -------
-    tuple of array (k, 3) and of bool (k,)
-
-    Raises
-    ------
-    InputError
-        If no knot can be reached, or the load across the beam reverses through zero.
-    """
-    across = load[:, 1:]
-    reachable = np.linalg.norm(across, axis=1) >= MIN_TRANSVERSE_LOAD
-    if not reachable.any():
+def refuse_far(times: Floats, load: Floats, far: Flags) -> None:
+    """Raise InputError: the load leaves the gimbals' reach, and a target that is not the flight's was not allowed."""
+    if far.all():
         raise InputError(
             "tracks",
             f"never loads the beam across by {MIN_TRANSVERSE_LOAD / STANDARD_GRAVITY:g} g, and gravity alone is 1 g",
             'set idle = "1.4 g" or more, or gravity = false',
         )
-    bridged = _between(times, across, reachable)
-    refuse_reversal(times, bridged, OPPOSED * STANDARD_GRAVITY)
-    size = np.linalg.norm(bridged, axis=1)
-    pushed = bridged * (np.maximum(size, MIN_TRANSVERSE_LOAD) / size)[:, None]
-    return np.where(reachable[:, None], load, np.column_stack([load[:, 0], pushed])), ~reachable
-
-
-def refuse_far(times: Floats, load: Floats, far: Flags) -> None:
-    """Raise InputError: the load leaves the gimbals' reach, and a held one was not allowed."""
+    refuse_reversal(times, load[:, 1:], OPPOSED * STANDARD_GRAVITY)
     across = np.linalg.norm(load[:, 1:], axis=1) / STANDARD_GRAVITY
     worst = int(np.argmin(across))
     wrong = np.flatnonzero(far)
@@ -102,7 +55,7 @@ def refuse_far(times: Floats, load: Floats, far: Flags) -> None:
         f"loads the beam across by {across[worst]:.3g} g only at {times[worst]:.3f} s; where gravity acts the gimbals "
         f"reach {MIN_TRANSVERSE_LOAD / STANDARD_GRAVITY:g} g or more (out of reach from {times[wrong[0]]:.3f} s, "
         f"last at {times[wrong[-1]]:.3f} s)",
-        'set idle = "1.4 g", or clip = true to carry on with a held target there, '
+        'set idle = "1.4 g", or clip = true to carry on with the nearest load in reach, '
         f"or add {missing_across(across[worst] * STANDARD_GRAVITY)} across the beam",
     )
 
@@ -120,7 +73,27 @@ def refuse_reversal(times: Floats, points: Floats, least: float) -> None:
             "tracks",
             f"reverses its load through zero at {when:.3f} s",
             "a centrifuge must carry the specimen round and cannot do so at once: "
-            "track a part of the motion before or after, or add a steady load",
+            'set idle = "1.4 g", or track a part of the motion before or after, or add a steady load',
+        )
+
+
+def refuse_singular(times: Floats, load: Floats, idle: float | None) -> None:
+    """Refuse a load (k, 3), without gravity, that comes so near to zero, or to the beam, that the axes would spin."""
+    peak = float(np.max(np.linalg.norm(load, axis=1)))
+    if idle is None:
+        when, distance = nearest_to_zero(times, load)
+        if distance <= _NEAR_ZERO * peak:
+            raise InputError(
+                "tracks",
+                f"has next to no load at {when:.3f} s, where the arm's acceleration is singular",
+                'set idle = "1.4 g", or what the machine idles at',
+            )
+    when, distance = nearest_to_zero(times, load[:, 1:])
+    if distance < _ALONG_BEAM * peak and np.any(load[:, 1:]):
+        raise InputError(
+            "tracks",
+            f"loads the beam along its axis only at {when:.3f} s, where the roll axis has no defined angle",
+            "add a steady load across the beam, or leave the components across it at zero throughout",
         )
 
 
@@ -134,8 +107,3 @@ def nearest_to_zero(times: Floats, points: Floats) -> tuple[float, float]:
     distance = np.linalg.norm(start + part[:, None] * along, axis=1)
     i = int(np.argmin(distance))
     return float(times[i] + part[i] * (times[i + 1] - times[i])), float(distance[i])
-
-
-def _between(times: Floats, values: Floats, known: Flags) -> Floats:
-    """Values at the known knots, straight lines between, constant before the first and after the last."""
-    return np.stack([np.interp(times, times[known], column[known]) for column in values.T], axis=1)

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
-from gbeam.motion.centrifuge.target.build import LEAST_IDLE
-from gbeam.motion.centrifuge.target.load_limits import MIN_TRANSVERSE_LOAD, UNTOUCHED, missing_across
+from gbeam.motion.centrifuge.target.load_limits import LEAST_IDLE, MIN_TRANSVERSE_LOAD, UNTOUCHED, missing_across
 from gbeam.motion.centrifuge.target.required_smoothing import required_smoothing
 from gbeam.motion.centrifuge.target.target import Target
 from gbeam.motion.profiles.profile import Profile, sampled
@@ -65,14 +64,14 @@ def sharp_turns(target: Target, arm: float) -> list[tuple[Shortfall, float | Non
     if not runs:
         return []
     gravity, width = float(target.gravity), 2 * float(target.half_width)
-    widths = required_smoothing(target.corners, gravity, arm, time, not_followed, runs, width)
+    widths = required_smoothing(target.corners, gravity, float(target.idle), arm, time, runs, width)
     total = np.linalg.norm(target.flight(time), axis=-1)
     remedies = [_sharp_remedy(wide, float(np.max(total[run]))) for wide, run in zip(widths, runs, strict=True)]
     return list(zip(_too_sharp(time, -turn, allowed, runs, remedies), widths, strict=True))
 
 
 def _times(target: Target) -> Floats:
-    return sampled(float(target.ready), float(target.span[1]), _GRID)
+    return sampled(float(target.span[0]), float(target.span[1]), _GRID)
 
 
 def size_and_rates(load: Profile, gravity: float, time: Any) -> tuple[Any, Any, Any]:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.motion.centrifuge.target.load_limits import MIN_TRANSVERSE_LOAD, UNTOUCHED
 from gbeam.motion.profiles.profile import Profile
 
 _WIDEST, _LADDER = 3.0, 1.05  # s; ratio of two widths tried one after the other
@@ -16,11 +17,10 @@ _QUICK = 512
 _ROUNDING = 1e-3  # of what the arm allows: what finite differences leave
 
 Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 def required_smoothing(
-    corners: Profile, gravity: float, arm: float, time: Floats, not_followed: Flags, runs: Sequence[slice], width: float
+    corners: Profile, gravity: float, idle: float, arm: float, time: Floats, runs: Sequence[slice], width: float
 ) -> list[float | None]:
     """For each stretch of times, the smallest smoothing with which nothing in it turns too sharply for the arm.
 
@@ -31,10 +31,10 @@ def required_smoothing(
     ----------
     corners : Profile
         The load before its corners are rounded, m/s².
-    gravity, arm : float
-        γ, m/s², and R, m.
-    time, not_followed : arrays, shape (t,)
-        Even times, s, and whether the target is held at them.
+    gravity, idle, arm : float
+        γ and the least load, m/s², and R, m.
+    time : array, shape (t,)
+        Even times, s.
     runs : sequence of slice
         Stretches of `time`.
     width : float
@@ -50,19 +50,19 @@ def required_smoothing(
     # A number of times whose Fourier transform is quick.
     times = time[0] - _WIDEST / 2 + step * np.arange(_QUICK * int(np.ceil(count / _QUICK)))
     spectrum = np.fft.rfft(corners(times), axis=0)
-    held_until = np.append(0, np.cumsum(np.interp(times, time, not_followed.astype(float)) > 0))
     ends = [(float(time[run.start]), float(time[run.stop - 1])) for run in runs]
     widths: list[float | None] = [None] * len(runs)
     wide = max(width, _LEAST / _LADDER) * _LADDER
     index = np.arange(times.size)
     offset = np.minimum(index, times.size - index) * step
+    across = MIN_TRANSVERSE_LOAD if gravity else 0.0
     while None in widths and wide <= _WIDEST:
         kernel = np.where(offset < wide / 2, 1 + np.cos(2 * np.pi * offset / wide), 0.0)
         load = np.fft.irfft(spectrum * np.fft.rfft(kernel / kernel.sum())[:, None], times.size, axis=0)
-        size = np.sqrt(np.maximum(np.sum(load**2, axis=1) - gravity**2, 1e-12))
+        total = np.linalg.norm(load, axis=1)
+        is_held = (total < UNTOUCHED * idle) | (np.linalg.norm(load[:, 1:], axis=1) < across)
+        size = np.sqrt(np.maximum(total**2 - gravity**2, 1e-12))
         turn = -np.gradient(np.gradient(size, step), step)
-        more = int((wide - width) / 2 / step)  # a held knot acts as far as half the kernel reaches
-        is_held = held_until[np.minimum(index + more + 1, index[-1])] > held_until[np.maximum(index - more, 0)]
         sharp = times[(turn > size**2 / arm * (1 + _ROUNDING)) & ~is_held]
         for i, (start, end) in enumerate(ends):
             if widths[i] is None and not np.any((sharp > start - wide / 2) & (sharp < end + wide / 2)):

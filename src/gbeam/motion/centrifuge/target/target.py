@@ -1,4 +1,4 @@
-"""The load that a centrifuge is to make: a flight's, held where it cannot follow, its corners rounded."""
+"""The load that a centrifuge is to make: at every time the nearest to a flight's that it can."""
 
 from __future__ import annotations
 
@@ -6,21 +6,32 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, namespace
 from gbeam.arrays.tree import record, static
+from gbeam.motion.centrifuge.target.stretches import REASONS
 from gbeam.motion.profiles.profile import Profile
-from gbeam.numerics.intervals import true_runs
 
 
 @dataclass(frozen=True)
 class Episode:
-    """A stretch of time, s, in which the target is not the flight's load, and why."""
+    """A stretch of time in which the target is not the flight's load.
+
+    Parameters
+    ----------
+    start, end : float
+        s.
+    reason : str
+        ``below idle``, ``gimbals`` (above idle, out of their reach) or ``left out`` (above idle, and the inverse cannot
+        follow).
+    flight_peak : float
+        Largest load of the flight in it, m/s².
+    """
 
     start: float
     end: float
     reason: str
+    flight_peak: float
 
 
 @record
@@ -30,25 +41,25 @@ class Target:
     Parameters
     ----------
     load : Profile
-        Vector, base axes, m/s²: specific force where gravity acts, else acceleration.
+        Vector, base axes, m/s²: specific force where gravity acts, else acceleration. It stands still from half the
+        kernel's width before the span on, and from half of it after.
     flight : Profile
-        What it was made from, likewise.
+        The flight's own load, likewise, with its corners.
     corners : Profile
-        The load before its corners were rounded, likewise.
+        The flight's, standing still beyond the span: what is rounded.
     idle : float
         Least load, m/s²; zero if there is none.
     gravity : float
         γ, m/s²: 9.80665 or 0.
-    times : array, shape (k,)
-        Knots at which it was decided whether to hold, s.
-    below_idle, out_of_reach : array, shape (k + 1,)
-        Running count of the knots changed for either reason.
     half_width : float
-        How far a changed knot acts beyond its neighbours: half the kernel's width, s.
+        Half the width of the kernel that rounds corners, s.
     span : tuple of float
-        First and last time, s.
-    ready : float
-        End of the spin-up, s: before, the load waits at the one that it has then. The span's start if there is none.
+        The flight's first and last time, s.
+    stretches : array, shape (m, 4)
+        Start s, end s, place of the reason in ``REASONS`` and the flight's largest load m/s² of every stretch in which
+        the target is not the flight's load; unused rows are infinite.
+    edges : array, shape (2m,)
+        Ascending: where the target stops being the flight's load and where it is again, s; unused ones are infinite.
     rounded : bool
         The load has no corners.
     turns : bool
@@ -60,44 +71,23 @@ class Target:
     corners: Profile
     idle: Any
     gravity: float = static()
-    times: Any
-    below_idle: Any
-    out_of_reach: Any
     half_width: Any
     span: tuple[Any, Any]
-    ready: Any
+    stretches: Any
+    edges: Any
     rounded: bool = static()
     turns: bool = static()
 
     def not_followed(self, t: Any) -> Any:
-        """Tell at which times `t` (s, any shape) the machine spins up or a changed knot has a say in the load."""
+        """Tell at which times `t` (s, any shape) the target is not the flight's load."""
         now = as_array(t)
-        xp = namespace(now, self.times)
-        times, count = xp.asarray(self.times), xp.asarray(self.below_idle) + xp.asarray(self.out_of_reach)
-        last = times.size - 1
-        before = xp.searchsorted(times, now - self.half_width, side="right") - 1
-        after = xp.searchsorted(times, now + self.half_width, side="left")
-        return (now < self.ready) | (count[xp.minimum(after, last) + 1] > count[xp.clip(before, 0, last)])
+        xp = namespace(now, self.edges)
+        return xp.searchsorted(xp.asarray(self.edges), now, side="right") % 2 == 1
 
     def episodes(self) -> list[Episode]:
-        """Stretches within the span where the load is not the flight's, by start; two reasons may overlap."""
-        reasons = (("below idle", self.below_idle), ("out of reach of the gimbals", self.out_of_reach))
-        changes = ((reason, np.diff(np.asarray(count)) > 0) for reason, count in reasons)
-        episodes = [Episode(*run, reason) for reason, changed in changes for run in self._stretches(changed)]
-        if self.ready > self.span[0]:
-            episodes.append(Episode(float(self.span[0]), float(self.ready), "spin-up"))
-        return sorted(episodes, key=lambda episode: episode.start)
-
-    def _stretches(self, changed: NDArray[np.bool_]) -> list[tuple[float, float]]:
-        """Start and end of each run of changed knots, joined where they act on the same times."""
-        times, half_width = np.asarray(self.times), float(self.half_width)
-        first, last = float(self.ready), float(self.span[1])
-        stretches: list[tuple[float, float]] = []
-        for run in true_runs(changed):
-            begin = max(float(times[run.start - 1]) - half_width, first) if run.start > 0 else first
-            end = min(float(times[run.stop]) + half_width, last) if run.stop < times.size else last
-            if stretches and begin <= stretches[-1][1]:
-                stretches[-1] = (stretches[-1][0], end)
-            elif begin < end:
-                stretches.append((begin, end))
-        return stretches
+        """Stretches within the span where the load is not the flight's, by start."""
+        rows = np.asarray(self.stretches)
+        return [
+            Episode(float(start), float(end), REASONS[int(code)], float(peak))
+            for start, end, code, peak in rows[np.isfinite(rows[:, 0])]
+        ]

@@ -1,0 +1,141 @@
+"""The load nearest to a flight's that a machine can make, at every time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.arrays.namespace import as_array, is_traced, namespace
+from gbeam.arrays.tree import assign, record, static
+from gbeam.motion.centrifuge.target.load_limits import IDLE_BAND, REACH_BAND
+from gbeam.motion.profiles.combine import merged_breaks
+from gbeam.motion.profiles.convolution import Convolved, beside
+from gbeam.motion.profiles.hann import soft_floor, soft_step
+from gbeam.motion.profiles.profile import Profile
+from gbeam.numerics.series import Series, sin_cos, sqrt, square, stack, where
+
+# Times idle: where a load is its own size again after the gimbals' reach has raised it, and where its direction is
+# wholly its own. Between idle and there the path agrees with it, up to what rounding the path changes.
+_SIZED, _DIRECTED = 1.1, 1.5
+_FREE = 1.5  # times the least load across the beam: the same
+
+
+@record
+class NearestLoad(Profile):
+    """A flight's load where the machine can make it, else the nearest one that it can.
+
+    - Below idle its size is idle and its direction that of a path.
+    - Where gravity acts and the load across the beam is below the least that the gimbals make, that part is the least,
+      in the direction of the path, and the part along the beam is kept.
+
+    Three times differentiable in size where the load is; the direction goes over to the path's where they agree.
+
+    Parameters
+    ----------
+    flight : Profile
+        Vector, base axes, m/s², without corners.
+    path : Profile or None
+        Angles (φ, β), rad: φ = atan2(f_z, f_y) about the beam, β = atan2(hypot(f_y, f_z), f_x) from it. None if
+        the load is never below idle, and where it is known to be in reach but for what rounding its corners cuts.
+    gate : Profile or None
+        One, and zero where the load is held at idle whatever the flight's is; it changes where that is below idle.
+        None if it is one throughout.
+    idle, least : float
+        Least size, and least load across the beam, m/s²; zero where there is no such limit.
+    has_idle, has_least : bool
+        Whether they are above zero.
+    """
+
+    flight: Profile
+    path: Profile | None
+    gate: Profile | None
+    idle: Any
+    least: Any
+    has_idle: bool = static()
+    has_least: bool = static()
+
+    def __post_init__(self) -> None:
+        assign(self, idle=as_array(self.idle), least=as_array(self.least))
+
+    def series(self, t: Any, order: int) -> Series:
+        """Load at times `t` (s), m/s²."""
+        now = as_array(t)
+        flight = self.flight.series(now, order)
+        xp = namespace(now, flight.value, self.idle)
+        size2, across2 = square(flight), square(flight[..., 1:])
+        free = (size2.value >= (_DIRECTED * self.idle) ** 2) & (across2.value >= (_FREE * self.least) ** 2)
+        gate: Any = 1.0
+        if self.gate is not None:
+            gate = _sharp_to_smooth(self.gate.series(now, order))
+            free = free & (gate.value == 1)
+        if not is_traced(free) and free.all():
+            return flight
+        bent = across2.value > 0
+        across = sqrt(where(bent, across2, 1.0))  # the root has no derivative at zero
+        unit = [flight[..., k] / across for k in (1, 2)]
+        across = where(bent, across, 0.0)
+        along, reached = flight[..., 0], across
+        share: Any = where(bent, 1.0 + 0.0 * across, 0.0)  # of the flight's own direction about the beam
+        if self.has_least:
+            reached = soft_floor(across, self.least, REACH_BAND * self.least)
+            share = share * soft_step(across, (1 + _FREE) / 2 * self.least, (_FREE - 1) * self.least)
+        if self.path is None:
+            return stack([along, *(reached * each for each in unit)])
+        sine, cosine = sin_cos(self.path.series(now, order))
+        if not self.has_idle:
+            return stack([along, *(reached * each for each in _blend(share, unit, [cosine[..., 0], sine[..., 0]]))])
+        size = sqrt(where(size2.value > (self.idle / 2) ** 2, size2, self.idle**2 / 4))
+        sized, directed = (
+            gate * soft_step(size, (1 + each) / 2 * self.idle, (each - 1) * self.idle) for each in (_SIZED, _DIRECTED)
+        )
+        held = self.idle + gate * (soft_floor(size, self.idle, IDLE_BAND * self.idle) - self.idle)
+        y, z = _blend(share * directed, unit, [cosine[..., 0], sine[..., 0]])
+        x, part = _blend(directed, [along / size, across / size], [cosine[..., 1], sine[..., 1]])
+        if self.has_least:
+            full = sqrt(where(bent | (size2.value > 0), along * along + reached * reached, 1.0))
+            held = held + sized * (full - size)
+            # Idle is above the least across the beam, by little where it is lowest.
+            band = xp.minimum(REACH_BAND * self.least, self.idle - self.least)
+            x, part = _reached(held * x, held * part, self.least, band)
+        else:
+            x, part = held * x, held * part
+        made = stack([x, part * y, part * z])
+        return where(xp.asarray(beside(free, 1)), flight, made)
+
+    @property
+    def breaks(self) -> Any:
+        """Those of the load and of the path, s."""
+        return self.flight.breaks if self.path is None else merged_breaks(self.flight, self.path)
+
+    def knots(self, step: float) -> NDArray[np.float64]:
+        """Those of the load and of the path, s."""
+        own = self.flight.knots(step)
+        return own if self.path is None else np.union1d(own, self.path.knots(step))
+
+    def smoothed(self, width: Any) -> Profile:
+        """By quadrature."""
+        return Convolved(self, width)
+
+
+def _sharp_to_smooth(share: Series) -> Series:
+    """A straight ramp between 0 and 1 without its corners: eight times differentiable."""
+    return soft_step(soft_step(share, 0.5, 1.0), 0.5, 1.0)
+
+
+def _blend(share: Series, own: list[Series], path: list[Series]) -> list[Series]:
+    """A unit vector between two: a share of one and the rest of the other."""
+    mixed = [share * one + (1 - share) * other for one, other in zip(own, path, strict=True)]
+    size = sqrt(square(stack(mixed)))
+    return [each / size for each in mixed]
+
+
+def _reached(along: Series, across: Series, least: Any, band: Any) -> tuple[Series, Series]:
+    """The part across the beam at its least at least, the size kept."""
+    low = across.value < least + band / 2
+    raised = soft_floor(across, least, band)
+    # Where it is raised the part along the beam is not small: idle is above the least across the beam.
+    along2, total = along * along, along * along + across * across
+    rest = where(low, (total - raised * raised) / where(low, along2, 1.0), 1.0)
+    return along * sqrt(rest), where(low, raised, across)
