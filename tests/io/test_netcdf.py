@@ -86,7 +86,7 @@ def study() -> Study:
     axes = AxesResult(*(_random(T, 3) for _ in range(5)), held, ((0.55, 1.0, "below idle"),), LIMITS, SHORTFALLS, 0.15)
     hub = HubResult(_random(T), _random(T), _random(T), np.full(T, np.nan))
     loads = Loads(
-        np.array([0.0, 0.3]), *(_random(T, 2, 3) for _ in range(4)), _random(T, 2), _random(T, 2, 3), *_random(2, T)
+        np.array([0.0, 0.3]), *(_random(T, 2, 3) for _ in range(4)), *_random(2, T, 2), _random(T, 2, 3), *_random(2, T)
     )
     responses = {
         "flight": _response("flight", "flight"),

@@ -193,7 +193,7 @@ def test_a_result_draws_itself(study: Study) -> None:
     plan = MachinePlan("spin", "flight", 3.3, "done", "", spin.time, spin.axes)
     assert len(plan.plot().axes) == 4
     x = np.linspace(0, 0.3, 5)
-    along = Loads(x, *(np.ones((1, 5, 3)) for _ in range(4)), np.ones((1, 5)), np.ones((1, 5, 3)))
+    along = Loads(x, *(np.ones((1, 5, 3)) for _ in range(4)), *np.ones((2, 1, 5)), np.ones((1, 5, 3)))
     moved = np.outer(x, [0.0, 1.0, 2.0])
     rest = Deflection("flight", "FOAM", 0.0, spin.base, x, moved, np.zeros(3), 0.0, True, along)
     assert [len(rest.plot(what).axes) for what in ("", "shape", "loads")] == [2, 2, 3]

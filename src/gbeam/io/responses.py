@@ -6,10 +6,17 @@ import numpy as np
 
 from gbeam.io.groups import AXIS, Group, Variable, coordinate, variable
 from gbeam.io.machine import MACHINE_AXIS, machine_variables
+from gbeam.results.peaks import LoadPeaks
 from gbeam.results.response import HubResult, Response
 from gbeam.results.section_forces import Loads
 
-_T, _TA, _TC, _TSA = ("time",), ("time", "axis"), ("time", "coordinate"), ("time", "section", "axis")
+_T, _TA, _TC, _TS, _TSA = (
+    ("time",),
+    ("time", "axis"),
+    ("time", "coordinate"),
+    ("time", "section"),
+    ("time", "section", "axis"),
+)
 _SECTION_AXES = "S: axes of the deformed section"
 
 
@@ -29,8 +36,10 @@ def response_group(response: Response) -> Group:
         ),
         "angular_velocity": v(_TA, base.w_WB_B, "rad s-1", "angular velocity of the base"),
         "angular_acceleration": v(_TA, base.alpha_WB_B, "rad s-2", "angular acceleration of the base"),
-        "tip_max_abs": v(("axis",), peaks.max_abs, "m", "largest displacement of the tip at any step computed"),
+        "tip_max_abs": v(("axis",), peaks.max_abs, "m", "largest displacement of the tip, between steps"),
         "tip_time_of_max": v(("axis",), peaks.time_of_max, "s", "time of that displacement"),
+        "tip_max_size": v((), peaks.max_size, "m", "largest length of the tip's displacement"),
+        "tip_time_of_max_size": v((), peaks.time_of_max_size, "s", "time of that displacement"),
         "tip_residual_amplitude": v(
             ("axis",), peaks.residual_amplitude, "m", "half peak-to-peak of the tip from residual_from on"
         ),
@@ -41,8 +50,14 @@ def response_group(response: Response) -> Group:
         **coordinate("coordinate", np.arange(response.q.shape[1]), "1", "axial, along y, along z"),
         **AXIS,
     }
+    if peaks.displacement is not None:
+        size = peaks.displacement.size
+        data["station_max_size"] = v(("station",), size.value, "m", "largest length of the displacement")
+        data["station_time_of_max_size"] = v(("station",), size.time, "s", "time of that displacement")
     if response.loads is not None:
         data |= load_variables(response.loads)
+        if peaks.loads is not None:
+            data |= _load_peaks(peaks.loads)
         coordinates |= section_coordinate(response.loads)
     if response.hub is not None:
         data |= _hub(response.hub)
@@ -66,15 +81,37 @@ def load_variables(loads: Loads) -> dict[str, Variable]:
     data = {
         "section_force": v(_TSA, loads.section_force, "N", "axial force and shear", frame=_SECTION_AXES),
         "section_moment": v(_TSA, loads.section_moment, "N m", "torque and bending moments", frame=_SECTION_AXES),
-        "stress": v(("time", "section"), loads.stress, "Pa", "largest normal stress at the outer fibre"),
+        "stress": v(_TS, loads.stress, "Pa", "largest size of the normal stress over the section"),
+        "stress_tension": v(_TS, loads.stress_tension, "Pa", "largest normal stress over the section"),
+        "stress_compression": v(_TS, loads.stress_compression, "Pa", "smallest normal stress over the section"),
         "acceleration": v(
             _TSA, loads.acceleration, "m s-2", "acceleration in the world, base axes; specific force with gravity"
         ),
     }
+    if loads.root_fibre is not None:
+        data["root_fibre_stress"] = v(
+            _T, loads.root_fibre, "Pa", "normal stress at the extreme fibre of the root where it ranges most"
+        )
+    if loads.margin is not None:
+        data["yield_margin"] = v(_TS, loads.margin, "1", "yield strength over stress less one")
     if loads.beam_torque is not None:
         data["beam_torque"] = v(_T, loads.beam_torque, "N m", "torque about the hub's axis that the beam takes")
     if loads.drive_torque is not None:
         data["drive_torque"] = v(_T, loads.drive_torque, "N m", "the same with the hub's own inertia: the drive's")
+    return data
+
+
+def _load_peaks(peaks: LoadPeaks) -> dict[str, Variable]:
+    every = {
+        "section_force_max": (peaks.force.size, "N", "largest force that the section carries"),
+        "section_moment_max": (peaks.moment.size, "N m", "largest moment that the section carries"),
+        "stress_tension_max": (peaks.tension, "Pa", "largest normal stress"),
+        "stress_compression_min": (peaks.compression, "Pa", "smallest normal stress"),
+    }
+    data = {}
+    for name, (extremes, unit, what) in every.items():
+        data[name] = variable(("section",), extremes.value, unit, f"{what}, between steps")
+        data[f"{name}_time"] = variable(("section",), extremes.time, "s", f"time of {name}")
     return data
 
 

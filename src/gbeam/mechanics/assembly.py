@@ -218,4 +218,6 @@ def _sections(
         values=beam.section.at(np.append(0.0, at)),
         mass=beyond[:, particles[1]] * particles[0],
         loaded=beyond[:, loaded],
+        yield_strength=beam.material.yield_strength,
+        fatigue_exponent=beam.material.fatigue_exponent,
     )

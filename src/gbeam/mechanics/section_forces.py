@@ -22,6 +22,7 @@ from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 from gbeam.results.response import BaseMotion
 from gbeam.results.section_forces import Loads
+from gbeam.structure.stress import extreme_stresses, worst_fibre
 
 Array = Any
 _BLOCK = 256  # times handled together: what stays in a cache, and one compiled shape for complete models
@@ -63,18 +64,27 @@ def section_forces(
     pieces = []
     for i in range(0, len(q), _BLOCK):
         part = slice(i, i + _BLOCK)
-        own = Base(base.a_WO_B[part], base.w_WB_B[part], base.alpha_WB_B[part])
+        now = Base(base.a_WO_B[part], base.w_WB_B[part], base.alpha_WB_B[part])
         values = None if applied is None else applied[part]
-        pieces.append(sections(structure, structure.sections, own, q[part], qd[part], qdd[part], values))
+        pieces.append(sections(structure, structure.sections, now, q[part], qd[part], qdd[part], values))
     force, moment, section_force, section_moment, a = (
         xp.concatenate(part) if len(pieces) > 1 else part[0] for part in zip(*pieces, strict=True)
     )
-    values = structure.sections.values
-    bending = xp.abs(section_moment[..., 1]) * values.extreme_fibre_z / values.inertia_y
-    bending = bending + xp.abs(section_moment[..., 2]) * values.extreme_fibre_y / values.inertia_z
-    stress = section_force[..., 0] / values.area + bending
-    stations = np.append(0.0, structure.stations)
-    loads = Loads(stations, force, moment, section_force, section_moment, stress, a)
+    own = structure.sections
+    tension, compression = extreme_stresses(own.values, section_force, section_moment)
+    loads = Loads(
+        stations=np.append(0.0, structure.stations),
+        force=force,
+        moment=moment,
+        section_force=section_force,
+        section_moment=section_moment,
+        stress_tension=tension,
+        stress_compression=compression,
+        acceleration=a,
+        root_fibre=None if is_jax(tension) else worst_fibre(own.values, 0, section_force, section_moment),
+        yield_strength=own.yield_strength,
+        fatigue_exponent=own.fatigue_exponent,
+    )
     return about_the_hub(loads, motion, base.alpha_WB_B)
 
 

@@ -38,11 +38,16 @@ class Sections:
         Of the particles outboard of each section.
     loaded : (s, loaded points)
         Share of each that lies outboard of each section.
+    yield_strength : float or None
+        Of the material, Pa.
+    fatigue_exponent : float
     """
 
     values: SectionValues
     mass: Array
     loaded: Array
+    yield_strength: Any = None
+    fatigue_exponent: Any = np.nan
 
 
 @record

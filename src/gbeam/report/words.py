@@ -45,6 +45,28 @@ def tidy(values: Iterable[float], size: float) -> list[float]:
     return [float(value) if abs(value) > max(1e-10 * size, 1e-20) else 0.0 for value in values]
 
 
+def stress_words(stations: Any, tension: Any, compression: Any, yield_strength: float | None) -> str:
+    """The largest normal stress along the beam, where it is, its sign, and the margin on yield where that is known.
+
+    Parameters
+    ----------
+    stations : (s,) m
+    tension, compression : (s,)
+        Largest and smallest stress over each section, Pa.
+    yield_strength : float or None
+        Pa.
+    """
+    sizes = [max(high, -low) for high, low in zip(tension, compression, strict=True)]
+    stress = float(max(sizes))
+    worst = sizes.index(stress)
+    sign = "tension" if tension[worst] >= -compression[worst] else "compression"
+    words = f"stress up to {number(1e-6 * stress)} MPa ({sign}) at {number(float(stations[worst]))} m"
+    if yield_strength is None or stress == 0:
+        return words
+    margin = yield_strength / stress - 1
+    return f"{words}, {'margin on yield' if margin >= 0 else 'ABOVE YIELD: margin'} {margin:.3g}"
+
+
 def sentence(text: str) -> str:
     """The same words with a capital letter in front."""
     return text[:1].upper() + text[1:]

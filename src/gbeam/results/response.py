@@ -10,6 +10,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import is_traced
 from gbeam.results.machine import AxesResult
+from gbeam.results.peaks import Peaks
 from gbeam.results.result import Figured, Floats, Part, brief
 from gbeam.results.section_forces import Influence, Loads
 
@@ -47,23 +48,6 @@ class HubResult(Part):
     rate: Floats
     acceleration: Floats
     drive_torque: Floats
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class Peaks(Part):
-    """Extremes of the tip's displacement at every step computed, along x, y, z.
-
-    Parameters
-    ----------
-    max_abs, time_of_max : (3,)
-        m, s.
-    residual_amplitude : (3,)
-        Half peak-to-peak from the residual's start to the end, m; NaN where there is no such time.
-    """
-
-    max_abs: Floats
-    time_of_max: Floats
-    residual_amplitude: Floats
 
 
 class PlotHeading(Protocol):
@@ -138,12 +122,6 @@ class Response(Figured):
     base: BaseMotion
     peaks: Peaks
     integrator: str
-    @property
-    def flight_span(self) -> tuple[float, float]:
-        """First and last time of the flight, s: without the spin-up and the spin-down of a machine."""
-        first, last = float(self.time[0]), float(self.time[-1])
-        return (first, last) if self.axes is None else (max(first, self.axes.span[0]), min(last, self.axes.span[1]))
-
     step: float
     steps: int
     error_estimate: float
@@ -159,6 +137,12 @@ class Response(Figured):
     def tip(self) -> Floats:
         """Displacement of the tip relative to the base axes, (t, 3) m."""
         return self.displacement[:, -1]
+
+    @property
+    def flight_span(self) -> tuple[float, float]:
+        """First and last time of the flight, s: without the spin-up and the spin-down of a machine."""
+        first, last = float(self.time[0]), float(self.time[-1])
+        return (first, last) if self.axes is None else (max(first, self.axes.span[0]), min(last, self.axes.span[1]))
 
     def __repr__(self) -> str:
         if is_traced(self.peaks.max_abs):

@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from gbeam.results.result import Floats, Part
+
+
+def yield_margin(yield_strength: float, stress: Floats) -> Floats:
+    """Margin on yield, yield strength over the size of the stress less one: negative beyond yield, inf unstressed."""
+    with np.errstate(divide="ignore"):
+        return np.asarray(yield_strength / stress - 1)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -25,15 +34,21 @@ class Loads(Part):
         N, V_y, V_z in the axes of the deformed section, N.
     section_moment : (t, s, 3)
         Torque, M_y, M_z in the same axes, N m.
-    stress : (t, s)
-        Largest normal stress at the outer fibre, N/A + |M_y| c_z/I_y + |M_z| c_y/I_z, Pa, with the
-        section's extreme fibres c_y and c_z; NaN where these are unknown.
+    stress_tension, stress_compression : (t, s)
+        Largest and smallest normal stress over the section, N/A ± (|M_y| c_z/I_y + |M_z| c_y/I_z), of a round section
+        N/A ± √(M_y² + M_z²) c/I, Pa, with the section's extreme fibres c_y and c_z; NaN where these are unknown.
     acceleration : (t, s, 3)
         Of the stations in the world, base axes, m/s²; specific force where gravity acts.
     beam_torque : (t,) or None
         Torque about the hub's axis that the beam takes from the hub, N m.
     drive_torque : (t,) or None
         The same with the hub's own inertia, N m: what its drive supplies; NaN where the inertia is unknown.
+    root_fibre : (t,) or None
+        Normal stress at that extreme fibre of the root where it ranges most, Pa; None where a run is traced.
+    yield_strength : float or None
+        Of the material, Pa; None where it is not given.
+    fatigue_exponent : float
+        Of the material's Wöhler curve.
     """
 
     stations: Floats
@@ -41,10 +56,26 @@ class Loads(Part):
     moment: Floats
     section_force: Floats
     section_moment: Floats
-    stress: Floats
+    stress_tension: Floats
+    stress_compression: Floats
     acceleration: Floats
     beam_torque: Floats | None = None
     drive_torque: Floats | None = None
+    root_fibre: Floats | None = None
+    yield_strength: float | None = None
+    fatigue_exponent: float = math.nan
+
+    @property
+    def stress(self) -> Floats:
+        """Largest size of the normal stress over the section, in tension or compression, (t, s) Pa."""
+        # They are N/A ± the bending stress: the larger size without a choice, and with NumPy's or JAX's arrays.
+        middle = (self.stress_tension + self.stress_compression) / 2
+        return abs(middle) + (self.stress_tension - self.stress_compression) / 2
+
+    @property
+    def margin(self) -> Floats | None:
+        """Margin on yield, yield strength over stress less one, (t, s); None where the strength is not given."""
+        return None if self.yield_strength is None else yield_margin(self.yield_strength, self.stress)
 
     @property
     def root_force(self) -> Floats:

@@ -129,7 +129,7 @@ def _beam(parts: Collector, table: schema.Beam) -> Beam | None:
 
     dimensions = table.section.model_dump(exclude={"shape", "stations"}, exclude_none=True)
     section = parts.attempt("beam.section", Section.of, table.section.shape, table.section.stations, **dimensions)
-    material = parts.attempt("beam.material", Material, table.material.density, table.material.youngs_modulus)
+    material = parts.attempt("beam.material", Material, **table.material.model_dump(exclude_none=True))
     masses = []
     for i, body in enumerate(table.masses):
         moments = (body.inertia.x, body.inertia.y, body.inertia.z) if body.inertia else (0.0, 0.0, 0.0)

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 from gbeam.checks import positive
 
+FATIGUE_EXPONENT = 5.0
+
 
 @dataclass(frozen=True)
 class Material:
@@ -17,6 +19,11 @@ class Material:
         Mass per volume, kg/m³.
     youngs_modulus : float
         Pa.
+    yield_strength : float, optional
+        Normal stress at which it yields, in tension and in compression, Pa.
+    fatigue_exponent : float
+        m of Wöhler's curve, N Δσᵐ = constant. The default is a convention between those of welded joints, about 3, and
+        of smooth parts, about 10.
 
     Raises
     ------
@@ -26,7 +33,12 @@ class Material:
 
     density: float
     youngs_modulus: float
+    yield_strength: float | None = None
+    fatigue_exponent: float = FATIGUE_EXPONENT
 
     def __post_init__(self) -> None:
         positive("density", self.density, "kg/m³")
         positive("youngs_modulus", self.youngs_modulus, "Pa")
+        if self.yield_strength is not None:
+            positive("yield_strength", self.yield_strength, "Pa")
+        positive("fatigue_exponent", self.fatigue_exponent, "(a number)")

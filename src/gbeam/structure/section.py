@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gbeam.arrays.namespace import is_jax, namespace
-from gbeam.arrays.tree import record
+from gbeam.arrays.tree import record, static
 from gbeam.checks import positive
 from gbeam.errors import InputError
 
@@ -68,6 +68,7 @@ SHAPES: dict[str, tuple[Rule, tuple[str, ...], tuple[str, ...]]] = {
     "tube": (tube, ("diameter", "wall"), ()),
     "general": (general, ("area", "inertia_y", "inertia_z"), ("extreme_fibre_y", "extreme_fibre_z")),
 }
+ROUND = ("circle", "tube")
 _UNITS = {"area": "m²", "inertia_y": "m⁴", "inertia_z": "m⁴"}
 
 
@@ -203,15 +204,20 @@ class Section:
             local = {k: xp.interp(where, np.asarray(self.stations), xp.asarray(v)) for k, v in self.dimensions.items()}
         else:
             local = {k: v[0] + xp.zeros(where.shape) for k, v in self.dimensions.items()}
-        return SectionValues(*rule(**local))
+        area, inertia_y, inertia_z, fibre_y, fibre_z = rule(**local)
+        return SectionValues(area, inertia_y, inertia_z, fibre_y, fibre_z, round=self.shape in ROUND)
 
 
 @record
 class SectionValues:
-    """Section properties at positions: area m², inertia_y and inertia_z m⁴, extreme fibres along y and z m."""
+    """Section properties at positions: area m², inertia_y and inertia_z m⁴, extreme fibres along y and z m.
+
+    The extreme fibres are the corners (±y, ±z), or where `round` a circle through (y, 0) and (0, z).
+    """
 
     area: Array
     inertia_y: Array
     inertia_z: Array
     extreme_fibre_y: Array
     extreme_fibre_z: Array
+    round: bool = static(default=False)

@@ -13,7 +13,8 @@ from gbeam.integrate.driver import Trajectory
 from gbeam.mechanics.fields.exact import ExactField
 from gbeam.mechanics.fields.rooted import RootedField
 from gbeam.mechanics.structure import Structure
-from gbeam.results.response import BaseMotion, Peaks
+from gbeam.results.peaks import Peaks
+from gbeam.results.response import BaseMotion
 from gbeam.results.result import Floats
 
 _NEAR = np.radians(160.0)  # of the pole at 180 degrees
@@ -69,12 +70,13 @@ def describe(
             "the run starts from an equilibrium that is not stable, which no beam would keep: its stiffness is not "
             "positive definite; `gbeam critical-speed` finds where that begins"
         )
-    share = float(peaks.max_abs[1:].max() / structure.length)
+    share = peaks.max_size / structure.length
     if structure.kind != "exact" and share > 0.1:
         warnings.append(
             f"the tip moves by {share:.1%} of the length: second-order models are then wrong by about "
             f'{0.35 * share**2:.1%} of the peak (TLAM and CFOAM by more); check with model.kind = "exact"'
         )
+    warnings += _yielding(structure, peaks)
     if math.isfinite(error) and error > settings.tolerance:
         warnings.append(
             f"the estimated error, {error:.2g} of the largest displacement, is above the tolerance "
@@ -88,6 +90,22 @@ def describe(
             "rotation vector has a pole, and near it the shapes converge slowly; check with more of them"
         )
     return "done", "", tuple(warnings)
+
+
+def _yielding(structure: Structure, peaks: Peaks) -> list[str]:
+    """What to say where the stress exceeds the yield strength."""
+    strength = None if structure.sections is None else structure.sections.yield_strength
+    if strength is None or peaks.loads is None:
+        return []
+    stress, stations = peaks.loads.stress, np.append(0.0, structure.stations)
+    worst = int(np.argmax(stress.value))
+    if not stress.value[worst] > strength:
+        return []
+    return [
+        f"the stress reaches {1e-6 * stress.value[worst]:.4g} MPa at {stations[worst]:.4g} m, t = "
+        f"{stress.time[worst]:.4g} s, above the yield strength, {1e-6 * strength:.4g} MPa: the material yields, and "
+        "the response, which is elastic, means nothing from there on"
+    ]
 
 
 def turned_out_of_plane(structure: Structure, q: Floats) -> float:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from gbeam.analysis.response.outcome import describe
+from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
 from gbeam.analysis.response.problem import Problem, problem_of
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.stepping import difference, first_step, refine, scheme_of
+from gbeam.analysis.response.stepping import covering, difference, during, first_step, grid, refine, scheme_of
 from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.errors import InputError
 from gbeam.integrate.adaptive import integrate_adaptively
@@ -21,8 +23,9 @@ from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
-from gbeam.results.response import BaseMotion, HubResult, Peaks, Response
+from gbeam.results.response import BaseMotion, HubResult, Response
 from gbeam.results.result import Floats
+from gbeam.results.section_forces import Loads
 
 Array = Any
 
@@ -38,7 +41,9 @@ def simulate(
 ) -> Response:
     """Compute the response of a beam in one environment.
 
-    It starts in relative equilibrium with the base's motion at the start (a free hub at rest), without vibration.
+    It starts in relative equilibrium with the base's motion at the start (a free hub at rest), without vibration. A
+    machine's run covers its whole motion on the flight's clock: spin-up comes before `start`, and spin-down after the
+    duration, whole steps of the flight's grid each.
 
     Parameters
     ----------
@@ -72,10 +77,13 @@ def simulate(
     elif options:
         raise InputError(next(iter(options)), "is given beside settings", "give one of them")
     motion = motion.over(settings.start, settings.start + settings.duration)
-    problem = problem_of(structure, motion, settings.start)
     if holds_jax(structure, motion):
-        return _traced(structure, motion, settings, problem, name)
+        return _traced(structure, motion, settings, name)
     coarse = first_step(structure, settings)
+    given = None if settings.step is None else settings.duration / max(1, round(settings.duration / settings.step))
+    # Every run of a study, those with twice the step among them, meets the flight's own times.
+    entire = covering(settings, motion, 2 * (given or coarse))
+    problem = problem_of(structure, motion, entire.start)
 
     def too_far(y: Floats) -> int | None:
         """A projected field means nothing once it moves by the beam's length."""
@@ -86,21 +94,20 @@ def simulate(
 
     def run(step: float, what: str) -> Trajectory:
         report = None if progress is None else (lambda share: progress(what, share))
-        return _integrated(problem, settings, step, stop=too_far, progress=report)
+        return _integrated(problem, entire, step, settings.start, stop=too_far, progress=report)
 
     def tip(trajectory: Trajectory) -> Floats:
         return np.asarray(structure.displacement(trajectory.q[:, problem.first :])[:, -1])
 
     if settings.integrator == "adaptive":
-        trajectory, step, error = _adapted(structure, motion, problem, settings, coarse, too_far, tip)
-    elif settings.step is not None:
-        order = scheme_of(settings).order
-        step = settings.duration / max(1, round(settings.duration / settings.step))
+        trajectory, step, error = _adapted(structure, motion, problem, entire, settings.start, coarse, too_far, tip)
+    elif given is not None:
+        order, step = scheme_of(settings).order, given
         trajectory, check = run(step, "integrating"), run(2 * step, "checking with twice the step")
         whole = check.converged and not check.stopped
         error = difference(tip(check), tip(trajectory), 2) / (2**order - 1) if whole else math.nan
     else:
-        trajectory, step, error = refine(run, tip, coarse, scheme_of(settings).order, settings)
+        trajectory, step, error = refine(run, tip, coarse, scheme_of(settings).order, entire)
     # An automatic step is the coarse one halved: its stride brings every motion of a study back to the same times.
     stride = 1 if settings.step is not None or math.isnan(step) else round(coarse / step)
     return _result(structure, motion, settings, problem, trajectory, name, step, error, stride)
@@ -114,33 +121,35 @@ def _settings(options: dict[str, Any]) -> ResponseSettings:
         raise InputError("simulate", f"cannot be called so ({error})", f"give duration, and any of {fields}") from None
 
 
-def _integrated(problem: Problem, settings: ResponseSettings, step: float, **how: Any) -> Trajectory:
+def _integrated(problem: Problem, entire: ResponseSettings, step: float, start: float, **how: Any) -> Trajectory:
+    """Steps over the whole run, at times counted from the flight's `start`: a flight's own to the last digit."""
     xp = namespace(problem.q)
-    return integrate(
+    trajectory = integrate(
         problem.equations,
-        scheme_of(settings),
+        scheme_of(entire),
         problem.q,
         xp.zeros_like(problem.q),
         step=step,
         # A step that does not divide the duration, twice the one given, goes beyond the end.
-        count=math.ceil(settings.duration / step - 1e-6),
-        start=settings.start,
+        count=math.ceil(entire.duration / step - 1e-6),
+        start=entire.start,
         **how,
     )
+    return replace(trajectory, time=grid(entire, start, step, len(trajectory.time)))
 
 
 def _adapted(
     structure: Structure,
     motion: Motion,
     problem: Problem,
-    settings: ResponseSettings,
+    entire: ResponseSettings,
+    start: float,
     coarse: float,
     stop: Callable[[Floats], int | None],
     tip: Callable[[Trajectory], Floats],
 ) -> tuple[Trajectory, float, float]:
     """With error control, twice: the difference of two tolerances is the estimate."""
-    count = round(settings.duration / coarse)
-    times = np.asarray(settings.start + coarse * np.arange(count + 1), dtype=np.float64)
+    times = grid(entire, start, coarse, round(entire.duration / coarse) + 1)
     jumps = np.asarray(motion.breaks)
     if structure.history is not None:
         jumps = np.append(jumps, structure.history.breaks)
@@ -151,16 +160,18 @@ def _adapted(
             problem.equations, problem.q, still, times, tolerance=tolerance, jumps=jumps, stop=stop
         )
 
-    loose, trajectory = adapt(settings.tolerance * 1e-2), adapt(settings.tolerance * 1e-3)
+    loose, trajectory = adapt(entire.tolerance * 1e-2), adapt(entire.tolerance * 1e-3)
     return trajectory, math.nan, difference(tip(loose), tip(trajectory), 1)
 
 
-def _traced(structure: Structure, motion: Motion, settings: ResponseSettings, problem: Problem, name: str) -> Response:
+def _traced(structure: Structure, motion: Motion, settings: ResponseSettings, name: str) -> Response:
     """A run whose values JAX traces: of a given step, without a look at them."""
     if settings.step is None or settings.integrator == "adaptive":
         raise InputError("step", "is automatic, and a traced run has no numbers to choose it by", "give a step, s")
     step = settings.duration / max(1, round(settings.duration / settings.step))
-    trajectory = _integrated(problem, settings, step)
+    entire = covering(settings, motion, step)
+    problem = problem_of(structure, motion, entire.start)
+    trajectory = _integrated(problem, entire, step, settings.start)
     return _result(structure, motion, settings, problem, trajectory, name, step, math.nan, 1)
 
 
@@ -179,11 +190,20 @@ def _result(
     traced = is_jax(trajectory.q)
     beam = slice(problem.first, None)
     fine = structure.displacement(trajectory.q[:, beam])
-    peaks = _peaks(trajectory.time, fine[:, -1], settings.residual_from)
+    flight, part = during(trajectory, settings)
+    peaks = displacement_peaks(structure, flight, problem.first, fine[part], settings.residual_from)
     keep = slice(None, None, stride)
-    time, q, qd, qdd = (x[keep] for x in (trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd))
-    base, hub = _moving(motion, time, q, qd, qdd)
-    loads = section_forces(structure, base, q[:, beam], qd[:, beam], qdd[:, beam], time, motion=motion)
+
+    def at(steps: Any) -> tuple[tuple[Any, ...], BaseMotion, HubResult | None, Loads | None]:
+        """Coordinates, base, hub and loads at some of the steps."""
+        time, q, qd, qdd = (x[steps] for x in (trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd))
+        base, hub = _moving(motion, time, q, qd, qdd)
+        loads = section_forces(structure, base, q[:, beam], qd[:, beam], qdd[:, beam], time, motion=motion)
+        return (time, q, qd, qdd), base, hub, loads
+
+    (time, q, qd, qdd), base, hub, loads = at(keep)
+    if loads is not None and not traced:
+        peaks = replace(peaks, loads=load_peaks(loads, lambda steps: at(steps)[3], trajectory.time, stride))
     if hub is not None and not motion.free and loads is not None and loads.drive_torque is not None:
         hub = HubResult(hub.angle, hub.rate, hub.acceleration, loads.drive_torque)
     axes = None if traced or motion.kind != "centrifuge" else axes_result(motion, time)  # type: ignore[arg-type]
@@ -217,16 +237,6 @@ def _result(
         loads=loads,
         influence=influence(structure) if motion.kind == "centrifuge" and not traced else None,
     )
-
-
-def _peaks(time: Floats, tip: Array, residual_from: float | None) -> Peaks:
-    xp = namespace(tip)
-    size = xp.abs(tip)
-    residual = np.full(3, np.nan)
-    if residual_from is not None and time[-1] > residual_from:
-        after = tip[time >= residual_from]
-        residual = (after.max(axis=0) - after.min(axis=0)) / 2
-    return Peaks(size.max(axis=0), xp.asarray(time)[size.argmax(axis=0)], residual)
 
 
 def _moving(motion: Any, time: Floats, y: Array, yd: Array, ydd: Array) -> tuple[BaseMotion, HubResult | None]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.report.words import tidy, xyz, xyz_lists
+from gbeam.report.words import stress_words, tidy, xyz, xyz_lists
 from gbeam.results.response import BaseMotion
 from gbeam.results.section_forces import Loads
 from gbeam.results.steady.equilibrium import Deflection
@@ -50,8 +50,10 @@ def loads_json(loads: Loads) -> dict[str, Any]:
         "stations": loads.stations.tolist(),
         "section_force": xyz_lists(loads.section_force[0]),
         "section_moment": xyz_lists(loads.section_moment[0]),
-        "stress": loads.stress[0].tolist(),
+        **{name: getattr(loads, name)[0].tolist() for name in ("stress", "stress_tension", "stress_compression")},
     }
+    if loads.margin is not None:
+        values |= {"yield_strength": loads.yield_strength, "margin": loads.margin[0].tolist()}
     if loads.beam_torque is not None:
         values["beam_torque"] = float(loads.beam_torque[0])
     return values
@@ -79,8 +81,8 @@ def _loads(loads: Loads) -> str:
     )
     words = f"base on root: force ({force}) N, moment ({moment}) N m"
     if np.isfinite(loads.stress).all():
-        at = loads.stations[loads.stress[0].argmax()]
-        words += f"; stress up to {1e-6 * loads.stress.max():.5g} MPa at {at:.4g} m"
+        extremes = loads.stress_tension[0], loads.stress_compression[0]
+        words += f"; {stress_words(loads.stations, *extremes, loads.yield_strength)}"
     if loads.beam_torque is not None:
         words += f"; torque for the beam {tidy(loads.beam_torque, lever)[0]:.5g} N m"
     return words

@@ -15,8 +15,9 @@ from rich.text import Text
 from gbeam.report.machine import limits
 from gbeam.report.machine.tracking import ends_line, not_followed_stretches, tracking
 from gbeam.report.study import comparison
-from gbeam.report.words import number, sentence
+from gbeam.report.words import number, sentence, stress_words
 from gbeam.results.machine import AxesResult
+from gbeam.results.peaks import LoadPeaks
 from gbeam.results.response import HubResult, Response
 from gbeam.results.section_forces import Loads
 from gbeam.results.study import Study
@@ -62,8 +63,8 @@ def _response(response: Response) -> Iterator[RenderableType]:
         yield _indented(Text(sentence(response.message), style="red"))
     yield _indented(_tip(response))
     yield _indented(Text(_accuracy(response)))
-    if response.loads is not None:
-        yield _indented(Text(_loads(response.loads)))
+    if response.loads is not None and response.peaks.loads is not None:
+        yield _indented(Text(_loads(response.loads, response.peaks.loads)))
     if response.hub is not None:
         yield _indented(Text(_hub(response.hub)))
     if response.axes is not None:
@@ -83,9 +84,10 @@ def _tip(response: Response) -> Table:
     rows = Table("tip", box=None, padding=(0, 2, 0, 0), header_style="dim")
     for heading in ("largest, mm", "at, s", *(["residual amplitude, mm"] if residual else [])):
         rows.add_column(heading, justify="right")
-    for axis, largest, when, left in zip(
-        "xyz", peaks.max_abs, peaks.time_of_max, peaks.residual_amplitude, strict=True
-    ):
+    directions = [*zip("xyz", peaks.max_abs, peaks.time_of_max, peaks.residual_amplitude, strict=True)]
+    if (peaks.max_abs > ROUNDING * peaks.max_abs.max()).sum() > 1 and math.isfinite(peaks.max_size):
+        directions.append(("size", peaks.max_size, peaks.time_of_max_size, math.nan))
+    for axis, largest, when, left in directions:
         # A direction that nothing drives holds rounding errors, whose time would mean nothing.
         moves = largest > ROUNDING * peaks.max_abs.max()
         size, time = (number(1e3 * largest), f"{when:.3f}") if moves else ("0", "–")
@@ -109,15 +111,15 @@ def _time(seconds: float) -> str:
     return f"{number(1e3 * seconds)} ms" if seconds < 1 else f"{number(seconds)} s"
 
 
-def _loads(loads: Loads) -> str:
+def _loads(loads: Loads, peaks: LoadPeaks) -> str:
     """Largest sizes over time: at the root, of the stress, and of the torque about a hub's axis."""
-    force, moment = (float(np.linalg.norm(each, axis=1).max()) for each in (loads.root_force, loads.root_moment))
+    force, moment = (float(each[0].size.value) for each in (peaks.force, peaks.moment))
     words = f"root: largest force {number(force)} N, moment {number(moment)} N m"
-    if np.isfinite(loads.stress).all():
-        where = loads.stations[loads.stress.max(axis=0).argmax()]
-        words += f"; stress {number(1e-6 * float(loads.stress.max()))} MPa at {number(float(where))} m"
-    if loads.beam_torque is not None:
-        words += f"; torque for the beam {number(float(np.abs(loads.beam_torque).max()))} N m"
+    if np.isfinite(peaks.tension.value).all():
+        extremes = peaks.tension.value, peaks.compression.value
+        words += f"; {stress_words(loads.stations, *extremes, loads.yield_strength)}"
+    if peaks.beam_torque is not None:
+        words += f"; torque for the beam {number(float(peaks.beam_torque.value))} N m"
     return words
 
 

@@ -13,9 +13,10 @@ from gbeam.report.machine import limits
 from gbeam.report.machine.tracking import ends, peak, tracking
 from gbeam.report.study import comparison
 from gbeam.results.machine import AxesResult
+from gbeam.results.peaks import Extremes, LoadPeaks, VectorPeaks
 from gbeam.results.response import HubResult, Response
 from gbeam.results.result import Floats
-from gbeam.results.section_forces import Loads
+from gbeam.results.section_forces import Loads, yield_margin
 from gbeam.results.study import Study
 
 
@@ -51,7 +52,8 @@ def _response(response: Response) -> dict[str, Any]:
         "environment": response.environment,
         "outcome": response.outcome,
         "message": response.message,
-        "tip": {axis: dict(zip(keys, row, strict=True)) for axis, row in zip("xyz", tip, strict=True)},
+        "tip": {axis: dict(zip(keys, row, strict=True)) for axis, row in zip("xyz", tip, strict=True)}
+        | {"size": {"max_abs": peaks.max_size, "time_of_max": peaks.time_of_max_size}},
         "error_estimate": response.error_estimate,
         "step": response.step,
         "steps": response.steps,
@@ -59,8 +61,12 @@ def _response(response: Response) -> dict[str, Any]:
         "model": response.model,
         "warnings": list(response.warnings),
     }
-    if response.loads is not None:
-        values["loads"] = _loads(response.time, response.loads)
+    if peaks.displacement is not None:
+        values["stations"] = [
+            {"at": float(x), **_vector(peaks.displacement[k])} for k, x in enumerate(response.stations)
+        ]
+    if response.loads is not None and peaks.loads is not None:
+        values["loads"] = _loads(response.loads, peaks.loads)
     if response.hub is not None:
         values["hub"] = _hub(response.hub)
     if response.axes is not None:
@@ -68,23 +74,57 @@ def _response(response: Response) -> dict[str, Any]:
     return values
 
 
-def _loads(time: Floats, loads: Loads) -> dict[str, Any]:
-    """Largest of what the base gives the root, of the stress anywhere, and of the torque for the beam on a hub."""
-
-    def largest(values: Floats) -> dict[str, Any]:
-        return {axis: asdict(peak(time, each)) for axis, each in zip("xyz", values.T, strict=True)}
-
-    values: dict[str, Any] = {"root_force": largest(loads.root_force), "root_moment": largest(loads.root_moment)}
-    if np.isfinite(loads.stress).all():
-        when, where = np.unravel_index(loads.stress.argmax(), loads.stress.shape)
+def _loads(loads: Loads, peaks: LoadPeaks) -> dict[str, Any]:
+    """Largest of what the base gives the root, of what each section carries, and of the torque for the beam."""
+    known = bool(np.isfinite(peaks.tension.value).all())
+    values: dict[str, Any] = {
+        "root_force": _vector(peaks.force[0]),
+        "root_moment": _vector(peaks.moment[0]),
+        "sections": [_section(loads, peaks, k, known) for k in range(len(loads.stations))],
+    }
+    if known:
+        stress, tension, compression = peaks.stress, peaks.tension, peaks.compression
         values["stress"] = {
-            "max": loads.stress.max(),
-            "time_of_max": time[when],
-            "station": loads.stations[where],
+            **_extreme("max", stress, int(stress.value.argmax()), loads),
+            "tension": _extreme("max", tension, int(tension.value.argmax()), loads),
+            "compression": _extreme("min", compression, int(compression.value.argmin()), loads),
         }
-    if loads.beam_torque is not None:
-        values["beam_torque"] = asdict(peak(time, loads.beam_torque))
+    if known and loads.yield_strength is not None:
+        values["yield_strength"] = loads.yield_strength
+        values["margin"] = _extreme("min", _margin(loads, peaks), int(peaks.stress.value.argmax()), loads)
+    if peaks.beam_torque is not None:
+        values["beam_torque"] = _largest(peaks.beam_torque.value, peaks.beam_torque.time)
     return values
+
+
+def _section(loads: Loads, peaks: LoadPeaks, k: int, known: bool) -> dict[str, Any]:
+    values: dict[str, Any] = {"force": _vector(peaks.force[k]), "moment": _vector(peaks.moment[k])}
+    if known:
+        values |= {"tension": float(peaks.tension.value[k]), "compression": float(peaks.compression.value[k])}
+    if known and loads.yield_strength is not None:
+        values["margin"] = float(_margin(loads, peaks).value[k])
+    return {"at": float(loads.stations[k]), **values}
+
+
+def _margin(loads: Loads, peaks: LoadPeaks) -> Extremes:
+    assert loads.yield_strength is not None
+    return Extremes(yield_margin(loads.yield_strength, peaks.stress.value), peaks.stress.time)
+
+
+def _extreme(kind: str, extremes: Extremes, k: int, loads: Loads) -> dict[str, float]:
+    when = {f"time_of_{kind}": float(extremes.time[k]), "station": float(loads.stations[k])}
+    return {kind: float(extremes.value[k]), **when}
+
+
+def _vector(peaks: VectorPeaks) -> dict[str, Any]:
+    """Peaks of a vector's components and of its size."""
+    c = peaks.components
+    parts = {axis: _largest(*each) for axis, *each in zip("xyz", c.value, c.time, strict=True)}
+    return parts | {"size": _largest(peaks.size.value, peaks.size.time)}
+
+
+def _largest(value: Any, time: Any) -> dict[str, float]:
+    return {"max_abs": float(value), "time_of_max": float(time)}
 
 
 def _hub(hub: HubResult) -> dict[str, float]:

@@ -9,6 +9,7 @@ from pydantic import Discriminator, Field, Tag
 from gbeam.scenario.schema.fields import (
     Areas,
     Density,
+    Exponent,
     Length,
     Lengths,
     Mass,
@@ -90,6 +91,13 @@ class Material(Table):
 
     density: Density = Field(description="mass per volume")
     youngs_modulus: Pressure = Field(description="Young's modulus")
+    yield_strength: Pressure | None = Field(
+        default=None, description="normal stress at which it yields; with it results give the margin"
+    )
+    fatigue_exponent: Exponent | None = Field(
+        default=None,
+        description="m of Wöhler's curve, N Δσᵐ = constant: about 3 for welds, 10 for smooth parts; 5 where left out",
+    )
 
 
 class Moments(Table):
@@ -128,7 +136,7 @@ class Beam(Table):
 
     length: Length = Field(description="length from root to tip")
     section: Section = Field(description="cross-section, by shape or by properties: { area, inertia_y, inertia_z }")
-    material: Material = Field(description="linear elastic material: { density, youngs_modulus }")
+    material: Material = Field(description="linear elastic material: { density, youngs_modulus, yield_strength }")
     damping_ratio: Ratios = Field(description="modal damping ratio: one for all modes, or a list with one per mode")
     masses: tuple[PointMass, ...] = Field(default=(), description="masses fixed to the beam: [ { at, mass } ]")
     root: Root = Field(default_factory=Root, description="springs that hold the root, which is rigid where left out")

@@ -113,6 +113,7 @@ MomentOfInertia = Annotated[float, Quantity("moment of inertia", "zero or more")
 Density = Annotated[float, Quantity("density", "positive")]
 Pressure = Annotated[float, Quantity("pressure", "positive")]
 Ratio = Annotated[float, Quantity("ratio")]
+Exponent = Annotated[float, Quantity("ratio", "positive")]
 Duration = Annotated[float, Quantity("time", "positive")]
 Time = Annotated[float, Quantity("time", "zero or more")]
 Step = Annotated[float | Literal["auto"], Quantity("time", "positive", ("auto",))]

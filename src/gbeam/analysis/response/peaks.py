@@ -1,0 +1,154 @@
+"""Peaks of a response between its steps: of the displacement, and of what the sections carry."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.integrate.driver import Trajectory
+from gbeam.mechanics.structure import Structure
+from gbeam.numerics.peaks import FEWEST, Floats, Indices, maxima, near_maxima, quintic_hermite, seven_point
+from gbeam.results.peaks import Extremes, LoadPeaks, Peaks, VectorPeaks
+from gbeam.results.section_forces import Loads
+
+
+def displacement_peaks(
+    structure: Structure, trajectory: Trajectory, first: int, moved: Any, residual_from: float | None
+) -> Peaks:
+    """Peaks of the displacement: between two steps the model's at the coordinates' quintic Hermite polynomials.
+
+    Parameters
+    ----------
+    structure : Structure
+    trajectory : Trajectory
+        The steps whose peaks are meant.
+    first : int
+        Index of the beam's first coordinate in the trajectory's.
+    moved : (t, s, 3)
+        Displacement of the stations at every step, m; where JAX traces it, the peaks are the tip's largest samples.
+    residual_from : float or None
+        s.
+    """
+    time, start = trajectory.time, 0 if residual_from is None else int(np.searchsorted(trajectory.time, residual_from))
+    late = residual_from is not None and start < len(time) - 1
+    if is_jax(moved):
+        return _samples(time, moved[:, -1], start if late else None)
+    q, qd, qdd = (x[:, first:] for x in (trajectory.q, trajectory.qd, trajectory.qdd))
+
+    def between(chosen: Indices) -> tuple[Floats, Floats]:
+        t, y = quintic_hermite(time, q, qd, qdd, chosen)
+        return t, np.asarray(structure.displacement(y))
+
+    def largest(begin: int, measure: Callable[[Floats], Floats]) -> tuple[Floats, Floats]:
+        values = measure(moved[begin:])
+        chosen = near_maxima(time[begin:], values)
+        t, displacement = between(chosen + begin)
+        return maxima(time[begin:], values, t, measure(displacement))
+
+    every = _vectors(*largest(0, _sizes), moved.shape[1])
+    residual = np.full(3, np.nan)
+    if late:
+        highest, _ = largest(start, lambda u: np.concatenate([u[..., -1, :], -u[..., -1, :]], axis=-1))
+        residual = (highest[:3] + highest[3:]) / 2
+    tip = every[-1]
+    return Peaks(
+        max_abs=tip.components.value,
+        time_of_max=tip.components.time,
+        residual_amplitude=residual,
+        max_size=float(tip.size.value),
+        time_of_max_size=float(tip.size.time),
+        displacement=every,
+    )
+
+
+def _samples(time: Floats, tip: Any, start: int | None) -> Peaks:
+    """Largest samples of the tip's displacement (t, 3)."""
+    xp = namespace(tip)
+    sizes, times = xp.abs(tip), xp.asarray(time)
+    length = xp.sqrt((tip**2).sum(axis=1).max())
+    residual = np.full(3, np.nan) if start is None else (tip[start:].max(axis=0) - tip[start:].min(axis=0)) / 2
+    when = times[(tip**2).sum(axis=1).argmax()]
+    return Peaks(sizes.max(axis=0), times[sizes.argmax(axis=0)], residual, length, when)
+
+
+def load_peaks(loads: Loads, loads_at: Callable[[Indices], Loads | None], time: Floats, stride: int) -> LoadPeaks:
+    """Peaks of the loads: near a step, the polynomial of sixth degree through seven of them.
+
+    Parameters
+    ----------
+    loads : Loads
+        At every `stride`-th step.
+    loads_at : callable
+        The loads at chosen steps.
+    time : (t,)
+        Of every step computed, s.
+    stride : int
+    """
+    s = loads.section_force.shape[1]
+    table, steps = _table(loads), np.arange(0, len(time), stride)
+
+    def measure(table: Floats) -> Floats:
+        vectors = table[..., : 6 * s].reshape(*table.shape[:-1], 2 * s, 3)
+        return np.concatenate([_sizes(vectors), table[..., 6 * s : 8 * s], np.abs(table[..., 8 * s :])], axis=-1)
+
+    chosen = near_maxima(time[steps], measure(table))
+    if stride > 1 and chosen.size:
+        # Near the steps kept that may win, the loads are computed at every step.
+        near = steps[chosen][:, None] + np.arange(-stride - FEWEST // 2, stride + FEWEST // 2 + 1)
+        new = np.setdiff1d(np.clip(near, 0, len(time) - 1), steps)
+        more = loads_at(new)
+        assert more is not None
+        table, steps = np.concatenate([table, _table(more)]), np.concatenate([steps, new])
+        order = np.argsort(steps)
+        table, steps = table[order], steps[order]
+        chosen = near_maxima(time[steps], measure(table))
+        chosen = chosen[steps[chosen + 1] - steps[chosen - 1] == 2]
+    t, between = seven_point(time[steps], table, chosen)
+    value, when = maxima(time[steps], measure(table), t, measure(between))
+    if not np.isfinite(loads.stress_tension).all():
+        value[8 * s : 10 * s] = when[8 * s : 10 * s] = np.nan
+    vectors, v, w = _vectors(value, when, 2 * s), value[8 * s :], when[8 * s :]
+    return LoadPeaks(
+        force=vectors[:s],
+        moment=vectors[s:],
+        tension=Extremes(v[:s], w[:s]),
+        compression=Extremes(-v[s : 2 * s], w[s : 2 * s]),
+        beam_torque=None if loads.beam_torque is None else Extremes(v[-1], w[-1]),
+    )
+
+
+def vector_peaks(time: Floats, vectors: Floats) -> tuple[Floats, Floats]:
+    """Largest sizes of the components and the length of a vector (t, 3) over time (t,), between samples; their times.
+
+    Of samples alone, by the polynomial of sixth degree through seven of them; (4,) each.
+    """
+    sizes = _sizes(vectors[:, None])
+    t, between = seven_point(time, vectors, near_maxima(time, sizes))
+    return maxima(time, sizes, t, _sizes(between[:, :, None]))
+
+
+def _table(loads: Loads) -> Floats:
+    """What has peaks, (t, c): forces, moments, tension, compression, and the torque for the beam on a hub.
+
+    Stresses that are not known are zero.
+    """
+    torque = [] if loads.beam_torque is None else [loads.beam_torque[:, None]]
+    vectors = (x.reshape(len(x), -1) for x in (loads.section_force, loads.section_moment))
+    stresses = (np.nan_to_num(x) for x in (loads.stress_tension, -loads.stress_compression))
+    return np.concatenate([*vectors, *stresses, *torque], axis=1)
+
+
+def _sizes(vectors: Floats) -> Floats:
+    """Sizes of the components and the lengths of vectors (..., g, 3), (..., 4 g)."""
+    length = np.sqrt((vectors**2).sum(axis=-1, keepdims=True))
+    sizes = np.concatenate([np.abs(vectors), length], axis=-1)
+    return sizes.reshape(*sizes.shape[:-2], 4 * vectors.shape[-2])
+
+
+def _vectors(value: Floats, when: Floats, count: int) -> VectorPeaks:
+    """Peaks of as many vectors from those of their sizes, (4 count,) and what follows."""
+    v, t = (x[: 4 * count].reshape(count, 4) for x in (value, when))
+    return VectorPeaks(Extremes(v[:, :3], t[:, :3]), Extremes(v[:, 3], t[:, 3]))

@@ -1,0 +1,198 @@
+"""Largest values of sampled histories between their samples.
+
+Near a sample i two things say how a history goes on until its neighbours: the quintic Hermite polynomials of the two
+steps, where the first and second derivatives are known, or the polynomial of sixth degree through the seven nearest
+samples, where they are not. Both are evaluated at a few times only, next to those samples that may win.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+FEWEST = 7  # samples that the polynomial without derivatives needs
+_PER_STEP = 8  # subdivisions; the vertex of a parabola through three of them is the peak
+_COUNT = 128  # windows at most per history
+_SMOOTH = 0.25  # degree 6 may change degree 4 by this share of what that changed degree 2; corners and jumps: 0.35
+_SHARES = np.arange(_PER_STEP + 1) / _PER_STEP
+
+
+def near_maxima(time: Floats, values: Floats) -> Indices:
+    """Samples next to which a largest value may lie: local maxima whose parabola's vertex comes near the highest.
+
+    Parameters
+    ----------
+    time : (t,)
+        Strictly increasing.
+    values : (t, k)
+        Samples of the histories; larger is what counts.
+
+    Returns
+    -------
+    (u,)
+        Indices, ascending, neither of the first nor of the last sample; none of less than three.
+    """
+    if len(time) < 3:
+        return np.empty(0, dtype=np.intp)
+    turning = (values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])
+    turning[[0, -1]] = True
+    row, column = np.nonzero(turning)
+    around = row + np.arange(3)[:, None]
+    _, height = _vertex(time[around], values[around, column])
+    gain = np.zeros(values.shape[1])
+    np.maximum.at(gain, column, height - values[row + 1, column])
+    order = np.lexsort((-height, column))
+    row, column, height = row[order], column[order], height[order]
+    start = np.searchsorted(column, np.arange(values.shape[1]))
+    rank = np.arange(len(row)) - start[column]
+    near = height >= height[start[column]] - 0.5 * gain[column]
+    return np.unique(row[near & (rank < _COUNT)] + 1)
+
+
+def maxima(time: Floats, values: Floats, t: Floats, between: Floats) -> tuple[Floats, Floats]:
+    """Largest value of each history, and its time, between samples where it lies there.
+
+    Parameters
+    ----------
+    time : (t,)
+    values : (t, k)
+        Samples of the histories.
+    t, between : (u, p), (u, p, k)
+        Times about chosen samples, and the histories there.
+
+    Returns
+    -------
+    value, time : (k,)
+        Never less than the largest sample.
+    """
+    first, columns = values.argmax(axis=0), np.arange(values.shape[1])
+    largest, when = values[first, columns], time[first]
+    if not len(between):
+        return largest, when
+    window, place = np.divmod(between.reshape(-1, between.shape[-1]).argmax(axis=0), between.shape[1])
+    around = np.clip(place, 1, between.shape[1] - 2) + np.arange(-1, 2)[:, None]
+    at, value = _vertex(t[window, around], between[window, around, columns])
+    better = value > largest
+    return np.where(better, value, largest), np.where(better, at, when)
+
+
+def turning_points(time: Floats, values: Floats) -> Floats:
+    """First value, local extremes between samples, and last value of one history (t,), in order of time, (e,)."""
+    slope = np.sign(np.diff(values))
+    moving = np.flatnonzero(slope)
+    turns = moving[1:][slope[moving[1:]] != slope[moving[:-1]]]
+    ends = values[[0, -1]]
+    if len(values) < FEWEST or not turns.size:
+        return np.concatenate([ends[:1], values[turns], ends[1:]])
+    up = -slope[turns]  # +1 at a maximum
+    t, y = seven_point(time, values[:, None], turns)
+    y = y[..., 0] * up[:, None]
+    rows = np.arange(len(turns))
+    around = np.clip(y.argmax(axis=1), 1, y.shape[1] - 2) + np.arange(-1, 2)[:, None]
+    _, value = _vertex(t[rows, around], y[rows, around])
+    return np.concatenate([ends[:1], up * np.maximum(value, up * values[turns]), ends[1:]])
+
+
+def quintic_hermite(time: Floats, q: Floats, qd: Floats, qdd: Floats, at: Indices) -> tuple[Floats, Floats]:
+    """Histories in the two steps about samples, from their values and first and second derivatives.
+
+    Parameters
+    ----------
+    time : (t,)
+    q, qd, qdd : (t, n)
+    at : (u,)
+        Indices of samples, neither the first nor the last.
+
+    Returns
+    -------
+    time : (u, p)
+    q : (u, p, n)
+        On each step the polynomial of fifth degree that has both ends' values and derivatives; its error is of sixth
+        order in the step where these are exact.
+    """
+    x = _SHARES
+    basis = np.stack(
+        [
+            1 - x**3 * (10 - 15 * x + 6 * x**2),
+            x - x**3 * (6 - 8 * x + 3 * x**2),
+            x**2 * (1 - 3 * x + 3 * x**2 - x**3) / 2,
+            x**3 * (10 - 15 * x + 6 * x**2),
+            -(x**3) * (4 - 7 * x + 3 * x**2),
+            x**3 * (1 - 2 * x + x**2) / 2,
+        ],
+        axis=1,
+    )
+
+    def step(j: Indices) -> Floats:
+        h = (time[j + 1] - time[j])[:, None]
+        ends = [each for k in (j, j + 1) for each in (q[k], h * qd[k], h**2 * qdd[k])]
+        return np.asarray(basis @ np.stack(ends, axis=1))
+
+    return _subdivided(time, at), np.concatenate([step(at - 1), step(at)[:, 1:]], axis=1)
+
+
+def seven_point(time: Floats, values: Floats, at: Indices) -> tuple[Floats, Floats]:
+    """Histories in the two steps about samples, from their values alone.
+
+    Parameters
+    ----------
+    time : (t,)
+    values : (t, c)
+    at : (u,)
+        Indices of samples, neither the first nor the last.
+
+    Returns
+    -------
+    time : (u, p), values : (u, p, c)
+        None of the samples where there are fewer than seven.
+        The polynomial of sixth degree through the seven nearest samples. Where it and that of fourth degree differ, as
+        at a jump or a corner, which no polynomial follows, the sample itself.
+    """
+    if len(time) < FEWEST:
+        at = at[:0]
+    t, n = _subdivided(time, at), max(len(time), FEWEST)
+    high, low, parabola = (
+        _lagrange(time[k], t) @ values[k]
+        for m in (7, 5, 3)
+        for k in [np.clip(at - m // 2, 0, n - m)[:, None] + np.arange(m)]
+    )
+    here = values[at][:, None]
+    left = np.abs(high - low).max(axis=1, keepdims=True)
+    rough = left > np.maximum(_SMOOTH * np.abs(low - parabola).max(axis=1, keepdims=True), 1e-9 * np.abs(here))
+    return t, np.where(rough, here, high)
+
+
+def _subdivided(time: Floats, at: Indices) -> Floats:
+    """Times of the two steps about samples, (u, p)."""
+    before, here, after = time[at - 1][:, None], time[at][:, None], time[at + 1][:, None]
+    return np.concatenate([before + _SHARES * (here - before), here + _SHARES[1:] * (after - here)], axis=1)
+
+
+def _lagrange(nodes: Floats, t: Floats) -> Floats:
+    """Lagrange's basis of nodes (u, m) at times (u, p), (u, p, m)."""
+    m = nodes.shape[1]
+    apart = nodes[:, :, None] - nodes[:, None, :] + np.eye(m) * (nodes[:, -1:] - nodes[:, :1])[..., None]
+    scale = (nodes[:, -1:] - nodes[:, :1])[..., None]
+    away = (t[:, :, None] - nodes[:, None, :]) / scale
+    weight = 1 / np.prod(apart / scale, axis=2)
+    ones = np.ones((*away.shape[:2], 1))
+    left = np.concatenate([ones, np.cumprod(away[..., :-1], axis=2)], axis=2)
+    right = np.concatenate([ones, np.cumprod(away[..., :0:-1], axis=2)], axis=2)[..., ::-1]
+    return np.asarray(left * right * weight[:, None, :])
+
+
+def _vertex(t: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """Time and value of the maximum between three points (3, ...) of the parabola through them."""
+    before, after = (y[1] - y[0]) / (t[1] - t[0]), (y[2] - y[1]) / (t[2] - t[1])
+    bend = (after - before) / (t[2] - t[0])
+    slope = before + bend * (t[1] - t[0])
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        shift = -slope / (2 * bend)
+        inside = (bend < 0) & (shift > t[0] - t[1]) & (shift < t[2] - t[1])
+    shift = np.where(inside, shift, 0.0)
+    sample = np.where(y[1] >= np.maximum(y[0], y[2]), t[1], np.where(y[0] >= y[2], t[0], t[2]))
+    value = y[1] + shift * (slope + bend * shift)
+    return np.where(inside, t[1] + shift, sample), np.where(inside, value, y.max(axis=0))

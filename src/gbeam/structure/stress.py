@@ -1,0 +1,70 @@
+"""Normal stress over a section under axial force and bending moments."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from gbeam.arrays.namespace import namespace
+from gbeam.structure.section import SectionValues
+
+Array = Any
+_ROUND = 24  # directions of fibres of a round section; the worst lies within 7.5°: 0.9 % of its bending stress
+
+
+def extreme_stresses(values: SectionValues, force: Array, moment: Array) -> tuple[Array, Array]:
+    """Largest and smallest normal stress over sections: tension and, where negative, compression.
+
+    Parameters
+    ----------
+    values : SectionValues
+        Of sections (s,).
+    force, moment : (..., s, 3)
+        N, V_y, V_z, N, and torque, M_y, M_z, N m, in axes of the sections.
+
+    Returns
+    -------
+    largest, smallest : (..., s)
+        N/A ± (|M_y| c_z/I_y + |M_z| c_y/I_z) Pa, with the extreme fibres c_y and c_z of a rectangle about the section;
+        of a round section N/A ± √(M_y² + M_z²) c/I. NaN where the extreme fibres are unknown.
+    """
+    xp = namespace(force, moment, values.area)
+    along_z = moment[..., 1] * values.extreme_fibre_z / values.inertia_y
+    along_y = moment[..., 2] * values.extreme_fibre_y / values.inertia_z
+    if values.round:
+        square = along_z**2 + along_y**2
+        bent = square > 0  # the root's derivative at zero is none that could be passed on
+        bending = xp.where(bent, xp.sqrt(xp.where(bent, square, 1.0)), square)
+    else:
+        bending = xp.abs(along_z) + xp.abs(along_y)
+    mean = force[..., 0] / values.area
+    return mean + bending, mean - bending
+
+
+def worst_fibre(values: SectionValues, section: int, force: Array, moment: Array) -> Array:
+    """Normal stress over time at that extreme fibre of one section where it ranges most.
+
+    Parameters
+    ----------
+    values : SectionValues
+        Of sections (s,).
+    section : int
+        Which of them.
+    force, moment : (t, s, 3)
+        As in :func:`extreme_stresses`.
+
+    Returns
+    -------
+    (t,) Pa
+        N/A + M_y z/I_y − M_z y/I_z at one of the corners (±y, ±z), or of 24 points around a round section.
+    """
+    here = (values.area, values.inertia_y, values.inertia_z, values.extreme_fibre_y, values.extreme_fibre_z)
+    area, inertia_y, inertia_z, fibre_y, fibre_z = (float(each[section]) for each in here)
+    mean = force[:, section, 0] / area
+    along_z, along_y = moment[:, section, 1] * fibre_z / inertia_y, moment[:, section, 2] * fibre_y / inertia_z
+    points = [(1, 1), (1, -1), (-1, 1), (-1, -1)]
+    if values.round:
+        points = [(np.cos(a), np.sin(a)) for a in 2 * np.pi * np.arange(_ROUND) / _ROUND]
+    y, z = max(points, key=lambda point: np.ptp(mean + point[1] * along_z - point[0] * along_y))
+    return mean + z * along_z - y * along_y

@@ -1,0 +1,56 @@
+"""Stress cycles: the standard's own example, and damage in closed form."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gbeam import Flight, Response, Sine, simulate
+from gbeam.analysis.imitation.fatigue import fatigue, stress_cycles
+
+from ..analysis.helpers import strip
+
+
+def test_cycles_of_the_standards_example() -> None:
+    """ASTM E1049-85, figure 6: reversals −2, 1, −3, 5, −1, 3, −4, 4, −2."""
+    cycles = stress_cycles(np.arange(9.0), np.array([-2.0, 1, -3, 5, -1, 3, -4, 4, -2]))
+    counts = {size: cycles.count[cycles.range == size].sum() for size in (3, 4, 6, 8, 9)}
+    assert counts == {3: 0.5, 4: 1.5, 6: 0.5, 8: 1.0, 9: 0.5} and cycles.total == 4.0
+
+
+def test_cycles_of_an_oscillation() -> None:
+    """Ten periods of amplitude 3 about 1, sampled beside its extremes."""
+    t = np.linspace(0, 10, 141)
+    cycles = stress_cycles(t, 1 + 3 * np.sin(2 * np.pi * t))
+    assert cycles.total == pytest.approx(10.0, abs=0.51)
+    full = cycles.range > 5
+    np.testing.assert_allclose(cycles.range[full], 6.0, rtol=1e-4)
+    np.testing.assert_allclose(cycles.mean[full], 1.0, atol=1e-3)
+    assert cycles.equivalent_range(4.0) == pytest.approx(6.0 * 9.5**0.25, rel=2e-3)
+
+
+def flown(amplitude: float) -> Response:
+    return simulate(strip("FOAM", (0, 0, 2), 0.05), Flight(z=Sine(amplitude, 0.1)), duration=0.4, step=1e-3)
+
+
+def test_damage_grows_with_the_power_of_the_stress() -> None:
+    once, twice = flown(50.0), flown(100.0)
+    same, more = fatigue(once, once), fatigue(once, twice)
+    assert same is not None and more is not None
+    assert same.exponent == 5.0 and same.damage_ratio == pytest.approx(1.0)
+    assert more.damage_ratio == pytest.approx(2.0**5, rel=1e-3)
+    assert once.loads is not None
+    gentle = replace(once, loads=replace(once.loads, fatigue_exponent=3.0))
+    milder = fatigue(gentle, twice)
+    assert milder is not None and milder.damage_ratio == pytest.approx(2.0**3, rel=1e-3)
+    assert fatigue(once, replace(twice, loads=None)) is None
+
+
+def test_no_cycles_no_damage() -> None:
+    still = flown(1.0)
+    assert still.loads is not None
+    still = replace(still, loads=replace(still.loads, root_fibre=np.zeros(len(still.time))))
+    none = fatigue(still, still)
+    assert none is not None and none.flight.total == 0 and np.isnan(none.damage_ratio)
