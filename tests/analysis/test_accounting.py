@@ -180,6 +180,24 @@ def test_spread_along_a_specimen_on_an_arm() -> None:
     assert peak.spread_flight[1] == pytest.approx(np.hypot(1, LENGTH / (10 * G)) - 1)
 
 
+def test_shares_of_limits_over_time() -> None:
+    rate, acceleration, jerk = (np.random.default_rng(k).standard_normal((50, 3)) for k in range(3))
+    power = np.abs(rate[:, 0] * acceleration[:, 0])
+    uses = (
+        LimitUse("axis 3", "rate", "rad/s", 1.0, 2.0, 0.0),
+        LimitUse("axis 2", "jerk", "rad/s^3", 1.0, 4.0, 0.0),
+        LimitUse("axis 1", "rate", "rad/s", 1.0, np.inf, 0.0),
+        LimitUse("arm", "power", "W", 300 * power.max(), 500.0, 0.0),
+    )
+    axes = AxesResult(rate, rate, acceleration, rate, rate, np.zeros(50, bool), (), uses, jerk=jerk)
+    shares = axes.limit_shares
+    assert set(shares) == {"axis 3 rate", "axis 2 jerk", "arm power"}
+    np.testing.assert_allclose(shares["axis 3 rate"], np.abs(rate[:, 2]) / 2)
+    np.testing.assert_allclose(shares["axis 2 jerk"], np.abs(jerk[:, 1]) / 4)
+    np.testing.assert_allclose(shares["arm power"], 300 * power / 500)
+    assert "axis 2 jerk" not in replace(axes, jerk=None).limit_shares
+
+
 def test_spin_up_is_not_the_flight(pair: tuple[Response, Response]) -> None:
     """A machine's response from standstill to standstill, on the flight's clock: the same comparison."""
     flight, arm = reproduced()
