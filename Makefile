@@ -1,4 +1,5 @@
 # make demo: install and run the main job; make test: the tests; make check: what CI checks besides;
+# make docs: the pages that are made from the code;
 # make benchmark: how long commands take, and a comparison with Exudyn (minutes; nothing else should run).
 PYTHON ?= python3
 BIN := .venv/bin
@@ -6,7 +7,7 @@ EXAMPLE := examples/f16_8g_turn.toml
 # Compiled programs are kept here between test runs.
 CACHE := $(CURDIR)/.cache/jax
 
-.PHONY: demo test check benchmark lock clean
+.PHONY: demo test check docs benchmark lock clean
 
 demo: .venv/installed
 	$(BIN)/gbeam run $(EXAMPLE) --out out/f16_8g_turn
@@ -19,6 +20,10 @@ check: .venv/dev-installed
 	$(BIN)/ruff format --check src tests benchmarks examples
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+# After a change of the scenario's schema.
+docs: .venv/installed
+	$(BIN)/gbeam schema --markdown > docs/scenario.md
 
 benchmark: .venv/dev-installed
 	$(BIN)/python benchmarks/latency.py

@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
+from cyclopts import Parameter
+
 from gbeam.cli.options import Json
 
 
-def schema(*, json: Json = False) -> int:
-    """Print the JSON schema of scenario files, for editors.
+def schema(
+    *,
+    json: Json = False,
+    markdown: Annotated[
+        bool, Parameter(name="--markdown", negative="", show_default=False, help="The keys as a page to read instead.")
+    ] = False,
+) -> int:
+    """Print the JSON schema of scenario files, for editors; or every key, with unit, default and meaning.
 
     Parameters
     ----------
@@ -15,5 +25,10 @@ def schema(*, json: Json = False) -> int:
     """
     from gbeam.scenario import json_schema
 
+    if markdown and not json:
+        from gbeam.scenario.reference import reference
+
+        print(reference(), end="")
+        return 0
     print(json_schema())
     return 0

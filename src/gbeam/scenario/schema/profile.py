@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Generic, Literal, TypeVar, get_args
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import ConfigDict, Discriminator, Field, Tag
 
 from gbeam.scenario.schema.fields import (
     Acceleration,
@@ -26,8 +26,16 @@ L = TypeVar("L")  # the quantity itself
 S = TypeVar("S")  # its rate of change
 
 
+def _described(schema: dict[str, Any], model: type[Any]) -> None:
+    """Describe a profile of one quantity by the words of the profile of any, which pydantic leaves out."""
+    origin = model.__pydantic_generic_metadata__["origin"]
+    schema.setdefault("description", (origin or model).__doc__)
+
+
 class Smoothed(Table, Generic[L, S]):
     """What every profile has."""
+
+    model_config = ConfigDict(json_schema_extra=_described)
 
     smoothing: Time = Field(
         default=0.0, description="width of the kernel that rounds the profile's corners; 0 leaves them sharp"

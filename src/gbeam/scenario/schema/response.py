@@ -43,7 +43,7 @@ class Response(Table):
     stations: tuple[Position, ...] | None = Field(
         default=None,
         min_length=1,
-        description="positions from the root at which output is wanted; the tip if left out",
+        description="positions from the root for the output; the tip if left out",
     )
 
     @property

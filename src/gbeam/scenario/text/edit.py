@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
+from typing import Any
 
 from gbeam.errors import InputError
 from gbeam.scenario.text.diagnostics import ScenarioError
@@ -32,6 +33,10 @@ def edited(source: Source, table: Path, changes: Mapping[str, str]) -> str:
         If the table is written in a way that this cannot follow, such as over several lines.
     """
     lines, expected = source.text.split("\n"), parse(source.name, source.text)
+    node: Any = expected
+    for step in table:
+        node = node.setdefault(step, {})
+    node |= changes
     inside = {path[-1]: place for path, place in source.places.items() if path[:-1] == table}
     edits = []  # line, first column, last column, what stands there then
     for key, value in changes.items():
@@ -46,10 +51,6 @@ def edited(source: Source, table: Path, changes: Mapping[str, str]) -> str:
         line = lines[number - 1]
         lines[number - 1] = line[: first - 1] + text + line[last - 1 :]
     changed = "\n".join(lines)
-    node = expected
-    for step in table:
-        node = node.setdefault(step, {})
-    node |= changes
     try:
         sound = parse(source.name, changed) == expected
     except ScenarioError:

@@ -1,0 +1,179 @@
+"""The reference page of the scenario file, docs/scenario.md, from the schema: every key with its unit and default."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from gbeam.scenario.template import json_schema
+from gbeam.scenario.text.kinds import KINDS
+
+_INTRODUCTION = """\
+# The scenario file, key by key
+
+This page is written by `gbeam schema --markdown`; `gbeam schema` prints the same as a JSON schema for editors, and
+`gbeam new` a commented scenario to start from. A scenario is TOML, or JSON. "–" is the default of a key that may be
+left out and has no value then. `--set KEY=VALUE` of the command line names a key by its path, such as
+`motion.centrifuge.arm="3.3 m"` or `beam.masses[0].mass="0.1 kg"`.
+
+## Quantities
+
+A quantity is text with a unit, or a number in the SI unit. Any unit of the right dimension is read: `g` is
+9.80665 m/s² where an acceleration is expected and a gram where a mass is; 1 Hz is 2π rad/s where a rate of turning is
+expected.
+
+| quantity | SI unit | for example |
+|---|---|---|
+"""
+_PROFILES = """\
+## Profiles
+
+How a quantity changes over time, such as `{ profile = "constant", level = "6 g" }`. Where a profile of acceleration is
+expected its values are accelerations and its rates are jerks; likewise for the other quantities:
+
+| quantity | its rate of change |
+|---|---|
+"""
+_OF = "-of-"  # between the name of a profile and its quantity, in the schema
+
+
+def reference() -> str:
+    """Return the page: Markdown, one table of keys for every table of a scenario."""
+    return _Page(json.loads(json_schema())).text()
+
+
+class _Page:
+    """Walks the schema from the top and collects the places at which each table may stand."""
+
+    def __init__(self, schema: dict[str, Any]) -> None:
+        self.tables: dict[str, dict[str, Any]] = schema["$defs"]
+        self.top = schema
+        self.places: dict[str, list[str]] = {}
+        self.profiles: dict[str, None] = {}
+        self._visit(schema, "")
+
+    def text(self) -> str:
+        """The page."""
+        quantities = "".join(f'| {name} | {kind.unit or "–"} | `"{kind.example}"` |\n' for name, kind in KINDS.items())
+        top = "## The file\n\n" + self._keys(self.top)
+        tables = [self._table(name) for name in self.places]
+        return _INTRODUCTION + "\n".join([quantities, top, *tables, self._profiles()])
+
+    def _visit(self, table: dict[str, Any], path: str) -> None:
+        for key, schema in table["properties"].items():
+            inner = f"{path}.{key}" if path else key
+            if "additionalProperties" in schema:  # tables by any name
+                schema, inner = schema["additionalProperties"], f"{inner}.NAME"
+            for name, listed in _named(schema):
+                if _OF in name:
+                    self.profiles[name] = None
+                    continue
+                place = f"[[{inner}]]" if listed else f"[{inner}]"
+                known = self.places.setdefault(name, [])
+                if place not in known:
+                    known.append(place)
+                    self._visit(self.tables[name], inner)
+
+    def _heading(self, name: str) -> str:
+        first, *others = self.places[name]
+        key, word = self._kind(name)
+        return ", ".join([first, *([f'{key} = "{word}"'] if key else []), *others])
+
+    def _kind(self, name: str) -> tuple[str, str]:
+        """The key by which a table is told from others at its place, and its word; empty where it is the only one."""
+        properties = self.tables[name]["properties"]
+        words = ((key, properties.get(key, {}).get("const")) for key in ("kind", "shape", "profile"))
+        return next(((key, word) for key, word in words if word), ("", ""))
+
+    def _table(self, name: str) -> str:
+        table = self.tables[name]
+        return f"### {self._heading(name)}\n\n{table['description']}\n\n{self._keys(table)}"
+
+    def _keys(self, table: dict[str, Any], of: str = "") -> str:
+        rows = ["| key | value | default | meaning |", "|---|---|---|---|"]
+        for key, schema in table["properties"].items():
+            value = self._value(schema.get("additionalProperties", schema), of)
+            default = "required" if key in table.get("required", ()) else _default(schema.get("default"))
+            rows.append(" | ".join([f"| `{key}`", value, default, f"{_escaped(schema['description'])} |"]))
+        return "\n".join(rows) + "\n"
+
+    def _value(self, schema: dict[str, Any], of: str) -> str:
+        """What may stand there, in words."""
+        if "x-quantity" in schema:
+            return self._quantity(schema, of)
+        if "$ref" in schema:
+            name = _target(schema)
+            quantity = name.partition(_OF)[2].replace("-", " ")
+            if quantity:
+                return f"[profile](#profiles) of {quantity}"
+            return f"[{self._kind(name)[1] or 'table'}](#{_anchor(self._heading(name))})"
+        if "enum" in schema or "const" in schema:
+            return ", ".join(f'`"{word}"`' for word in schema.get("enum", [schema.get("const")]))
+        choices = [each for each in schema.get("anyOf", schema.get("oneOf", [])) if each.get("type") != "null"]
+        if choices:
+            words = list(dict.fromkeys(self._value(each, of) for each in choices))
+            return f"{words[0]}; or a list" if words[1:] == [f"list of: {words[0]}"] else " or ".join(words)
+        if "prefixItems" in schema:
+            return f"list of {len(schema['prefixItems'])}: {self._value(schema['prefixItems'][0], of)}"
+        if schema["type"] == "array":
+            return f"list of: {self._value(schema['items'], of)}"
+        least = f", {schema['minimum']} or more" if "minimum" in schema else ""
+        return {"string": "text", "boolean": "`true` or `false`", "integer": "whole number"}[schema["type"]] + least
+
+    def _quantity(self, schema: dict[str, Any], of: str) -> str:
+        name, number, others = schema["x-quantity"], schema["anyOf"][0], schema["anyOf"][1:]
+        sign = ", positive" if "exclusiveMinimum" in number else ", 0 or more" if "minimum" in number else ""
+        words = "".join(f', or `"{each["const"]}"`' for each in others if "const" in each)
+        if of and name == of:
+            return "the quantity" + words
+        if of and name == self._rate_of(of):
+            return f"its rate of change{sign}{words}"
+        unit = f" in {KINDS[name].unit}" if KINDS[name].unit else ""
+        return f"{name}{unit}{sign}{words}"
+
+    def _profiles(self) -> str:
+        """Every profile once: they are the same for all quantities."""
+        quantities = list(dict.fromkeys(name.partition(_OF)[2] for name in self.profiles))
+        spoken = [name.replace("-", " ") for name in quantities]
+        parts = [_PROFILES + "".join(f"| {name} | {self._rate_of(name)} |\n" for name in spoken)]
+        for name in self.profiles:
+            if name.endswith(f"{_OF}{quantities[0]}"):
+                heading, table = f'profile = "{self._kind(name)[1]}"', self.tables[name]
+                parts.append(f"### {heading}\n\n{table['description']}\n\n{self._keys(table, spoken[0])}")
+        return "\n".join(parts).replace(f"[profile](#profiles) of {spoken[0]}", "[profile](#profiles)")
+
+    def _rate_of(self, quantity: str) -> str:
+        """Name of a quantity's rate of change, which the flanks of a trapezoid have."""
+        trapezoid = self.tables[f"Trapezoid{_OF}{quantity.replace(' ', '-')}"]
+        return str(trapezoid["properties"]["jerk"]["x-quantity"])
+
+
+def _named(schema: dict[str, Any], listed: bool = False) -> Iterator[tuple[str, bool]]:
+    """The tables that may stand at a key, and whether in a list."""
+    if "$ref" in schema:
+        yield _target(schema), listed
+    for each in schema.get("anyOf", schema.get("oneOf", [])):
+        yield from _named(each, listed)
+    if "items" in schema:
+        yield from _named(schema["items"], True)
+
+
+def _target(schema: dict[str, Any]) -> str:
+    return str(schema["$ref"]).rpartition("/")[2]
+
+
+def _default(value: Any) -> str:
+    if value is None or value in ("", [], {}):
+        return "–"
+    return f"`{json.dumps(value)}`" if not isinstance(value, dict) else "–"
+
+
+def _escaped(text: str) -> str:
+    return text.replace("|", "\\|")
+
+
+def _anchor(heading: str) -> str:
+    """The anchor that GitHub gives a heading."""
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
