@@ -32,11 +32,11 @@ def seen(m: Centrifuge, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, Axes, Ba
 
 def machine(
     raw: Profile, span: tuple[float, float], *, smoothing: float = 0.0, gravity: bool = False, sign: int = 1,
-    arm: float = R, inverse: str = "exact",
+    arm: float = R, inverse: str = "exact", idle: float | None = None,
 ) -> Centrifuge:  # fmt: skip
     return Centrifuge(
         Flight(acceleration=raw), arm=arm, control_point=0.15, inverse=inverse, gravity=gravity, smoothing=smoothing,
-        mounting="upright" if sign == 1 else "inverted", span=span,
+        idle=idle, mounting="upright" if sign == 1 else "inverted", span=span,
     )  # fmt: skip
 
 
@@ -97,3 +97,22 @@ def test_a_maximum_can_be_followed_where_it_is_flat_enough(frequency: float, arm
     machine(raw, (0.6, 3.4), smoothing=enough, arm=arm)
     with pytest.raises(InputError, match="the arm allows a²/R"):
         machine(raw, (0.6, 3.4), smoothing=0.6 * enough, arm=arm)
+
+
+def test_a_return_that_no_motion_follows_is_left_out_by_name_unless_it_is_the_flight() -> None:
+    """A quick pull to 2.5 g after a slow one to 6 g: −ä = 2j/T is four times a²/R at its top."""
+    slow, quick = (
+        trapezoid(5 * G, jerk=2.5 * G, start=0.5, hold=1.0),
+        trapezoid(1.5 * G, jerk=7.5 * G, start=6.5, hold=0),
+    )
+    raw, t = vector(z=Sum((constant(G), slow, quick))), np.linspace(0, 8, 4001)
+    options = {"smoothing": 0.3, "gravity": True, "idle": 1.4 * G}
+    spin = machine(raw, (0.0, 8.0), **options)
+    reference, actual, *_ = seen(spin, t)
+    (left,) = (episode for episode in spin.episodes() if episode.reason == "left out")
+    assert left.flight_peak == pytest.approx(2.5 * G, rel=1e-3) and 6.5 < left.start < left.end < 6.9
+    np.testing.assert_allclose(np.linalg.norm(reference[t > 6], axis=1), 1.4 * G)
+    assert np.abs(actual - reference).max() < 1e-5 * 6 * G
+    assert all(each.reason == "below idle" for each in machine(raw, (0.0, 8.0), inverse="flat", **options).episodes())
+    with pytest.raises(InputError, match="too small for the exact inverse"):
+        machine(vector(z=Sum((constant(G), quick))), (0.0, 8.0), **options)

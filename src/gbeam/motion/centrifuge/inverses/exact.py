@@ -28,7 +28,8 @@ from gbeam.numerics.series import sin_cos, sqrt, square
 # Of the horizontal load: refined until this is reached. The third derivative of a rounded record jumps wherever a knot
 # enters the kernel, and the collocation is of third order there; on a smooth load it is far better.
 TRACKING = 1e-7
-ACCEPTED = 1e-2  # what is still a solution, with a warning; where more is missed the load cannot be followed
+ACCEPTED = 2e-2  # what is still a solution, with a warning
+_LEFT_OUT = 1e-2  # where the first steps miss more, a return above idle is left out
 _STEPS = (8e-3, 4e-3, 2e-3, 1e-3, 5e-4)  # s between knots
 _FIRST = 2  # of these show where the load cannot be followed
 _MOST = 60_000  # pieces
@@ -93,7 +94,7 @@ def unfollowable(target: Target, geometry: Geometry) -> list[tuple[float, float]
     for step in _STEPS[:_FIRST]:
         grid = Grid(*_times(target), step, _POINTS)
         lag, errors = _solve(grid, target, geometry, lag)
-    bad, followed = ~(errors.ravel() <= ACCEPTED), ~np.asarray(target.not_followed(grid.time))
+    bad, followed = ~(errors.ravel() <= _LEFT_OUT), ~np.asarray(target.not_followed(grid.time))
     size = np.linalg.norm(target.flight(np.clip(grid.time, *target.span)), axis=1)
     above, peak = true_runs(size > PARTED * float(target.idle)), int(np.argmax(size))
     returns = [run for run in above if bad[run].any() and followed[run].any() and not run.start <= peak < run.stop]
