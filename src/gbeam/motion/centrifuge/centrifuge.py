@@ -55,7 +55,8 @@ class Centrifuge(AxisMotion):
     smoothing : float or None
         Width of the kernel that rounds the target's corners, s; None or 0 leaves them.
     mounting : str
-        ``upright`` or ``inverted``: which of the two mountings of the specimen in the gimbals.
+        Under a load across the beam its tip points along the arm's motion (``upright``) or against it (``inverted``):
+        docs/mounting.svg.
     start : str
         ``rest`` or ``pre-yawed``: from standstill to standstill; ``idle``: the motion begins and ends in the state
         that it has at the flight's first and last time. See :class:`gbeam.motion.centrifuge.ends.Ends`.

@@ -145,7 +145,9 @@ class Centrifuge(Table):
         default=None, description="time from the flight's last time to standstill; left out, likewise"
     )
     mounting: Literal["upright", "inverted"] = Field(
-        default="upright", description="which of the two ways the specimen sits in the gimbals"
+        default="upright",
+        description="which of the two ways the specimen sits in the gimbals. Under a load across it, its tip points "
+        "along the arm's motion (upright) or against it (inverted): docs/mounting.svg",
     )
     limits: Limits = Field(
         default_factory=Limits, description="what the machine can do: { axis1, axis2, axis3, inertia, power }"
