@@ -16,6 +16,7 @@ from gbeam.results.result import Flags, Floats
 _DIP = 0.9  # of the lower of two maxima: a load that falls further between them makes them two peaks
 _SLACK = 1e-9  # of idle: a load held at it is not above it
 _BOUND, _BEYOND = 0.99, 1.001  # shares of a limit between which it is what hinders the axis
+_MOST = 2  # limits named
 _NEAR = 0.25  # s: so far from a stretch a limit may be used up because of it
 _CORNER, _BELOW = "corner", "below idle"
 _NAMES = (_CORNER, _BELOW, "gimbals", "left out")
@@ -157,11 +158,15 @@ def _widened(time: Floats, run: slice) -> slice:
 
 
 def _named(reason: str, shares: Mapping[str, Floats], around: slice) -> str:
-    """The reason; in place of a corner the machine's limits that are used up around it."""
+    """The reason; in place of a corner the machine's limits that are used up around it, those that are so longest."""
     if reason != _CORNER:
         return reason
-    used = {name: float(share[around].max()) for name, share in shares.items()}
-    return ", ".join(name for name, share in used.items() if _BOUND <= share <= _BEYOND) or _CORNER
+    used = {
+        name: int(np.count_nonzero(share[around] >= _BOUND))
+        for name, share in shares.items()
+        if _BOUND <= share[around].max() <= _BEYOND
+    }
+    return ", ".join(sorted(used, key=lambda name: -used[name])[:_MOST]) or _CORNER
 
 
 def _peak(

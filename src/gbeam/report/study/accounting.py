@@ -10,6 +10,7 @@ from gbeam.results.accounting import Accounting, LoadPeak, PeakPair
 from gbeam.results.verdict import change, in_g, percent
 
 UNITS = {"tip": "m", "root_force": "N", "root_moment": "N m", "stress": "Pa"}
+SHORTEST = 0.005  # s, of a stretch that is listed
 SHOWN = 8  # peaks and stretches listed; a rough record has hundreds
 
 
@@ -81,7 +82,9 @@ def lines(accounting: Accounting) -> Iterator[str]:
         root, tip = (max((peak.spread[i] for peak in accounting.peaks), key=abs) for i in range(2))
         yield f"load at these peaks over the control point's: root {change(1 + root)}, tip {change(1 + tip)}"
     # Those below idle are many, and the machine's own lines have them.
-    stretches = [each for each in accounting.not_followed if each.reason != "below idle"]
+    stretches = [
+        each for each in accounting.not_followed if each.reason != "below idle" and each.end - each.start > SHORTEST
+    ]
     longest = sorted(stretches, key=lambda each: each.start - each.end)[:SHOWN]
     for each in sorted(longest, key=lambda each: each.start):
         yield (
