@@ -150,7 +150,7 @@ class Turning:
 
     def acceleration(self, y: np.ndarray, yd: np.ndarray, torque: float) -> np.ndarray:
         if not self.structure.linear:
-        return np.asarray(accelerations(self.equations, y[None], yd[None], (np.array([torque]), None)))[0]
+            return np.asarray(accelerations(self.equations, y[None], yd[None], (np.array([torque]), None)))[0]
         # The residual is linear in ÿ.
         rest = self.residual(y, yd, 0 * y, torque)
         mass = np.stack([self.residual(y, yd, each, torque) - rest for each in np.eye(len(y))], axis=1)
