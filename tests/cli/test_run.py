@@ -58,6 +58,34 @@ def test_json_contract(fast: Path, gbeam: Call) -> None:
     assert not Path("out").exists()
 
 
+def test_stress_yield_and_fatigue(fast: Path, gbeam: Call) -> None:
+    """A steady 6 g: M = m g L²/2 at the root, σ = 6 M/(b h²); a margin of one where the strength is twice that."""
+    stress = 6 * (2700 * 0.02 * 0.004 * 6 * 9.80665 * 0.3**2 / 2) / (0.02 * 0.004**2)
+    material = f"beam.material.yield_strength={2 * stress}"
+    answer = gbeam("run", fast, "--json", "--set", material, "--set", "beam.material.fatigue_exponent=3")
+    flight = answer.json["motions"]["flight"]
+    loads, tip = flight["loads"], flight["tip"]
+    assert set(tip["size"]) == {"max_abs", "time_of_max"} and tip["size"]["max_abs"] >= tip["z"]["max_abs"]
+    assert [each["at"] for each in flight["stations"]] == [0.3]
+    assert flight["stations"][0]["size"] == tip["size"]
+    assert loads["stress"]["max"] == pytest.approx(stress, rel=2e-3) and loads["stress"]["station"] == 0
+    assert loads["stress"]["tension"]["max"] == pytest.approx(stress, rel=2e-3)
+    assert loads["stress"]["compression"]["min"] == pytest.approx(-stress, rel=2e-3)
+    assert loads["yield_strength"] == pytest.approx(2 * stress)
+    assert loads["margin"]["min"] == pytest.approx(1, abs=4e-3) and loads["margin"]["station"] == 0
+    root, end = loads["sections"]
+    assert root["margin"] == loads["margin"]["min"] and end["margin"] is None  # the tip carries nothing
+    assert root["moment"]["size"] == loads["root_moment"]["size"]
+    fatigue = answer.json["comparisons"][0]["fatigue"]
+    assert fatigue["exponent"] == 3 and set(fatigue["machine"]) == {"cycles", "largest_range", "equivalent_range"}
+    said = gbeam("run", fast, "--set", f"beam.material.yield_strength={stress / 2}")
+    words = " ".join(said.out.split())
+    assert said.status == 0 and "ABOVE YIELD: margin -0.5" in words and "above the yield strength" in words
+    resting = gbeam("static", fast, "--json", "--set", material).json["motions"]["flight"]["loads"]
+    assert resting["margin"][0] == pytest.approx(1, abs=4e-3) and len(resting["margin"]) == len(resting["stations"])
+    assert "margin on yield 1" in gbeam("static", fast, "--set", material).out
+
+
 def test_accepted_or_not(fast: Path, gbeam: Call) -> None:
     accept = ["--set", "motion.spin.accept.peaks=1 %", "--set", "motion.spin.accept.tip=2 %"]
     good = gbeam("run", fast, *accept, "--json")

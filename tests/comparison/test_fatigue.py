@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gbeam import Flight, Response, Sine, simulate
+from gbeam import Flight, Response, Sine, compare, simulate
 from gbeam.analysis.imitation.fatigue import fatigue, stress_cycles
 
 from ..analysis.helpers import strip
@@ -49,8 +49,25 @@ def test_damage_grows_with_the_power_of_the_stress() -> None:
 
 
 def test_no_cycles_no_damage() -> None:
+    """A steady stress has rounding errors, which are no cycles."""
     still = flown(1.0)
     assert still.loads is not None
-    still = replace(still, loads=replace(still.loads, root_fibre=np.zeros(len(still.time))))
+    steady = 1e7 * (1 + 1e-15 * np.random.default_rng(0).normal(size=len(still.time)))
+    still = replace(still, loads=replace(still.loads, root_fibre=steady))
     none = fatigue(still, still)
     assert none is not None and none.flight.total == 0 and np.isnan(none.damage_ratio)
+
+
+def test_peaks_of_a_comparison_lie_between_samples() -> None:
+    """Of the response where they lie in the flight's time, else of the samples there."""
+    once = flown(50.0)
+    whole = compare(once, once).peaks
+    loads = once.peaks.loads
+    assert loads is not None and whole["tip"].machine == once.peaks.max_size
+    assert whole["root_moment"].flight == loads.moment[0].size.value
+    assert whole["stress"].flight == loads.stress.value.max()
+    early = replace(once, time=once.time + 10.0)  # as if the response's peaks lay in a spin-up, before
+    shifted = compare(early, early).peaks
+    for name, pair in shifted.items():
+        assert pair.flight == pytest.approx(whole[name].flight, rel=1e-3)
+        assert pair.time_flight == pytest.approx(whole[name].time_flight + 10.0, abs=1e-3)

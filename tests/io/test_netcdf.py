@@ -15,6 +15,7 @@ from gbeam.errors import InputError
 from gbeam.io import netcdf as store
 from gbeam.results.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
 from gbeam.results.comparison import Comparison
+from gbeam.results.fatigue import Fatigue, StressCycles
 from gbeam.results.machine import AxesResult, LimitUse, Shortfall
 from gbeam.results.measures import RootHistory, RootLoads, Sizes, Statistics
 from gbeam.results.response import BaseMotion, HubResult, Peaks, Response
@@ -43,6 +44,11 @@ SHORTFALLS = (
     ),
 )
 
+FATIGUE = Fatigue(
+    3.0,
+    StressCycles(np.array([3.0, 2.0]), np.zeros(2), np.array([1.0, 0.5])),
+    StressCycles(np.array([4.0, 3.0, 3.0]), np.ones(3), np.ones(3)),
+)
 PAIRS = {"tip": PeakPair(2.0, 2.1, 0.3, 0.4), "stress": PeakPair()}
 ACCOUNTING = Accounting(
     0.05, 4.0, 14.0, (0.0, 1.0), 0.5,
@@ -99,7 +105,7 @@ def study() -> Study:
     root = RootLoads(*(abs(_random(3)) for _ in range(6)), 1.0, 2.0, 3.0, history)
     comparison = Comparison(
         "flight", "spin", TIME, _random(T, 3), ~held, *(abs(_random(3)) for _ in range(4)), PAIRS, ACCOUNTING,
-        {"tip": 0.02}, stations=split, root=root,
+        {"tip": 0.02}, stations=split, root=root, fatigue=FATIGUE,
     )  # fmt: skip
     return Study("a title", responses, (comparison,))
 
@@ -148,6 +154,13 @@ def test_histories_at_the_root_of_a_comparison(study: Study, tree: xr.DataTree) 
     for name in ("force_flight", "force_centrifuge", "moment_flight", "moment_centrifuge"):
         np.testing.assert_array_equal(compared[f"root_{name}"], getattr(history, name))
         assert compared[f"root_{name}"].attrs["frame"].startswith("S: ")
+
+
+def test_stress_cycles(tree: xr.DataTree) -> None:
+    spin = tree["comparisons/spin"]
+    np.testing.assert_array_equal(spin["stress_range_machine"], FATIGUE.machine.range)
+    np.testing.assert_array_equal(spin["stress_count_flight"], FATIGUE.flight.count)
+    assert float(spin["damage_ratio"]) == pytest.approx((4**3 + 2 * 3**3) / (3**3 + 0.5 * 2**3))
 
 
 def test_one_name_for_the_torque_of_a_drive(study: Study) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from gbeam.io.groups import AXIS, Group, Variable, coordinate, flags, variable, words
 from gbeam.results.accounting import Accounting, PeakPair
 from gbeam.results.comparison import Comparison
+from gbeam.results.fatigue import Fatigue
 from gbeam.results.measures import RootHistory, Shock, Statistics
 
 _A, _TA = ("axis",), ("time", "axis")
@@ -45,10 +46,25 @@ def comparison_group(comparison: Comparison) -> Group:
     if comparison.shock is not None:
         data |= _shock(comparison.shock)
         coordinates |= coordinate("frequency", comparison.shock.frequency, "Hz", "frequency of the oscillators")
+    if comparison.fatigue is not None:
+        data |= _fatigue(comparison.fatigue)
     data |= _whole_flight(comparison.peaks) | _accounting(comparison.accounting)
     accepted = {None: "", True: "true", False: "false"}[comparison.accepted]
     attrs = {"flight": flight, "centrifuge": centrifuge, "verdict": comparison.verdict, "accepted": accepted}
     return Group(data, coordinates, attrs)
+
+
+def _fatigue(fatigue: Fatigue) -> dict[str, Variable]:
+    exponent = {"exponent": fatigue.exponent}
+    data = {"damage_ratio": variable((), fatigue.damage_ratio, "1", "damage of the machine over flight's", **exponent)}
+    for place in ("flight", "machine"):
+        cycles, dims = getattr(fatigue, place), (f"cycle_{place}",)
+        if not cycles.total:  # netCDF takes a dimension of length zero for an unlimited one
+            continue
+        data[f"stress_range_{place}"] = variable(dims, cycles.range, "Pa", f"range of the root's stress cycle, {place}")
+        data[f"stress_mean_{place}"] = variable(dims, cycles.mean, "Pa", "its mean")
+        data[f"stress_count_{place}"] = variable(dims, cycles.count, "1", "1 of a full cycle, 0.5 of a half")
+    return data
 
 
 def _whole_flight(peaks: Mapping[str, PeakPair]) -> dict[str, Variable]:

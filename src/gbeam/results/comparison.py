@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from gbeam.results.accounting import CRITERIA, Accounting, Criterion, PeakPair
+from gbeam.results.fatigue import Fatigue
 from gbeam.results.measures import Mismatch, RootLoads, Shock, Statistics
 from gbeam.results.result import Figured, Flags, Floats
 from gbeam.results.verdict import verdict
@@ -47,6 +48,8 @@ class Comparison(Figured):
         What the root carries in both environments.
     shock : Shock or None
         Shock response spectra of the tip's acceleration.
+    fatigue : Fatigue or None
+        Cycles of the stress at the root in both runs, and their damage.
     """
 
     flight: str
@@ -65,6 +68,7 @@ class Comparison(Figured):
     mismatch: Mismatch | None = None
     root: RootLoads | None = None
     shock: Shock | None = None
+    fatigue: Fatigue | None = None
 
     @property
     def relative(self) -> Floats:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from gbeam.analysis.imitation.accounting import History, account
+from gbeam.analysis.imitation.fatigue import fatigue
 from gbeam.analysis.imitation.peak_pairs import peak_pairs
 from gbeam.checks import positive
 from gbeam.errors import InputError
@@ -103,6 +104,7 @@ def compare(
         mismatch=_mismatch(covered, centrifuge, gradient, during),
         root=root,
         shock=shock,
+        fatigue=fatigue(flight, centrifuge),
     )
 
 

@@ -9,7 +9,7 @@ from gbeam.results.fatigue import Fatigue, StressCycles
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 
-_NOTHING = 1e-9  # of the largest range: a smaller cycle is rounding
+_NOTHING = 1e-9  # of the largest stress: a smaller cycle is rounding
 
 
 def fatigue(flight: Response, machine: Response) -> Fatigue | None:
@@ -43,5 +43,5 @@ def stress_cycles(time: Floats, stress: Floats) -> StressCycles:
 
     rows = [row[:3] for row in rainflow.extract_cycles(turning_points(time, stress).tolist())]
     cycles = np.array(rows, dtype=float).reshape(-1, 3)
-    cycles = cycles[cycles[:, 0] > _NOTHING * cycles[:, 0].max(initial=0.0)]
+    cycles = cycles[cycles[:, 0] > _NOTHING * np.abs(stress).max()]
     return StressCycles(*cycles[np.argsort(-cycles[:, 0], kind="stable")].T)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from gbeam.analysis.response.peaks import vector_peaks
+from gbeam.numerics.peaks import maxima, near_maxima, seven_point
 from gbeam.results.accounting import PeakPair
 from gbeam.results.response import Response
-from gbeam.results.result import Flags, Floats
+from gbeam.results.result import Flags
 
 
 def peak_pairs(flight: Response, centrifuge: Response, during: slice) -> dict[str, PeakPair]:
@@ -31,17 +33,38 @@ def peak_pairs(flight: Response, centrifuge: Response, during: slice) -> dict[st
 
 
 def _peaks(response: Response, part: slice | Flags) -> dict[str, tuple[float, float]]:
-    """Largest sizes and their times over some of a response's samples."""
-    time, loads = response.time[part], response.loads
-    sizes = {"tip": np.linalg.norm(response.tip[part], axis=1)}
-    if loads is not None:
-        sizes["root_force"] = np.linalg.norm(loads.root_force[part], axis=1)
-        sizes["root_moment"] = np.linalg.norm(loads.root_moment[part], axis=1)
-        sizes["stress"] = loads.stress[part].max(axis=1)
+    """Largest sizes between steps and their times, where they lie in some of a response's time."""
+    time, of = response.time[part], response.peaks
+    known = {"tip": (of.max_size, of.time_of_max_size)}
+    samples = {"tip": lambda: vector_peaks(time, response.tip[part])}
+    if response.loads is not None:
+        loads = response.loads
+        stress = np.concatenate([loads.stress_tension[part], -loads.stress_compression[part]], axis=1)
+        samples |= {
+            "root_force": lambda: vector_peaks(time, loads.section_force[part, 0]),
+            "root_moment": lambda: vector_peaks(time, loads.section_moment[part, 0]),
+            "stress": lambda: maxima(time, stress, *seven_point(time, stress, near_maxima(time, stress))),
+        }
+        if not np.isfinite(stress).all():
+            del samples["stress"]
+    if of.loads is not None:
+        worst = int(np.argmax(of.loads.stress.value))
+        extremes = {
+            "root_force": (of.loads.force.size, 0),
+            "root_moment": (of.loads.moment.size, 0),
+            "stress": (of.loads.stress, worst),
+        }
+        known |= {name: (float(e.value[k]), float(e.time[k])) for name, (e, k) in extremes.items()}
 
-    def peak(size: Floats) -> tuple[float, float]:
-        i = int(np.argmax(size))
-        return (float(size[i]), float(time[i])) if np.isfinite(size).all() else (np.nan, np.nan)
+    def peak(name: str) -> tuple[float, float]:
+        value, when = known.get(name, (np.nan, np.nan))
+        if np.isfinite(value) and time[0] <= when <= time[-1]:
+            return value, when
+        if name not in samples:
+            return np.nan, np.nan
+        # Of all steps the largest lies elsewhere, such as in the spin-up.
+        values, times = samples[name]()
+        most = int(np.argmax(values))
+        return float(values[most]), float(times[most])
 
-    known = {name: peak(size) for name, size in sizes.items()}
-    return {name: known.get(name, (np.nan, np.nan)) for name in ("tip", "root_force", "root_moment", "stress")}
+    return {name: peak(name) for name in ("tip", "root_force", "root_moment", "stress")}

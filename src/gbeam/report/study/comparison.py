@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
 from gbeam.report.study import accounting
-from gbeam.report.words import xyz
+from gbeam.report.words import number, xyz
 from gbeam.results.comparison import Comparison
+from gbeam.results.fatigue import Fatigue, StressCycles
 from gbeam.results.measures import Mismatch, RootLoads, Sizes
 from gbeam.results.verdict import metres, percent
 
@@ -16,7 +18,7 @@ _FELT = 0.01  # of flight's peak: a mismatch that bends the tip by less is no re
 
 
 def to_json(comparison: Comparison) -> dict[str, Any]:
-    """Comparison as JSON, with those of ``stations``, ``mismatch``, ``root`` and ``shock`` that it has; SI."""
+    """Comparison as JSON, SI: ``stations``, ``mismatch``, ``root``, ``fatigue``, ``shock`` where it has them."""
     values = {
         "flight": comparison.flight,
         "centrifuge": comparison.centrifuge,
@@ -45,6 +47,8 @@ def to_json(comparison: Comparison) -> dict[str, Any]:
         values["mismatch"] = _mismatch(comparison.mismatch)
     if comparison.root is not None:
         values["root"] = _root(comparison.root)
+    if comparison.fatigue is not None:
+        values["fatigue"] = _fatigue(comparison.fatigue)
     if comparison.shock is not None:
         values["shock"] = {
             "quality": comparison.shock.quality,
@@ -72,6 +76,19 @@ def _root(root: RootLoads) -> dict[str, Any]:
     }
 
 
+def _fatigue(fatigue: Fatigue) -> dict[str, Any]:
+    """Numbers of cycles and their ranges, Pa."""
+    values: dict[str, Any] = {"exponent": fatigue.exponent, "damage_ratio": fatigue.damage_ratio}
+    for place in ("flight", "machine"):
+        cycles: StressCycles = getattr(fatigue, place)
+        values[place] = {
+            "cycles": cycles.total,
+            "largest_range": cycles.largest,
+            "equivalent_range": cycles.equivalent_range(fatigue.exponent),
+        }
+    return values
+
+
 def lines(comparison: Comparison) -> Iterator[str]:
     """What was accepted, load peaks, differences, vibration, and a bound on what the mismatch field can do."""
     main = comparison.main_axis
@@ -84,6 +101,13 @@ def lines(comparison: Comparison) -> Iterator[str]:
         yield (
             f"while the target is the flight's load: tip differs along {'xyz'[main]} by up to "
             f"{metres(comparison.max_difference[main])}, {percent(comparison.relative[main])} of its peak{root}"
+        )
+    if comparison.fatigue is not None and math.isfinite(comparison.fatigue.damage_ratio):
+        fatigue = comparison.fatigue
+        ranges = (1e-6 * each.largest for each in (fatigue.flight, fatigue.machine))
+        yield (
+            "stress cycles of the root up to {:.4g} MPa in flight, {:.4g} MPa on the centrifuge: ".format(*ranges)
+            + f"{number(fatigue.damage_ratio, 3)} times flight's damage (Wöhler exponent {fatigue.exponent:g})"
         )
     if comparison.stations is not None:
         both = comparison.stations.flight, comparison.stations.centrifuge
