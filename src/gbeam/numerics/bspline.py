@@ -33,6 +33,10 @@ def _matrix() -> Floats:
 
 
 _BASIS = _matrix()
+# Row i: the i-th coefficient in Bernstein's polynomials of the fifth degree, from those of the powers of x.
+_BERNSTEIN = np.array([[comb(i, k) / comb(DEGREE, k) for k in range(PIECE)] for i in range(PIECE)])
+_HALVED = np.array([comb(PIECE, j) for j in range(PIECE + 1)]) / 2**DEGREE  # B(u) in those of half the width
+_ROUNDING = 1e-9  # of a piece
 
 
 @record
@@ -86,43 +90,43 @@ class Grid:
     """
 
     def __init__(self, first: float, last: float, step: float, points: Floats) -> None:
-        self.pieces = max(int(np.ceil((last - first) / step)), 1)
-        self.start, self.step = first, (last - first) / self.pieces
+        self.pieces = max(int(np.ceil((last - first) / step - _ROUNDING)), 1)
+        self.start, self.end, self.step = first, last, (last - first) / self.pieces
         self.size = self.pieces + DEGREE
         self.points = points
         self.time = (first + self.step * (np.arange(self.pieces)[:, None] + points)).ravel()
-        self.first = np.repeat(np.arange(self.pieces), points.size)  # first coefficient that acts there
 
     def rows(self, order: int) -> Floats:
         """Weights (points, 6) of the `order`-th time derivative at the points of any piece."""
-        k = np.arange(order, PIECE)
-        factor = np.array([factorial(int(n)) / factorial(int(n) - order) for n in k])
-        return np.asarray((factor * self.points[:, None] ** (k - order)) @ _BASIS[order:] / self.step**order)
+        return np.asarray(self.points[:, None] ** np.arange(PIECE) @ self._powers(order))
 
-    def weights(self, order: int) -> Floats:
-        """The same for every time, (times, 6)."""
-        return np.tile(self.rows(order), (self.pieces, 1))
+    def matrix(self, order: int) -> Any:
+        """The same for every time, a sparse matrix (times, size)."""
+        return self._on_pieces(self.rows(order))
 
-    def windows(self, c: Floats) -> Floats:
-        """Coefficients (size, k) piece by piece, (pieces, 6·k)."""
-        pieces = np.lib.stride_tricks.sliding_window_view(c, PIECE, axis=0)
-        return pieces.swapaxes(1, 2).reshape(self.pieces, -1)
+    def hull(self, order: int) -> Any:
+        """Six weights a piece, sparse (6 · pieces, size), of numbers between which the derivative lies on it.
 
-    def hull(self, order: int, parts: int) -> Floats:
-        """Weights (m, 6) of numbers between which the `order`-th time derivative lies on a piece.
-
-        They are its Bernstein coefficients on each of `parts` equal parts of a piece.
+        They are its Bernstein coefficients of the fifth degree, whatever the order: a sum of derivatives lies between
+        the sums of them.
         """
-        degree, rows = DEGREE - order, []
-        powers = np.array([factorial(k + order) / factorial(k) for k in range(degree + 1)])[:, None] * _BASIS[order:]
-        for part in range(parts):
-            # Powers of x = (part + u)/parts in powers of u, then in Bernstein polynomials of u.
-            shifted = [
-                sum(comb(n, j) * part ** (n - j) / parts**n * powers[n] for n in range(j, degree + 1))
-                for j in range(degree + 1)
-            ]
-            rows += [sum(comb(i, j) / comb(degree, j) * shifted[j] for j in range(i + 1)) for i in range(degree + 1)]
-        return np.stack(rows) / self.step**order
+        return self._on_pieces(_BERNSTEIN @ self._powers(order))
+
+    def _powers(self, order: int) -> Floats:
+        """Row k: coefficient of xᵏ of the derivative, over one piece, in each of the six that act there."""
+        powers = np.zeros((PIECE, PIECE))
+        for k in range(PIECE - order):
+            powers[k] = factorial(k + order) / factorial(k) * _BASIS[k + order] / self.step**order
+        return powers
+
+    def _on_pieces(self, rows: Floats) -> Any:
+        """Rows (m, 6) on every piece, sparse (m · pieces, size)."""
+        import scipy.sparse
+
+        count = len(rows) * self.pieces
+        columns = np.repeat(np.arange(self.pieces), len(rows))[:, None] + np.arange(PIECE)
+        parts = np.tile(rows.ravel(), self.pieces), columns.ravel(), PIECE * np.arange(count + 1)
+        return scipy.sparse.csr_array(parts, shape=(count, self.size))
 
     def spline(self, coefficients: Floats) -> Spline:
         """The spline of these coefficients."""
@@ -133,10 +137,24 @@ class Grid:
         rows = np.broadcast_to(self.rows(0), (self.pieces, self.points.size, PIECE))
         columns = []
         for column in values.T:
-            normal = Normal(self.pieces, 1)
+            normal = Normal(self.pieces)
             normal.add(rows, column.reshape(self.pieces, -1))
             columns.append(normal.solve(1e-14))
         return np.stack(columns, axis=1)
+
+    def halved(self) -> Grid:
+        """The grid with a knot in the middle of every piece."""
+        return Grid(self.start, self.end, self.step / 2, self.points)
+
+    def refined(self, coefficients: Floats) -> Floats:
+        """Coefficients (halved().size, k) of the same splines (size, k) on the halved grid.
+
+        Each is a mean of the old ones: it lies between the bounds that hold for those.
+        """
+        spread = np.zeros((2 * self.size + 1, coefficients.shape[1]))
+        spread[1::2] = coefficients
+        windows = np.lib.stride_tricks.sliding_window_view(spread, PIECE + 1, axis=0)
+        return np.asarray(windows @ _HALVED)
 
 
 class Normal:
@@ -145,51 +163,32 @@ class Normal:
     Parameters
     ----------
     pieces : int
-        Of the splines.
-    functions : int
-        How many splines are sought at once; unknowns run through them first.
+        Of the spline.
     """
 
-    def __init__(self, pieces: int, functions: int) -> None:
-        self.pieces, self.functions, self.block = pieces, functions, PIECE * functions
-        size = (pieces + DEGREE) * functions
-        self.band = np.zeros((self.block, size))  # lower form of scipy.linalg.solveh_banded
-        self.right = np.zeros(size)
+    def __init__(self, pieces: int) -> None:
+        self.pieces = pieces
+        self.band = np.zeros((PIECE, pieces + DEGREE))  # lower form of scipy.linalg.solveh_banded
+        self.right = np.zeros(pieces + DEGREE)
 
     def add(self, rows: Floats, values: Floats) -> None:
-        """Add rows (pieces, m, 6·functions) with right-hand sides (pieces, m)."""
-        columns = np.ascontiguousarray(np.moveaxis(rows, -1, 0))
-        pairs = zip(*np.triu_indices(self.block), strict=True)
-        products = np.stack([np.einsum("pm,pm->p", columns[i], columns[j]) for i, j in pairs])
-        self.add_products(products, np.einsum("ipm,pm->ip", columns, values))
-
-    def add_products(self, square: Floats, side: Floats) -> None:
-        """Add products of rows already made: the upper half of RᵀR, row by row, (·, pieces), and Rᵀv (·, pieces)."""
-        pairs = ((i, j) for i in range(self.block) for j in range(i, self.block))
-        for (i, j), product in zip(pairs, square, strict=True):
-            self.band[j - i, self._at(i)] += product
-        for i in range(self.block):
-            self.right[self._at(i)] += side[i]
+        """Add rows (pieces, m, 6) with right-hand sides (pieces, m)."""
+        for i in range(PIECE):
+            self.right[i : i + self.pieces] += np.einsum("pm,pm->p", rows[:, :, i], values)
+            for j in range(i, PIECE):
+                self.band[j - i, i : i + self.pieces] += np.einsum("pm,pm->p", rows[:, :, i], rows[:, :, j])
 
     def add_row(self, piece: int, row: Floats, value: float) -> None:
-        """Add one row (6·functions,) on a piece, counted from the end where negative."""
-        first = (piece % self.pieces) * self.functions
-        self.right[first : first + self.block] += row * value
-        for d in range(self.block):
-            self.band[d, first : first + self.block - d] += row[: self.block - d] * row[d:]
-
-    def _at(self, i: int) -> slice:
-        """Where the `i`-th coefficient of every piece stands."""
-        return slice(i, i + self.functions * (self.pieces - 1) + 1, self.functions)
+        """Add one row (6,) on a piece, counted from the end where negative."""
+        first = piece % self.pieces
+        self.right[first : first + PIECE] += row * value
+        for d in range(PIECE):
+            self.band[d, first : first + PIECE - d] += row[: PIECE - d] * row[d:]
 
     def solve(self, damping: float) -> Floats:
         """Solve with `damping` times the largest diagonal entry added to the diagonal."""
-        return self.solve_shifted(damping * float(self.band[0].max()))
-
-    def solve_shifted(self, shift: float) -> Floats:
-        """Solve with `shift` added to the diagonal."""
         import scipy.linalg  # only those who solve need it
 
         band = self.band.copy()
-        band[0] += shift
+        band[0] += damping * float(band[0].max())
         return np.asarray(scipy.linalg.solveh_banded(band, self.right, lower=True, check_finite=False))

@@ -37,6 +37,6 @@ class Method(NamedTuple):
 INVERSES: dict[str, Method] = {
     "quasi-static": Method(lambda target, geometry, limits, ends: QuasiStatic(geometry), True, False),
     "flat": Method(lambda target, geometry, limits, ends: Flat(geometry), False, False),
-    "planned": Method(lambda target, geometry, limits, ends: planned(target, geometry, limits), False, True),
     "exact": Method(lambda target, geometry, limits, ends: exact(target, geometry), False, True, unfollowable),
+    "planned": Method(planned, False, True),
 }
