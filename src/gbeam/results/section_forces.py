@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -64,6 +64,13 @@ class Loads(Part):
     root_fibre: Floats | None = None
     yield_strength: float | None = None
     fatigue_exponent: float = math.nan
+
+    def during(self, part: slice) -> Loads:
+        """The same at some of the times."""
+        over_time = [
+            each.name for each in fields(self) if np.ndim(getattr(self, each.name)) and each.name != "stations"
+        ]
+        return replace(self, **{name: getattr(self, name)[part] for name in over_time})
 
     @property
     def stress(self) -> Floats:

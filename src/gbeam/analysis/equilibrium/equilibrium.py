@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import is_traced, namespace
 from gbeam.errors import ComputationError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
@@ -61,7 +61,7 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
         return _along_a_path(structure, base, values)
     c = structure.coefficients
     _, stiffness, force = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)
-    if structure.traced:
+    if structure.traced or is_traced(stiffness, force):
         import jax.numpy as jnp
 
         return Equilibrium(jnp.linalg.solve(stiffness, force), True)

@@ -25,8 +25,8 @@ class Problem:
     Parameters
     ----------
     equations : LinearEquations or NonlinearEquations
-    q : (n,)
-        Initial coordinates, of hub and beam where the hub is free; at rest.
+    q, qd : (n,)
+        Initial coordinates and rates, of hub and beam where the hub is free.
     first : int
         Index of the beam's first coordinate in q.
     stable : bool
@@ -35,6 +35,7 @@ class Problem:
 
     equations: LinearEquations | NonlinearEquations
     q: Array
+    qd: Array
     first: int
     stable: bool
 
@@ -63,8 +64,8 @@ def problem_of(structure: Structure, motion: Motion, start: float) -> Problem:
             now, loads = inputs
             return c.at(now.a_WO_B, now.w_WB_B, now.alpha_WB_B, loads)
 
-        return Problem(LinearEquations(c.mass, matrices, drive), q, 0, stable)
-    return Problem(NonlinearEquations(OnBase(structure.equations), drive), q, 0, stable)
+        return Problem(LinearEquations(c.mass, matrices, drive), q, 0.0 * q, 0, stable)
+    return Problem(NonlinearEquations(OnBase(structure.equations), drive), q, 0.0 * q, 0, stable)
 
 
 def _on_free_hub(structure: Structure, hub: Any, start: float) -> Problem:
@@ -76,4 +77,5 @@ def _on_free_hub(structure: Structure, hub: Any, start: float) -> Problem:
         o = np.zeros(())
         q, stable = solve_equilibrium(structure, hub.mount.base(o, o, o), start)
     residual = OnHub(structure.on_free_hub(hub), hub.mount)
-    return Problem(NonlinearEquations(residual, drive), namespace(q).append(0.0, q), 1, stable)
+    q = namespace(q).append(0.0, q)
+    return Problem(NonlinearEquations(residual, drive), q, 0.0 * q, 1, stable)

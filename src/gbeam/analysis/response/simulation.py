@@ -13,11 +13,20 @@ from gbeam.analysis.response.outcome import describe
 from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
 from gbeam.analysis.response.problem import Problem, problem_of
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.stepping import covering, difference, during, first_step, grid, refine, scheme_of
-from gbeam.arrays.namespace import holds_jax, is_jax, namespace
+from gbeam.analysis.response.stepping import difference, first_step, refine, scheme_of
+from gbeam.analysis.response.trajectories import (
+    adapted,
+    going_on,
+    integrated,
+    joined,
+    ramp,
+    split,
+    steps_beyond,
+    whole,
+)
+from gbeam.arrays.namespace import holds_jax, is_jax
 from gbeam.errors import InputError
-from gbeam.integrate.adaptive import integrate_adaptively
-from gbeam.integrate.driver import Trajectory, integrate
+from gbeam.integrate.driver import Trajectory
 from gbeam.mechanics.influence import influence
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
@@ -43,7 +52,7 @@ def simulate(
 
     It starts in relative equilibrium with the base's motion at the start (a free hub at rest), without vibration. A
     machine's run covers its whole motion on the flight's clock: spin-up comes before `start`, and spin-down after the
-    duration, whole steps of the flight's grid each.
+    duration, in whole steps of the results' grid. The step is chosen, and error and peaks are, for the flight's times.
 
     Parameters
     ----------
@@ -81,9 +90,9 @@ def simulate(
         return _traced(structure, motion, settings, name)
     coarse = first_step(structure, settings)
     given = None if settings.step is None else settings.duration / max(1, round(settings.duration / settings.step))
-    # Every run of a study, those with twice the step among them, meets the flight's own times.
-    entire = covering(settings, motion, 2 * (given or coarse))
-    problem = problem_of(structure, motion, entire.start)
+    kept = given or coarse
+    before, after = steps_beyond(motion, settings, kept)
+    problem = problem_of(structure, motion, settings.start - before * kept)
 
     def too_far(y: Floats) -> int | None:
         """A projected field means nothing once it moves by the beam's length."""
@@ -92,25 +101,35 @@ def simulate(
         moved = np.abs(structure.displacement(y[:, problem.first :])).max(axis=(1, 2))
         return int(np.argmax(moved > structure.length)) + 1 if moved.max() > structure.length else None
 
-    def run(step: float, what: str) -> Trajectory:
-        report = None if progress is None else (lambda share: progress(what, share))
-        return _integrated(problem, entire, step, settings.start, stop=too_far, progress=report)
+    def how(what: str) -> dict[str, Any]:
+        return {"stop": too_far, "progress": None if progress is None else lambda share: progress(what, share)}
 
     def tip(trajectory: Trajectory) -> Floats:
         return np.asarray(structure.displacement(trajectory.q[:, problem.first :])[:, -1])
 
+    up = ramp(problem, settings, kept, -before, before, **how("spinning up")) if before else None
+    if up is not None and not whole(up):
+        return _result(structure, motion, settings, problem, (None, up, None), name, kept, math.nan, 1)
+    begun = problem if up is None else going_on(problem, up)
+
+    def run(step: float, what: str) -> Trajectory:
+        return integrated(begun, settings, step, **how(what))
+
     if settings.integrator == "adaptive":
-        trajectory, step, error = _adapted(structure, motion, problem, entire, settings.start, coarse, too_far, tip)
+        trajectory, step, error = adapted(structure, motion, begun, settings, coarse, too_far, tip)
     elif given is not None:
         order, step = scheme_of(settings).order, given
         trajectory, check = run(step, "integrating"), run(2 * step, "checking with twice the step")
-        whole = check.converged and not check.stopped
-        error = difference(tip(check), tip(trajectory), 2) / (2**order - 1) if whole else math.nan
+        error = difference(tip(check), tip(trajectory), 2) / (2**order - 1) if whole(check) else math.nan
     else:
-        trajectory, step, error = refine(run, tip, coarse, scheme_of(settings).order, entire)
+        trajectory, step, error = refine(run, tip, coarse, scheme_of(settings).order, settings)
+    down = None
+    if after and whole(trajectory):
+        at_end = round(settings.duration / kept)
+        down = ramp(going_on(problem, trajectory), settings, kept, at_end, after, **how("spinning down"))
     # An automatic step is the coarse one halved: its stride brings every motion of a study back to the same times.
     stride = 1 if settings.step is not None or math.isnan(step) else round(coarse / step)
-    return _result(structure, motion, settings, problem, trajectory, name, step, error, stride)
+    return _result(structure, motion, settings, problem, (up, trajectory, down), name, step, error, stride)
 
 
 def _settings(options: dict[str, Any]) -> ResponseSettings:
@@ -121,58 +140,19 @@ def _settings(options: dict[str, Any]) -> ResponseSettings:
         raise InputError("simulate", f"cannot be called so ({error})", f"give duration, and any of {fields}") from None
 
 
-def _integrated(problem: Problem, entire: ResponseSettings, step: float, start: float, **how: Any) -> Trajectory:
-    """Steps over the whole run, at times counted from the flight's `start`: a flight's own to the last digit."""
-    xp = namespace(problem.q)
-    trajectory = integrate(
-        problem.equations,
-        scheme_of(entire),
-        problem.q,
-        xp.zeros_like(problem.q),
-        step=step,
-        # A step that does not divide the duration, twice the one given, goes beyond the end.
-        count=math.ceil(entire.duration / step - 1e-6),
-        start=entire.start,
-        **how,
-    )
-    return replace(trajectory, time=grid(entire, start, step, len(trajectory.time)))
-
-
-def _adapted(
-    structure: Structure,
-    motion: Motion,
-    problem: Problem,
-    entire: ResponseSettings,
-    start: float,
-    coarse: float,
-    stop: Callable[[Floats], int | None],
-    tip: Callable[[Trajectory], Floats],
-) -> tuple[Trajectory, float, float]:
-    """With error control, twice: the difference of two tolerances is the estimate."""
-    times = grid(entire, start, coarse, round(entire.duration / coarse) + 1)
-    jumps = np.asarray(motion.breaks)
-    if structure.history is not None:
-        jumps = np.append(jumps, structure.history.breaks)
-
-    def adapt(tolerance: float) -> Trajectory:
-        still = np.zeros_like(problem.q)
-        return integrate_adaptively(
-            problem.equations, problem.q, still, times, tolerance=tolerance, jumps=jumps, stop=stop
-        )
-
-    loose, trajectory = adapt(entire.tolerance * 1e-2), adapt(entire.tolerance * 1e-3)
-    return trajectory, math.nan, difference(tip(loose), tip(trajectory), 1)
-
-
 def _traced(structure: Structure, motion: Motion, settings: ResponseSettings, name: str) -> Response:
     """A run whose values JAX traces: of a given step, without a look at them."""
     if settings.step is None or settings.integrator == "adaptive":
         raise InputError("step", "is automatic, and a traced run has no numbers to choose it by", "give a step, s")
     step = settings.duration / max(1, round(settings.duration / settings.step))
-    entire = covering(settings, motion, step)
-    problem = problem_of(structure, motion, entire.start)
-    trajectory = _integrated(problem, entire, step, settings.start)
-    return _result(structure, motion, settings, problem, trajectory, name, step, math.nan, 1)
+    before, after = steps_beyond(motion, settings, step)
+    start, count = settings.start - before * step, round(settings.duration / step)
+    problem = problem_of(structure, motion, start)
+    # One program for all of it, which is then taken apart.
+    entire = integrated(problem, replace(settings, start=start, duration=(before + count + after) * step), step)
+    up, trajectory, down = split(entire, before, count, after)
+    assert trajectory is not None
+    return _result(structure, motion, settings, problem, (up, trajectory, down), name, step, math.nan, 1)
 
 
 def _result(
@@ -180,36 +160,38 @@ def _result(
     motion: Motion,
     settings: ResponseSettings,
     problem: Problem,
-    trajectory: Trajectory,
+    runs: tuple[Trajectory | None, Trajectory, Trajectory | None],
     name: str,
     step: float,
     error: float,
     stride: int,
 ) -> Response:
-    """Sample a trajectory on the coarse grid and describe it."""
+    """Sample spin-up, flight and spin-down on the coarse grid and describe them; peaks are of the flight's times."""
+    up, trajectory, down = runs
+    every, flight = joined(up, trajectory, down, stride)
+    last = trajectory if down is None else down
     traced = is_jax(trajectory.q)
     beam = slice(problem.first, None)
     fine = structure.displacement(trajectory.q[:, beam])
-    flight, part = during(trajectory, settings)
-    peaks = displacement_peaks(structure, flight, problem.first, fine[part], settings.residual_from)
-    keep = slice(None, None, stride)
+    peaks = displacement_peaks(structure, trajectory, problem.first, fine, settings.residual_from)
 
-    def at(steps: Any) -> tuple[tuple[Any, ...], BaseMotion, HubResult | None, Loads | None]:
+    def at(of: Trajectory, steps: Any) -> tuple[tuple[Any, ...], BaseMotion, HubResult | None, Loads | None]:
         """Coordinates, base, hub and loads at some of the steps."""
-        time, q, qd, qdd = (x[steps] for x in (trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd))
+        time, q, qd, qdd = (x[steps] for x in (of.time, of.q, of.qd, of.qdd))
         base, hub = _moving(motion, time, q, qd, qdd)
         loads = section_forces(structure, base, q[:, beam], qd[:, beam], qdd[:, beam], time, motion=motion)
         return (time, q, qd, qdd), base, hub, loads
 
-    (time, q, qd, qdd), base, hub, loads = at(keep)
+    (time, q, qd, qdd), base, hub, loads = at(every, slice(None))
     if loads is not None and not traced:
-        peaks = replace(peaks, loads=load_peaks(loads, lambda steps: at(steps)[3], trajectory.time, stride))
+        of_flight = load_peaks(loads.during(flight), lambda steps: at(trajectory, steps)[3], trajectory.time, stride)
+        peaks = replace(peaks, loads=of_flight)
     if hub is not None and not motion.free and loads is not None and loads.drive_torque is not None:
         hub = HubResult(hub.angle, hub.rate, hub.acceleration, loads.drive_torque)
     axes = None if traced or motion.kind != "centrifuge" else axes_result(motion, time)  # type: ignore[arg-type]
     outcome, message, warnings = "done", "", tuple(f"record: {note}" for note in getattr(motion, "notes", ()))
     if not traced:
-        outcome, message, own = describe(structure, problem, settings, trajectory, base, peaks, time, q[:, beam], error)
+        outcome, message, own = describe(structure, problem, settings, last, base, peaks, time, q[:, beam], error)
         warnings = own + (() if axes is None else axes.warnings) + warnings
     return Response(
         name=name,
@@ -220,14 +202,14 @@ def _result(
         warnings=warnings,
         time=time,
         stations=np.asarray(structure.stations),
-        displacement=fine[keep],
+        displacement=fine[::stride] if len(time) == len(fine[::stride]) else structure.displacement(q[:, beam]),
         q=q[:, beam],
         qd=qd[:, beam],
         base=base,
         peaks=peaks,
         integrator=settings.integrator,
         step=step,
-        steps=len(trajectory.time) - 1,
+        steps=sum(len(run.time) - 1 for run in runs if run is not None),
         error_estimate=error,
         residual_from=math.nan if settings.residual_from is None else settings.residual_from,
         hub=hub,

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
 from gbeam.analysis.response.peaks import vector_peaks
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.arrays.namespace import is_traced
 from gbeam.errors import InputError
 from gbeam.integrate.driver import Trajectory
 from gbeam.integrate.schemes import Scheme, gauss, generalized_alpha, hht, newmark
 from gbeam.mechanics.structure import Structure
-from gbeam.motion.protocol import Motion
 from gbeam.results.result import Floats
 
 MAX_STEPS = 4_000_000
@@ -44,30 +41,6 @@ def first_step(structure: Structure, settings: ResponseSettings) -> float:
     """Step of the results, s: an even number over the duration, at least 500 and 40 to the lowest period."""
     largest = min(2 * math.pi / float(structure.rest[0][0]) / 40, settings.duration / 500)
     return settings.duration / (2 * math.ceil(settings.duration / largest / 2))
-
-
-def covering(settings: ResponseSettings, motion: Motion, unit: float) -> ResponseSettings:
-    """The settings of a run over a machine's whole motion: whole `unit` s before the flight's times and after them."""
-    beyond = motion.beyond(settings.start, settings.start + settings.duration)
-    if is_traced(*beyond):
-        fix = 'give spin_up and spin_down, or start = "idle"'
-        raise InputError("spin_up", "is found from the load, and JAX traces the machine", fix)
-    before, after = (math.ceil(float(time) / unit - 1e-6) * unit for time in beyond)
-    return replace(settings, start=settings.start - before, duration=before + settings.duration + after)
-
-
-def grid(whole: ResponseSettings, start: float, step: float, count: int) -> Floats:
-    """The first `count` times of a run, counted in steps from the flight's `start`, s."""
-    return np.asarray(start + step * (np.arange(count) - round((start - whole.start) / step)), dtype=np.float64)
-
-
-def during(trajectory: Trajectory, settings: ResponseSettings) -> tuple[Trajectory, slice]:
-    """The part of a run at the flight's own times, and where it is; all of a run that ended before them."""
-    time, slack = trajectory.time, 1e-9 * settings.duration
-    first, last = np.searchsorted(time, [settings.start - slack, settings.start + settings.duration + slack])
-    part = slice(int(first), int(last)) if first < last else slice(None)
-    histories = {name: getattr(trajectory, name)[part] for name in ("time", "q", "qd", "qdd")}
-    return replace(trajectory, **histories), part
 
 
 def difference(coarse: Floats, fine: Floats, ratio: int) -> float:

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import as_array, is_traced, namespace
+from gbeam.arrays.namespace import as_array, is_traced
 from gbeam.arrays.tree import record, static
 from gbeam.errors import InputError
 from gbeam.motion.centrifuge.ends import Ends
@@ -46,13 +46,15 @@ class Ramp:
     Parameters
     ----------
     still, steady : float
-        Times of standstill and of the steady state, s; a spin-down's `still` is the later.
+        Times of standstill and of the steady state, s.
     rate, yaw, roll, across : float
         Steady state: ω1 rad/s, θ2 and θ3 rad, the horizontal load across the beam m/s².
     gravity : float
         γ, m/s².
     yawed : bool
         Whether the lag of axis 2 makes up for the tangential acceleration.
+    outward : float
+        Way from the steady state to standstill: −1 of a spin-up, +1 of a spin-down.
     """
 
     still: Any
@@ -63,6 +65,7 @@ class Ramp:
     across: Any
     gravity: float = static()
     yawed: bool = static()
+    outward: float = static()
 
     def pose(self, t: Any, order: int) -> Pose:
         """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s), with derivatives up to `order`."""
@@ -74,7 +77,7 @@ class Ramp:
         if self.yawed:
             # tan δ = (dω1/dt)/ω1² = S'/(ΩT S²), with the powers of s and 1 − s that both hold taken out.
             lag = math.pi / 2 - arctan2(turned * s**6 * _quotient(s) ** 2, 630 * (1 - s) ** 4)
-            yaw = yaw - lag * namespace(self.steady).sign(self.steady - self.still)
+            yaw = yaw + self.outward * lag
             share = s**4 * sqrt(s**12 * _quotient(s) ** 4 + (630 * (1 - s) ** 4 / turned) ** 2)
         if self.gravity:
             down = none + self.gravity
@@ -88,8 +91,7 @@ class Ramp:
 
     def of_length(self, length: Any) -> Ramp:
         """The same ramp with another length, s."""
-        xp = namespace(self.still, self.steady)
-        return replace(self, still=self.steady + xp.sign(self.still - self.steady) * length)
+        return replace(self, still=self.steady + self.outward * length)
 
     def usage(self, limits: Limits) -> tuple[LimitUse, ...]:
         """What the ramp uses of the machine's limits."""
@@ -148,7 +150,7 @@ def _build(name: str, target: Target, inverse: Inverse, geometry: Geometry, limi
     steady = as_array(edge + outward * lead)
     rate, yaw, roll = (part.value for part in inverse.pose(target.load, steady, 0))
     across = across_beam(target.load.series(steady, 0), geometry).value
-    parts = (rate, yaw, roll, across, geometry.gravity, ends.start == "pre-yawed")
+    parts = (rate, yaw, roll, across, geometry.gravity, ends.start == "pre-yawed", outward)
     ramp = Ramp(steady + outward * USUAL_TURNED / rate, steady, *parts)
     given, traced = getattr(ends, name), is_traced(rate, steady)
     if given is None:

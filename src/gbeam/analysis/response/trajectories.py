@@ -1,0 +1,116 @@
+"""A run put together: a machine's spin-up, the flight's times, and its spin-down, each with steps of its own.
+
+Spin-up and spin-down are slow beside any vibration: they take the steps of the results, while those of the flight's
+times are refined from the state that the spin-up leaves.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from gbeam.analysis.response.problem import Problem
+from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.stepping import difference, scheme_of
+from gbeam.arrays.namespace import is_traced, namespace
+from gbeam.errors import InputError
+from gbeam.integrate.adaptive import integrate_adaptively
+from gbeam.integrate.driver import Trajectory, integrate
+from gbeam.integrate.schemes import gauss
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.protocol import Motion
+from gbeam.results.result import Floats
+
+Array = Any
+
+
+def steps_beyond(motion: Motion, settings: ResponseSettings, step: float) -> tuple[int, int]:
+    """How many steps of the results a machine's spin-up and spin-down take."""
+    beyond = motion.beyond(settings.start, settings.start + settings.duration)
+    if is_traced(*beyond):
+        fix = 'give spin_up and spin_down, or start = "idle"'
+        raise InputError("spin_up", "is found from the load, and JAX traces the machine", fix)
+    before, after = (math.ceil(float(time) / step - 1e-6) for time in beyond)
+    return before, after
+
+
+def integrated(problem: Problem, settings: ResponseSettings, step: float, **how: Any) -> Trajectory:
+    """The run at the flight's times."""
+    # A step that does not divide the duration, twice the one given, goes beyond the end.
+    how |= {"step": step, "count": math.ceil(settings.duration / step - 1e-6), "start": settings.start}
+    return integrate(problem.equations, scheme_of(settings), problem.q, problem.qd, **how)
+
+
+def adapted(
+    structure: Structure,
+    motion: Motion,
+    problem: Problem,
+    settings: ResponseSettings,
+    coarse: float,
+    stop: Callable[[Floats], int | None],
+    tip: Callable[[Trajectory], Floats],
+) -> tuple[Trajectory, float, float]:
+    """The same with error control, twice: the difference of two tolerances is the estimate."""
+    count = round(settings.duration / coarse)
+    times = np.asarray(settings.start + coarse * np.arange(count + 1), dtype=np.float64)
+    jumps = np.asarray(motion.breaks)
+    if structure.history is not None:
+        jumps = np.append(jumps, structure.history.breaks)
+
+    def adapt(tolerance: float) -> Trajectory:
+        state = problem.q, problem.qd
+        return integrate_adaptively(problem.equations, *state, times, tolerance=tolerance, jumps=jumps, stop=stop)
+
+    loose, trajectory = adapt(settings.tolerance * 1e-2), adapt(settings.tolerance * 1e-3)
+    return trajectory, math.nan, difference(tip(loose), tip(trajectory), 1)
+
+
+def ramp(problem: Problem, settings: ResponseSettings, step: float, first: int, count: int, **how: Any) -> Trajectory:
+    """Spin-up or spin-down from a problem's state: `count` steps from the `first`, counted from the flight's start."""
+    scheme = gauss() if settings.integrator == "adaptive" else scheme_of(settings)
+    start = settings.start + step * first
+    made = integrate(problem.equations, scheme, problem.q, problem.qd, step=step, count=count, start=start, **how)
+    # The flight's own times to the last digit.
+    return replace(made, time=np.asarray(settings.start + step * (first + np.arange(len(made.time))), dtype=np.float64))
+
+
+def whole(trajectory: Trajectory) -> bool:
+    """Whether a run came to its end."""
+    return trajectory.converged and not trajectory.stopped
+
+
+def going_on(problem: Problem, trajectory: Trajectory) -> Problem:
+    """The problem that begins in the state in which a run ends."""
+    return replace(problem, q=trajectory.q[-1], qd=trajectory.qd[-1])
+
+
+def split(trajectory: Trajectory, *counts: int) -> list[Trajectory | None]:
+    """Runs of so many steps, one after the other; None where there are none."""
+    ends = [0, *np.cumsum(counts)]
+    return [_part(trajectory, slice(a, b + 1)) if b > a else None for a, b in pairwise(ends)]
+
+
+def joined(up: Trajectory | None, flight: Trajectory, down: Trajectory | None, stride: int) -> tuple[Trajectory, slice]:
+    """Every step of spin-up and spin-down with every `stride`-th of the flight's, and where these are."""
+    sampled = _part(flight, slice(None, None, stride))
+    pieces = [
+        *([] if up is None else [_part(up, slice(None, -1))]),
+        sampled,
+        *([] if down is None else [_part(down, slice(1, None))]),
+    ]
+    first = 0 if up is None else len(up.time) - 1
+    histories = {
+        name: namespace(flight.q).concatenate([getattr(piece, name) for piece in pieces]) for name in ("q", "qd", "qdd")
+    }
+    time = np.concatenate([piece.time for piece in pieces])
+    return replace(flight, time=time, **histories), slice(first, first + len(sampled.time))
+
+
+def _part(trajectory: Trajectory, steps: slice) -> Trajectory:
+    histories = {name: getattr(trajectory, name)[steps] for name in ("time", "q", "qd", "qdd")}
+    return replace(trajectory, **histories)
