@@ -213,7 +213,8 @@ def trajectory(equations: OnHub, start: Any, step: Any, amplitude: Any) -> Any:
 
     def rates(t: Any, s: Any) -> Any:
         torque = amplitude * jnp.sin(2 * jnp.pi * t / (10 * STEPS * step))
-        return jnp.concatenate([s[n:], accelerations(equations, s[:n], s[n:], (torque, None))])
+        found = accelerations(equations, s[None, :n], s[None, n:], (jnp.atleast_1d(torque), None))[0]
+        return jnp.concatenate([s[n:], found])
 
     def one(s: Any, k: Any) -> Any:
         def stage(i: Any, rate: Any) -> Any:
