@@ -96,6 +96,10 @@ class FromRest:
         """Itself."""
         return self
 
+    def beyond(self, start: float, end: float) -> tuple[float, float]:
+        """Nothing: the start is what is simulated."""
+        return 0.0, 0.0
+
 
 def jerk_study(
     structure: Structure,
@@ -220,10 +224,10 @@ def _flat(
     first, last = corner - width / 2, corner + width / 2
     start, end = first - watched, last + watched
     flight = Flight(z=tabulated([0.0, corner], [0.5 * level, level]))
-    motion = Centrifuge(flight, arm=arm, control_point=at, inverse="flat", smoothing=width)
-    t, z = _run(structure, motion, start, end - start, period / 50)
-    # The run starts on the ramp without the ramp's speed, and so with a vibration of its own: not the corner's.
-    before, after = (_phasor(t[part], z[part], frequency, (0, 1, 2)) for part in (t < first, t > last))
+    motion = Centrifuge(flight, arm=arm, control_point=at, inverse="flat", smoothing=width, start="idle")
+    t, z = _run(structure, motion, start - width, end - start + width, period / 50)
+    # The run starts with a corner of its own, from a load that stands still to the ramp: its vibration is left out.
+    before, after = (_phasor(t[part], z[part], frequency, (0, 1, 2)) for part in ((t > start) & (t < first), t > last))
     return abs(after - before)
 
 
