@@ -22,7 +22,7 @@ length = "300 mm"
 # { area = "80 mm^2", inertia_y = "107 mm^4", inertia_z = "2667 mm^4" }. A taper lists dimensions at
 # stations = ["0 mm", "300 mm"].
 section = { shape = "rectangle", width = "20 mm", thickness = "4 mm" }
-material = { density = "2700 kg/m^3", youngs_modulus = "70 GPa" }
+material = { density = "2700 kg/m^3", youngs_modulus = "70 GPa" }  # yield_strength = "270 MPa" in it gives margins
 damping_ratio = 0.01  # of critical; a list gives one per mode
 # masses = [ { at = "300 mm", mass = "0.1 kg" } ]
 # root = { rotation_y = "500 N m/rad" }  # springs instead of a perfect clamp; what is left out is rigid
