@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -83,6 +85,16 @@ def test_campbells_plot_shows_the_modes_that_the_multiples_meet():
     assert panel.get_ylim()[1] < 1.0 and len(panel.lines) == 2 + 2
     assert [text.get_text() for text in panel.get_legend().get_texts()] == ["mode 1, y", "mode 2, y"]
 
+    # In rpm: the same on another axis, each multiple with its name on its line and inside.
+    panel = plot_campbell(replace(diagram, orders=(1, 2, 40)), "title", (30 / np.pi, "rpm")).axes[0]
+    assert panel.get_xlabel() == "hub rate, rpm"
+    np.testing.assert_allclose(panel.lines[0].get_xdata(), speed * 30 / np.pi)
+    orders = {text.get_text(): text.get_position() for text in panel.texts}
+    assert list(orders) == ["1P", "2P", "40P"]
+    for name, (rpm, hertz) in orders.items():
+        assert hertz == pytest.approx(int(name[:-1]) * rpm / 60)
+        assert 0 < hertz < panel.get_ylim()[1] and 0 < rpm < speed[-1] * 30 / np.pi
+
 
 def test_static(call):
     status, facts, _ = call("static", "--motion", "flight", "--out", "there")
@@ -110,6 +122,13 @@ def test_campbell(call):
     status, facts, _ = call("campbell", "--modes", "2", "--out", "there")
     assert status == 0 and facts["speed"][-1] == pytest.approx(2.0) and len(facts["tracks"]) == 2
     assert Path("there/campbell.png").stat().st_size > 1000
+
+
+def test_campbell_speaks_in_the_unit_given(scenario, gbeam):
+    answer = gbeam("campbell", "hub.toml", "--modes", "2", "--to", "20 rpm", "--out", "there")
+    assert answer.status == 0 and "TLAM, 0 to 20 rpm" in answer.out and "rad/s" not in answer.out
+    assert json.loads(Path("there/campbell.json").read_text())["speed"][-1] == pytest.approx(2 * np.pi / 3)
+    assert "<!-- hub rate, rpm -->" in Path("there/campbell.svg").read_text()
 
 
 def test_linearize(call):

@@ -83,7 +83,7 @@ def test_commands_are_the_axes_at_the_samples(scenario: Path, tmp_path: Path) ->
     for value, rate in (("angle", "rate"), ("rate", "acceleration")):
         slope = (mat[value][2:] - mat[value][:-2]) / 0.008
         np.testing.assert_allclose(slope, mat[rate][1:-1], atol=0.02 * np.abs(mat[rate]).max())
-    assert (tmp_path / "out" / "axes_spin.svg").is_file()
+    assert (tmp_path / "out" / "axes_jerk_spin.svg").is_file()
 
 
 def test_sample_of_the_command_line_wins_and_the_values_are_no_interpolation(scenario: Path, tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from gbeam.results.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
 from gbeam.results.comparison import Comparison
-from gbeam.results.machine import AxesResult
+from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.response import BaseMotion, HubResult, Peaks, Response
 from gbeam.results.study import Study
 
@@ -49,7 +49,14 @@ def study() -> Study:
     rate = np.outer(np.sin(TIME), [4.0, 1.0, 0.5])
     load = np.outer(np.ones_like(TIME), [0, 0, 60.0])
     off = np.where(held, 9.0, 0.3 * TIME)[:, None] * [0, 0, 1.0]
-    axes = AxesResult(rate, rate, 2 * rate, load, load + off, held, ((0.505, 0.795, "below idle"),))
+    allowed = ((9.0, 8.0), (2.5, 2.0), (100.0, 1.0))
+    limits = tuple(
+        LimitUse(f"axis {i}", "acceleration", "rad/s^2", used, most, 1.0) for i, (most, used) in enumerate(allowed, 1)
+    )
+    axes = AxesResult(
+        rate, rate, 2 * rate * [1, -1, 1], load, load + off, held, ((0.505, 0.795, "below idle"),), limits,
+        jerk=3 * rate, span=(0.1, 1.9),
+    )  # fmt: skip
     hub = HubResult(TIME, 2 * TIME, np.full_like(TIME, 2.0), np.cos(TIME))
     spin = replace(_response("spin", "centrifuge", 4.0), axes=axes)
     slew = replace(_response("slew", "hub", 1.0), hub=hub)

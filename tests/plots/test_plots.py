@@ -15,9 +15,21 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from gbeam import InputError
-from gbeam.plots import plot_axes, plot_base, plot_comparison, plot_hub, plot_shock, plot_tip, write_plots
-from gbeam.plots.style import COLUMNS, line, panels, styled
-from gbeam.results.machine import MachinePlan
+from gbeam.plots import (
+    plot_axes,
+    plot_base,
+    plot_comparison,
+    plot_hub,
+    plot_loads,
+    plot_shock,
+    plot_static,
+    plot_tip,
+    plot_tracking,
+    write_plots,
+)
+from gbeam.plots.drawing.lines import FLIGHT
+from gbeam.results.comparison import Comparison
+from gbeam.results.machine import LimitUse, MachinePlan
 from gbeam.results.measures import Mismatch, RootHistory, RootLoads, Shock
 from gbeam.results.section_forces import Loads
 from gbeam.results.steady.equilibrium import Deflection
@@ -40,7 +52,8 @@ def files(study: Study, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
 
 
 def test_files(files: list[Path]) -> None:
-    names = {"tip", "base_flight", "base_spin", "base_slew", "axes_spin", "hub_slew"}
+    names = {"tip", "base_flight", "base_spin", "base_slew", "tracking_spin", "hub_slew"}
+    names |= {f"axes_{each}_spin" for each in ("rate", "acceleration", "jerk")}
     assert {file.stem for file in files} == names and len(files) == 2 * len(names)
     for file in files:
         assert file.stat().st_size > 5000
@@ -61,7 +74,9 @@ def test_both_files_show_the_same(files: list[Path]) -> None:
     svg = "{http://www.w3.org/2000/svg}"
     clipped = [each for each in drawing.iter(f"{svg}path") if "clip-path" in each.attrib]
     assert len(clipped) >= 4  # three responses, and the difference
-    boxes = [[float(box.attrib[key]) for key in ("x", "y", "width", "height")] for box in drawing.iter(f"{svg}rect")]
+    clips = [box for clip in drawing.iter(f"{svg}clipPath") for box in clip.iter(f"{svg}rect")]
+    boxes = [[float(box.attrib[key]) for key in ("x", "y", "width", "height")] for box in clips]
+    assert boxes
     for x, y, wide, high in boxes:
         assert x > 0 and y > 0 and x + wide < size[0] and y + high < size[1]
 
@@ -75,7 +90,12 @@ def _inside(figure: Figure, panel: Axes) -> bool:
 def test_nothing_leaves_the_figure_or_covers_another_panel(study: Study) -> None:
     spin = study.responses["spin"]
     wide = replace(spin.axes, acceleration=-123456.7 * spin.axes.acceleration)
-    for figure in (plot_axes(spin, wide, "t"), plot_tip(study), plot_base(spin, "two\nlines")):
+    for figure in (
+        plot_axes(spin, wide, "acceleration", "t"),
+        plot_tracking(spin, wide),
+        plot_tip(study),
+        plot_base(spin, "two\nlines"),
+    ):
         assert all(_inside(figure, panel) for panel in figure.axes)
         boxes = [panel.get_tightbbox() for panel in figure.axes]
         assert all(above.y0 >= below.y1 for above, below in pairwise(boxes))
@@ -83,42 +103,57 @@ def test_nothing_leaves_the_figure_or_covers_another_panel(study: Study) -> None
         assert title.y0 >= boxes[0].y1 and title.y1 <= figure.bbox.y1
 
 
-@styled
-def _drawn(x: np.ndarray, y: np.ndarray) -> Figure:
-    figure, (panel,) = panels("", 1)
-    line(panel, x, y)
-    return figure
+def _lines(panel: Axes) -> dict[str, np.ndarray]:
+    return {line.get_label(): line.get_ydata() for line in panel.get_lines()}
 
 
-def test_a_long_line_keeps_its_extremes() -> None:
-    time = np.linspace(0, 1, 40_001)
-    values = np.sin(2 * np.pi * 500 * time)
-    values[[7, 20_002, 39_999]] = [3.0, -4.0, 5.0]
-    x, y = _drawn(time, values).axes[0].get_lines()[0].get_data()
-    assert len(x) < 5 * COLUMNS and (x[0], x[-1]) == (0, 1) and np.all(np.diff(x) > 0)
-    np.testing.assert_array_equal(y, values[np.searchsorted(time, x)])
-    assert {3.0, -4.0, 5.0} <= set(y)
-    for k in range(0, 40_000, 4_000):  # of every stretch
-        inside = (x >= time[k]) & (x <= time[k + 4_000])
-        assert np.ptp(y[inside]) == np.ptp(values[k : k + 4_001])
+def _shaded(panel: Axes) -> dict[str, list[tuple[float, float]]]:
+    """What is shaded, by its reason; those that the legend does not name begin with an underscore."""
+    return {
+        each.get_label(): [(path.vertices[:, 0].min(), path.vertices[:, 0].max()) for path in each.get_paths()]
+        for each in panel.collections
+    }
 
 
 def test_tip(study: Study) -> None:
     figure = plot_tip(study)
-    top, below = figure.axes
     _assert_labelled(figure)
-    assert "along z" in figure.get_suptitle()
-    lines = {line.get_label(): line for line in top.get_lines()}
+    z, z_off, y, _, x, x_off = figure.axes  # the largest first
+    assert [panel.get_ylabel() for panel in (z, y, x)] == ["z, mm", "y, mm", "x, mm"]
+    assert z_off.get_ylabel() == "difference in z,\nmm" and x_off.get_ylabel() == "difference in x,\nµm"
+    assert "not drawn" not in figure.get_suptitle()
+    lines = _lines(z)
     assert list(lines) == ["flight", "spin", "slew"]
-    np.testing.assert_array_equal(lines["spin"].get_ydata(), 1e3 * study.responses["spin"].tip[:, 2])
-    np.testing.assert_array_equal(below.get_lines()[0].get_ydata(), 1e3 * study.comparisons[0].difference[:, 2])
-    assert len(below.patches) == 1  # the time it was held
+    np.testing.assert_array_equal(lines["spin"], 1e3 * study.responses["spin"].tip[:, 2])
+    np.testing.assert_array_equal(*(each[0].get_ydata() for each in (y.get_lines()[1:2], y.get_lines()[2:3])))
+    np.testing.assert_array_equal(z_off.get_lines()[0].get_ydata(), 1e3 * study.comparisons[0].difference[:, 2])
+    spans = {"spin-up": [(0.0, 0.1)], "below idle": [(0.5, 0.8)], "spin-down": [(1.9, 2.0)]}
+    assert _shaded(z) == spans == {key[1:]: each for key, each in _shaded(x_off).items()}
+
+
+def test_a_direction_that_hardly_moves_is_named(study: Study) -> None:
+    flight = study.responses["flight"]
+    wave = flight.displacement * [0.05, 1.0, 1.0]  # x: 5 µm of 1 mm
+    still = replace(flight, displacement=wave, peaks=replace(flight.peaks, max_abs=np.abs(wave[:, 0]).max(axis=0)))
+    figure = plot_tip(Study("", {"flight": still}, ()))
+    assert [panel.get_ylabel() for panel in figure.axes] == ["z, mm", "y, mm"]
+    assert figure.get_suptitle().endswith("(not drawn: x by 5 µm at most)")
+
+
+def test_flight_is_seen_below_what_imitates_it(study: Study) -> None:
+    spin, flight = study.responses["spin"], study.responses["flight"]
+    figures = plot_tip(study), plot_tracking(spin, spin.axes, "", flight), plot_comparison(_with_root(study))
+    for figure in figures:
+        by_name = {line.get_label(): line for line in figure.axes[0].get_lines()}
+        flown, machine = by_name["flight"], by_name.get("spin", by_name.get("machine"))
+        assert flown.get_linewidth() == FLIGHT["lw"] >= 3 * machine.get_linewidth()
+        assert flown.get_zorder() < machine.get_zorder() and flown.get_color() != machine.get_color()
 
 
 def test_a_constant_is_seen_at_its_size(study: Study) -> None:
     flight = study.responses["flight"]
     constant = replace(flight, displacement=np.full_like(flight.displacement, -1.7e-3))
-    (panel,) = plot_tip(Study("", {"flight": constant}, ())).axes
+    panel = plot_tip(Study("", {"flight": constant}, ())).axes[0]
     low, high = panel.get_ylim()
     assert low < -1.7 and high > 0
 
@@ -131,10 +166,44 @@ def test_base_shows_turning_only_where_it_turns(study: Study) -> None:
 
 
 def test_axes(study: Study) -> None:
+    """A panel for each axis, with the limits that are near and the others named; shaded from spin-up to spin-down."""
     spin = study.responses["spin"]
-    figure = plot_axes(spin, spin.axes, "t")
+    figure = plot_axes(spin, spin.axes, "acceleration", "t")
     _assert_labelled(figure)
-    assert all(len(panel.patches) == 1 for panel in figure.axes)
+    arm, yaw, roll = figure.axes
+    np.testing.assert_array_equal(arm.get_lines()[0].get_ydata(), spin.axes.acceleration[:, 0])
+    assert [line.get_ydata()[0] for line in arm.get_lines()[1:]] == [9.0]  # the arm only speeds up
+    assert arm.get_ylim()[1] > 9 and [line.get_ydata()[0] for line in yaw.get_lines()[1:]] == [-2.5]
+    assert len(roll.get_lines()) == 1 and roll.get_title(loc="left").endswith("of 100 rad/s², beyond the panel")
+    spans = {"spin-up": [(0.0, 0.1)], "below idle": [(0.505, 0.795)], "spin-down": [(1.9, 2.0)]}
+    assert _shaded(arm) == spans and all(key.startswith("_") for key in _shaded(roll))
+    assert {text.get_text() for text in arm.get_legend().get_texts()} == {"limit", *spans}
+    jerk = plot_axes(spin, spin.axes, "jerk").axes
+    assert [panel.get_ylabel() for panel in jerk] == ["jerk, rad/s³"] * 3
+
+
+def test_power_limits_the_arms_acceleration(study: Study) -> None:
+    spin = study.responses["spin"]
+    rate, acceleration = spin.axes.rate[:, 0], spin.axes.acceleration[:, 0]
+    power = 7.0 * rate * acceleration  # 7 kg m²
+    use = LimitUse("arm", "power", "W", power.max(), 50.0, 1.0)
+    arm = plot_axes(spin, replace(spin.axes, limits=(use,)), "acceleration").axes[0]
+    bound = _lines(arm)["limit of the power"]
+    near = bound < 9 * np.abs(acceleration).max()
+    assert near.any()
+    np.testing.assert_allclose(7.0 * np.abs(rate * bound)[near], 50.0)
+
+
+def test_tracking(study: Study) -> None:
+    spin = study.responses["spin"]
+    figure = plot_tracking(spin, replace(spin.axes, idle=14.0), "t", study.responses["flight"])
+    _assert_labelled(figure)
+    size, z, error = figure.axes
+    assert list(_lines(size)) == ["flight", "target", "machine", "idle"]
+    np.testing.assert_allclose(_lines(size)["machine"], spin.axes.actual[:, 2] / 9.80665)
+    assert z.get_ylabel() == "z, g0" and error.get_ylabel() == "tracking error,\nm/s²"
+    # Scaled to what is followed: 0.6 m/s² at the end, not the 9 m/s² where the target is held.
+    assert error.get_ylim()[1] == pytest.approx(0.63) and all(_shaded(panel) for panel in figure.axes)
 
 
 def test_hub_without_a_torque(study: Study) -> None:
@@ -157,41 +226,93 @@ def test_comparison(study: Study) -> None:
     most = np.abs(gradient).max(axis=0)
     full = replace(compared, mismatch=Mismatch(0.1, gradient, most, 0.2 * most, **bounds, length=0.3))
     (panel,) = plot_comparison(full, "t").axes
-    lines = {line.get_label(): line.get_ydata() for line in panel.get_lines()}
+    lines = _lines(panel)
     np.testing.assert_allclose(lines["at the root"], -0.1 * gradient[:, 2])
     np.testing.assert_allclose(lines["at the tip"], 0.2 * gradient[:, 2])
-    assert len(panel.patches) == 1  # the time it was held
+    assert _shaded(panel) == {"below idle": [(0.5, 0.8)]}
+    (panel,) = full.plot("parts y").axes
+    np.testing.assert_allclose(_lines(panel)["at the root"], -0.1 * gradient[:, 1])
 
     spectra = np.outer(np.arange(1.0, 6.0), [1, 1, 2])
     shock = Shock(10.0, np.geomspace(1, 100, 5), spectra, 2 * spectra)
-    (panel,) = plot_shock(full, shock, "t").axes
-    assert panel.get_xscale() == panel.get_yscale() == "log"
-    np.testing.assert_array_equal(panel.get_lines()[0].get_ydata(), 2 * spectra[:, 2])
+    drawn = plot_shock(full, shock, "t").axes
+    assert len(drawn) == 3  # in the order of the figures: the axis that moves most first
+    assert drawn[0].get_xscale() == drawn[0].get_yscale() == "log"
+    np.testing.assert_array_equal(_lines(drawn[0])["flight"], spectra[:, 2])
+    np.testing.assert_array_equal(_lines(drawn[0])["spin"], 2 * spectra[:, 2])
 
 
-def test_comparison_with_root_loads_or_without_parts(study: Study) -> None:
+def _with_root(study: Study) -> Comparison:
     compared = study.comparisons[0]
     t = compared.time
     history = RootHistory(*(np.outer(k + np.sin(t), [1.0, 2.0, 3.0]) for k in range(4)))
     root = RootLoads(*(np.arange(3.0) + k for k in range(6)), 1.0, 2.0, 3.0, history)
-    shear, moment = replace(compared, root=root).plot(title="t").axes
-    lines = {each.get_label(): each.get_ydata() for each in shear.get_lines()}
-    np.testing.assert_array_equal(lines["spin"], history.force_centrifuge[:, 2])
-    np.testing.assert_array_equal(lines["flight"], history.force_flight[:, 2])
-    assert moment.get_ylabel().endswith("M_z, N m")
-    (alone,) = compared.plot().axes
+    return replace(compared, root=root)
+
+
+def test_comparison_with_root_loads_or_without_parts(study: Study) -> None:
+    compared = _with_root(study)
+    history = compared.root.history
+    shear, moment = compared.plot(title="t").axes
+    np.testing.assert_array_equal(_lines(shear)["spin"], history.force_centrifuge[:, 2])
+    np.testing.assert_array_equal(_lines(shear)["flight"], history.force_flight[:, 2])
+    # What moves along z bends about y.
+    assert moment.get_ylabel() == "moment M_y, N m"
+    np.testing.assert_array_equal(_lines(moment)["flight"], history.moment_flight[:, 1])
+    (alone,) = replace(compared, root=None).plot().axes
     np.testing.assert_array_equal(alone.get_lines()[0].get_ydata(), 1e3 * compared.difference[:, 2])
+
+
+def _loads(t: np.ndarray, stations: int) -> Loads:
+    """Random, of two stations or more; section and base axes differ."""
+    random = np.random.default_rng(5)
+    return Loads(
+        np.linspace(0, 0.3, stations),
+        *(random.standard_normal((len(t), stations, 3)) for _ in range(4)),
+        1e6 * random.random((len(t), stations)),
+        -1e6 * random.random((len(t), stations)),
+        random.standard_normal((len(t), stations, 3)),
+        yield_strength=1.2e6,
+    )
+
+
+def test_loads_have_the_signs_of_the_comparison(study: Study) -> None:
+    """Of the section, in both: positive where the fibre is stretched."""
+    spin = study.responses["spin"]
+    loads = _loads(spin.time, 2)
+    force, moment, stress = plot_loads(spin, loads).axes
+    assert [panel.get_ylabel() for panel in (force, moment, stress)] == ["force, N", "moment, N m", "stress, MPa"]
+    for panel, names, values in (
+        (force, ("axial N", "shear V_y", "shear V_z"), loads.section_force),
+        (moment, ("torque", "bending M_y", "bending M_z"), loads.section_moment),
+    ):
+        for i, name in enumerate(names):
+            np.testing.assert_array_equal(_lines(panel)[name], values[:, 0, i])
+    assert _lines(stress)["yield strength"][0] == pytest.approx(1.2)
+    assert {"spin-up", "below idle", "spin-down"} <= set(_shaded(force))
+
+
+def test_several_at_rest_are_all_seen(study: Study) -> None:
+    base, x = study.responses["spin"].base, np.linspace(0, 40.0, 5)  # a long blade
+    rest = [
+        Deflection(name, "FOAM", 0.0, base, x, np.outer(x, [0.0, 1e-4, 0.05]), np.zeros(3), 0.0, True)
+        for name in ("flight", "spin")
+    ]
+    (panel,) = plot_static(rest).axes
+    assert (panel.get_xlabel(), panel.get_ylabel()) == ("position from the root, m", "z, m")
+    wide, thin = panel.get_lines()
+    assert wide.get_linewidth() > 3 * thin.get_linewidth() and wide.get_zorder() < thin.get_zorder()
 
 
 def test_a_result_draws_itself(study: Study) -> None:
     spin = study.responses["spin"]
     assert "tip displacement" in spin.plot(title="mine").get_suptitle()
-    assert "axes of the machine" in spin.plot("axes").get_suptitle()
+    assert "rate of the machine's axes" in spin.plot("axes_rate").get_suptitle()
     assert study.plot().get_suptitle().startswith("a title\n") and "the hub" in study.plot("hub slew").get_suptitle()
-    with pytest.raises(InputError, match="choose from tip, base, axes"):
+    with pytest.raises(InputError, match="choose from tip, base, tracking, axes_rate"):
         spin.plot("loads")
     plan = MachinePlan("spin", "flight", 3.3, "done", "", spin.time, spin.axes)
-    assert len(plan.plot().axes) == 4
+    assert len(plan.plot().axes) == 3 and len(plan.plot("axes_jerk").axes) == 3
     x = np.linspace(0, 0.3, 5)
     along = Loads(x, *(np.ones((1, 5, 3)) for _ in range(4)), *np.ones((2, 1, 5)), np.ones((1, 5, 3)))
     moved = np.outer(x, [0.0, 1.0, 2.0])

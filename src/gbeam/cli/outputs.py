@@ -52,7 +52,7 @@ def write(
             from gbeam.plots import save
 
             for stem, figure in figures().items():
-                save(figure, hidden, stem)
+                save(figure, hidden, stem, f"gbeam {name}")
 
     return publish(folder, make)
 
@@ -84,7 +84,8 @@ def publish(folder: Path, make: Callable[[Path], object]) -> list[Path]:
     Parameters
     ----------
     folder : Path
-        Made if it does not exist; files of the same names are replaced.
+        Made if it does not exist; files of the same names are replaced, and plots that the same command made before
+        and does not make now are removed.
     make : callable
         Of the folder to write into.
 
@@ -105,9 +106,23 @@ def publish(folder: Path, make: Callable[[Path], object]) -> list[Path]:
             made = sorted(Path(hidden).iterdir())
             for file in made:
                 os.replace(file, folder / file.name)
+            _remove_plots_before(folder, {file.name for file in made})
     except OSError as error:
         raise _unwritable(folder, error.strerror or str(error)) from None
     return [folder / file.name for file in made]
+
+
+def _remove_plots_before(folder: Path, made: set[str]) -> None:
+    """Remove plots signed by the command that made the files `made`, under their own names, and not among them."""
+    kinds = (".png", ".svg")
+    if not any(name.endswith(kinds) for name in made):
+        return
+    from gbeam.plots import signature
+
+    commands = {signature(folder / name) for name in made if name.endswith(kinds)} - {""}
+    for file in folder.iterdir():
+        if file.suffix in kinds and file.name not in made and file.is_file() and signature(file) in commands:
+            file.unlink()
 
 
 def _unwritable(folder: Path, problem: str) -> InputError:

@@ -3,97 +3,123 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
-from gbeam.plots.style import REFERENCE, colour, heading, legend, line, panels, scale_to, shade, show_zero, styled
+from gbeam.plots.drawing.lines import FLIGHT, line, machine
+from gbeam.plots.drawing.stretches import shade, stretches
+from gbeam.plots.drawing.style import heading, moving, panels, scale_to, show_zero, styled, subtitle
+from gbeam.plots.drawing.units import unit_for
 from gbeam.results.comparison import Comparison
 from gbeam.results.measures import Shock
 from gbeam.results.result import Floats
 
-_Lines = tuple[str, dict[str, Floats]]  # what is drawn, with its unit; values by name
+# Of a bending beam, by the axis along which it moves: force and moment of the root's section, and the latter's index.
+_FORCES = ("axial force N", "shear V_y", "shear V_z")
+_MOMENTS = (("torque", 0), ("moment M_z", 2), ("moment M_y", 1))
+
+
+class _Part(NamedTuple):
+    """One panel: what it shows, the kind of its unit, its label, and values by name."""
+
+    about: str
+    kind: str
+    label: str
+    lines: dict[str, Floats]
 
 
 @styled
-def plot_comparison(comparison: Comparison, title: str = "") -> Figure:
-    """Plot those parts of a comparison over time that it has.
+def plot_comparison(comparison: Comparison, title: str = "", axis: int | None = None) -> Figure:
+    """Plot those parts of a comparison over time that it has, of one axis.
 
     Parameters
     ----------
     comparison : Comparison
     title : str
         Of the scenario.
+    axis : int, optional
+        0, 1, 2 for x, y, z; the one along which the tip moves most by default.
 
     Returns
     -------
     Figure
-        Force and moment at the root; the difference of the tip's trends, beside what the mismatch implies if it acts
-        slowly; the tip's elastic vibration; the mismatch at both ends of the beam. Where it has none of these, the
-        difference of the tip's displacement.
+        Force and moment that the root's section carries, with the signs of :func:`plot_loads`; the difference of the
+        tip's trends, beside what the mismatch implies if it acts slowly; the tip's elastic vibration; the mismatch at
+        both ends of the beam. Where it has none of these, the difference of the tip's displacement. The times that are
+        not followed are shaded.
     """
-    axis = comparison.main_axis
+    axis = comparison.main_axis if axis is None else axis
     shown = [*_root(comparison, axis), *_tip(comparison, axis), *_mismatch(comparison, axis)]
-    about = f"{comparison.centrifuge} and {comparison.flight}: root loads, tip and mismatch along {'xyz'[axis]}"
     if not shown:
-        shown = [("difference, mm", {"": 1e3 * comparison.difference[:, axis]})]
-        about = f"tip displacement along {'xyz'[axis]}, {comparison.centrifuge} − {comparison.flight}"
+        difference = {f"{comparison.centrifuge} − {comparison.flight}": comparison.difference[:, axis]}
+        shown = [_Part("tip displacement", "length", "difference", difference)]
+    about = f"{comparison.centrifuge} and {comparison.flight}, along {'xyz'[axis]}"
     heights = [0.85] * len(shown) if len(shown) > 1 else [1.6]
     figure, axes = panels(heading(title, about, ()), len(shown), heights=heights)
-    for panel, (label, lines) in zip(axes, shown, strict=True):
-        for k, (name, values) in enumerate(lines.items()):
-            if name == comparison.flight:  # broad, below what imitates it
-                line(panel, comparison.time, values, label=name, color=REFERENCE, lw=1.8, zorder=1.9)
-            else:
-                line(panel, comparison.time, values, label=name, color=colour(min(k, 1)), lw=0.9)
-        if not scale_to(panel, comparison.covered, *lines.values()):
+    covered = comparison.covered if comparison.covered.any() else ~comparison.covered
+    for panel, part in zip(axes, shown, strict=True):
+        unit = unit_for(part.kind, *(each[covered] for each in part.lines.values()))
+        values = {name: unit.factor * each for name, each in part.lines.items()}
+        others = 0
+        for name, each in values.items():
+            flown = name == comparison.flight
+            line(panel, comparison.time, each, label=name, **(FLIGHT if flown else machine(min(others, 1))))
+            others += not flown
+        if not scale_to(panel, comparison.covered, *values.values()):
             show_zero(panel)
-        shade(panel, comparison.time, ~comparison.covered)
-        panel.set_ylabel(label)
-        if panel.get_legend_handles_labels()[1]:
-            legend(panel)
+        subtitle(panel, part.about)
+        panel.set_ylabel(f"{part.label}, {unit.name}")
+    shade(axes, stretches(None, comparison.time, comparison.accounting))
     return figure
 
 
-def _root(comparison: Comparison, axis: int) -> Iterator[_Lines]:
+def moved(comparison: Comparison) -> list[int]:
+    """Axes (0, 1, 2) along which the tip moves in flight or on the machine, the one along which it moves most first."""
+    main = comparison.main_axis
+    return [main, *(i for i in moving(comparison.peak_flight, comparison.peak_centrifuge) if i != main)]
+
+
+def _root(comparison: Comparison, axis: int) -> Iterator[_Part]:
     if comparison.root is None:
         return
-    history, bent = comparison.root.history, comparison.root.main
-    for label, flight, centrifuge, k in (
-        (("axial force", "shear", "shear")[axis] + ", N", history.force_flight, history.force_centrifuge, axis),
-        (f"moment\n{('torque', 'M_y', 'M_z')[bent]}, N m", history.moment_flight, history.moment_centrifuge, bent),
+    history, (bent, k) = comparison.root.history, _MOMENTS[axis]
+    for kind, name, flight, centrifuge, i in (
+        ("force", _FORCES[axis], history.force_flight, history.force_centrifuge, axis),
+        ("moment", bent, history.moment_flight, history.moment_centrifuge, k),
     ):
-        yield f"root's {label}", {comparison.centrifuge: centrifuge[:, k], comparison.flight: flight[:, k]}
+        lines = {comparison.flight: flight[:, i], comparison.centrifuge: centrifuge[:, i]}
+        yield _Part("root's section", kind, name, lines)
 
 
-def _tip(comparison: Comparison, axis: int) -> Iterator[_Lines]:
+def _tip(comparison: Comparison, axis: int) -> Iterator[_Part]:
     parts = comparison.stations
     if parts is None:
         return
-    lines = {f"{comparison.centrifuge} − {comparison.flight}": 1e3 * parts.trend_difference[:, axis]}
+    lines = {f"{comparison.centrifuge} − {comparison.flight}": parts.trend_difference[:, axis]}
     if comparison.mismatch is not None and np.isfinite(comparison.mismatch.tip_bound[axis]):
-        envelope = 1e3 * comparison.mismatch.tip_envelope[:, axis]
+        envelope = comparison.mismatch.tip_envelope[:, axis]
         lines |= {"± what a slow mismatch implies": envelope, "_below": -envelope}
-    yield "trend's difference,\nmm", lines
-    yield (
-        f"elastic vibration\nabove {parts.cutoff:.3g} Hz, mm",
-        {
-            comparison.centrifuge: 1e3 * parts.vibration_centrifuge[:, axis],
-            comparison.flight: 1e3 * parts.vibration_flight[:, axis],
-        },
-    )
+    yield _Part(f"tip's trend, below {parts.cutoff:.3g} Hz", "length", "difference", lines)
+    lines = {
+        comparison.flight: parts.vibration_flight[:, axis],
+        comparison.centrifuge: parts.vibration_centrifuge[:, axis],
+    }
+    yield _Part(f"tip's elastic vibration, above {parts.cutoff:.3g} Hz", "length", "displacement", lines)
 
 
-def _mismatch(comparison: Comparison, axis: int) -> Iterator[_Lines]:
+def _mismatch(comparison: Comparison, axis: int) -> Iterator[_Part]:
     if comparison.mismatch is not None:
         field = comparison.mismatch.field(np.array([0.0, comparison.mismatch.length]))[:, :, axis]
-        yield "mismatch, m/s²", {"at the root": field[:, 0], "at the tip": field[:, 1]}
+        lines = {"at the root": field[:, 0], "at the tip": field[:, 1]}
+        yield _Part("load on the machine less in flight", "acceleration", "mismatch", lines)
 
 
 @styled
 def plot_shock(comparison: Comparison, shock: Shock, title: str = "") -> Figure:
-    """Plot the shock response spectra of the tip's acceleration, along the axis in which the tip moves most.
+    """Plot the shock response spectra of the tip's acceleration, along the axes in which the tip moves.
 
     Parameters
     ----------
@@ -103,16 +129,16 @@ def plot_shock(comparison: Comparison, shock: Shock, title: str = "") -> Figure:
     title : str
         Of the scenario.
     """
-    axis = comparison.main_axis
-    about = f"shock response of the tip's acceleration along {'xyz'[axis]}, Q = {shock.quality:g}"
-    figure, (panel,) = panels(heading(title, about, ()), 1, heights=[1.6])
-    panel.loglog(shock.frequency, shock.centrifuge[:, axis], color=colour(0), label=comparison.centrifuge)
-    panel.loglog(shock.frequency, shock.flight[:, axis], color=REFERENCE, lw=0.8, label=comparison.flight)
-    for scale in (panel.xaxis, panel.yaxis):
-        scale.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        scale.set_minor_locator(NullLocator())
-        scale.set_major_formatter("{x:g}")
-    panel.set_xlabel("frequency of the oscillator, Hz")
-    panel.set_ylabel("largest acceleration, m/s²")
-    legend(panel)
+    shown = moved(comparison)
+    about = f"shock response of the tip's acceleration, Q = {shock.quality:g}"
+    figure, drawn = panels(heading(title, about, ()), len(shown), heights=[1.6] * len(shown))
+    for panel, axis in zip(drawn, shown, strict=True):
+        panel.loglog(shock.frequency, shock.flight[:, axis], label=comparison.flight, **FLIGHT)
+        panel.loglog(shock.frequency, shock.centrifuge[:, axis], label=comparison.centrifuge, **machine(0))
+        for scale in (panel.xaxis, panel.yaxis):
+            scale.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            scale.set_minor_locator(NullLocator())
+            scale.set_major_formatter("{x:g}")
+        panel.set_ylabel(f"largest acceleration\nalong {'xyz'[axis]}, m/s²")
+    drawn[-1].set_xlabel("frequency of the oscillator, Hz")
     return figure

@@ -10,14 +10,15 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from gbeam.errors import InputError
-from gbeam.plots.comparison import plot_comparison, plot_shock
-from gbeam.plots.environment import plot_axes, plot_base, plot_hub
-from gbeam.plots.files import save
+from gbeam.plots.comparison import moved, plot_comparison, plot_shock
+from gbeam.plots.drawing.files import save
+from gbeam.plots.environment import plot_base, plot_hub
 from gbeam.plots.loads import plot_loads, plot_loads_along
+from gbeam.plots.machine import plot_axes, plot_tracking
 from gbeam.plots.steady import plot_campbell, plot_critical_map, plot_modes, plot_static
 from gbeam.plots.tip import plot_tip
 from gbeam.results.comparison import Comparison
-from gbeam.results.machine import MachinePlan
+from gbeam.results.machine import AxesResult, MachinePlan
 from gbeam.results.response import Response
 from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.steady.modal import Campbell, Modes
@@ -58,12 +59,14 @@ def figures(result: Any, title: str = "") -> dict[str, Draw]:
             return {"tip": tip, **_of_response(result, title)}
         case Comparison():
             shock = {} if result.shock is None else {"shock": partial(plot_shock, result, result.shock, title)}
-            return {"parts": partial(plot_comparison, result, title), **shock}
+            first, *others = moved(result)
+            parts: dict[str, Draw] = {"parts": partial(plot_comparison, result, title, first)}
+            return parts | {f"parts {'xyz'[i]}": partial(plot_comparison, result, title, i) for i in others} | shock
         case Deflection():
             along = {} if result.loads is None else {"loads": partial(plot_loads_along, result, result.loads, title)}
             return {"shape": partial(plot_static, [result], title), **along}
         case MachinePlan():
-            return {"axes": partial(plot_axes, result, result.axes, title)}
+            return _of_machine(result, result.axes, title)
         case Modes():
             return {"modes": partial(plot_modes, result, title)}
         case Campbell():
@@ -73,12 +76,22 @@ def figures(result: Any, title: str = "") -> dict[str, Draw]:
     raise TypeError(f"{type(result).__name__} has no figures")
 
 
-def _of_response(response: Response, title: str) -> dict[str, Draw]:
+def _of_machine(
+    result: Response | MachinePlan, axes: AxesResult, title: str, flight: Response | None = None
+) -> dict[str, Draw]:
+    quantities = ("rate", "acceleration", *(["jerk"] if axes.jerk is not None else []))
+    return {
+        "tracking": partial(plot_tracking, result, axes, title, flight),
+        **{f"axes_{each}": partial(plot_axes, result, axes, each, title) for each in quantities},
+    }
+
+
+def _of_response(response: Response, title: str, flight: Response | None = None) -> dict[str, Draw]:
     every: dict[str, Draw] = {"base": partial(plot_base, response, title)}
     if response.loads is not None:
         every["loads"] = partial(plot_loads, response, response.loads, title)
     if response.axes is not None:
-        every["axes"] = partial(plot_axes, response, response.axes, title)
+        every |= _of_machine(response, response.axes, title, flight)
     if response.hub is not None:
         every["hub"] = partial(plot_hub, response, response.hub, title)
     return every
@@ -86,18 +99,22 @@ def _of_response(response: Response, title: str) -> dict[str, Draw]:
 
 def _of_study(study: Study, title: str) -> dict[str, Draw]:
     every: dict[str, Draw] = {"tip": partial(plot_tip, study)}
+    flights = {each.centrifuge: study.responses.get(each.flight) for each in study.comparisons}
     for name, response in study.responses.items():
-        every |= {f"{kind} {name}": draw for kind, draw in _of_response(response, title).items()}
+        of = _of_response(response, title, flights.get(name))
+        every |= {f"{kind} {name}": draw for kind, draw in of.items()}
     for compared in study.comparisons:
         name = compared.centrifuge
         if compared.root or compared.stations or compared.mismatch:
-            every[f"comparison {name}"] = partial(plot_comparison, compared, title)
+            first, *others = moved(compared)
+            every[f"comparison {name}"] = partial(plot_comparison, compared, title, first)
+            every |= {f"comparison_{'xyz'[i]} {name}": partial(plot_comparison, compared, title, i) for i in others}
         if compared.shock:
             every[f"shock {name}"] = partial(plot_shock, compared, compared.shock, title)
     return every
 
 
-def write_plots(study: Study, folder: Path) -> list[Path]:
+def write_plots(study: Study, folder: Path, source: str = "") -> list[Path]:
     """Write all plots of a study.
 
     Parameters
@@ -105,14 +122,18 @@ def write_plots(study: Study, folder: Path) -> list[Path]:
     study : Study
     folder : Path
         Which exists.
+    source : str
+        What they are signed with (:func:`save`).
 
     Returns
     -------
     list of Path
-        The files: ``tip``, and per environment ``base_NAME``, ``loads_NAME``, ``axes_NAME`` (centrifuges),
-        ``hub_NAME`` (hubs); per comparison ``comparison_NAME`` and ``shock_NAME``, NAME being the centrifuge's.
+        The files: ``tip``, and per environment ``base_NAME``, ``loads_NAME``, for centrifuges ``tracking_NAME`` and
+        ``axes_rate_NAME``, ``axes_acceleration_NAME``, ``axes_jerk_NAME``, for hubs ``hub_NAME``; per comparison
+        ``comparison_NAME`` along the axis in which the tip moves most, ``comparison_y_NAME`` and so on along others in
+        which it moves, and ``shock_NAME``, NAME being the centrifuge's.
     """
     files: list[Path] = []
     for name, draw in figures(study).items():
-        files += save(draw(), folder, name.replace(" ", "_", 1))
+        files += save(draw(), folder, name.replace(" ", "_", 1), source)
     return files

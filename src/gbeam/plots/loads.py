@@ -1,50 +1,50 @@
-"""What the sections of the beam carry: along the beam at rest, and at the root over time."""
+"""What the beam carries: force, moment and stress at the root over time, and along the beam at rest."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from gbeam.plots.style import colour, heading, legend, line, named, panels, show_zero, styled
+from gbeam.plots.drawing.lines import components, line
+from gbeam.plots.drawing.stretches import shade, stretches
+from gbeam.plots.drawing.style import colour, heading, limits, named, panels, show_zero, styled
+from gbeam.plots.drawing.units import unit_for
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.section_forces import Loads
 from gbeam.results.steady.equilibrium import Deflection
 
-NOTHING = 1e-9  # of the largest force or moment: a component smaller than that is rounding
+FORCES = ("axial N", "shear V_y", "shear V_z")
+MOMENTS = ("torque", "bending M_y", "bending M_z")
 
 
 @styled
 def plot_loads_along(deflection: Deflection, loads: Loads, title: str = "") -> Figure:
-    """Plot force, moment and, where the section's outer fibres are known, stress along the beam at rest.
+    """Plot along the beam at rest the sections' force and moment and, where known, the largest and smallest stress.
 
     Parameters
     ----------
     deflection : Deflection
     loads : Loads
-        Of the deflection.
+        Of the deflection, at stations along the beam.
     title : str
         Of the scenario.
     """
-    at = f"{deflection.model}, t = {deflection.time:.4g} s"
-    subject = named(deflection.motion, f"loads along the beam at rest, section axes, {at}")
-    stress = np.isfinite(loads.stress).all()
-    figure, drawn = panels(heading(title, subject, []), 2 + int(stress))
-    drawn[-1].set_xlabel("position from the root, m")
-    _components(drawn[0], loads.stations, loads.section_force[0], ("axial", "shear y", "shear z"))
-    _components(drawn[1], loads.stations, loads.section_moment[0], ("torque", "bending y", "bending z"))
-    if stress:
-        drawn[2].plot(loads.stations, 1e-6 * loads.stress[0], color=colour(0))
-    _label(drawn, ("force, N", "moment, N m", "largest stress, MPa"))
+    subject = f"internal loads at rest, {deflection.model}, t = {deflection.time:.4g} s"
+    at, known = unit_for("length", loads.stations), bool(np.isfinite(loads.stress).all())
+    figure, drawn = panels(heading(title, named(deflection.motion, subject), []), 2 + known)
+    drawn[-1].set_xlabel(f"position from the root, {at.name}")
+    where, stress = at.factor * loads.stations, (loads.stress_tension[0], loads.stress_compression[0])
+    _carried(drawn, where, loads.section_force[0], loads.section_moment[0], stress if known else None, loads)
     return figure
 
 
 @styled
 def plot_loads(response: Response, loads: Loads, title: str = "") -> Figure:
-    """Plot over time what the base gives the beam's root, the largest stress, and the torque about a hub's axis.
+    """Plot over time what the root's section carries, the extreme stresses along the beam, and a hub's torque.
 
     Parameters
     ----------
@@ -53,37 +53,40 @@ def plot_loads(response: Response, loads: Loads, title: str = "") -> Figure:
         Of the response.
     title : str
         Of the scenario.
+
+    Returns
+    -------
+    Figure
+        Force and moment are those of the section, with the signs of :func:`plot_loads_along` and
+        :func:`plot_comparison`; the times that are not followed are shaded.
     """
-    stress, torque = np.isfinite(loads.stress).all(), loads.beam_torque
-    figure, drawn = panels(
-        heading(title, named(response.name, "force and moment of the base on the root, base axes"), [response]),
-        2 + int(stress) + int(torque is not None),
-    )
-    _components(drawn[0], response.time, loads.root_force, ("x", "y", "z"))
-    _components(drawn[1], response.time, loads.root_moment, ("x", "y", "z"))
-    labels = ["force, N", "moment, N m"]
-    if stress:
-        line(drawn[2], response.time, 1e-6 * loads.stress.max(axis=1), color=colour(0))
-        labels.append("largest stress, MPa")
+    torque, known = loads.beam_torque, bool(np.isfinite(loads.stress).all())
+    subject = named(response.name, "loads in the root's section, and stress anywhere along the beam")
+    figure, drawn = panels(heading(title, subject, [response]), 2 + known + (torque is not None))
+    shade(drawn, stretches(response.axes, response.time))
+    stress = (loads.stress_tension.max(axis=1), loads.stress_compression.min(axis=1)) if known else None
+    _carried(drawn, response.time, loads.section_force[:, 0], loads.section_moment[:, 0], stress, loads)
     if torque is not None:
-        line(drawn[-1], response.time, torque, color=colour(0))
-        labels.append("torque for\nthe beam, N m")
-    _label(drawn, labels)
+        unit = unit_for("moment", torque)
+        line(drawn[-1], response.time, unit.factor * torque, color=colour(0))
+        drawn[-1].set_ylabel(f"torque for\nthe beam, {unit.name}")
     return figure
 
 
-def _label(drawn: Sequence[Axes], labels: Sequence[str]) -> None:
-    """Units, and a legend above the two panels that show components."""
-    for panel, label in zip(drawn, labels, strict=False):
-        panel.set_ylabel(label)
+def _carried(
+    drawn: list[Axes], where: Floats, force: Floats, moment: Floats, stress: tuple[Floats, Floats] | None, loads: Loads
+) -> None:
+    """Draw forces and moments (k, 3) and, where they are known, the largest and the smallest stress (k,)."""
+    for panel, kind, values, names in ((drawn[0], "force", force, FORCES), (drawn[1], "moment", moment, MOMENTS)):
+        unit = unit_for(kind, values)
+        components(panel, where, unit.factor * values, names)
         show_zero(panel)
-    for panel in drawn[:2]:
-        legend(panel, 3)
-
-
-def _components(panel: Axes, where: Floats, values: Floats, names: Sequence[str]) -> None:
-    """Draw the components (k, 3) that are more than rounding; the largest where none is."""
-    size = np.abs(values).max(axis=0)
-    for i in range(3):
-        if size[i] > NOTHING * size.max() or (size.max() == 0 and i == 0):
-            line(panel, where, values[:, i], color=colour(i), label=names[i])
+        panel.set_ylabel(f"{kind}, {unit.name}")
+    if stress is None:
+        return
+    panel, unit = drawn[2], unit_for("stress", *stress)
+    for k, (values, name) in enumerate(zip(stress, ("largest", "smallest"), strict=True)):
+        line(panel, where, unit.factor * values, color=colour(k), label=name)
+    strength = math.inf if loads.yield_strength is None else loads.yield_strength
+    limits(panel, unit.factor * strength, unit.factor * np.concatenate(stress), "yield strength")
+    panel.set_ylabel(f"stress, {unit.name}")

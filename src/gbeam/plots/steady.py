@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from gbeam.plots.style import REFERENCE, colour, heading, legend, named, panels, show_zero, styled
+from gbeam.plots.drawing.lines import FLIGHT, machine
+from gbeam.plots.drawing.style import REFERENCE, colour, heading, moving, named, panels, show_zero, styled
+from gbeam.plots.drawing.units import Unit, not_drawn, unit_for
+from gbeam.results.result import Floats
 from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.steady.modal import Campbell, Modes
 from gbeam.results.steady.stability import CriticalMap
@@ -16,6 +20,14 @@ _LINES = {"x": ":", "y": "-", "z": "--"}
 FAR = 2.0  # times the highest multiple of the speed: a mode above would press the others to the ground
 FEW = 2  # modes drawn in any case
 SHOWN = 6  # shapes drawn
+RATE = (1.0, "rad/s")
+
+
+def _position(panel: Axes, *stations: Floats, label: str = "position from the root") -> Unit:
+    """Label the lowest panel with the position along the beam, and return its unit."""
+    unit = unit_for("length", *stations)
+    panel.set_xlabel(f"{label}, {unit.name}")
+    return unit
 
 
 @styled
@@ -29,19 +41,23 @@ def plot_static(deflections: Sequence[Deflection], title: str = "") -> Figure:
     title : str
         Of the scenario.
     """
-    size = np.max([np.abs(each.displacement).max(axis=0) for each in deflections], axis=0)
-    axes = [i for i in range(3) if size[i] > 1e-9 * size.max()] or [2]
+    moved = [each.displacement for each in deflections]
+    axes = moving(*moved)
     subject = f"displacement at rest relative to the base, {deflections[0].model}, t = {deflections[0].time:.4g} s"
+    subject += not_drawn(axes, *moved)
     figure, drawn = panels(heading(title, subject, []), len(axes))
-    drawn[-1].set_xlabel("position from the root, m")
+    at = _position(drawn[-1], *(each.stations for each in deflections))
     for panel, i in zip(drawn, axes, strict=True):
+        unit = unit_for("length", *(each[:, i] for each in moved))
         for k, each in enumerate(deflections):
             dot = "o" if len(each.stations) < 3 else ""  # too few for a line
-            panel.plot(each.stations, 1e3 * each.displacement[:, i], color=colour(k), label=each.motion, marker=dot)
-        panel.set_ylabel(f"{'xyz'[i]}, mm")
+            name = each.motion if len(deflections) > 1 and i == axes[0] else None
+            style = machine(k - 1) if k or len(deflections) == 1 else FLIGHT  # the first is seen below the others
+            panel.plot(
+                at.factor * each.stations, unit.factor * each.displacement[:, i], label=name, marker=dot, **style
+            )
+        panel.set_ylabel(f"{'xyz'[i]}, {unit.name}")
         show_zero(panel)
-    if len(deflections) > 1:
-        legend(drawn[0])
     return figure
 
 
@@ -63,21 +79,20 @@ def plot_modes(modes: Modes, title: str = "") -> Figure:
     """
     subject = named(modes.motion, f"modes about the equilibrium at {modes.time:.4g} s, {modes.model}")
     figure, (panel,) = panels(heading(title, subject, []), 1, heights=[2.0])
-    panel.set_xlabel("position from the root, m")
+    at = _position(panel, modes.stations)
     panel.set_ylabel("displacement,\nlargest 1")
     dot = "o" if len(modes.stations) < 3 else ""  # too few for a line
     for k in range(min(SHOWN, len(modes.frequency))):
         shape = modes.shape[k, :, "xyz".index(modes.direction[k])]
         label = f"{modes.frequency[k]:.4g} Hz, {modes.direction[k]}"
-        panel.plot(modes.stations, shape.real, color=colour(k), label=label, marker=dot)
+        panel.plot(at.factor * modes.stations, shape.real, color=colour(k), label=label, marker=dot)
         if np.abs(shape.imag).max() > 1e-6:
-            panel.plot(modes.stations, shape.imag, ":", color=colour(k))
-    legend(panel, columns=3)
+            panel.plot(at.factor * modes.stations, shape.imag, ":", color=colour(k))
     return figure
 
 
 @styled
-def plot_campbell(diagram: Campbell, title: str = "") -> Figure:
+def plot_campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = RATE) -> Figure:
     """Plot a Campbell diagram.
 
     Parameters
@@ -85,12 +100,15 @@ def plot_campbell(diagram: Campbell, title: str = "") -> Figure:
     diagram : Campbell
     title : str
         Of the scenario.
+    unit : (float, str)
+        Of the speed: in it a rad/s is so much, and its name.
 
     Returns
     -------
     Figure
         One line per mode, dashed where it moves the beam along z, dotted along x; grey lines are multiples of the
-        speed, circles the crossings, a vertical line the critical speed. Modes far above all multiples are left out.
+        speed (1P, 2P ...), circles the crossings, a vertical line the critical speed. Modes far above all multiples
+        are left out.
     """
     highest = max(diagram.orders, default=0) * diagram.speed[-1] / (2 * np.pi)
     far = FAR * highest if diagram.orders else np.inf
@@ -100,25 +118,31 @@ def plot_campbell(diagram: Campbell, title: str = "") -> Figure:
     if left:
         subject += f"; {left} higher mode{'s' if left > 1 else ''} not drawn"
     figure, (panel,) = panels(heading(title, subject, []), 1, heights=[2.4])
-    panel.set_xlabel("hub rate, rad/s")
+    factor, name = unit
+    panel.set_xlabel(f"hub rate, {name}")
     panel.set_ylabel("frequency, Hz")
+    speed = factor * diagram.speed
     for k in shown:
         direction = diagram.direction[k]
         label = f"mode {k + 1}, {direction}"
-        panel.plot(diagram.speed, diagram.frequency[:, k], _LINES[direction], color=colour(k), label=label)
+        panel.plot(speed, diagram.frequency[:, k], _LINES[direction], color=colour(k), label=label)
     top = 1.05 * np.nanmax(diagram.frequency[:, shown])
     for order in diagram.orders:
         multiple = order * diagram.speed / (2 * np.pi)
-        panel.plot(diagram.speed, multiple, color="0.6", lw=0.7, zorder=1)
-        inside = np.flatnonzero(multiple <= top)
-        if inside.size:
-            panel.annotate(f"{order}×", (diagram.speed[inside[-1]], multiple[inside[-1]]), color="0.4", fontsize=8)
+        panel.plot(speed, multiple, color="0.6", lw=0.7, zorder=1)
+        # Where the line leaves the panel, and a little before.
+        end = min(1.0, top / multiple[-1]) * 0.96 if multiple[-1] > 0 else 0.0
+        if end * diagram.speed[-1] > diagram.speed[0]:
+            white = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
+            place = (end * speed[-1], end * multiple[-1])
+            panel.text(*place, f"{order}P", ha="center", va="center", color="0.35", fontsize=8, zorder=1.2, bbox=white)
     for crossing in diagram.crossings:
-        panel.plot(crossing.speed, crossing.frequency, "o", mfc="none", mec=REFERENCE, ms=4, mew=0.8)
+        at = factor * crossing.speed
+        panel.plot(at, crossing.frequency, "o", mfc="none", mec=REFERENCE, ms=4, mew=0.8)
     if diagram.critical is not None and diagram.critical.value is not None:
-        panel.axvline(diagram.critical.value, color=REFERENCE, lw=0.9, ls="-.", label=diagram.critical.kind)
+        critical = factor * diagram.critical.value
+        panel.axvline(critical, color=REFERENCE, lw=0.9, ls="-.", label=diagram.critical.kind)
     panel.set_ylim(0, top)
-    legend(panel)
     return figure
 
 
@@ -134,15 +158,14 @@ def plot_critical_map(critical: CriticalMap, title: str = "") -> Figure:
     """
     subject = named(critical.motion, f"critical hub rate with one more mass, {critical.model}")
     figure, (panel,) = panels(heading(title, subject, []), 1, heights=[2.0])
-    panel.set_xlabel("position of the mass from the root, m")
+    at = _position(panel, critical.position, label="position of the mass from the root")
     panel.set_ylabel("hub rate, rad/s")
     for k, (mass, speed) in enumerate(zip(critical.mass, critical.speed, strict=True)):
-        panel.plot(critical.position, speed, "o-", ms=3, color=colour(k), label=f"{mass:g} kg")
+        panel.plot(at.factor * critical.position, speed, "o-", ms=3, color=colour(k), label=f"{mass:g} kg")
     if np.isnan(critical.speed).all():
         panel.set_ylim(0, critical.searched_to)
         none = f"no loss of equilibrium up to {critical.searched_to:.4g} rad/s"
         panel.text(0.5, 0.5, none, transform=panel.transAxes, ha="center")
     else:
-        legend(panel)
         show_zero(panel)
     return figure

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from gbeam.plots.style import REFERENCE, colour, heading, legend, line, panels, scale_to, shade, show_zero, styled
+from gbeam.plots.drawing.lines import FLIGHT, line, machine
+from gbeam.plots.drawing.stretches import Stretch, shade, stretches
+from gbeam.plots.drawing.style import colour, heading, moving, panels, scale_to, show_zero, styled, subtitle
+from gbeam.plots.drawing.units import largest, not_drawn, unit_for
+from gbeam.results.comparison import Comparison
+from gbeam.results.response import Response
 from gbeam.results.study import Study
 
 
 @styled
 def plot_tip(study: Study) -> Figure:
-    """Plot the tip's displacement along the axis in which it moves most.
+    """Plot the tip's displacement along every axis in which it moves.
 
     Parameters
     ----------
@@ -20,46 +25,76 @@ def plot_tip(study: Study) -> Figure:
     Returns
     -------
     Figure
-        All environments overlaid; below, for each comparison, centrifuge less flight, with the held times shaded.
+        Per axis all environments overlaid, and for each comparison centrifuge less flight; the times that are not
+        followed shaded. An axis along which the tip moves by less than a hundredth of the most is named only.
     """
-    responses = study.responses
-    axis = main_axis(study)
-    heights = [1.6 if study.comparisons else 2.0] + [1.0] * len(study.comparisons)
-    title = heading(study.title, f"tip displacement along {'xyz'[axis]}, relative to the base", responses.values())
-    figure, (top, *below) = panels(title, len(heights), heights=heights)
-    flights = {c.flight for c in study.comparisons}
-    others = [name for name in responses if name not in flights]
-    for name, response in responses.items():
-        dot = "o" if len(response.time) == 1 else ""  # what diverged at once is no line
-        # A flight is drawn thin on what imitates it: a vibration would hide it.
-        if name in flights:
-            style = {"color": REFERENCE, "lw": 0.8, "zorder": 3}
-        else:
-            style = {"color": colour(others.index(name)), "lw": 1.6 if flights else 1.1}
-        line(top, response.time, 1e3 * response.tip[:, axis], marker=dot, label=name, **style)
-    show_zero(top)
-    top.set_ylabel("displacement, mm")
-    together = all(np.array_equal(each.covered, study.comparisons[0].covered) for each in study.comparisons)
-    if study.comparisons and together:
-        shade(top, study.comparisons[0].time, ~study.comparisons[0].covered)
-    if len(responses) > 1:
-        legend(top)
-    for panel, compared in zip(below, study.comparisons, strict=True):
-        difference, covered = 1e3 * compared.difference[:, axis], compared.covered
-        line(panel, compared.time, difference, color=colour(others.index(compared.centrifuge)))
-        shade(panel, compared.time, ~covered)
-        if not together and not covered.all():
-            legend(panel)
-        show_zero(panel)
-        panel.set_ylabel("difference, mm")
-        # What happens while the target is held is no difference from flight: it must not set the scale.
-        scaled = ", scaled to the times compared" if scale_to(panel, covered, difference) else ""
-        panel.set_title(f"{compared.centrifuge} − {compared.flight}{scaled}", loc="left", fontsize=9)
+    responses, compared = study.responses, study.comparisons
+    sizes = [each.peaks.max_abs for each in responses.values()]
+    shown = sorted(moving(*sizes), key=lambda axis: -max(each[axis] for each in sizes))
+    heights = [each for _ in shown for each in (1.6 if len(shown) == 1 else 1.2, *[0.9] * len(compared))]
+    heights = heights if len(heights) > 1 else [2.0]
+    subject = f"tip displacement relative to the base{not_drawn(shown, *sizes)}"
+    figure, drawn = panels(heading(study.title, subject, responses.values()), len(heights), heights=heights)
+    marked = [_stretches(responses, each) for each in compared]
+    alone = [] if compared else [each for r in responses.values() for each in stretches(r.axes, r.time)]
+    rows = len(compared) + 1
+    for k, axis in enumerate(shown):
+        top, *below = drawn[rows * k : rows * (k + 1)]
+        _displacement(top, study, axis, named=len(responses) > 1 and k == 0)
+        for panel, each in zip(below, compared, strict=True):
+            _difference(panel, each, axis, colours(study)[each.centrifuge])
+        if len(compared) == 1:
+            shade([top, *below], marked[0], label=k == 0)
+        elif compared:
+            for panel, some in zip(below, marked, strict=True):
+                shade([panel], some)
+        elif len(responses) == 1:
+            shade([top], alone, label=k == 0)
     return figure
 
 
-def main_axis(study: Study) -> int:
-    """Axis (0, 1, 2) along which the tip moves most, in flight where there is one."""
-    flights = [each for each in study.responses.values() if each.environment == "flight"]
-    largest = [each.peaks.max_abs for each in flights or study.responses.values()]
-    return int(np.argmax(np.max(largest, axis=0)))
+def colours(study: Study) -> dict[str, int]:
+    """Number of the colour of every environment that is no flight of a comparison."""
+    flights = {each.flight for each in study.comparisons}
+    return {name: k for k, name in enumerate(name for name in study.responses if name not in flights)}
+
+
+def _displacement(panel: Axes, study: Study, axis: int, *, named: bool) -> None:
+    responses, flights = study.responses, {each.flight for each in study.comparisons}
+    unit = unit_for("length", *(each.tip[:, axis] for each in responses.values()))
+    for name, response in responses.items():
+        if name in flights:
+            style = dict(FLIGHT)
+        else:
+            k = colours(study)[name]
+            style = machine(k) if flights else {"color": colour(k)}
+        dot = "o" if len(response.time) == 1 else ""  # what diverged at once is no line
+        line(
+            panel,
+            response.time,
+            unit.factor * response.tip[:, axis],
+            marker=dot,
+            label=name if named else None,
+            **style,
+        )
+    show_zero(panel)
+    panel.set_ylabel(f"{'xyz'[axis]}, {unit.name}")
+
+
+def _difference(panel: Axes, compared: Comparison, axis: int, index: int) -> None:
+    difference, covered = compared.difference[:, axis], compared.covered
+    unit = unit_for("length", difference[covered] if covered.any() else difference)
+    line(panel, compared.time, unit.factor * difference, **machine(index))
+    show_zero(panel)
+    panel.set_ylabel(f"difference in {'xyz'[axis]},\n{unit.name}")
+    # What happens while the target is held is no difference from flight: it must not set the scale.
+    scaled = scale_to(panel, covered, unit.factor * difference)
+    beyond = scaled and largest(difference) > 1.05 * largest(difference[covered])
+    subtitle(panel, f"{compared.centrifuge} − {compared.flight}" + (", scaled to the times compared" if beyond else ""))
+
+
+def _stretches(responses: dict[str, Response], compared: Comparison) -> list[Stretch]:
+    response = responses.get(compared.centrifuge)
+    if response is None:
+        return stretches(None, compared.time, compared.accounting)
+    return stretches(response.axes, response.time, compared.accounting)

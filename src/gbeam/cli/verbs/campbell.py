@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
@@ -12,6 +12,9 @@ from gbeam.cli.inputs import number, read
 from gbeam.cli.options import Json, MotionName, Out, Overrides, ScenarioFile, Speed
 from gbeam.cli.outputs import list_files, show, write
 from gbeam.errors import InputError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def campbell(
@@ -27,7 +30,7 @@ def campbell(
     out: Out = None,
     json: Json = False,
 ) -> int:
-    """Frequencies against the speed of a hub, and where its multiples meet them.
+    """Frequencies against the speed of a hub, in the unit of --to or --from, and where its multiples meet them.
 
     Writes campbell.json and the diagram into --out, by default out/ and the scenario's name; with --json only if --out
     is given. Exit status: 0 done, 1 there is no equilibrium, 2 the input is wrong, such as a motion without a hub.
@@ -52,8 +55,18 @@ def campbell(
         )
     facts = report.to_json(diagram)
 
-    files = write(folder, "campbell", facts, lambda: {"campbell": diagram.plot(title=given.case.title)})
-    show(report.text(diagram), facts, json)
+    from gbeam.scenario.text.units import unit_of
+
+    # In words and in the diagram speeds are in the unit in which they are given.
+    unit, size = unit_of(end or start or "0", "angular rate")
+
+    def figures() -> dict[str, Figure]:
+        from gbeam.plots import plot_campbell
+
+        return {"campbell": plot_campbell(diagram, given.case.title, (1 / size, unit))}
+
+    files = write(folder, "campbell", facts, figures)
+    show(report.text(diagram, unit, size), facts, json)
     if not json:
         list_files(folder, files)
     return 0

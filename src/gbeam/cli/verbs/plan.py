@@ -31,7 +31,7 @@ def plan(
     """Plan the axis motions of the centrifuges of a scenario; it needs no beam.
 
     Prints what the axes do, what that uses of the machine's limits, how well the load is followed and where it cannot
-    be. With --out also writes the axis motions at the controller's sample time (commands_NAME.csv and .mat) and a plot.
+    be. With --out also writes the axis motions at the controller's sample time (commands_NAME.csv and .mat) and plots.
     Exit status: 0 done, 1 a limit is exceeded, 2 the input is wrong.
     """
     if out is not None:
@@ -55,13 +55,14 @@ def plan(
 
     def make(hidden: Path) -> None:
         from gbeam.io.commands import write_commands
-        from gbeam.plots import save
+        from gbeam.plots import figures, save
 
         for name, each in plans.items():
             own = tables[name].commands
             time = every or (own.sample if own else SAMPLE)
             write_commands(each, analysis.commands(machines[name], time), hidden)
-            save(each.plot(title=given.title), hidden, f"axes_{name}")
+            for kind, draw in figures(each, given.title).items():
+                save(draw(), hidden, f"{kind}_{name}", "gbeam plan")
 
     files = [] if out is None else publish(out, make)
     if json:

@@ -44,7 +44,7 @@ def run(
         from gbeam.plots import write_plots
 
         netcdf.write(answer, hidden / "result.nc", given.provenance())
-        write_plots(answer, hidden)
+        write_plots(answer, hidden, "gbeam run")
 
     files = [] if folder is None else publish(folder, make)
     if json:

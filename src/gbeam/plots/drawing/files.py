@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 import struct
 import zlib
 from pathlib import Path
 from typing import Any, TextIO
+from xml.sax.saxutils import unescape
 
 import numpy as np
 from matplotlib import rc_context
@@ -16,31 +18,60 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Affine2D, TransformedBbox, TransformedPath
 from numpy.typing import NDArray
 
-from gbeam.plots.style import STYLE
+from gbeam.plots.drawing.style import STYLE
 
 DPI = 150
 _POINTS = 72 / DPI  # points of the SVG to a pixel of the PNG
 _LEVEL = 3  # of compression: more takes longer than it is worth
+_BEGINNING = 2000  # bytes of a file that hold its signature
+_SIGNATURE = {
+    ".png": re.compile(rb"iTXtSource\0\0\0\0\0([^\0]*)\0"),
+    ".svg": re.compile(rb"<dc:source>([^<]*)</dc:source>"),
+}
 
 
-def save(figure: Figure, folder: Path, name: str) -> list[Path]:
-    """Write a figure as PNG (150 dpi) and SVG; return the files."""
+def save(figure: Figure, folder: Path, name: str, source: str = "") -> list[Path]:
+    """Write a figure as PNG (150 dpi) and SVG; return the files.
+
+    Parameters
+    ----------
+    figure : Figure
+    folder : Path
+        Which exists.
+    name : str
+        Of the files.
+    source : str
+        What made it, such as ``gbeam run``: the files carry it with their name, and :func:`signature` reads it.
+    """
     png, svg = (folder / f"{name}.{kind}" for kind in ("png", "svg"))
     dpi = figure.dpi
     # Some settings are read only when a figure is drawn.
     with rc_context(STYLE), svg.open("w", encoding="utf-8") as file:
         try:
             figure.set_dpi(DPI)
-            both = _Both(figure, file)
+            both = _Both(figure, file, _signed(svg, source))
             figure.draw(both)
             both.vector.finalize()
         finally:
             figure.set_dpi(dpi)
-    write_png(png, np.asarray(both.raster.buffer_rgba())[:, :, :3])
+    write_png(png, np.asarray(both.raster.buffer_rgba())[:, :, :3], _signed(png, source))
     return [png, svg]
 
 
-def write_png(path: Path, pixels: NDArray[np.uint8]) -> None:
+def _signed(file: Path, source: str) -> str:
+    return f"{source}: {file.name}" if source else ""
+
+
+def signature(file: Path) -> str:
+    """Return the `source` that :func:`save` signed a file with; empty where there is none, or for another name."""
+    with file.open("rb") as opened:
+        beginning = opened.read(_BEGINNING)
+    match = _SIGNATURE[file.suffix].search(beginning)
+    source, _, name = (match[1].decode(errors="replace") if match else "").rpartition(": ")
+    return source if unescape(name) == file.name else ""
+
+
+def write_png(path: Path, pixels: NDArray[np.uint8], signed: str = "") -> None:
     """Write pixels (h, w, 3), RGB, without a filter: between lines of one colour there is nothing to predict."""
     height, width, _ = pixels.shape
     rows = np.zeros((height, 1 + 3 * width), dtype=np.uint8)  # the first byte of a row names its filter
@@ -51,19 +82,21 @@ def write_png(path: Path, pixels: NDArray[np.uint8]) -> None:
 
     header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)  # 8 bits a channel, RGB
     resolution = struct.pack(">IIB", round(DPI / 0.0254), round(DPI / 0.0254), 1)
-    parts = ((b"IHDR", header), (b"pHYs", resolution), (b"IDAT", zlib.compress(rows.tobytes(), _LEVEL)), (b"IEND", b""))
+    parts = [(b"IHDR", header), (b"pHYs", resolution), (b"IDAT", zlib.compress(rows.tobytes(), _LEVEL)), (b"IEND", b"")]
+    if signed:  # keyword, no compression, no language
+        parts.insert(2, (b"iTXt", b"Source\0\0\0\0\0" + signed.encode() + b"\0"))
     path.write_bytes(b"\x89PNG\r\n\x1a\n" + b"".join(chunk(kind, data) for kind, data in parts))
 
 
 class _Both(RendererBase):
     """Draws to pixels and to SVG: artists measure and place by the pixels, and the SVG takes the same at 72 dpi."""
 
-    def __init__(self, figure: Figure, file: TextIO) -> None:
+    def __init__(self, figure: Figure, file: TextIO, signed: str) -> None:
         super().__init__()
         width, height = figure.get_size_inches()
         FigureCanvasAgg(figure)
         self.raster: Any = RendererAgg(width * DPI, height * DPI, DPI)
-        self.vector: Any = RendererSVG(width * 72, height * 72, file)
+        self.vector: Any = RendererSVG(width * 72, height * 72, file, metadata={"Source": signed} if signed else None)
         self._scale = Affine2D().scale(_POINTS)
 
     def _vector_gc(self, gc: Any) -> GraphicsContextBase:

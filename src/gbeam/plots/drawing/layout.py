@@ -7,6 +7,8 @@ on the left, a legend or a title above, tick labels and a label below the last.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -26,12 +28,12 @@ def arrange(figure: Figure) -> None:
     axes = figure.axes
     shares = np.array([panel.get_position().height for panel in axes])
     heights = [float(each) - _GAP for each in figure.get_size_inches()[1] * shares / shares.sum()]
+    ticks = max(_tick_width(panel) for panel in axes) + _LABEL_GAP
     above = [_above(panel) for panel in axes]
     title = figure.get_suptitle()
     head = _TITLE + _LINE * (title.count("\n") + 1) if title else 0.0
     total = head + sum(above) + sum(heights) + _BOTTOM
     figure.set_size_inches(WIDTH, total)
-    ticks = max(_tick_width(panel) for panel in axes) + _LABEL_GAP
     left = _EDGE + ticks + _LABEL_LINE * max(panel.get_ylabel().count("\n") + 1 for panel in axes)
     top = total - head
     for panel, gap, height in zip(axes, above, heights, strict=True):
@@ -43,12 +45,16 @@ def arrange(figure: Figure) -> None:
 
 
 def _above(panel: Axes) -> float:
-    legend = panel.get_legend()
-    if legend is None:
-        return _HEADED if panel.get_title(loc="left") else _GAP
-    # Longer ones may have several rows, and are measured.
-    many = len(legend.get_texts()) > 4
-    return max(_HEADED, legend.get_window_extent().height / legend.figure.dpi + _GAP if many else 0.0)
+    """Height above a panel, inches, once its ticks are known."""
+    legend: Any = panel.get_legend()
+    titled = bool(panel.get_title(loc="left"))
+    # A title moves up where the axis has a power of ten below it.
+    height = _GAP if legend is None and not titled else _HEADED
+    if titled and panel.yaxis.get_major_formatter().get_offset():
+        height += _LINE
+    if legend is None or len(legend.get_texts()) <= legend._ncols:
+        return height
+    return max(height, float(legend.get_window_extent().height) / legend.figure.dpi + _GAP)  # rows are measured
 
 
 def _tick_width(panel: Axes) -> float:

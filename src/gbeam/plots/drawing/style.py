@@ -1,7 +1,7 @@
-"""What all plots share: colours, panels one above the other, lines, shading.
+"""What all plots share: colours, panels one above the other, headings, legends, limits.
 
 Figures are made without pyplot, which keeps every figure of a process in one global list, and are laid out by
-`gbeam.plots.layout` instead of matplotlib's solver.
+`gbeam.plots.drawing.layout` instead of matplotlib's solver.
 """
 
 from __future__ import annotations
@@ -18,9 +18,10 @@ from matplotlib.axis import Axis
 from matplotlib.backend_bases import RendererBase
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.path import Path
 
-from gbeam.plots.layout import PANEL, WIDTH, arrange
+from gbeam.plots.drawing.layout import PANEL, WIDTH, arrange
 from gbeam.results.response import PlotHeading
 from gbeam.results.result import Flags, Floats
 
@@ -29,8 +30,10 @@ P = ParamSpec("P")
 # Okabe and Ito (2008): distinct with any colour vision. Black is left for what the others are compared with.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 REFERENCE = "black"
-HELD = "#BBBBBB"
-COLUMNS = 1500  # across a line: more than a panel has pixels at 150 dpi
+ENVELOPE = "fast vibration: envelope"  # in legends
+SMALL = 0.01  # of the largest: a smaller component is named and not drawn
+NEAR = 5.0  # times what is used: a limit beyond would press the lines to the ground, and is named only
+_ROW = 110  # letters in a row of a legend
 _MOVE_LINE = [int(Path.MOVETO), int(Path.LINETO)]
 STYLE: dict[Any, Any] = {
     "font.size": 9.0,
@@ -52,12 +55,14 @@ STYLE: dict[Any, Any] = {
 
 
 def styled(plot: Callable[P, Figure]) -> Callable[P, Figure]:
-    """Draw a plot in gbeam's style, lay it out, and leave matplotlib's settings as they were."""
+    """Draw a plot in gbeam's style, with legends, lay it out, and leave matplotlib's settings as they were."""
 
     @wraps(plot)
     def drawn(*args: P.args, **options: P.kwargs) -> Figure:
         with rc_context(STYLE):
             figure = plot(*args, **options)
+            for panel in figure.axes:
+                legend(panel)
             arrange(figure)
             return figure
 
@@ -126,19 +131,6 @@ class Grid(Artist):
         gc.restore()
 
 
-def line(panel: Axes, x: Floats, y: Floats, *style: str, **options: Any) -> None:
-    """Draw a line; of many points only those that show: per column of pixels the first, last, lowest and highest."""
-    per_column = len(x) // COLUMNS
-    if per_column > 4:
-        full = COLUMNS * per_column
-        rows = y[:full].reshape(COLUMNS, per_column)
-        start = per_column * np.arange(COLUMNS)
-        lowest, highest = start + rows.argmin(axis=1), start + rows.argmax(axis=1)
-        kept = np.unique(np.concatenate([start, lowest, highest, start + per_column - 1, np.arange(full, len(x))]))
-        x, y = x[kept], y[kept]
-    panel.plot(x, y, *style, **options)
-
-
 def named(name: str, subject: str) -> str:
     """What is shown, after the motion's name if it has one."""
     return f"{name}: {subject}" if name else subject
@@ -151,27 +143,65 @@ def heading(title: str, subject: str, responses: Iterable[PlotHeading]) -> str:
     return "\n".join([" – ".join(failed + parts[:1]), *parts[1:]])
 
 
-def legend(panel: Axes, columns: int = 4) -> None:
-    """Put the legend above a panel, outside the data."""
+def legend(panel: Axes) -> None:
+    """Put the legend of what has a label above a panel, outside the data: lines, then what is shaded."""
+    entries = [each for each in zip(*panel.get_legend_handles_labels(), strict=True) if not each[1].startswith("_")]
+    if not entries:
+        return
+    entries.sort(key=lambda each: (not isinstance(each[0], Line2D), each[1] != ENVELOPE))
+    handles, labels = zip(*entries, strict=True)
+    # Columns are as wide as their longest label; a handle takes about five letters.
+    room = _ROW - len(panel.get_title(loc="left"))
     panel.legend(
+        handles,
+        labels,
         loc="lower right",
         bbox_to_anchor=(1.0, 1.0),
-        ncols=columns,
+        ncols=min(max(1, room // (max(map(len, labels)) + 5)), len(labels)),
         borderaxespad=0.2,
         handlelength=1.6,
         columnspacing=1.4,
     )
 
 
-def shade(panel: Axes, time: Floats, flags: Flags) -> None:
-    """Shade the stretches of time in which the target is held."""
-    if flags.any():
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(int)))
-        last = len(time) - 1
-        label: str | None = "target held"
-        for first, end in zip(edges[::2], edges[1::2], strict=True):
-            panel.axvspan(time[first], time[min(end, last)], color=HELD, alpha=0.4, lw=0, zorder=0, label=label)
-            label = None
+def subtitle(panel: Axes, text: str) -> None:
+    """Say above a panel, on the left, what it shows."""
+    panel.set_title(text, loc="left", fontsize=9)
+
+
+def moving(*values: Floats) -> list[int]:
+    """Components (of the last axis) that are more than a hundredth of the largest; the largest where none is."""
+    finite = [np.nan_to_num(each, nan=0.0, posinf=0.0, neginf=0.0) for each in values]
+    size = np.max([np.abs(each).reshape(-1, each.shape[-1]).max(axis=0) for each in finite], axis=0)
+    return [i for i in range(len(size)) if size[i] > SMALL * size.max()] or [int(size.argmax())]
+
+
+def limits(panel: Axes, allowed: float, values: Floats, label: str = "limit") -> bool:
+    """Draw a limit on the size of some values as lines, on the sides to which they go; False where it is far beyond.
+
+    Parameters
+    ----------
+    panel : Axes
+    allowed : float
+        In the panel's unit; infinite or NaN where there is no limit.
+    values : array
+        In the panel's unit.
+    label : str
+        Of the lines in the legend.
+    """
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    used = max(-low, high)
+    if not allowed <= NEAR * used:
+        return False
+    named: str | None = label
+    bottom, top = panel.get_ylim()
+    for side, reached in ((1.0, high), (-1.0, -low)):
+        if reached > SMALL * used:
+            panel.axhline(side * allowed, color=REFERENCE, lw=0.9, ls=(0, (6, 2)), zorder=2.4, label=named)
+            named = None
+            bottom, top = min(bottom, -1.08 * allowed if side < 0 else 0.0), max(top, 1.08 * allowed * side)
+    panel.set_ylim(bottom, top)
+    return True
 
 
 def scale_to(panel: Axes, covered: Flags, *values: Floats) -> bool:

@@ -26,15 +26,24 @@ def to_json(diagram: Campbell) -> dict[str, Any]:
     }
 
 
-def text(diagram: Campbell) -> str:
-    """First and last frequency of each mode, crossings, and a critical speed if there is one."""
-    low, high = diagram.speed[[0, -1]]
-    lines = [f"{diagram.motion}: {diagram.model}, {low:.4g} to {high:.4g} rad/s"]
+def text(diagram: Campbell, unit: str = "rad/s", size: float = 1.0) -> str:
+    """First and last frequency of each mode, crossings, and a critical speed if there is one.
+
+    Parameters
+    ----------
+    diagram : Campbell
+    unit : str
+        Of the speeds.
+    size : float
+        Of the unit, rad/s.
+    """
+    low, high = diagram.speed[[0, -1]] / size
+    lines = [f"{diagram.motion}: {diagram.model}, {low:.4g} to {high:.4g} {unit}"]
     lines.append("  mode along   Hz at the start   at the end")
     rows = enumerate(zip(diagram.direction, diagram.frequency[0], diagram.frequency[-1], strict=True), 1)
     lines += [f"  {i:>4} {d:>5} {first:17.6g} {last:12.6g}" for i, (d, first, last) in rows]
     lines += [
-        f"  mode {each.track + 1} meets {each.order} × speed at {each.speed:.6g} rad/s, {each.frequency:.6g} Hz"
+        f"  mode {each.track + 1} meets {each.order} × speed at {each.speed / size:.6g} {unit}, {each.frequency:.6g} Hz"
         for each in diagram.crossings
     ]
     if diagram.critical is not None:

@@ -142,6 +142,21 @@ def argument(text: str, kind: str) -> float:
     return quantity(float(text) if match and not match[2] else text, kind)
 
 
+def unit_of(text: str, kind: str) -> tuple[str, float]:
+    """Unit of a quantity of the command line and its SI value: ``60 rpm`` is in rpm, of 2π/60 rad/s; a bare number SI.
+
+    Parameters
+    ----------
+    text : str
+        That :func:`argument` reads.
+    kind : str
+        As for :func:`quantity`.
+    """
+    match = _NUMBER.fullmatch(text)
+    unit = (match[2] if match else "") or KINDS[kind].unit
+    return unit, _factor(unit, kind)
+
+
 def spoken(value: object) -> str:
     """Name a value of the wrong type as a scenario file would: ``true``, ``'text'``, ``1.5``, ``a list``."""
     if isinstance(value, bool):
