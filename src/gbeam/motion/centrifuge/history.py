@@ -56,9 +56,10 @@ def _broken_promise(
     """Say where the load is followed worse than the inverse promises; nothing where it is not."""
     size = np.linalg.norm(error, axis=1)
     share = np.where(not_followed, 0.0, size / np.maximum(np.linalg.norm(reference, axis=1), 1e-12))
-    worst = int(np.argmax(share))
-    if not share[worst] > motion.inverse.within:
+    missed = share > motion.inverse.within
+    if not missed.any():
         return ()
+    worst = int(np.argmax(np.where(missed, size, 0.0)))
     used = ", ".join(f"{use.axis} {use.quantity}" for use in limits if use.share > _USED_UP)
     return (
         f"the load is followed within {share[worst]:.2g} of it only ({size[worst]:.3g} m/s² at {time[worst]:.3f} s), "
