@@ -114,6 +114,11 @@ def test_below_idle_the_arm_keeps_idle_and_the_specimen_is_not_preloaded() -> No
     assert arm.min() >= IDLE
     below = size(np.asarray(record("f16_pulls_and_push")(t))) < IDLE
     assert size(machine.actual(t))[below].max() < 1.05 * IDLE
+    # Nor on the way there and back, which asks for no more than the flight begins and ends with.
+    begin, end = machine.extent
+    ends = IDLE, max(IDLE, float(size(np.asarray(record("f16_pulls_and_push")([LAST["f16_pulls_and_push"]])))[0]))
+    for way, edge in zip(((begin, 0.0), (LAST["f16_pulls_and_push"], end)), ends, strict=True):
+        assert size(machine.actual(np.linspace(*way, 4001))).max() < 1.05 * edge
 
 
 def test_the_f16_pull_is_followed_as_well_as_the_exact_inverse_does_within_limits_that_it_breaks() -> None:

@@ -4,10 +4,11 @@ The three axes are quintic splines. Their coefficients minimise
 
     ∫ w |a_C − flight's own load|²/g0² + ease of the motion  dt    within every limit,
 
-where w is small while the flight's load is below idle, and nothing before the flight and after it; the last term, too
-small to be seen in the load, picks the gentlest of equally good motions. The limits are those of the axes and of the
-arm's power at all times, idle as a least rate of the arm during the flight, and rest at both ends. The minimum is the
-one near the quasi-static motion, by a sequence of quadratic programs, on finer and finer knots.
+where w is small while the flight's load is below idle, and smaller before the flight and after it, where the load is
+that of a plain spin-up and spin-down; the last term, too small to be seen in the load, picks the gentlest of equally
+good motions. The limits are those of the axes and of the arm's power at all times, idle as a least rate of the arm
+during the flight, and rest at both ends. The minimum is the one near the quasi-static motion, by a sequence of quadratic
+programs, on finer and finer knots.
 """
 
 from __future__ import annotations
@@ -89,7 +90,7 @@ def planned(target: Target, geometry: Geometry, limits: Limits, ends: Ends) -> P
         x = splines.unknowns(c)
         near = x if within else nearest_within(kept, x)
         if near is not None:
-            tracking, x = Tracking(splines, geometry, target), near
+            tracking, x = Tracking(splines, geometry, target, ramps), near
             for factor in (1.0,) if within else _GENTLER:
                 x, cost = minimise(tracking.gentler(factor), kept, x)
             c, gain, best, within = splines.coefficients(x), best - cost, cost, True

@@ -23,6 +23,7 @@ from gbeam.arrays.tree import record, static
 from gbeam.errors import InputError
 from gbeam.motion.centrifuge.ends import Ends
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse, Pose, across_beam
+from gbeam.motion.centrifuge.machine.kinematics import Axes, control_point_load
 from gbeam.motion.centrifuge.machine.limits import Limits, usage
 from gbeam.motion.centrifuge.target.target import Target
 from gbeam.numerics.series import Series, arctan2, sqrt, where
@@ -83,6 +84,14 @@ class Ramp:
             down = none + self.gravity
             roll = roll + arctan2(down, share * self.across) - arctan2(down, none + self.across)
         return _rise(s) * self.rate, yaw, roll
+
+    def load(self, t: Any, arm: Any) -> Any:
+        """Load that the ramp makes at the control point at times `t` (s), base axes, m/s², shape (..., 3)."""
+        arm_rate, yaw, roll = self.pose(t, 1)
+        rate, acceleration = arm_rate.derivatives()
+        none = 0.0 * rate
+        axes = Axes(rate, acceleration, yaw.value, none, none, roll.value, none, none)
+        return control_point_load(axes, arm, self.gravity)
 
     @property
     def length(self) -> float:

@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
 from gbeam.motion.centrifuge.inverses.axis_splines import AXES, RATE, ROLL, YAW, AxisSplines
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry
+from gbeam.motion.centrifuge.inverses.spin_up import Ramp
 from gbeam.motion.centrifuge.target.target import Target
 
+ON_WAY = 0.01  # weight of the squared error before the flight and after it
 BELOW_IDLE = 0.1  # weight of the squared error while the flight's load is below idle, where it is 1 otherwise
 EASE = 1e-4, 1e-6  # g0: what 1 rad/s² and 1 rad/s³ of any axis cost as a tracking error
 
@@ -25,20 +27,25 @@ class Tracking:
 
         w |a_C − flight's own load|²/g0² + sum over the axes of (EASE · acceleration)² + (EASE · jerk)²,
 
-    where w is zero before the flight's first time and after its last.
+    where before the flight's first time and after its last the load is that of spin-up and spin-down by themselves.
 
     The load depends on four states: ω1, dω1/dt, θ2 and θ3; each is a row of the unknowns at every time of the grid.
     """
 
-    def __init__(self, splines: AxisSplines, geometry: Geometry, target: Target) -> None:
+    def __init__(
+        self, splines: AxisSplines, geometry: Geometry, target: Target, ramps: tuple[Ramp, Ramp] | None = None
+    ) -> None:
         grid = splines.grid
         self.splines, self.arm, self.gravity = splines, float(geometry.arm), float(geometry.gravity)
         first, last = (float(end) for end in target.span)
         self.flight = np.asarray(target.flight(np.clip(grid.time, first, last)))
+        before, after = grid.time < first, grid.time > last
+        for ramp, outside in zip(ramps or (), (before, after), strict=False):
+            self.flight[outside] = ramp.load(grid.time[outside], self.arm)
         spacing = grid.step / grid.points.size
         short = np.maximum(float(target.idle) - np.linalg.norm(self.flight, axis=1), 0.0)
-        during = (grid.time >= first) & (grid.time <= last)
-        weight = np.where(during, np.where(short > 0, BELOW_IDLE, 1.0), 0.0)
+        short[before | after] = 0.0
+        weight = np.where(before | after, ON_WAY, np.where(short > 0, BELOW_IDLE, 1.0))
         self.weight = np.sqrt(spacing * weight) / STANDARD_GRAVITY
         self.bound = float(np.sum((self.weight * short) ** 2)) / 2  # what idle costs, whatever the axes do
         states = (RATE, 0), (RATE, 1), (YAW, 0), (ROLL, 0)
