@@ -7,8 +7,8 @@ The three axes are quintic splines. Their coefficients minimise
 where w is small while the flight's load is below idle, and smaller before the flight and after it, where the load is
 that of a plain spin-up and spin-down; the last term, too small to be seen in the load, picks the gentlest of equally
 good motions. The limits are those of the axes and of the arm's power at all times, idle as a least rate of the arm
-during the flight, and rest at both ends. The minimum is the one near the quasi-static motion, by a sequence of quadratic
-programs, on finer and finer knots.
+during the flight, and rest at both ends. The minimum is the one near the quasi-static motion, by a sequence of
+quadratic programs, on finer and finer knots.
 """
 
 from __future__ import annotations
