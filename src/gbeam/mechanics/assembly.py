@@ -112,10 +112,9 @@ def assemble(
 
 def _nodes(kind: Kind, shapes: int, *, adapted: bool) -> int:
     """Nodes per panel, for integrals to rounding."""
-    # Products of two shapes and a power of x; polynomials as angles, whose sines are smooth.
-    if kind.truncated or (kind.exact and not adapted):
+    if kind.exact and not adapted:  # sines of polynomials are smooth
         return 10 + 2 * shapes
-    # CFOAM's fourth powers of the highest shape (2009's tensors: 32 for five), sines of shapes that are no polynomials.
+    # Fourth powers of the highest shape (2009's tensors: 32 for five), and products of two integrated to a body midway.
     return 12 + 4 * shapes
 
 
