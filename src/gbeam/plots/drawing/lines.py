@@ -20,12 +20,13 @@ _GAP, _FEW = 2, 3  # bins: between stretches that are drawn as one, and of a str
 # Flight is broad and light, and below what imitates it, which is thin: where they agree both are seen.
 FLIGHT: dict[str, Any] = {"color": "#56B4E9", "lw": 3.4, "zorder": 1.9, "solid_capstyle": "butt"}
 # Of components drawn together: told apart in print as well.
+_OVER: tuple[Any, ...] = ("-", (0, (4, 3)), (0, (1.5, 3)))
 _DASHES: tuple[Any, ...] = ((0, (1.5, 1)), (0, (5, 1.5)), "-")
 
 
 def machine(index: int) -> dict[str, Any]:
-    """Style of the `index`-th line that is compared with flight's."""
-    return {"color": colour(index + 1), "lw": 1.0, "zorder": 2.2}
+    """Style of the `index`-th line that is compared with flight's; from the second on dashed, on top of the first."""
+    return {"color": colour(index + 1), "lw": 1.0, "zorder": 2.2 + 0.01 * index, "ls": _OVER[min(max(index, 0), 2)]}
 
 
 def line(panel: Axes, x: Floats, y: Floats, **options: Any) -> None:
