@@ -21,7 +21,7 @@ DURATION = 2.0
 
 
 def machine(**options: Any) -> Centrifuge:
-    given = {"arm": 3.3, "control_point": 0.2, "gravity": True, "smoothing": 0.2, **options}
+    given = {"arm": 3.3, "control_point": 0.2, "inverse": "flat", "gravity": True, "smoothing": 0.2, **options}
     return Centrifuge(FLIGHT, **given)
 
 

@@ -101,14 +101,17 @@ def in_flight(g: float) -> Base:
 
 
 def on_centrifuge(g: float, control_point: float = MIDDLE) -> Base:
-    machine = Centrifuge(Flight(z=g * G0), arm=ARM, control_point=control_point, smoothing=None, span=(0.0, 1.0))
+    machine = Centrifuge(
+        Flight(z=g * G0), arm=ARM, control_point=control_point, inverse="flat", smoothing=None, span=(0.0, 1.0)
+    )
     return machine.base(np.array(0.5))
 
 
 def rounded(load: Profile, corner: float, control_point: float) -> Centrifuge:
     return Centrifuge(
-        Flight(acceleration=load), arm=ARM, control_point=control_point, smoothing=KERNEL, span=(0.0, corner + 0.5)
-    )
+        Flight(acceleration=load), arm=ARM, control_point=control_point, inverse="flat", smoothing=KERNEL,
+        span=(-0.4, corner + 0.5),
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(("g", "independent", "printed"), [(10.0, 2.873818e-3, 2.875e-3), (6.0, 1.724291e-3, None)])

@@ -54,7 +54,9 @@ def flight(level: float) -> float:
 
 
 def centrifuge(level: float) -> float:
-    return tip(Centrifuge(Flight(z=level * G), arm=ARM, control_point=0.15, smoothing=None, span=(0.0, 1.0)))
+    return tip(
+        Centrifuge(Flight(z=level * G), arm=ARM, control_point=0.15, inverse="flat", smoothing=None, span=(0.0, 1.0))
+    )
 
 
 def test_example_1_constant_6_g() -> None:

@@ -26,16 +26,17 @@ SPAN = (0.0, 12.0)
 
 
 def machine(**options: Any) -> Centrifuge:
-    given = {"arm": R, "control_point": XC, "gravity": True, "idle": 1.4 * G, "span": SPAN, **options}
-    return Centrifuge(TRAPEZOID, **given)
+    given = {"arm": R, "control_point": XC, "inverse": "flat", "gravity": True, "idle": 1.4 * G, "span": SPAN}
+    return Centrifuge(TRAPEZOID, **{**given, **options})
 
 
 @pytest.fixture(scope="module")
 def f16() -> Centrifuge:
     record = read_record(F16, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
     return Centrifuge(
-        Flight(acceleration=record), arm=R, control_point=XC, gravity=True, idle=1.4 * G, span=(0.0, 15.99)
-    )
+        Flight(acceleration=record), arm=R, control_point=XC, inverse="flat", gravity=True, idle=1.4 * G,
+        span=(0.0, 15.99),
+    )  # fmt: skip
 
 
 def test_root_has_the_control_points_motion_moved() -> None:
@@ -48,7 +49,7 @@ def test_root_has_the_control_points_motion_moved() -> None:
 
 
 def test_steady_load_at_the_root_is_less_the_centrifugal_one() -> None:
-    still = Centrifuge(Flight(z=6 * G), arm=R, control_point=XC, smoothing=None, span=(0.0, 1.0))
+    still = Centrifuge(Flight(z=6 * G), arm=R, control_point=XC, inverse="flat", smoothing=None, span=(0.0, 1.0))
     base = still.base(0.5)
     # C is at rest in the turning axes, the root XC nearer the tip of r = (−XC, 0, 0): a_O = a_C + XC Ω² e1
     np.testing.assert_allclose(base.a_WO_B, [XC * 6 * G / R, 0, 6 * G], atol=1e-12)
@@ -91,9 +92,30 @@ def test_like_scenarios_share_one_compiled_function() -> None:
     for arm, mounting, level in ((3.3, "upright", 10.0), (5.0, "inverted", 10.0), (5.0, "upright", 9.9)):
         flight = Flight(z=trapezoid(level * G, jerk=level * 0.4 * G, start=1.0, hold=4.0))
         idle = 0.14 * level * G
-        like = Centrifuge(flight, arm=arm, control_point=XC, gravity=True, idle=idle, mounting=mounting, span=SPAN)
+        like = Centrifuge(
+            flight, arm=arm, control_point=XC, inverse="flat", gravity=True, idle=idle, mounting=mounting, span=SPAN
+        )
         np.testing.assert_allclose(base(like, t).w_WB_B, like.base(t).w_WB_B, atol=1e-12)
     assert len(traces) == 1
+
+
+def test_a_plan_is_made_where_the_motion_is_needed() -> None:
+    flight = Flight(z=trapezoid(6 * G, jerk=20 * G, start=0.5, hold=0.5))
+    spin = Centrifuge(flight, arm=R, control_point=XC, gravity=True, idle=1.4 * G)
+    assert spin.method == "planned"
+    waiting = spin.over(0.0, 2.0, ahead=False)
+    assert waiting.course is not None and waiting.course.solution is None
+    assert waiting.target.span == (0.0, 2.0) and waiting.course.solution is None
+    assert waiting.axes(1.0).rate1 == pytest.approx((35**0.5 * G / R) ** 0.5, rel=1e-3)
+    assert waiting.course.solution is not None
+    assert spin.over(0.0, 2.0) is waiting and waiting.over(0.5, 1.0) is waiting
+
+
+def test_a_load_with_corners_needs_no_smoothing_for_a_plan() -> None:
+    flight = Flight(z=trapezoid(6 * G, jerk=20 * G, start=0.5, hold=0.5))
+    spin = Centrifuge(flight, arm=R, control_point=XC, gravity=True, idle=1.4 * G, smoothing=None, span=(0.0, 2.0))
+    assert np.linalg.norm(spin.tracking_error(np.linspace(1.0, 1.1, 21)), axis=1).max() < 0.01 * G
+    assert not [each for each in spin.shortfalls() if each.unit == "m/s^4"]
 
 
 def test_sharp_corners_only_for_quasi_static_and_a_load_that_does_not_turn() -> None:
@@ -137,11 +159,11 @@ def test_the_target_is_built_for_the_span_that_is_asked_of_it() -> None:
 
 def test_an_example_machine_tells_its_arm_limits_and_idle() -> None:
     example = machines["specimen-3.3m"]
-    spin = Centrifuge(TRAPEZOID, control_point=XC, limits=example, span=SPAN)
+    spin = Centrifuge(TRAPEZOID, control_point=XC, inverse="flat", limits=example, span=SPAN)
     assert spin.geometry.arm == example.arm and spin.idle == example.idle
     assert spin.episodes()[0].reason == "below idle"  # the flight begins with no load
     assert {use.axis for use in spin.usage() if np.isfinite(use.allowed)} == {"axis 1", "axis 2", "axis 3"}
-    own = Centrifuge(TRAPEZOID, arm=4.0, control_point=XC, limits=example, idle=2 * G, span=SPAN)
+    own = Centrifuge(TRAPEZOID, arm=4.0, control_point=XC, inverse="flat", limits=example, idle=2 * G, span=SPAN)
     assert own.geometry.arm == 4.0 and own.idle == 2 * G
 
 

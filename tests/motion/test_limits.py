@@ -46,7 +46,9 @@ def test_usage_of_a_known_motion() -> None:
 
 def test_jerks_are_the_derivatives_of_the_accelerations() -> None:
     flight, t, h = Flight(z=trapezoid(10 * G, jerk=4 * G, start=1.0, hold=4.0)), np.linspace(2.2, 3.4, 31), 1e-6
-    machine = Centrifuge(flight, arm=R, control_point=0.15, gravity=True, idle=2 * G, smoothing=0.3, span=(0.0, 12.0))
+    machine = Centrifuge(
+        flight, arm=R, control_point=0.15, inverse="flat", gravity=True, idle=2 * G, smoothing=0.3, span=(0.0, 12.0)
+    )
     (after, _), (before, _), (_, jerk) = (machine.axes_and_jerks(t + side) for side in (h, -h, 0.0))
     for i, name in enumerate(("acceleration1", "acceleration2", "acceleration3")):
         finite = (getattr(after, name) - getattr(before, name)) / (2 * h)
@@ -80,8 +82,8 @@ def shortfalls(
     raw: Profile, arm: float = R, smoothing: float = 0.06, idle: float | None = None, gravity: bool = True
 ) -> tuple[Shortfall, ...]:
     return Centrifuge(
-        Flight(acceleration=raw), arm=arm, control_point=0.15, gravity=gravity, idle=idle, smoothing=smoothing,
-        span=(0.0, 8.0),
+        Flight(acceleration=raw), arm=arm, control_point=0.15, inverse="flat", gravity=gravity, idle=idle,
+        smoothing=smoothing, span=(0.0, 8.0),
     ).shortfalls()  # fmt: skip
 
 

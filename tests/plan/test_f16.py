@@ -10,16 +10,17 @@ import pytest
 from gbeam.analysis.imitation.plan import plan
 from gbeam.cli import main
 from gbeam.results.machine import MachinePlan
-from gbeam.scenario import build_machines, load_environments
+from gbeam.scenario import build_machines, loads
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "f16_8g_turn.toml"
+WITHOUT_LIMITS = EXAMPLE.read_text(encoding="utf-8").replace('machine = "specimen-3.3m"', 'arm = "3.3 m"')
 MACHINE = "motion.centrifuge"
 TURN = 3.2, 11.2  # s: the 8 g turn, between the steps of the aileron
 
 
 @cache
 def planned(*overrides: str) -> MachinePlan:
-    given = load_environments(EXAMPLE, [f"{MACHINE}.{each}" for each in overrides])
+    given = loads(WITHOUT_LIMITS, overrides=[f"{MACHINE}.{each}" for each in overrides], folder=EXAMPLE.parent)
     return plan("centrifuge", build_machines(given)["centrifuge"])
 
 
@@ -77,7 +78,7 @@ def test_what_an_arm_too_slow_for_the_load_misses_is_told() -> None:
 
 
 def test_exact_says_where_it_is_not(capsys: pytest.CaptureFixture[str]) -> None:
-    sharp = ["--set", f"{MACHINE}.inverse=exact", "--set", f"{MACHINE}.smoothing=30 ms"]
+    sharp = ["--set", f"{MACHINE}.inverse=exact", "--set", f"{MACHINE}.smoothing=30 ms", "--ignore-limits"]
     assert main(["plan", str(EXAMPLE), *sharp, "--json"]) == 0
     facts = json.loads(capsys.readouterr().out)["motions"]["centrifuge"]
     (warning,) = facts["warnings"]

@@ -60,13 +60,23 @@ class Input:
         if name is not None:
             if name not in motions:
                 raise InputError("--motion", f"is {name!r}", f"the scenario has {', '.join(motions)}")
-            return name, motions[name]
+            return self._prepared(name)
         alike = {key: motion for key, motion in motions.items() if motion.kind == kind}
         choice = alike or motions
         if len(choice) > 1 and (alike or not kind):
             raise InputError("--motion", "is missing", f"name one of {', '.join(choice)}")
         # Without any of the kind the first motion is as good as another: it is refused with its reason.
-        return next(iter(choice.items()))
+        return self._prepared(next(iter(choice)))
+
+    def _prepared(self, name: str) -> tuple[str, Motion]:
+        """A motion prepared for the response's times; what that refuses, at its place."""
+        first = self.case.response.start
+        try:
+            return name, self.case.motions[name].over(first, first + self.case.response.duration)
+        except InputError as error:
+            from gbeam.scenario import placed
+
+            raise placed(self.scenario, [error.within(f"motion.{name}")]) from None
 
     def time(self, text: str | None) -> float:
         """Time of ``--at``, s; the response's start where it is not given."""
@@ -87,6 +97,9 @@ class Input:
         return Provenance(source.text, tuple(change.text for change in source.overrides), self.command)
 
 
+_MOVING = ("run", "place")  # verbs that need all motions
+
+
 def read(verb: str, file: Path, overrides: Sequence[str], out: Path | None = None) -> Input:
     """Load and build the scenario of a verb, once its folder is known to be writable.
 
@@ -103,7 +116,7 @@ def read(verb: str, file: Path, overrides: Sequence[str], out: Path | None = Non
 
     scenario = load(file, overrides)
     changes = [word for change in overrides for word in ("--set", change)]
-    return Input(scenario, build(scenario), shlex.join(["gbeam", verb, str(file), *changes]))
+    return Input(scenario, build(scenario, ahead=verb in _MOVING), shlex.join(["gbeam", verb, str(file), *changes]))
 
 
 @contextmanager

@@ -44,12 +44,15 @@ def read_scenario(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -
     return build(load(path, overrides))
 
 
-def build(scenario: schema.Scenario) -> Case:
+def build(scenario: schema.Scenario, *, ahead: bool = False) -> Case:
     """Make the objects of a scenario.
 
     Parameters
     ----------
     scenario : Scenario
+    ahead : bool
+        Whether to plan the axis motions of centrifuges now, so that what a plan may refuse has its place in the file;
+        or, which spares a second, where they are needed.
 
     Returns
     -------
@@ -70,7 +73,7 @@ def build(scenario: schema.Scenario) -> Case:
     response = _response(parts, scenario.response, [_covered(r) for r in records])
     if response is not None:
         span = (response.start, response.start + response.duration)
-        motions |= centrifuges(parts, scenario, motions, span)
+        motions |= centrifuges(parts, scenario, motions, span, ahead=ahead)
     if parts.errors or beam is None or model is None or response is None:
         raise placed(scenario, parts.errors)
     return Case(
@@ -114,7 +117,7 @@ def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
     response = _response(parts, scenario.response, [_covered(r) for r in records])
     if response is not None:
         span = (response.start, response.start + response.duration)
-        motions |= centrifuges(parts, scenario, motions, span)
+        motions |= centrifuges(parts, scenario, motions, span, ahead=True)
     if parts.errors or response is None:
         raise placed(scenario, parts.errors)
     return {name: machine for name in scenario.motion if isinstance(machine := motions[name], Centrifuge)}

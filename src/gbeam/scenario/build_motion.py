@@ -42,7 +42,12 @@ def flights_and_hubs(
 
 
 def centrifuges(
-    parts: Collector, scenario: schema.Environments, others: dict[str, motion.Motion], span: tuple[float, float]
+    parts: Collector,
+    scenario: schema.Environments,
+    others: dict[str, motion.Motion],
+    span: tuple[float, float],
+    *,
+    ahead: bool,
 ) -> dict[str, motion.Motion]:
     """Build the motions that track a flight, by name.
 
@@ -55,6 +60,8 @@ def centrifuges(
         From :func:`flights_and_hubs`.
     span : tuple of float
         First and last time, s.
+    ahead : bool
+        Whether to plan the axis motions now, which takes a second, or where they are needed.
     """
     built: dict[str, motion.Motion] = {}
     for name, table in scenario.motion.items():
@@ -62,12 +69,14 @@ def centrifuges(
             continue
         flight = others.get(table.tracks)
         if isinstance(flight, motion.Flight):
-            centrifuge = parts.attempt(f"motion.{name}", centrifuge_of, table, flight, span)
+            centrifuge = parts.attempt(f"motion.{name}", centrifuge_of, table, flight, span, ahead)
             built |= {} if centrifuge is None else {name: centrifuge}
     return built
 
 
-def centrifuge_of(table: schema.Centrifuge, flight: motion.Flight, span: tuple[float, float]) -> motion.Centrifuge:
+def centrifuge_of(
+    table: schema.Centrifuge, flight: motion.Flight, span: tuple[float, float], ahead: bool = True
+) -> motion.Centrifuge:
     """Build one centrifuge for the flight that it tracks, over a span, s; InputError if it cannot."""
     machine = None if table.machine is None else motion.machines[table.machine]
     example = motion.MachineLimits() if machine is None else machine.limits
@@ -85,8 +94,7 @@ def centrifuge_of(table: schema.Centrifuge, flight: motion.Flight, span: tuple[f
         spin_up=table.spin_up,
         spin_down=table.spin_down,
         clip=table.clip,
-        span=span,
-    )
+    ).over(*span, ahead=ahead)
 
 
 def _limits(table: schema.Limits, example: motion.MachineLimits) -> motion.MachineLimits:

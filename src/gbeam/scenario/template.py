@@ -10,7 +10,8 @@ from gbeam.scenario.text.suggest import advise
 
 _HEAD = """\
 # A scenario for gbeam. Quantities are text with a unit ("300 mm", "6 g", "60 rpm"); bare numbers are SI.
-# Axes: x along the beam, y along its width, z through its thickness. `gbeam schema` lists every key.
+# Axes: x along the beam, y along its width, z through its thickness. Every key, with its unit and default:
+# `gbeam schema --markdown`, or docs/scenario.md.
 """
 
 _FLIGHT = """\
@@ -46,22 +47,36 @@ terms = [
 # or, instead of the acceleration, a measured record: a CSV file beside this one, "-" in front changes a sign
 # record = { file = "flight.csv", time = "time_s", x = "n_x_g", y = "-n_y_g", z = "-n_z_g", unit = "g" }
 
+# What the centrifuge does so that the control point feels the same: from standstill to standstill.
 [motion.centrifuge]
 kind = "centrifuge"
 tracks = "flight"  # the motion it imitates
-arm = "3.3 m"
-control_point = "150 mm"  # point of the beam that feels the flight's load, from the root
-inverse = "flat"  # quasi-static | flat | exact | planned
+machine = "specimen-3.3m"  # an example: arm and limits. Of your own: arm = "3.3 m", and under limits below
+# point of the beam that feels the flight's load, from the root: by `gbeam place`, which writes it here with --write
+control_point = "220 mm"
 gravity = true  # the target is specific force (what accelerometers measure); gravity is there on the machine
-idle = "1.4 g"  # the target is held up to this
-start = "rest"  # from standstill to standstill; or "pre-yawed", or "idle": the arm turns already
+idle = "1.4 g"  # the arm never makes less: below it the flight is not followed
+# inverse = "planned"  # within the limits, least error; or the textbook's "flat", "exact", "quasi-static"
+# mounting = "inverted"  # its tip trails the arm's motion; "upright": it leads
+# start = "pre-yawed"  # axis 2 begins across the arm; or "idle": the arm turns already
 # spin_up = "10 s"  # before the flight, and spin_down after it; left out, found within the limits
-smoothing = "60 ms"  # width of the kernel that rounds the target's corners
-# Limits of the differences from flight; one that is not kept ends in exit status 1. Also root_force, stress, tolerance
-# accept = { tip = "5 %", root_moment = "5 %", peaks = "5 %", spread = "10 %", followed = "50 %" }
+smoothing = "60 ms"  # width of the kernel that rounds the corners of the load to be followed
+# commands = { sample = "5 ms" }  # of the axes, for the controller: `gbeam plan --out DIR` writes them
+
+# [motion.centrifuge.limits]
+# axis1 = { rate = "74 rpm", acceleration = "21 rad/s^2", jerk = "210 rad/s^3" }  # likewise axis2 (yaw), axis3 (roll)
+# power = "50 kW"  # of the arm, with inertia = "2000 kg m^2"
+
+# What counts as a good imitation: anything else ends in exit status 1.
+[motion.centrifuge.accept]
+tip = "2 %"  # change of the tip's peak displacement; likewise root_force, root_moment, stress
+root_moment = "5 %"
+peaks = "3 %"  # error of every peak of the load above idle
+# spread = "10 %"  # of the load along the specimen at these peaks; followed = "90 %" of the time
 
 [response]
 duration = "6 s"  # may be left out beside a record
+stations = ["100 mm", "200 mm", "300 mm"]  # positions from the root for the output
 step = "auto"
 integrator = "newmark"  # newmark | hht | generalized-alpha | gauss | adaptive
 """

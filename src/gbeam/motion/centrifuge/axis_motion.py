@@ -7,12 +7,15 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import as_array, namespace
+from gbeam.arrays.tree import assign
 from gbeam.errors import InputError
 from gbeam.motion.centrifuge.course import Course
+from gbeam.motion.centrifuge.ends import Ends
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse
+from gbeam.motion.centrifuge.inverses.registry import INVERSES
 from gbeam.motion.centrifuge.machine.kinematics import Axes, control_point_load
 from gbeam.motion.centrifuge.machine.limits import Limits, usage
-from gbeam.motion.centrifuge.target.reachability import shortfalls
+from gbeam.motion.centrifuge.target.reachability import TOO_SHARP, shortfalls
 from gbeam.motion.centrifuge.target.target import Episode, Target
 from gbeam.motion.profiles.profile import sampled
 from gbeam.results.machine import LimitUse, Shortfall
@@ -25,6 +28,8 @@ class AxisMotion:
 
     geometry: Geometry
     limits: Limits
+    method: str
+    ends: Ends
     course: Course | None
 
     @property
@@ -44,7 +49,7 @@ class AxisMotion:
     @property
     def target(self) -> Target:
         """The load to be made, over the span that the machine is prepared for."""
-        return self._ready().target
+        return self._prepared_for_a_span().target
 
     @property
     def inverse(self) -> Inverse:
@@ -56,10 +61,18 @@ class AxisMotion:
         """Times at which an integrator should stop and start afresh, s, shape (b,)."""
         return self.target.load.breaks
 
-    def _ready(self) -> Course:
+    def _prepared_for_a_span(self) -> Course:
         if self.course is None:
             raise InputError("span", "is missing: the target belongs to a span of time", "give span, or use over(...)")
         return self.course
+
+    def _ready(self) -> Course:
+        """The course with its axis motions, which are planned now if they are not yet."""
+        course = self._prepared_for_a_span()
+        if course.solution is None:
+            course = course.solved(self.method, self.limits, self.ends)
+            assign(self, course=course)
+        return course
 
     def axes(self, t: Any) -> Axes:
         """States of the three axes at times `t` (s); :func:`gbeam.motion.axis_history` unwraps the angles."""
@@ -108,4 +121,6 @@ class AxisMotion:
 
     def shortfalls(self) -> tuple[Shortfall, ...]:
         """Where no such machine can make the flight's load, and what would help."""
-        return shortfalls(self.target, float(self.geometry.arm))
+        found = shortfalls(self.target, float(self.geometry.arm))
+        # A plan keeps the limits at corners too, and what it misses there is its tracking error.
+        return tuple(each for each in found if not (INVERSES[self.method].plans and each.reason == TOO_SHARP))

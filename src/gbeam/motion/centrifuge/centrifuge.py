@@ -44,7 +44,7 @@ class Centrifuge(AxisMotion):
     control_point : float
         x_c, from the root along the beam to the point where axes 2 and 3 meet, m.
     inverse : str
-        A key of :data:`gbeam.motion.INVERSES`: ``quasi-static``, ``flat``, ``exact`` or ``planned``.
+        A key of :data:`gbeam.motion.INVERSES`: ``planned``, ``flat``, ``exact`` or ``quasi-static``.
     limits : MachineLimits, Machine or Limits, optional
         ``planned`` keeps them, the other inverses only report. A Machine, such as one of
         :data:`gbeam.motion.machines`, also gives its idle level where that is left out.
@@ -93,7 +93,7 @@ class Centrifuge(AxisMotion):
         *,
         arm: Any | None = None,
         control_point: Any,
-        inverse: str = "flat",
+        inverse: str = "planned",
         limits: MachineLimits | Machine | Limits | None = None,
         gravity: bool = False,
         idle: Any | None = None,
@@ -130,16 +130,18 @@ class Centrifuge(AxisMotion):
         )
         if span is not None:
             assign(self, course=self._prepared(*span))
+            self._ready()
 
     @property
     def free(self) -> bool:
         """False: the motion is prescribed."""
         return False
 
-    def over(self, start: float, end: float) -> Self:
+    def over(self, start: float, end: float, *, ahead: bool = True) -> Self:
         """The machine with its target and axis motions prepared for the flight's times from `start` to `end`, s.
 
-        It is itself if it is prepared for these times already; the last one prepared is kept.
+        It is itself if it is prepared for these times already; the last one prepared is kept. Unless `ahead`, the plan
+        of ``planned`` is made only where the motion is needed.
 
         Raises
         ------
@@ -153,10 +155,13 @@ class Centrifuge(AxisMotion):
             first, last = known.course.target.span
             exact = abs(start - first) <= slack and abs(end - last) <= slack
             if exact or (known is self and first - slack <= start and end <= last + slack):
-                return known
-        prepared = self._changed(course=self._prepared(start, end))
-        assign(self, _latest=prepared)
-        return prepared
+                break
+        else:
+            known = self._changed(course=self._prepared(start, end))
+            assign(self, _latest=known)
+        if ahead:
+            known._ready()
+        return known
 
     def altered(self, **changes: Any) -> Self:
         """The machine with other arguments, by the constructor's names, prepared for the same times.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -23,13 +24,35 @@ from gbeam.numerics.series import where
 
 @record
 class Course:
-    """The target over a span, the inverse solved for it, and how the machine gets there from standstill and back."""
+    """The target over a span, the inverse solved for it, and how the machine gets there from standstill and back.
+
+    Without a `solution` it is to be :meth:`solved` first.
+    """
 
     target: Target
-    inverse: Inverse
     geometry: Geometry
-    ramps: tuple[Ramp, Ramp] | None
     start: str = static()
+    solution: Inverse | None = None
+    ramps: tuple[Ramp, Ramp] | None = None
+
+    @property
+    def inverse(self) -> Inverse:
+        """The inverse solved for the target."""
+        assert self.solution is not None
+        return self.solution
+
+    def solved(self, inverse: str, limits: Limits, ends: Ends) -> Course:
+        """The same with the axis motions, and how they begin and end.
+
+        Raises
+        ------
+        InputError
+            If the inverse cannot follow the target, or the spin-up or spin-down is too short.
+        """
+        solution = INVERSES[inverse].build(self.target, self.geometry, limits, ends)
+        own = solution.extent is not None
+        ramps = None if own else build_ramps(self.target, solution, self.geometry, limits, ends)
+        return replace(self, solution=solution, ramps=ramps)
 
     @property
     def extent(self) -> tuple[Any, Any]:
@@ -99,7 +122,7 @@ def prepare(
     clip: bool,
     span: tuple[float, float],
 ) -> Course:
-    """Build the target of a load over a span, s, solve for the axis motions, and add how they begin and end.
+    """Build the target of a load over a span, s, and, unless they are planned, the axis motions.
 
     Parameters are those of :class:`gbeam.motion.Centrifuge`.
 
@@ -114,7 +137,7 @@ def prepare(
     )  # fmt: skip
     target = build()
     method = INVERSES[inverse]
-    if not target.rounded and (target.turns or not method.follows_corners):
+    if not target.rounded and not method.plans and (target.turns or not method.follows_corners):
         raise InputError("smoothing", f"is missing: {inverse} cannot follow this load's corners", 'give "60 ms" or so')
     if method.solved and is_traced(target.load(span[0]), geometry.arm):
         fix = 'choose "flat" or "quasi-static", or prepare the machine of numbers: over(start, end)'
@@ -123,6 +146,5 @@ def prepare(
     while method.leaves_out is not None and (more := method.leaves_out(target, geometry)):
         left += more
         target = build(leave_out=left)
-    solved = method.build(target, geometry, limits, ends)
-    ramps = None if solved.extent is not None else build_ramps(target, solved, geometry, limits, ends)
-    return Course(target, solved, geometry, ramps, ends.start)
+    course = Course(target, geometry, ends.start)
+    return course if method.plans else course.solved(inverse, limits, ends)

@@ -74,9 +74,13 @@ def _measures(placement: Placement) -> list[str]:
     lines.append(" " * 19 + 2 * "".join(place.ljust(13) for place in ("now", "placed", "at mid-span")))
     for name in placement.values["best"]:
         rows = (placement.values, placement.totals)
-        cells = [f"{100 * each[place][name]:.3g} %" if each else "–" for each in rows for place in _PLACES]
+        cells = [_percent(each[place][name]) if each else "–" for each in rows for place in _PLACES]
         lines.append(f"  {name:<17}" + "".join(cell.ljust(13) for cell in cells))
     return [line.rstrip() for line in lines]
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.3g} %" if share > 1e-8 else "0 %"  # below, it is rounding
 
 
 def _range(placement: Placement) -> str:

@@ -112,9 +112,11 @@ class Centrifuge(Table):
     arm: Length | None = Field(default=None, description="radius from the main axis to the control point; or machine")
     control_point: Position = Field(description="point of the beam that feels the flight's load, from the root")
     inverse: Literal["quasi-static", "flat", "exact", "planned"] = Field(
-        description="how the axis motions are found. quasi-static: the arm's tangential acceleration is "
+        default="planned",
+        description="how the axis motions are found. planned: the least tracking error within the limits, to 1 % of "
+        "the load or a warning; the others do not know the limits. quasi-static: the arm's tangential acceleration is "
         "ignored; flat: yaw makes up for it; exact: size and direction of the load both right, to 1e-7 of it or a "
-        "warning; planned: the least tracking error within the limits, to 1 % of the load or a warning"
+        "warning",
     )
     gravity: StrictBool = Field(
         description="true if the target is specific force, of which gravity is a part on the machine; "

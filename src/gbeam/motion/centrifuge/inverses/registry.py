@@ -26,17 +26,20 @@ class Method(NamedTuple):
         Whether it is solved for numerically, and so needs numbers.
     leaves_out : callable, optional
         Of target and geometry: stretches, s, that it cannot follow and that the target is to leave out.
+    plans : bool
+        Whether it plans for any load within the limits, which takes a second: it is done where the motion is needed.
     """
 
     build: Callable[[Target, Geometry, Limits, Ends], Inverse]
     follows_corners: bool
     solved: bool
     leaves_out: Callable[[Target, Geometry], list[tuple[float, float]]] | None = None
+    plans: bool = False
 
 
 INVERSES: dict[str, Method] = {
     "quasi-static": Method(lambda target, geometry, limits, ends: QuasiStatic(geometry), True, False),
     "flat": Method(lambda target, geometry, limits, ends: Flat(geometry), False, False),
     "exact": Method(lambda target, geometry, limits, ends: exact(target, geometry), False, True, unfollowable),
-    "planned": Method(planned, False, True),
+    "planned": Method(planned, True, True, plans=True),
 }
