@@ -24,6 +24,8 @@ from gbeam.motion.centrifuge.machine.limits import exceeded
 from gbeam.numerics.solvers.bounded_search import refine
 from gbeam.results.placement import EXCEEDED, MEASURES, Candidate, Placement
 
+_WORTH = 0.02  # of the total error: what another mounting must save at least
+
 
 def place(
     structure: Structure,
@@ -150,9 +152,11 @@ class _Trials:
         """Best first; those that break limits last, by how much."""
 
         def rank(trial: _Evaluated) -> tuple[float, float]:
-            # Rounding must not choose between mirror images: then the scenario's own comes first.
-            excess = trial.candidate.share if self.choice.limited and trial.candidate.exceeded else 0.0
-            return excess, float(f"{trial.candidate.total_error:.6g}")
+            candidate = trial.candidate
+            excess = candidate.share if self.choice.limited and candidate.exceeded else 0.0
+            # Mirror images differ by rounding, and by what a search leaves: then the scenario's own comes first.
+            own = candidate.mounting == self.choice.mountings[0]
+            return excess, candidate.total_error * (1.0 if own else 1 + _WORTH)
 
         return sorted(self.evaluated.values(), key=rank)
 

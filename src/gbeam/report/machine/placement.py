@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from dataclasses import asdict
 from typing import Any
 
@@ -10,6 +11,7 @@ from gbeam.results.placement import Candidate, Placement
 
 _PLACES = ("current", "best", "middle")
 _LISTED = 6  # candidates of either kind
+_WIDTH = 110  # columns
 
 
 def settings(placement: Placement) -> list[str]:
@@ -64,7 +66,7 @@ def text(placement: Placement, written: str | None = None) -> str:
         lines.append(f"  to apply it    {flags}")
         lines.append(f"                 {f'written to {written}' if written else 'or place again with --write'}")
     if placement.message and placement.outcome == "done":
-        lines += ["", sentence(placement.message)]
+        lines += ["", *textwrap.wrap(sentence(placement.message), _WIDTH)]
     return "\n".join([*lines, *_measures(placement), *_verified(placement), *_candidates(placement, measure)])
 
 
