@@ -167,7 +167,7 @@ def test_from_idle_to_idle_the_machine_begins_and_ends_in_a_steady_state() -> No
     assert R * axes.rate1.min() ** 2 >= np.sqrt(IDLE**2 - G**2)
     moving = [axes.acceleration1, axes.rate2, axes.acceleration2, axes.rate3, axes.acceleration3, *jerk.T]
     assert np.abs(moving).max() < 1e-6
-    assert axes.rate1[0] == axes.rate1[1] and axes.angle3[2] == axes.angle3[3]
+    np.testing.assert_allclose([axes.rate1[0], axes.angle3[3]], [axes.rate1[1], axes.angle3[2]], rtol=1e-12)
 
 
 def test_given_times_to_spin_up_and_down_are_taken() -> None:

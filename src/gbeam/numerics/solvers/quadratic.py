@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 _TOLERANCE = 1e-7  # of what limits leave, which are of the order of one, and of the slope
 _GAP = 1e-9, 1e-5  # between the costs of the two programs, alone and beside the cost
+_SCALE = 1e4  # of the cost: the solver adds up to 1e-10 to H, which must be small beside its least eigenvalue
 
 Floats = NDArray[np.float64]
 
@@ -39,7 +40,7 @@ def solve_quadratic(hessian: Any, slope: Floats, rows: Any, lower: Floats, upper
     settings.kkt_solver = piqp.KKTSolver.sparse_ldlt_ineq_cond  # limits only widen the band of H
     settings.eps_abs = settings.eps_rel = _TOLERANCE
     settings.eps_duality_gap_abs, settings.eps_duality_gap_rel = _GAP
-    solver.setup(_sorted(hessian), slope, G=_sorted(rows), h_l=lower, h_u=upper)
+    solver.setup(_SCALE * _sorted(hessian), _SCALE * slope, G=_sorted(rows), h_l=lower, h_u=upper)
     status = solver.solve()
     return np.array(solver.result.x) if status == piqp.PIQP_SOLVED else None
 
