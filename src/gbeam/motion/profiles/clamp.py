@@ -15,6 +15,8 @@ from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.series import Series, where
 
+_PER_WIDTH = 40  # knots per width of a kernel: straight lines between them are within a thousandth of a jump
+
 
 def clamped(profile: Profile, first: float, last: float) -> Profile:
     """Return a profile that is itself from `first` to `last` (s), and keeps its values there before and after.
@@ -71,5 +73,9 @@ class Clamped(Profile):
         return np.unique(np.clip(self.profile.knots(step), float(self.first), float(self.last)))
 
     def smoothed(self, width: Any) -> Profile:
-        """By quadrature."""
-        return Convolved(self, width)
+        """By quadrature; of a table where the profile is itself one, since one within the other costs minutes."""
+        inner = self.profile
+        if not isinstance(inner, Convolved) or is_traced(width, inner.width, self.first, self.last):
+            return Convolved(self, width)
+        times = self.knots(min(float(width), float(inner.width)) / _PER_WIDTH)
+        return PiecewiseLinear(times, self(times)).smoothed(width)

@@ -211,9 +211,11 @@ def _padded(times: Floats, values: Floats) -> tuple[Floats, Floats]:
 
 
 def _knots(raw: Profile, start: float, end: float, step: float) -> Floats:
-    """Knots of `raw` and a grid, without grid points so near a knot that a slope would be mere rounding."""
+    """Knots of `raw` and a grid, without points so near a knot that a slope would be mere rounding."""
+    least = 1e-4 * step
     own = raw.knots(min(step, _CURVE))
-    own = np.unique(np.concatenate([[start], own[(own > start) & (own < end)], [end]]))
+    own = np.concatenate([[start], own[(own > start + least) & (own < end - least)], [end]])
+    own = own[np.diff(own, prepend=-np.inf) > least]
     grid = sampled(start, end, step)
     after = np.clip(np.searchsorted(own, grid), 1, own.size - 1)
     distance = np.minimum(np.abs(grid - own[after - 1]), np.abs(own[after] - grid))
