@@ -56,6 +56,8 @@ def placement_group(placement: Placement) -> Group:
         "flight": placement.flight,
         "centrifuge": placement.centrifuge,
         "length": placement.length,
+        "outcome": placement.outcome,
+        "message": placement.message,
         "current_control_point": placement.current,
         "vibration_gain_over_middle": placement.vibration_gain,
         "refused": "\n".join(placement.refused),
