@@ -91,7 +91,6 @@ def _solver(equations: LinearEquations | NonlinearEquations) -> Callable[..., An
 
 def _acceleration(equations: LinearEquations | NonlinearEquations) -> Callable[[Any, Any, Any], Any]:
     """q̈ at a time and state; the drive is evaluated inside the program."""
-    import jax
     import jax.numpy as jnp
 
     def inputs(t: Any) -> Any:

@@ -41,7 +41,7 @@ def _stage_residual(residual: Any, t: Tableau, z: Array, inputs: Any, x: Array) 
 
 
 def _inverse_jacobian(residual: Any, t: Tableau, z: Array, inputs: Any, x: Array) -> Array:
-    """Inverse Jacobian (s n, s n) of a step, with the derivatives of the residual between its stages for all of them."""
+    """Inverse Jacobian (s n, s n) of a step, the residual's derivatives being those between its stages."""
     q, qd, qdd = (jnp.mean(values, axis=0) for values in (t.w_q @ z + t.c_q @ x, t.w_v @ z + t.c_v @ x, x))
     between = jax.tree.map(lambda leaf: jnp.mean(leaf, axis=0), inputs)
     by_state = jax.jacfwd(lambda state: residual(*state, between))(jnp.stack([q, qd, qdd]))
