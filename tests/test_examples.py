@@ -34,7 +34,7 @@ def test_f16_turn_moving_the_specimen_quietens_it() -> None:
     # Theory: the lever of the static tip vanishes at 11/15 L.
     assert at_node.max_difference[2] < 0.3 * at_middle.max_difference[2]
     assert at_node.peaks["tip"].ratio == pytest.approx(1, abs=1e-3) and at_node.accepted
-    assert at_middle.peaks["tip"].ratio > 1.04 and at_middle.accepted is False
+    assert at_middle.peaks["tip"].ratio > 1.035 and at_middle.accepted is False
 
 
 def test_the_scenario_to_start_from_is_a_good_imitation_as_it_is() -> None:

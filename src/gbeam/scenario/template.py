@@ -60,7 +60,7 @@ idle = "1.4 g"  # the arm never makes less: below it the flight is not followed
 # mounting = "inverted"  # its tip trails the arm's motion; "upright": it leads
 # start = "pre-yawed"  # axis 2 begins across the arm; or "idle": the arm turns already
 # spin_up = "10 s"  # before the flight, and spin_down after it; left out, found within the limits
-smoothing = "20 ms"  # width of the kernel that rounds the corners of the load to be followed
+smoothing = "60 ms"  # width of the kernel that rounds the corners of the load to be followed
 # commands = { sample = "5 ms" }  # of the axes, for the controller: `gbeam plan --out DIR` writes them
 
 # [motion.centrifuge.limits]

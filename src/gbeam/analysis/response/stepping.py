@@ -38,8 +38,8 @@ def scheme_of(settings: ResponseSettings) -> Scheme:
 
 
 def first_step(structure: Structure, settings: ResponseSettings) -> float:
-    """Step of the results, s: an even number over the duration, at least 500 and 40 to the lowest period."""
-    largest = min(2 * math.pi / float(structure.rest[0][0]) / 40, settings.duration / 500)
+    """Step of the results, s: an even number over the duration, at least 500 and 20 to the lowest period."""
+    largest = min(2 * math.pi / float(structure.rest[0][0]) / 20, settings.duration / 500)
     return settings.duration / (2 * math.ceil(settings.duration / largest / 2))
 
 
