@@ -60,7 +60,9 @@ def test_peaks_are_those_of_a_quarter_of_the_step(name: str) -> None:
     assert one.time_of_max_size == pytest.approx(two.time_of_max_size, abs=found.time[1] - found.time[0])
     assert one.loads is not None and two.loads is not None
     moment = every(two.loads.moment, 0)
-    np.testing.assert_allclose(every(one.loads.moment, 0), moment, atol=TOLERANCE * moment.max())
+    np.testing.assert_allclose(every(one.loads.moment, 0), moment, atol=0.1 * TOLERANCE * moment.max())
+    stress = [each.loads.stress.value[0] for each in (one, two) if each.loads is not None]
+    assert stress[0] == pytest.approx(stress[1], rel=0.1 * TOLERANCE, nan_ok=True)  # a hub-beam has no fibres
 
 
 @pytest.mark.parametrize("name", ["flight", "free hub"])
@@ -76,8 +78,9 @@ def test_peaks_of_loads_are_found_between_the_steps_kept(name: str) -> None:
         (kept.peaks.loads.moment, whole.loads.section_moment, kept.loads.section_moment),
     ):
         samples, few = (np.linalg.norm(each, axis=2).max(axis=0) for each in (history, sparse))
-        assert (peaks.size.value >= samples * (1 - 1e-12)).all() and (peaks.size.value >= few).all()
-        np.testing.assert_allclose(peaks.size.value, samples, rtol=1e-3)
+        rounding = 1e-12 * samples.max()  # at the tip there is nothing else
+        assert (peaks.size.value >= samples - rounding).all() and (peaks.size.value >= few - rounding).all()
+        np.testing.assert_allclose(peaks.size.value, samples, rtol=1e-3, atol=rounding)
 
 
 def test_a_peak_between_samples_is_the_oscillators() -> None:

@@ -129,7 +129,7 @@ class _Trials:
         settings: ResponseSettings,
         weights: Mapping[str, float],
     ) -> None:
-        self.answers, self.length, self.flight = Answers(structure, settings), structure.length, flight
+        self.answers, self.length, self.flight = Answers(structure, flight, settings), structure.length, flight
         self.choice, self.weights = choice, weights
         self.span = settings.start, settings.start + settings.duration
         self.evaluated: dict[tuple[str, float], _Evaluated] = {}

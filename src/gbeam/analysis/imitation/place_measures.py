@@ -46,8 +46,8 @@ class Answers:
     same times: begin with the widest smoothing, which holds longest.
     """
 
-    def __init__(self, structure: Structure, settings: ResponseSettings) -> None:
-        self.step = first_step(structure, settings)
+    def __init__(self, structure: Structure, flight: Flight, settings: ResponseSettings) -> None:
+        self.step = first_step(structure, flight, settings)
         self.time = settings.start + self.step * np.arange(round(settings.duration / self.step) + 1)
         self.left_out: Flags | None = None
         self.influence = influence(structure)

@@ -88,7 +88,7 @@ def simulate(
     motion = motion.over(settings.start, settings.start + settings.duration)
     if holds_jax(structure, motion):
         return _traced(structure, motion, settings, name)
-    coarse = first_step(structure, settings)
+    coarse = first_step(structure, motion, settings)
     given = None if settings.step is None else settings.duration / max(1, round(settings.duration / settings.step))
     kept = given or coarse
     before, after = steps_beyond(motion, settings, kept)
@@ -107,6 +107,11 @@ def simulate(
     def tip(trajectory: Trajectory) -> Floats:
         return np.asarray(structure.displacement(trajectory.q[:, problem.first :])[:, -1])
 
+    def moment(trajectory: Trajectory) -> Floats:
+        """Root moment by the elastic forces K q, which the coordinates' inertia balances, of the straight beam."""
+        c = structure.coefficients
+        return np.asarray(trajectory.q[:, problem.first :] @ np.linalg.solve(c.mass, c.stiffness).T @ c.f_al.T)
+
     up = ramp(problem, settings, kept, -before, before, **how("spinning up")) if before else None
     if up is not None and not whole(up):
         return _result(structure, motion, settings, problem, (None, up, None), name, kept, math.nan, 1)
@@ -122,7 +127,7 @@ def simulate(
         trajectory, check = run(step, "integrating"), run(2 * step, "checking with twice the step")
         error = difference(tip(check), tip(trajectory), 2) / (2**order - 1) if whole(check) else math.nan
     else:
-        trajectory, step, error = refine(run, tip, coarse, scheme_of(settings).order, settings)
+        trajectory, step, error = refine(run, tip, moment, coarse, scheme_of(settings).order, settings)
     down = None
     if after and whole(trajectory):
         at_end = round(settings.duration / kept)

@@ -13,9 +13,11 @@ from gbeam.errors import InputError
 from gbeam.integrate.driver import Trajectory
 from gbeam.integrate.schemes import Scheme, gauss, generalized_alpha, hht, newmark
 from gbeam.mechanics.structure import Structure
+from gbeam.motion.protocol import Motion
 from gbeam.results.result import Floats
 
 MAX_STEPS = 4_000_000
+ONE_CORNER = 1e-6  # of the duration: corners nearer to one another are one
 PEAKS = 10  # how many times more accurate than the histories the peaks are
 
 
@@ -37,9 +39,17 @@ def scheme_of(settings: ResponseSettings) -> Scheme:
     )
 
 
-def first_step(structure: Structure, settings: ResponseSettings) -> float:
-    """Step of the results, s: an even number over the duration, at least 500 and 20 to the lowest period."""
+def first_step(structure: Structure, motion: Motion, settings: ResponseSettings) -> float:
+    """Step of the results, s: an even number over the duration, at least 500 and 20 to the lowest period.
+
+    No step is longer than the shortest time between two corners of the motion or of the loads, so that no pulse between
+    them goes unseen.
+    """
     largest = min(2 * math.pi / float(structure.rest[0][0]) / 20, settings.duration / 500)
+    corners = [np.asarray(motion.breaks)] + ([] if structure.history is None else [structure.history.breaks])
+    inside = np.unique(np.clip(np.concatenate(corners) - settings.start, 0.0, settings.duration))
+    gaps = np.diff(inside)
+    largest = min(largest, gaps.min(where=gaps > ONE_CORNER * settings.duration, initial=largest))
     return settings.duration / (2 * math.ceil(settings.duration / largest / 2))
 
 
@@ -51,7 +61,7 @@ def difference(coarse: Floats, fine: Floats, ratio: int) -> float:
 
 
 def peak_difference(time: Floats, coarse: Floats, fine_time: Floats, fine: Floats) -> float:
-    """Difference of the peaks of two tip histories, of the components' and the length's, over the largest."""
+    """Difference of the peaks of two histories (t, 3), of the components' and the length's, over the largest."""
     one, two = (vector_peaks(*each)[0] for each in ((time, coarse), (fine_time, fine)))
     return float(np.abs(one - two).max() / two.max()) if two.max() > 0 else 0.0
 
@@ -59,6 +69,7 @@ def peak_difference(time: Floats, coarse: Floats, fine_time: Floats, fine: Float
 def refine(
     run: Callable[[float, str], Trajectory],
     tip: Callable[[Trajectory], Floats],
+    moment: Callable[[Trajectory], Floats],
     coarse: float,
     order: int,
     settings: ResponseSettings,
@@ -66,18 +77,17 @@ def refine(
     """Halve the step, from twice the results', until the error estimated from two runs is within the tolerance.
 
     The estimate is Richardson's: with steps h and h/r the finer run's error is their difference over rᵖ − 1. Most of it
-    is a delay, and peaks are better: they are refined until theirs is within a tenth of the tolerance.
+    is a delay, and peaks are better: they are refined until those of the tip and of the root's moment, (t, 3) each, are
+    within a tenth of the tolerance.
     """
     old, level = run(2 * coarse, "integrating"), -1
     ratio = 2
     while True:
         step = coarse / 2**level / ratio
         new = run(step, f"refining the step to {1e3 * step:.3g} ms")
-        moved = tip(old), tip(new)
-        error, of_peaks = (
-            each / (ratio**order - 1)
-            for each in (difference(*moved, ratio), peak_difference(old.time, moved[0], new.time, moved[1]))
-        )
+        share = ratio**order - 1
+        error = difference(tip(old), tip(new), ratio) / share
+        of_peaks = max(peak_difference(old.time, of(old), new.time, of(new)) / share for of in (tip, moment))
         worst = max(error, PEAKS * of_peaks)
         level += round(math.log2(ratio))
         whole = new.converged and not new.stopped
