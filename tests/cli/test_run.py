@@ -76,11 +76,15 @@ def test_stress_yield_and_fatigue(fast: Path, gbeam: Call) -> None:
     root, end = loads["sections"]
     assert root["margin"] == loads["margin"]["min"] and end["margin"] is None  # the tip carries nothing
     assert root["moment"]["size"] == loads["root_moment"]["size"]
-    fatigue = answer.json["comparisons"][0]["fatigue"]
+    compared = answer.json["comparisons"][0]
+    margin, fatigue = compared["margin"], compared["fatigue"]
+    assert margin["flight"] == pytest.approx(1, abs=4e-3) and margin["machine"] == pytest.approx(1, abs=0.1)
+    assert f"margin on yield {margin['flight']:.3g} in flight" in compared["verdict"]
     assert fatigue["exponent"] == 3 and set(fatigue["machine"]) == {"cycles", "largest_range", "equivalent_range"}
     said = gbeam("run", fast, "--set", f"beam.material.yield_strength={stress / 2}")
     words = " ".join(said.out.split())
     assert said.status == 0 and "ABOVE YIELD: margin -0.5" in words and "above the yield strength" in words
+    assert "ABOVE YIELD in flight and " in words
     resting = gbeam("static", fast, "--json", "--set", material).json["motions"]["flight"]["loads"]
     assert resting["margin"][0] == pytest.approx(1, abs=4e-3) and len(resting["margin"]) == len(resting["stations"])
     assert "margin on yield 1" in gbeam("static", fast, "--set", material).out

@@ -11,6 +11,7 @@ from gbeam.results.accounting import CRITERIA, Accounting, Criterion, PeakPair
 from gbeam.results.fatigue import Fatigue
 from gbeam.results.measures import Mismatch, RootLoads, Shock, Statistics
 from gbeam.results.result import Figured, Flags, Floats
+from gbeam.results.section_forces import yield_margin
 from gbeam.results.verdict import verdict
 
 
@@ -50,6 +51,8 @@ class Comparison(Figured):
         Shock response spectra of the tip's acceleration.
     fatigue : Fatigue or None
         Cycles of the stress at the root in both runs, and their damage.
+    yield_strength : float or None
+        Of the material, Pa, where it is given.
     """
 
     flight: str
@@ -69,6 +72,7 @@ class Comparison(Figured):
     root: RootLoads | None = None
     shock: Shock | None = None
     fatigue: Fatigue | None = None
+    yield_strength: float | None = None
 
     @property
     def relative(self) -> Floats:
@@ -84,7 +88,17 @@ class Comparison(Figured):
     @property
     def verdict(self) -> str:
         """One sentence about the whole flight that a person can quote."""
-        return verdict(self.flight, self.centrifuge, self.peaks, self.accounting, self.accept.get("tip"))
+        within = self.accept.get("tip")
+        return verdict(self.flight, self.centrifuge, self.peaks, self.accounting, within, self.margins)
+
+    @property
+    def margins(self) -> tuple[float, float] | None:
+        """Least margin on yield over the whole flight, in it and on the machine; None without a yield strength."""
+        stress = self.peaks.get("stress")
+        if self.yield_strength is None or stress is None or not np.isfinite(stress.machine):
+            return None
+        flight, machine = yield_margin(self.yield_strength, np.array([stress.flight, stress.machine]))
+        return float(flight), float(machine)
 
     @property
     def criteria(self) -> tuple[Criterion, ...]:

@@ -14,7 +14,12 @@ _APART = 0.1  # s: the machine's peak has a time of its own
 
 
 def verdict(
-    flight: str, machine: str, peaks: Mapping[str, PeakPair], accounting: Accounting, within: float | None = None
+    flight: str,
+    machine: str,
+    peaks: Mapping[str, PeakPair],
+    accounting: Accounting,
+    within: float | None = None,
+    margins: tuple[float, float] | None = None,
 ) -> str:
     """Return one sentence about the whole flight.
 
@@ -27,19 +32,27 @@ def verdict(
     accounting : Accounting
     within : float, optional
         Share by which the tip's peak may differ and count as reproduced; by default the load's tolerance.
+    margins : tuple of float, optional
+        Least margin on yield in flight and on the machine, where the yield strength is known.
 
     Returns
     -------
     str
         The flight's largest load peak first, where that is not reproduced; then the tip's and the root moment's peaks,
-        how many load peaks are reproduced and how well, the time followed and why the rest is not, and what the
-        specimen is loaded with beyond flight and idle.
+        the margins on yield, how many load peaks are reproduced and how well, the time followed and why the rest is
+        not, and what the specimen is loaded with beyond flight and idle.
     """
-    return "; ".join(_parts(flight, machine, peaks, accounting, accounting.tolerance if within is None else within))
+    within = accounting.tolerance if within is None else within
+    return "; ".join(_parts(flight, machine, peaks, accounting, within, margins))
 
 
 def _parts(
-    flight: str, machine: str, peaks: Mapping[str, PeakPair], accounting: Accounting, within: float
+    flight: str,
+    machine: str,
+    peaks: Mapping[str, PeakPair],
+    accounting: Accounting,
+    within: float,
+    margins: tuple[float, float] | None,
 ) -> Iterator[str]:
     main = accounting.main
     if main is not None and main.reason:
@@ -51,6 +64,10 @@ def _parts(
     moment = peaks.get("root_moment", PeakPair())
     if math.isfinite(moment.ratio):
         yield f"root moment {change(moment.ratio)}"
+    if margins is not None:
+        beyond = [name for name, margin in zip((flight, machine), margins, strict=True) if margin < 0]
+        above = f", ABOVE YIELD in {' and '.join(beyond)}" if beyond else ""
+        yield f"margin on yield {margins[0]:.3g} in {flight}, {margins[1]:.3g} on {machine}{above}"
     yield _load_peaks(accounting)
     yield from _missed(accounting, main)
     yield _time(accounting)

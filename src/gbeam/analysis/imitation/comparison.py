@@ -105,6 +105,7 @@ def compare(
         root=root,
         shock=shock,
         fatigue=fatigue(flight, centrifuge),
+        yield_strength=None if centrifuge.loads is None else centrifuge.loads.yield_strength,
     )
 
 

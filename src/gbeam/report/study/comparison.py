@@ -29,6 +29,9 @@ def to_json(comparison: Comparison) -> dict[str, Any]:
             for each in comparison.criteria
         ],
         "peaks": accounting.peaks_to_json(comparison.peaks),
+        "margin": None
+        if comparison.margins is None
+        else dict(zip(("flight", "machine"), comparison.margins, strict=True)),
         "accounting": accounting.to_json(comparison.accounting),
         "covered": float(comparison.covered.mean()),
         "max_difference": xyz(comparison.max_difference),
