@@ -4,8 +4,8 @@ Every motion is a :class:`Motion`: it has a `kind`, ``base(t)`` (a :class:`Base`
 hub that is `free` to turn has a torque in place of a motion.
 """
 
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion.bases.base import Base
-from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
 from gbeam.motion.bases.flight import Flight
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.bases.mount import Mount

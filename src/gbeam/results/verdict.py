@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.results.accounting import Accounting, LoadPeak, PeakPair
 
-STANDARD_GRAVITY = 9.80665  # m/s²: loads are written in g
 _FINEST = 1e-3  # how well a load peak is said to be reproduced at most
 _TIMES = 3.0  # from here on a ratio says more than a change of so many per cent
 _APART = 0.1  # s: the machine's peak has a time of its own

@@ -12,7 +12,6 @@ from gbeam.numerics.intervals import true_runs
 
 Floats = NDArray[np.float64]
 
-STANDARD_GRAVITY = 9.80665  # m/s²
 _WINDOW, _OUTLIER = 3, 6.0  # samples either side; deviations from the window's median
 _LEAST_JUMP = 0.5  # m/s²: a smaller step is no dropout and no spike
 

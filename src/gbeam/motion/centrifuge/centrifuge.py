@@ -10,9 +10,9 @@ import numpy as np
 from gbeam.arrays.namespace import as_array
 from gbeam.arrays.tree import assign, record, static
 from gbeam.checks import choice, positive
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.motion.bases.base import Base
-from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
 from gbeam.motion.bases.flight import Flight
 from gbeam.motion.centrifuge.axis_motion import AxisMotion
 from gbeam.motion.centrifuge.course import Course, prepare
@@ -24,7 +24,6 @@ from gbeam.motion.centrifuge.machine.kinematics import forward, moved
 from gbeam.motion.centrifuge.machine.limits import Limits, MachineLimits
 
 MOUNTINGS = {"upright": 1.0, "inverted": -1.0}
-_GRID, _MOST = 1e-3, 200_000  # s between the times at which limits are looked at; most of them
 
 
 @record

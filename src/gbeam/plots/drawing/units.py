@@ -7,9 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.results.result import Floats
-
-G0 = 9.80665  # m/s²
 
 
 class Unit(NamedTuple):
@@ -25,7 +24,7 @@ _UNITS = {
     "force": ((0.0, Unit(1e3, "mN")), (0.1, Unit(1.0, "N")), (1e4, Unit(1e-3, "kN"))),
     "moment": ((0.0, Unit(1e3, "mN m")), (0.01, Unit(1.0, "N m")), (1e4, Unit(1e-3, "kN m"))),
     "stress": ((0.0, Unit(1e-3, "kPa")), (1e5, Unit(1e-6, "MPa"))),
-    "acceleration": ((0.0, Unit(1.0, "m/s²")), (0.5 * G0, Unit(1 / G0, "g0"))),
+    "acceleration": ((0.0, Unit(1.0, "m/s²")), (0.5 * STANDARD_GRAVITY, Unit(1 / STANDARD_GRAVITY, "g0"))),
 }  # fmt: skip
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from gbeam.constants import STANDARD_GRAVITY
+
 
 @dataclass(frozen=True)
 class Kind:
@@ -68,8 +70,8 @@ USUAL: dict[str, dict[str, float]] = {
     "stiffness": {"kN/m": 1e3, "N/mm": 1e3},
     "torque": {"kN m": 1e3},
     "time": {"ms": 1e-3, "min": 60.0},
-    "acceleration": {"g": 9.80665},
-    "jerk": {"g/s": 9.80665},
+    "acceleration": {"g": STANDARD_GRAVITY},
+    "jerk": {"g/s": STANDARD_GRAVITY},
     "angle": {"deg": 0.017453292519943295},
     "angular rate": {"rpm": 0.10471975511965977, "deg/s": 0.017453292519943295, "Hz": 6.283185307179586},
     "angular acceleration": {"deg/s^2": 0.017453292519943295},

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.motion.bases.conditioning import STANDARD_GRAVITY, dropout, spikes, without_spikes
+from gbeam.motion.bases.conditioning import dropout, spikes, without_spikes
 from gbeam.motion.bases.records.units import UNITS
 
 Floats = NDArray[np.float64]

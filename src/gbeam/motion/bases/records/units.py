@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
 
 # Per quantity, the units that a scenario may name and their size in SI.
 UNITS: dict[str, dict[str, float]] = {

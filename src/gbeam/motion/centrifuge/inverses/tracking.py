@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse
 from numpy.typing import NDArray
 
-from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion.centrifuge.inverses.axis_splines import AXES, RATE, ROLL, YAW, AxisSplines
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry
 from gbeam.motion.centrifuge.inverses.spin_up import Ramp

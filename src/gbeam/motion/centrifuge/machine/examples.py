@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion.centrifuge.machine.limits import AxisLimit, MachineLimits
 
 _IDLE = 1.4 * STANDARD_GRAVITY  # the baseline from which human centrifuges start their profiles, assumed for all

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import is_traced
 from gbeam.checks import positive
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
 from gbeam.motion.centrifuge.target.gentle_path import gentle, off_axis, unwrapped
 from gbeam.motion.centrifuge.target.load_limits import (
     LEAST_IDLE,

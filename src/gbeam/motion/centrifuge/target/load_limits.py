@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.motion.bases.conditioning import STANDARD_GRAVITY
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion.centrifuge.target.load_limits import LEAST_IDLE, MIN_TRANSVERSE_LOAD, UNTOUCHED, missing_across
 from gbeam.motion.centrifuge.target.required_smoothing import required_smoothing
 from gbeam.motion.centrifuge.target.target import Target

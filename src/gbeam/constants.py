@@ -1,0 +1,3 @@
+"""Constants of nature."""
+
+STANDARD_GRAVITY = 9.80665  # m/s²
