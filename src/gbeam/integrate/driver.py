@@ -41,6 +41,11 @@ class Trajectory:
     converged: bool = True
     stopped: bool = False
 
+    @property
+    def whole(self) -> bool:
+        """Whether it came to its end."""
+        return self.converged and not self.stopped
+
 
 def integrate(
     equations: LinearEquations | NonlinearEquations,

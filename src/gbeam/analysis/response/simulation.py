@@ -22,7 +22,6 @@ from gbeam.analysis.response.trajectories import (
     ramp,
     split,
     steps_beyond,
-    whole,
 )
 from gbeam.arrays.namespace import holds_jax, is_jax
 from gbeam.errors import InputError
@@ -110,10 +109,10 @@ def simulate(
     def moment(trajectory: Trajectory) -> Floats:
         """Root moment by the elastic forces K q, which the coordinates' inertia balances, of the straight beam."""
         c = structure.coefficients
-        return np.asarray(trajectory.q[:, problem.first :] @ np.linalg.solve(c.mass, c.stiffness).T @ c.f_al.T)
+        return np.asarray(trajectory.q[:, problem.first :] @ (c.f_al @ np.linalg.solve(c.mass, c.stiffness)).T)
 
     up = ramp(problem, settings, kept, -before, before, **how("spinning up")) if before else None
-    if up is not None and not whole(up):
+    if up is not None and not up.whole:
         return _result(structure, motion, settings, problem, (None, up, None), name, kept, math.nan, 1)
     begun = problem if up is None else going_on(problem, up)
 
@@ -125,11 +124,11 @@ def simulate(
     elif given is not None:
         order, step = scheme_of(settings).order, given
         trajectory, check = run(step, "integrating"), run(2 * step, "checking with twice the step")
-        error = difference(tip(check), tip(trajectory), 2) / (2**order - 1) if whole(check) else math.nan
+        error = difference(tip(check), tip(trajectory), 2) / (2**order - 1) if check.whole else math.nan
     else:
         trajectory, step, error = refine(run, tip, moment, coarse, scheme_of(settings).order, settings)
     down = None
-    if after and whole(trajectory):
+    if after and trajectory.whole:
         at_end = round(settings.duration / kept)
         down = ramp(going_on(problem, trajectory), settings, kept, at_end, after, **how("spinning down"))
     # An automatic step is the coarse one halved: its stride brings every motion of a study back to the same times.
@@ -207,7 +206,7 @@ def _result(
         warnings=warnings,
         time=time,
         stations=np.asarray(structure.stations),
-        displacement=fine[::stride] if len(time) == len(fine[::stride]) else structure.displacement(q[:, beam]),
+        displacement=fine[::stride] if up is None and down is None else structure.displacement(q[:, beam]),
         q=q[:, beam],
         qd=qd[:, beam],
         base=base,

@@ -46,11 +46,16 @@ def first_step(structure: Structure, motion: Motion, settings: ResponseSettings)
     them goes unseen.
     """
     largest = min(2 * math.pi / float(structure.rest[0][0]) / 20, settings.duration / 500)
-    corners = [np.asarray(motion.breaks)] + ([] if structure.history is None else [structure.history.breaks])
-    inside = np.unique(np.clip(np.concatenate(corners) - settings.start, 0.0, settings.duration))
+    inside = np.unique(np.clip(corners(structure, motion) - settings.start, 0.0, settings.duration))
     gaps = np.diff(inside)
     largest = min(largest, gaps.min(where=gaps > ONE_CORNER * settings.duration, initial=largest))
     return settings.duration / (2 * math.ceil(settings.duration / largest / 2))
+
+
+def corners(structure: Structure, motion: Motion) -> Floats:
+    """Times at which the motion or the loads have a corner or jump, s."""
+    breaks = [] if structure.history is None else [structure.history.breaks]
+    return np.concatenate([np.asarray(motion.breaks), *breaks])
 
 
 def difference(coarse: Floats, fine: Floats, ratio: int) -> float:
@@ -60,10 +65,9 @@ def difference(coarse: Floats, fine: Floats, ratio: int) -> float:
     return float(np.abs(coarse[:n] - fine[: (n - 1) * ratio + 1 : ratio]).max() / size) if size > 0 else 0.0
 
 
-def peak_difference(time: Floats, coarse: Floats, fine_time: Floats, fine: Floats) -> float:
-    """Difference of the peaks of two histories (t, 3), of the components' and the length's, over the largest."""
-    one, two = (vector_peaks(*each)[0] for each in ((time, coarse), (fine_time, fine)))
-    return float(np.abs(one - two).max() / two.max()) if two.max() > 0 else 0.0
+def peak_difference(coarse: Floats, fine: Floats) -> float:
+    """Difference of the peaks of a vector's components and length in two runs, (4,), over the largest."""
+    return float(np.abs(coarse - fine).max() / fine.max()) if fine.max() > 0 else 0.0
 
 
 def refine(
@@ -80,22 +84,28 @@ def refine(
     is a delay, and peaks are better: they are refined until those of the tip and of the root's moment, (t, 3) each, are
     within a tenth of the tolerance.
     """
-    old, level = run(2 * coarse, "integrating"), -1
-    ratio = 2
+
+    def read(trajectory: Trajectory) -> tuple[Floats, list[Floats]]:
+        """Displacement of the tip over time; its peaks and those of the root's moment."""
+        moved = tip(trajectory)
+        return moved, [vector_peaks(trajectory.time, each)[0] for each in (moved, moment(trajectory))]
+
+    old, level, ratio = run(2 * coarse, "integrating"), -1, 2
+    before, peaks_before = read(old)
     while True:
         step = coarse / 2**level / ratio
         new = run(step, f"refining the step to {1e3 * step:.3g} ms")
+        moved, peaks = read(new)
         share = ratio**order - 1
-        error = difference(tip(old), tip(new), ratio) / share
-        of_peaks = max(peak_difference(old.time, of(old), new.time, of(new)) / share for of in (tip, moment))
+        error = difference(before, moved, ratio) / share
+        of_peaks = max(peak_difference(*each) / share for each in zip(peaks_before, peaks, strict=True))
         worst = max(error, PEAKS * of_peaks)
         level += round(math.log2(ratio))
-        whole = new.converged and not new.stopped
-        if (worst <= settings.tolerance and whole) or (not whole and not (old.converged and not old.stopped)):
+        if (worst <= settings.tolerance and new.whole) or not (new.whole or old.whole):
             return new, step, error
         # Jump to the step that the order promises, at most 16 times finer.
         halvings = math.ceil(math.log2(max(worst / settings.tolerance, 2.0)) / order) if math.isfinite(worst) else 1
         ratio = 2 ** min(max(halvings, 1), 4)
         if settings.duration / step * ratio > MAX_STEPS:
             return new, step, error
-        old = new
+        old, before, peaks_before = new, moved, peaks

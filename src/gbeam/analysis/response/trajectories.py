@@ -16,7 +16,7 @@ import numpy as np
 
 from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.stepping import difference, scheme_of
+from gbeam.analysis.response.stepping import corners, difference, scheme_of
 from gbeam.arrays.namespace import is_traced, namespace
 from gbeam.errors import InputError
 from gbeam.integrate.adaptive import integrate_adaptively
@@ -58,9 +58,7 @@ def adapted(
     """The same with error control, twice: the difference of two tolerances is the estimate."""
     count = round(settings.duration / coarse)
     times = np.asarray(settings.start + coarse * np.arange(count + 1), dtype=np.float64)
-    jumps = np.asarray(motion.breaks)
-    if structure.history is not None:
-        jumps = np.append(jumps, structure.history.breaks)
+    jumps = corners(structure, motion)
 
     def adapt(tolerance: float) -> Trajectory:
         state = problem.q, problem.qd
@@ -77,11 +75,6 @@ def ramp(problem: Problem, settings: ResponseSettings, step: float, first: int, 
     made = integrate(problem.equations, scheme, problem.q, problem.qd, step=step, count=count, start=start, **how)
     # The flight's own times to the last digit.
     return replace(made, time=np.asarray(settings.start + step * (first + np.arange(len(made.time))), dtype=np.float64))
-
-
-def whole(trajectory: Trajectory) -> bool:
-    """Whether a run came to its end."""
-    return trajectory.converged and not trajectory.stopped
 
 
 def going_on(problem: Problem, trajectory: Trajectory) -> Problem:
