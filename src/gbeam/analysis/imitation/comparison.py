@@ -11,12 +11,14 @@ from gbeam.analysis.imitation.fatigue import fatigue
 from gbeam.analysis.imitation.peak_pairs import peak_pairs
 from gbeam.checks import positive
 from gbeam.errors import InputError
+from gbeam.motion.bases.base import gradient
 from gbeam.numerics.filters.low_pass import low_pass
 from gbeam.numerics.filters.oscillators import largest_riding_acceleration
+from gbeam.numerics.interpolation import interpolated
 from gbeam.results.accounting import CRITERIA, TOLERANCE, Accounting
 from gbeam.results.comparison import Comparison
 from gbeam.results.measures import Mismatch, RootHistory, RootLoads, Shock, Sizes, Statistics
-from gbeam.results.response import BaseMotion, Response
+from gbeam.results.response import Response
 from gbeam.results.result import Flags, Floats
 from gbeam.results.section_forces import Influence
 
@@ -72,7 +74,7 @@ def compare(
         raise InputError("centrifuge", "has no time in common with the flight", "compute both for the same times")
 
     def in_flight(values: Floats) -> Floats:
-        return _sampled(time, flight.time, values)
+        return interpolated(time, flight.time, values)
 
     reference, actual = in_flight(flight.displacement), centrifuge.displacement[during]
     covered = np.ones(len(time), dtype=bool) if centrifuge.axes is None else ~centrifuge.axes.not_followed[during]
@@ -86,7 +88,8 @@ def compare(
         )  # fmt: skip
         root = _root(covered, history, in_flight(a.stress[:, 0]), b.stress[during, 0])
         shock = _shock(time, covered, in_flight(a.acceleration[:, -1]), b.acceleration[during, -1])
-    names, gradient = _names(flight, centrifuge), in_flight(_gradient(flight.base))
+    names, flown = _names(flight, centrifuge), in_flight(gradient(flight.base.w_WB_B, flight.base.alpha_WB_B))
+    spun = gradient(centrifuge.base.w_WB_B[during], centrifuge.base.alpha_WB_B[during])
     return Comparison(
         flight=names[0],
         centrifuge=names[1],
@@ -98,10 +101,10 @@ def compare(
         peak_flight=_largest(reference[:, -1], covered),
         peak_centrifuge=_largest(actual[:, -1], covered),
         peaks=peak_pairs(flight, centrifuge, during),
-        accounting=_accounting(time, in_flight(flight.base.a_WO_B), gradient, centrifuge, during, share),
+        accounting=_accounting(time, in_flight(flight.base.a_WO_B), flown, centrifuge, spun, during, share),
         accept=limits,
         stations=_statistics(time, covered, reference, actual, centrifuge),
-        mismatch=_mismatch(covered, centrifuge, gradient, during),
+        mismatch=_mismatch(covered, centrifuge, spun - flown),
         root=root,
         shock=shock,
         fatigue=fatigue(flight, centrifuge),
@@ -119,12 +122,12 @@ def _limits(accept: Mapping[str, float] | None) -> dict[str, float]:
 
 
 def _accounting(
-    time: Floats, load: Floats, gradient: Floats, centrifuge: Response, during: slice, tolerance: float
+    time: Floats, load: Floats, flown: Floats, centrifuge: Response, spun: Floats, during: slice, tolerance: float
 ) -> Accounting:
-    """Of a flight's load at the root and its gradient along the specimen, at the times `during` the flight."""
+    """Of a flight's load at the root, and how it grows along the specimen in both, at the times `during` the flight."""
     length, axes = float(centrifuge.stations[-1]), centrifuge.axes
-    root, spun = centrifuge.base.a_WO_B[during], _gradient(centrifuge.base)[during]
-    flight = History(load, load, load + length * gradient)
+    root = centrifuge.base.a_WO_B[during]
+    flight = History(load, load, load + length * flown)
     if axes is None:
         return account(time, flight, History(root, root, root + length * spun), tolerance=tolerance)
     return account(
@@ -142,18 +145,6 @@ def _accounting(
 def _names(flight: Response, centrifuge: Response) -> tuple[str, str]:
     first, second = (response.name or response.environment for response in (flight, centrifuge))
     return first, second if second != first else f"the second {second}"
-
-
-def _sampled(time: Floats, own: Floats, values: Floats) -> Floats:
-    """Values (t, ...) known at the times `own`, at `time` between the first and the last of them, on straight lines."""
-    if len(own) >= len(time) and np.array_equal(own[: len(time)], time):
-        return values[: len(time)]
-    if len(own) == 1:
-        return np.repeat(values, len(time), axis=0)
-    after = np.clip(np.searchsorted(own, time), 1, len(own) - 1)
-    share = np.clip((time - own[after - 1]) / (own[after] - own[after - 1]), 0.0, 1.0)
-    share = share.reshape(-1, *(1,) * (values.ndim - 1))
-    return np.asarray(values[after - 1] + share * (values[after] - values[after - 1]))
 
 
 def _largest(values: Floats, covered: Flags) -> Floats:
@@ -194,17 +185,10 @@ def _statistics(
     )
 
 
-def _gradient(base: BaseMotion) -> Floats:
-    """∂a/∂x along the beam of a base in rotation, base axes, (t, 3) 1/s² (2020 (4))."""
-    (wx, wy, wz), (_, aly, alz) = base.w_WB_B.T, base.alpha_WB_B.T
-    return np.stack([-(wy**2 + wz**2), wx * wy + alz, wx * wz - aly], axis=1)
-
-
-def _mismatch(covered: Flags, centrifuge: Response, in_flight: Floats, during: slice) -> Mismatch | None:
+def _mismatch(covered: Flags, centrifuge: Response, gradient: Floats) -> Mismatch | None:
     if centrifuge.axes is None or not np.isfinite(centrifuge.axes.control_point) or not covered.any():
         return None
     at, length = centrifuge.axes.control_point, float(centrifuge.stations[-1])
-    gradient = _gradient(centrifuge.base)[during] - in_flight
     largest, influence = _largest(gradient, covered), centrifuge.influence
     unknown = np.full(3, np.nan)
 

@@ -15,6 +15,7 @@ from gbeam.arrays.tree import record
 from gbeam.mechanics.structure import Structure
 from gbeam.motion import Base, Centrifuge, Flight
 from gbeam.numerics.filters.low_pass import low_pass
+from gbeam.numerics.interpolation import interpolated
 from gbeam.results.placement import Verification
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
@@ -66,7 +67,9 @@ def verify(
         if motion not in carried:
             carried[motion] = simulate(structure, _Carried(machine), settings)
         comparison = compare(in_flight, response)
-        swing = response.tip - _sampled(response.time, carried[motion])
+        # Whose automatic step may differ.
+        own = interpolated(response.time, carried[motion].time, carried[motion].tip)
+        swing = response.tip - own
         swing -= low_pass(swing, float(response.time[1] - response.time[0]), cutoff)
         compared = np.isin(response.time, comparison.time[comparison.covered])
         force, moment = np.nan, np.nan
@@ -84,11 +87,6 @@ def verify(
             )
         )
     return tuple(verifications)
-
-
-def _sampled(time: Floats, response: Response) -> Floats:
-    """The tip of a response at the times of another, whose automatic step may differ."""
-    return np.column_stack([np.interp(time, response.time, along) for along in response.tip.T])
 
 
 def _largest(vectors: Floats) -> float:

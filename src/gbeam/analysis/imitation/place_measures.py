@@ -11,7 +11,8 @@ from gbeam.analysis.response.stepping import first_step
 from gbeam.errors import InputError
 from gbeam.mechanics.influence import influence
 from gbeam.mechanics.structure import Structure
-from gbeam.motion import Base, Centrifuge, Flight
+from gbeam.motion import Centrifuge, Flight
+from gbeam.motion.bases.base import gradient
 from gbeam.motion.centrifuge.machine.kinematics import forward
 from gbeam.numerics.filters.oscillators import displacement
 from gbeam.results.result import Flags, Floats
@@ -97,21 +98,14 @@ class Answers:
         axes = centrifuge.axes(self.time)
         geometry = centrifuge.geometry
         at_c, flown = forward(axes, geometry.arm, geometry.gravity), flight.base(self.time)
-        turning = np.stack([axes.acceleration1, axes.acceleration2, axes.acceleration3], axis=-1)
+        turning = axes.accelerations
         return (
             at_c.a_WO_B - flown.a_WO_B,
-            _gradient(at_c) - _gradient(flown),
+            gradient(at_c.w_WB_B, at_c.alpha_WB_B) - gradient(flown.w_WB_B, flown.alpha_WB_B),
             flown.a_WO_B,
             turning,
             centrifuge.not_followed(self.time),
         )
-
-
-def _gradient(base: Base) -> Floats:
-    """Growth of a base's acceleration along x, (t, 3) 1/s²."""
-    w, alpha = base.w_WB_B, base.alpha_WB_B
-    wx, wy, wz = w[..., 0], w[..., 1], w[..., 2]
-    return np.stack([-(wy**2 + wz**2), wx * wy + alpha[..., 2], wx * wz - alpha[..., 1]], axis=-1)
 
 
 def _peak(values: Floats) -> float:

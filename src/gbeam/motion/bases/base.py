@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 
 
@@ -24,3 +25,16 @@ class Base:
     a_WO_B: Any
     w_WB_B: Any
     alpha_WB_B: Any
+
+
+def gradient(w_WB_B: Any, alpha_WB_B: Any) -> Any:
+    """Growth of the acceleration along x of a base in rotation, base axes, (..., 3) 1/s² (2020 (4)).
+
+    Parameters
+    ----------
+    w_WB_B, alpha_WB_B : array, shape (..., 3)
+        rad/s, rad/s².
+    """
+    xp = namespace(w_WB_B, alpha_WB_B)
+    (wx, wy, wz), (_, aly, alz) = (xp.moveaxis(each, -1, 0) for each in (w_WB_B, alpha_WB_B))
+    return xp.stack([-(wy**2 + wz**2), wx * wy + alz, wx * wz - aly], axis=-1)

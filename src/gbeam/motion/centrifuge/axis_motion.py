@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from gbeam.arrays.namespace import as_array, namespace
 from gbeam.arrays.tree import assign
 from gbeam.errors import InputError
@@ -115,9 +113,7 @@ class AxisMotion:
         first, last = (float(end) for end in self.extent)
         time = sampled(first, last, max(_GRID, (last - first) / _MOST))
         axes, jerk = self.axes_and_jerks(time)
-        rate = np.stack([axes.rate1, axes.rate2, axes.rate3], axis=1)
-        acceleration = np.stack([axes.acceleration1, axes.acceleration2, axes.acceleration3], axis=1)
-        return usage(time, rate, acceleration, jerk, self.limits)
+        return usage(time, axes.rates, axes.accelerations, jerk, self.limits)
 
     def shortfalls(self) -> tuple[Shortfall, ...]:
         """Where no such machine can make the flight's load, and what would help."""

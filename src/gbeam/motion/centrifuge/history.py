@@ -86,10 +86,11 @@ def _short_ramps(motion: Centrifuge) -> tuple[str, ...]:
 
 
 def columns(axes: Axes, time: Floats) -> tuple[Floats, Floats, Floats]:
+    """Angles, rates and accelerations of the three axes at times `time`, (t, 3) each."""
     history = axis_history(axes, time)
     a = history.axes
     return (
         np.stack([history.angle1, a.angle2, a.angle3], axis=1),
-        np.stack([a.rate1, a.rate2, a.rate3], axis=1),
-        np.stack([a.acceleration1, a.acceleration2, a.acceleration3], axis=1),
+        a.rates,
+        a.accelerations,
     )

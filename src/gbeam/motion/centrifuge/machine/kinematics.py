@@ -39,6 +39,18 @@ class Axes:
     rate3: Any
     acceleration3: Any
 
+    @property
+    def rates(self) -> Any:
+        """Of the three axes, (..., 3) rad/s."""
+        rates = self.rate1, self.rate2, self.rate3
+        return namespace(*rates).stack(rates, axis=-1)
+
+    @property
+    def accelerations(self) -> Any:
+        """Of the three axes, (..., 3) rad/s²."""
+        accelerations = self.acceleration1, self.acceleration2, self.acceleration3
+        return namespace(*accelerations).stack(accelerations, axis=-1)
+
 
 def forward(axes: Axes, arm: Any, gravity: Any) -> Base:
     """Motion of the specimen at the control point C, where the axes 2 and 3 meet.
