@@ -58,7 +58,7 @@ def pair() -> tuple[Response, Response]:
     target = np.where((WHICH == 5)[:, None], along_z(np.full(len(TIME), IDLE)), load)
     acceleration = np.where(WHICH == 3, 20.0, 5.0)[:, None] * [1.0, 0.0, 0.0]
     limits = (LimitUse("axis 1", "acceleration", "rad/s^2", 20.0, 20.0, 5.0),)
-    episodes = ((4.0, 7.0, "below idle"), (8.0, 9.0, "out of reach of the gimbals"), (5.9, 7.1, "below idle"))
+    episodes = ((4.0, 7.0, "below idle"), (8.0, 9.0, "gimbals"), (5.9, 7.1, "below idle"))
     axes = AxesResult(
         ZERO, ZERO, acceleration, target, actual, np.isin(WHICH, (5, 7)), episodes, limits, control_point=0.0,
         idle=IDLE * G,

@@ -7,6 +7,10 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+import numpy as np
+
+from gbeam.results.section_forces import yield_margin
+
 
 def as_json(value: Any) -> str:
     """Write a value as JSON, with null for what is not finite, which JSON has no word for."""
@@ -63,7 +67,7 @@ def stress_words(stations: Any, tension: Any, compression: Any, yield_strength: 
     words = f"stress up to {number(1e-6 * stress)} MPa ({sign}) at {number(float(stations[worst]))} m"
     if yield_strength is None or stress == 0:
         return words
-    margin = yield_strength / stress - 1
+    margin = float(yield_margin(yield_strength, np.array(stress)))
     return f"{words}, {'margin on yield' if margin >= 0 else 'ABOVE YIELD: margin'} {margin:.3g}"
 
 

@@ -134,12 +134,10 @@ def _reasons(time: Floats, low: Flags, held: Flags, episodes: tuple[tuple[float,
     codes = np.full(len(time), _NAMES.index(_CORNER))
     for start, end, why in episodes:
         inside = (time >= start) & (time <= end)
-        if "gimbals" in why:
-            codes[inside] = _NAMES.index("gimbals")
-        elif why == _BELOW:  # a load above idle is no load below it, whatever the target makes of it
+        if why == _BELOW:  # a load above idle is no load below it, whatever the target makes of it
             codes[inside & held] = _NAMES.index("left out")
         else:
-            codes[inside] = _NAMES.index("left out")
+            codes[inside] = _NAMES.index(why)
     codes[low] = _NAMES.index(_BELOW)
     return codes
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from gbeam.errors import InputError
 from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge
+from gbeam.motion.centrifuge.inverses.registry import INVERSES
 from gbeam.numerics.solvers.bounded_search import coarse
 
 _FACTOR = 4.0  # of the centrifuge's own smoothing, either way
@@ -60,7 +61,7 @@ def choice_of(centrifuge: Centrifuge, smoothing: Sequence[float] = (), *, limite
     if len(smoothing) == 2 and min(smoothing) <= 0:
         raise InputError("smoothing", f"is {min(smoothing):g} s", "give two positive widths")
     own = float(centrifuge.smoothing or 0.0)
-    searched = [own] if centrifuge.method == "planned" else [own / _FACTOR, own * _FACTOR]
+    searched = [own] if INVERSES[centrifuge.method].plans else [own / _FACTOR, own * _FACTOR]
     ends = sorted(smoothing) or searched
     widths = coarse(ends[0], ends[-1])
 

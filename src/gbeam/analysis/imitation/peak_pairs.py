@@ -62,7 +62,7 @@ def _peaks(response: Response, part: slice | Flags) -> dict[str, tuple[float, fl
             return value, when
         if name not in samples:
             return np.nan, np.nan
-        # Of all steps the largest lies elsewhere, such as in the spin-up.
+        # The response's own largest lies elsewhere, where the two cover different times.
         values, times = samples[name]()
         most = int(np.argmax(values))
         return float(values[most]), float(times[most])
