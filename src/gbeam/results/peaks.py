@@ -82,7 +82,7 @@ class LoadPeaks(Part):
 class Peaks(Part):
     """Largest values of a response between all steps computed, and their times.
 
-    Those of the displacement are of the flight's own times; loads count in a machine's spin-up and spin-down too.
+    They are of the flight's own times, without a machine's spin-up and spin-down.
     The coordinates between steps are the polynomials of fifth degree that have both ends' values, rates and
     accelerations, and the displacement is that of the model there. Loads and stress have no derivatives: near a peak
     they are the polynomial of sixth degree through seven steps. Where JAX traces a run, its peaks are the tip's
