@@ -60,7 +60,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.motion.profiles.profile import smoothed as smoothed
     from gbeam.motion.profiles.pulse import Sine as Sine
     from gbeam.motion.profiles.pulse import SmoothStep as SmoothStep
-    from gbeam.results.comparison import Comparison as Comparison
+    from gbeam.results.imitation.comparison import Comparison as Comparison
     from gbeam.results.response import Response as Response
     from gbeam.results.steady.state_space import Gauge as Gauge
     from gbeam.results.steady.state_space import StateSpace as StateSpace
@@ -82,7 +82,7 @@ _HOME = {
     "Case": "analysis.study.case",
     "Centrifuge": "motion.centrifuge.centrifuge",
     "Choice": "analysis.imitation.choice",
-    "Comparison": "results.comparison",
+    "Comparison": "results.imitation.comparison",
     "ComputationError": "errors",
     "Flight": "motion.bases.flight",
     "Gauge": "results.steady.state_space",

@@ -13,11 +13,11 @@ import xarray as xr
 
 from gbeam.errors import InputError
 from gbeam.io import netcdf as store
-from gbeam.results.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
-from gbeam.results.comparison import Comparison
-from gbeam.results.fatigue import Fatigue, StressCycles
+from gbeam.results.imitation.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
+from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.imitation.fatigue import Fatigue, StressCycles
+from gbeam.results.imitation.measures import RootHistory, RootLoads, Sizes, Statistics
 from gbeam.results.machine import AxesResult, LimitUse, Shortfall
-from gbeam.results.measures import RootHistory, RootLoads, Sizes, Statistics
 from gbeam.results.response import BaseMotion, HubResult, Peaks, Response
 from gbeam.results.section_forces import Loads
 from gbeam.results.study import Failure, Study

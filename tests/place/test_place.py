@@ -21,8 +21,8 @@ from gbeam.cli import main
 from gbeam.cli.verbs.place import parse
 from gbeam.motion import AxisLimit, MachineLimits
 from gbeam.numerics.solvers.bounded_search import coarse, refine
+from gbeam.results.imitation.placement import MEASURES, Candidate, Placement
 from gbeam.results.machine import LimitUse
-from gbeam.results.placement import MEASURES, Candidate, Placement
 
 from ..scenarios import FLIGHT, SPECIMEN, SPIN, model, response
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gbeam.results.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
-from gbeam.results.comparison import Comparison
+from gbeam.results.imitation.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
+from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.response import BaseMotion, HubResult, Peaks, Response
 from gbeam.results.study import Study

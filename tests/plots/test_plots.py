@@ -28,9 +28,9 @@ from gbeam.plots import (
     write_plots,
 )
 from gbeam.plots.drawing.lines import FLIGHT
-from gbeam.results.comparison import Comparison
+from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.imitation.measures import Mismatch, RootHistory, RootLoads, Shock
 from gbeam.results.machine import LimitUse, MachinePlan
-from gbeam.results.measures import Mismatch, RootHistory, RootLoads, Shock
 from gbeam.results.section_forces import Loads
 from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.study import Study

@@ -12,8 +12,8 @@ import pytest
 import xarray as xr
 
 import gbeam as gb
+from gbeam.results.imitation.placement import Candidate, Placement
 from gbeam.results.machine import AxesResult, LimitUse, MachinePlan
-from gbeam.results.placement import Candidate, Placement
 from gbeam.results.study import ModelRow, ModelStudy
 
 BEAM = gb.Beam(

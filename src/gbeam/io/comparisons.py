@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from gbeam.io.groups import AXIS, Group, Variable, coordinate, flags, variable, words
-from gbeam.results.accounting import Accounting, PeakPair
-from gbeam.results.comparison import Comparison
-from gbeam.results.fatigue import Fatigue
-from gbeam.results.measures import RootHistory, Shock, Statistics
+from gbeam.results.imitation.accounting import Accounting, PeakPair
+from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.imitation.fatigue import Fatigue
+from gbeam.results.imitation.measures import RootHistory, Shock, Statistics
 
 _A, _TA = ("axis",), ("time", "axis")
 _SECTION_AXES = "S: axes of the deformed root section"

@@ -25,9 +25,9 @@ from gbeam.io.machine import plan_group
 from gbeam.io.responses import response_group
 from gbeam.io.steady import campbell_group, critical_group, critical_map_group, deflection_group, modes_group
 from gbeam.io.tables import models_group, placement_group, state_space_group
-from gbeam.results.comparison import Comparison
+from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.imitation.placement import Placement
 from gbeam.results.machine import MachinePlan
-from gbeam.results.placement import Placement
 from gbeam.results.response import Response
 from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.steady.modal import Campbell, Modes

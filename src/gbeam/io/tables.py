@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gbeam.io.groups import Group, coordinate, labels, variable, words
-from gbeam.results.placement import Placement
+from gbeam.results.imitation.placement import Placement
 from gbeam.results.steady.state_space import StateSpace
 from gbeam.results.study import ModelStudy
 

@@ -13,8 +13,8 @@ from gbeam.plots.drawing.lines import FLIGHT, line, machine
 from gbeam.plots.drawing.stretches import shade, stretches
 from gbeam.plots.drawing.style import heading, moving, panels, scale_to, show_zero, styled, subtitle
 from gbeam.plots.drawing.units import unit_for
-from gbeam.results.comparison import Comparison
-from gbeam.results.measures import Shock
+from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.imitation.measures import Shock
 from gbeam.results.result import Floats
 
 # Of a bending beam, by the axis along which it moves: force and moment of the root's section, and the latter's index.

@@ -17,7 +17,7 @@ from gbeam.plots.loads import plot_loads, plot_loads_along
 from gbeam.plots.machine import plot_axes, plot_tracking
 from gbeam.plots.steady import plot_campbell, plot_critical_map, plot_modes, plot_static
 from gbeam.plots.tip import plot_tip
-from gbeam.results.comparison import Comparison
+from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.machine import AxesResult, MachinePlan
 from gbeam.results.response import Response
 from gbeam.results.steady.equilibrium import Deflection

@@ -9,7 +9,7 @@ from gbeam.plots.drawing.lines import FLIGHT, line, machine
 from gbeam.plots.drawing.stretches import Stretch, shade, stretches
 from gbeam.plots.drawing.style import colour, heading, moving, panels, scale_to, show_zero, styled, subtitle
 from gbeam.plots.drawing.units import largest, not_drawn, unit_for
-from gbeam.results.comparison import Comparison
+from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.response import Response
 from gbeam.results.study import Study
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from gbeam.results.comparison import Comparison
+from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.response import Response
 from gbeam.results.result import Figured, Part, Result
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gbeam.numerics.intervals import true_runs
 from gbeam.numerics.prominence import separate_peaks
-from gbeam.results.accounting import Accounting, LoadPeak, NotFollowed, Preload
+from gbeam.results.imitation.accounting import Accounting, LoadPeak, NotFollowed, Preload
 from gbeam.results.result import Flags, Floats
 
 _DIP = 0.9  # of the lower of two maxima: a load that falls further between them makes them two peaks

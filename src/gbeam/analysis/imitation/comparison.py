@@ -15,9 +15,9 @@ from gbeam.motion.bases.base import gradient
 from gbeam.numerics.filters.low_pass import low_pass
 from gbeam.numerics.filters.oscillators import largest_riding_acceleration
 from gbeam.numerics.interpolation import interpolated
-from gbeam.results.accounting import CRITERIA, TOLERANCE, Accounting
-from gbeam.results.comparison import Comparison
-from gbeam.results.measures import Mismatch, RootHistory, RootLoads, Shock, Sizes, Statistics
+from gbeam.results.imitation.accounting import CRITERIA, TOLERANCE, Accounting
+from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.imitation.measures import Mismatch, RootHistory, RootLoads, Shock, Sizes, Statistics
 from gbeam.results.response import Response
 from gbeam.results.result import Flags, Floats
 from gbeam.results.section_forces import Influence

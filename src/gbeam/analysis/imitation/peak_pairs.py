@@ -6,7 +6,7 @@ import numpy as np
 
 from gbeam.analysis.response.peaks import vector_peaks
 from gbeam.numerics.peaks import maxima, near_maxima, seven_point
-from gbeam.results.accounting import PeakPair
+from gbeam.results.imitation.accounting import PeakPair
 from gbeam.results.response import Response
 from gbeam.results.result import Flags
 

@@ -22,7 +22,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion import Centrifuge, Flight
 from gbeam.motion.centrifuge.machine.limits import exceeded
 from gbeam.numerics.solvers.bounded_search import refine
-from gbeam.results.placement import EXCEEDED, MEASURES, Candidate, Placement
+from gbeam.results.imitation.placement import EXCEEDED, MEASURES, Candidate, Placement
 
 _WORTH = 0.02  # of the total error: what another mounting must save at least
 

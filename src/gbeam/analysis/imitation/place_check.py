@@ -16,7 +16,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion import Base, Centrifuge, Flight
 from gbeam.numerics.filters.low_pass import low_pass
 from gbeam.numerics.interpolation import interpolated
-from gbeam.results.placement import Verification
+from gbeam.results.imitation.placement import Verification
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 

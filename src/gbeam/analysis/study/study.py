@@ -8,8 +8,8 @@ from gbeam.analysis.imitation.comparison import compare
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.study.case import Case
 from gbeam.errors import ComputationError
-from gbeam.results.accounting import TOLERANCE
-from gbeam.results.comparison import Comparison
+from gbeam.results.imitation.accounting import TOLERANCE
+from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.response import Response
 from gbeam.results.study import Failure, Study
 

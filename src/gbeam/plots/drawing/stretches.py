@@ -8,7 +8,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 
-from gbeam.results.accounting import Accounting
+from gbeam.results.imitation.accounting import Accounting
 from gbeam.results.machine import AxesResult
 from gbeam.results.result import Floats
 

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from gbeam.report.words import sentence
-from gbeam.results.placement import Candidate, Placement
+from gbeam.results.imitation.placement import Candidate, Placement
 
 _PLACES = ("current", "best", "middle")
 _LISTED = 6  # candidates of either kind

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from gbeam.results.accounting import Accounting, LoadPeak, PeakPair
-from gbeam.results.verdict import change, in_g, percent
+from gbeam.results.imitation.accounting import Accounting, LoadPeak, PeakPair
+from gbeam.results.imitation.verdict import change, in_g, percent
 
 UNITS = {"tip": "m", "root_force": "N", "root_moment": "N m", "stress": "Pa"}
 SHORTEST = 0.005  # s, of a stretch that is listed

@@ -8,10 +8,10 @@ from typing import Any
 
 from gbeam.report.study import accounting
 from gbeam.report.words import number, xyz
-from gbeam.results.comparison import Comparison
-from gbeam.results.fatigue import Fatigue, StressCycles
-from gbeam.results.measures import Mismatch, RootLoads, Sizes
-from gbeam.results.verdict import metres, percent
+from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.imitation.fatigue import Fatigue, StressCycles
+from gbeam.results.imitation.measures import Mismatch, RootLoads, Sizes
+from gbeam.results.imitation.verdict import metres, percent
 
 _PLACES = ("flight", "centrifuge", "difference")
 _FELT = 0.01  # of flight's peak: a mismatch that bends the tip by less is no reason to move the specimen

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.results.accounting import Accounting, LoadPeak, PeakPair
+from gbeam.results.imitation.accounting import Accounting, LoadPeak, PeakPair
 
 _FINEST = 1e-3  # how well a load peak is said to be reproduced at most
 _TIMES = 3.0  # from here on a ratio says more than a change of so many per cent

@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from gbeam.results.accounting import CRITERIA, Accounting, Criterion, PeakPair
-from gbeam.results.fatigue import Fatigue
-from gbeam.results.measures import Mismatch, RootLoads, Shock, Statistics
+from gbeam.results.imitation.accounting import CRITERIA, Accounting, Criterion, PeakPair
+from gbeam.results.imitation.fatigue import Fatigue
+from gbeam.results.imitation.measures import Mismatch, RootLoads, Shock, Statistics
+from gbeam.results.imitation.verdict import verdict
 from gbeam.results.result import Figured, Flags, Floats
 from gbeam.results.section_forces import yield_margin
-from gbeam.results.verdict import verdict
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -40,7 +40,7 @@ class Comparison(Figured):
     accounting : Accounting
         Which parts of the flight's load the machine reproduces, and why not the others.
     accept : mapping of str to float
-        Limits by the names of :data:`gbeam.results.accounting.CRITERIA`.
+        Limits by the names of :data:`gbeam.results.imitation.accounting.CRITERIA`.
     stations : Statistics or None
         Displacement of every station, with trend and elastic vibration apart; None where the record is too short.
     mismatch : Mismatch or None
