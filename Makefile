@@ -1,4 +1,5 @@
 # make demo: install and run the main job; make test: the tests; make check: what CI checks besides;
+# make validate: compare with other codes and write docs/validation.md (minutes; what is not installed is left out);
 # make docs: the pages that are made from the code;
 # make benchmark: how long commands take, and a comparison with Exudyn (minutes; nothing else should run).
 PYTHON ?= python3
@@ -7,7 +8,10 @@ EXAMPLE := examples/f16_8g_turn.toml
 # Compiled programs are kept here between test runs.
 CACHE := $(CURDIR)/.cache/jax
 
-.PHONY: demo test check docs benchmark lock clean
+# Folders that ruff reads.
+CODE := src tests validation benchmarks examples
+
+.PHONY: demo test check validate docs benchmark lock clean
 
 demo: .venv/installed
 	$(BIN)/gbeam run $(EXAMPLE) --out out/f16_8g_turn
@@ -16,10 +20,14 @@ test: .venv/dev-installed
 	JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/pytest -n 2 --dist loadfile
 
 check: .venv/dev-installed
-	$(BIN)/ruff check src tests benchmarks examples
-	$(BIN)/ruff format --check src tests benchmarks examples
+	$(BIN)/ruff check $(CODE)
+	$(BIN)/ruff format --check $(CODE)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+# One module: .venv/bin/python -m validation --only NAME. What ran before is kept in validation/results.
+validate: .venv/dev-installed
+	OPENBLAS_NUM_THREADS=1 JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/python -m validation
 
 # After a change of the scenario's schema.
 docs: .venv/installed

@@ -1,0 +1,10 @@
+"""Evidence: what gbeam answers beside independent codes and published figures.
+
+    python -m validation [--only NAME]
+
+Each module of MODULES has a TITLE, a docstring that introduces its chapter, the packages and programs it NEEDS, and
+`rows()`, which yields one :class:`validation.table.Row` after another. What it found is kept in `results/`, with the
+versions that found it; `docs/validation.md` is made from all that is kept.
+"""
+
+MODULES: tuple[str, ...] = ()  # in the page's order, below this package
