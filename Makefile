@@ -1,6 +1,6 @@
 # make demo: install and run the main job; make test: the tests; make check: what CI checks besides;
 # make validate: compare with other codes and write docs/validation.md (minutes; what is not installed is left out);
-# make docs: the pages that are made from the code;
+# make docs: the documentation site, in out/docs;
 # make benchmark: how long commands take, and a comparison with Exudyn (minutes; nothing else should run).
 PYTHON ?= python3
 BIN := .venv/bin
@@ -29,9 +29,11 @@ check: .venv/dev-installed
 validate: .venv/dev-installed
 	OPENBLAS_NUM_THREADS=1 JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/python -m validation
 
-# After a change of the scenario's schema.
-docs: .venv/installed
+# The page made from the scenario's schema, then the site; warnings are errors, and nothing is fetched from a network.
+docs: .venv/dev-installed
 	$(BIN)/gbeam schema --markdown > docs/scenario.md
+	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going docs out/docs
+	@echo "out/docs/index.html"
 
 benchmark: .venv/dev-installed
 	$(BIN)/python benchmarks/latency.py

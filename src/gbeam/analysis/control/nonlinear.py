@@ -25,7 +25,7 @@ def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[G
     """The model as ``control.nlsys``, complete: on a free hub driven by the torque, on any other base by its motion.
 
     States are (y, ẏ) and, on a base that is not a free hub, the base's angular velocity; inputs and outputs are those
-    of :func:`gbeam.analysis.linearize`, not as departures but whole.
+    of :func:`gbeam.linearize`, not as departures but whole.
 
     Parameters
     ----------

@@ -153,7 +153,7 @@ def critical_load(structure: Structure, base: Base | None = None, *, upper: floa
     Parameters
     ----------
     structure : Structure
-        With loads, of time zero or of its :meth:`~gbeam.model.Structure.at_time`.
+        With loads, of time zero or of its :meth:`~gbeam.Structure.at_time`.
     base : Base, optional
         Frozen motion of the base, arrays (3,); by default at rest.
     upper : float, optional

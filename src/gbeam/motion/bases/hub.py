@@ -36,8 +36,12 @@ class Hub:
         Moment of inertia of the hub about its axis, kg m². Beside a rate it gives the drive's torque.
     torque : Profile or float, optional
         About z on a free hub, N m; zero if left out. ``hub.torque`` is None where the hub is not free.
-    pointing, setting_angle, gravity
-        As for :class:`gbeam.motion.Mount`.
+    pointing : str
+        ``outward`` or ``inward``: from the root away from the hub's axis, or towards it and beyond.
+    setting_angle : float
+        Turn of the section's y and z axes about the beam, from the beam's y axis in the plane of rotation, rad.
+    gravity : sequence of three floats, optional
+        Acceleration of free fall, m/s², in hub axes at hub angle zero; it stays where it is as the hub turns.
     stiffness, damping : float
         Torsional spring, at ease at the initial angle zero, and damper between a free hub and the ground, N m/rad,
         N m s/rad.

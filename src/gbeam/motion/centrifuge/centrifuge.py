@@ -43,10 +43,10 @@ class Centrifuge(AxisMotion):
     control_point : float
         x_c, from the root along the beam to the point where axes 2 and 3 meet, m.
     inverse : str
-        A key of :data:`gbeam.motion.INVERSES`: ``planned``, ``flat``, ``exact`` or ``quasi-static``.
+        ``planned``, ``flat``, ``exact`` or ``quasi-static`` (docs/theory.md, section 8.2).
     limits : MachineLimits, Machine or Limits, optional
         ``planned`` keeps them, the other inverses only report. A Machine, such as one of
-        :data:`gbeam.motion.machines`, also gives its idle level where that is left out.
+        :data:`gbeam.machines`, also gives its idle level where that is left out.
     gravity : bool
         The flight's load is specific force, and gravity is there on the machine.
     idle : float, optional
@@ -57,8 +57,9 @@ class Centrifuge(AxisMotion):
         Under a load across the beam its tip points along the arm's motion (``upright``) or against it (``inverted``):
         docs/mounting.svg.
     start : str
-        ``rest`` or ``pre-yawed``: from standstill to standstill; ``idle``: the motion begins and ends in the state
-        that it has at the flight's first and last time. See :class:`gbeam.motion.centrifuge.ends.Ends`.
+        ``rest``: from standstill to standstill, the arm's tangential acceleration on the way ignored; ``pre-yawed``:
+        likewise, with axis 2 turned across the arm at standstill so that the load has its direction on the way;
+        ``idle``: the motion begins and ends in the state that it has at the flight's first and last time.
     spin_up, spin_down : float, optional
         Time from standstill to the flight's first time, and from its last to standstill, s. Left out, the time in
         which the arm turns once on the way, or as much more as nine tenths of every limit need.

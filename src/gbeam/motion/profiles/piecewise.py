@@ -222,6 +222,6 @@ def tabulated(times: Any, values: Any) -> PiecewiseLinear:
     Raises
     ------
     InputError
-        As for :class:`PiecewiseLinear`.
+        If the shapes differ, a number is not finite or the times do not increase.
     """
     return PiecewiseLinear(times, values)

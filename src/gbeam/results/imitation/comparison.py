@@ -40,7 +40,7 @@ class Comparison(Figured):
     accounting : Accounting
         Which parts of the flight's load the machine reproduces, and why not the others.
     accept : mapping of str to float
-        Limits by the names of :data:`gbeam.results.imitation.accounting.CRITERIA`.
+        Limits by name: ``tip``, ``root_force``, ``root_moment``, ``stress``, ``peaks``, ``spread``, ``followed``.
     stations : Statistics or None
         Displacement of every station, with trend and elastic vibration apart; None where the record is too short.
     mismatch : Mismatch or None

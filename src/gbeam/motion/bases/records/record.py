@@ -112,8 +112,8 @@ def read_record(
     Parameters
     ----------
     path : path
-        Of text (see :func:`gbeam.motion.bases.records.text.read_text`), or by its suffix a MAT file (``.mat``), HDF5 or
-        netCDF (``.h5``, ``.hdf5``, ``.nc``) or a universal file (``.uff``, ``.unv``).
+        Of text (commas, semicolons, tabs or white space; decimal point or comma), or by its suffix a MAT file
+        (``.mat``), HDF5 or netCDF (``.h5``, ``.hdf5``, ``.nc``) or a universal file (``.uff``, ``.unv``).
     time : str
         Name of the column of times.
     x, y, z : str
@@ -122,7 +122,7 @@ def read_record(
     unit : str
         ``g`` (9.80665 m/s²) or ``m/s^2``.
     conditioning : Conditioning
-        By default nothing is done to it.
+        Of :class:`gbeam.motion.bases.records.record.Conditioning`; by default nothing is done to the record.
     time_unit : str, optional
         ``s``, ``ms``, ``us`` or ``min``; what the file says if left out, or else s.
     quantity : str
