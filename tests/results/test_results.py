@@ -12,6 +12,7 @@ import pytest
 import xarray as xr
 
 import gbeam as gb
+from gbeam.report.study import summary_json
 from gbeam.results.imitation.placement import Candidate, Placement
 from gbeam.results.machine import AxesResult, LimitUse, MachinePlan
 from gbeam.results.study import ModelRow, ModelStudy
@@ -122,3 +123,12 @@ def test_a_study_prints_its_responses_and_comparisons(every: dict[str, Any]) -> 
     lines = repr(study).splitlines()
     assert lines[0] == "Study 'title': done" and lines[1].startswith("Response 'flight' (flight, FOAM): done")
     assert lines[-1].startswith("Comparison: tip: flight's peak ") and "reproduced as" in lines[-1]
+
+
+def test_a_response_states_its_errors(tmp_path: Path) -> None:
+    flight = gb.simulate(gb.assemble(BEAM, "FOAM", z=2), gb.Flight(z=gb.constant(9.81)), duration=0.1, name="flight")
+    shown = summary_json.to_json(gb.Study("", {"flight": flight}, ()))["motions"]["flight"]
+    assert shown["errors"]["displacement"]["total"] == shown["error_estimate"] == flight.error_estimate
+    flight.save(tmp_path / "flight.nc")
+    with xr.open_dataset(tmp_path / "flight.nc") as saved:
+        assert saved.attrs["error_displacement_total"] == flight.errors.displacement.total

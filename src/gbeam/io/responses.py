@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import numpy as np
 
 from gbeam.io.groups import AXIS, Group, Variable, coordinate, variable
@@ -67,6 +69,9 @@ def response_group(response: Response) -> Group:
     attrs = {name: getattr(response, name) for name in ("environment", "model", "outcome", "message")}
     attrs["warnings"] = "\n".join(response.warnings)
     attrs |= {name: getattr(response, name) for name in ("integrator", "step", "steps", "error_estimate")}
+    for name in ("displacement", "loads", "stress"):
+        attrs |= {f"error_{name}_{part}": value for part, value in asdict(getattr(response.errors, name)).items()}
+    attrs["error_note"] = response.errors.note
     return Group(data, coordinates, attrs | {"residual_from": response.residual_from})
 
 

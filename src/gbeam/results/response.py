@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from gbeam.arrays.namespace import is_traced
+from gbeam.results.errors import Errors
 from gbeam.results.machine import AxesResult
 from gbeam.results.peaks import Peaks
 from gbeam.results.result import Figured, Floats, Part, brief
@@ -92,8 +93,8 @@ class Response(Figured):
         s; NaN for adaptive steps.
     steps : int
     error_estimate : float
-        Largest error of the tip's displacement, as a fraction of its largest size, estimated from a second run with
-        another step; NaN where none was made.
+        Total error of the tip's displacement, as a fraction of its largest size: that of `errors`; NaN where there is
+        no estimate.
     residual_from : float
         s; NaN where not given.
     hub : HubResult or None
@@ -106,6 +107,8 @@ class Response(Figured):
         Internal loads at the root and the stations.
     influence : Influence or None
         Static answer of the beam to acceleration fields.
+    errors : Errors
+        Of displacement, loads and stress, with what they are made of.
     """
 
     name: str
@@ -132,6 +135,7 @@ class Response(Figured):
     frequencies: Floats = field(default_factory=lambda: np.empty(0))
     loads: Loads | None = None
     influence: Influence | None = None
+    errors: Errors = field(default_factory=Errors)
 
     @property
     def tip(self) -> Floats:

@@ -31,6 +31,7 @@ from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
+from gbeam.results.errors import ErrorEstimate, Errors
 from gbeam.results.response import BaseMotion, HubResult, Response
 from gbeam.results.result import Floats
 from gbeam.results.section_forces import Loads
@@ -215,6 +216,7 @@ def _result(
         step=step,
         steps=sum(len(run.time) - 1 for run in runs if run is not None),
         error_estimate=error,
+        errors=Errors(displacement=ErrorEstimate(step=error, total=error)),
         residual_from=math.nan if settings.residual_from is None else settings.residual_from,
         hub=hub,
         axes=axes,

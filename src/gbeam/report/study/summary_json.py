@@ -55,6 +55,7 @@ def _response(response: Response) -> dict[str, Any]:
         "tip": {axis: dict(zip(keys, row, strict=True)) for axis, row in zip("xyz", tip, strict=True)}
         | {"size": {"max_abs": peaks.max_size, "time_of_max": peaks.time_of_max_size}},
         "error_estimate": response.error_estimate,
+        "errors": asdict(response.errors),
         "step": response.step,
         "steps": response.steps,
         "integrator": response.integrator,

@@ -1,0 +1,54 @@
+"""How far a result may be from the truth, and by what: time steps, too few shapes, the model."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from gbeam.results.result import Part
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class ErrorEstimate(Part):
+    """Estimated errors of one quantity, as fractions of its largest size; NaN where there is no estimate.
+
+    A vector's error is its length.
+
+    Parameters
+    ----------
+    step : float
+        Of the time steps.
+    shapes : float
+        Of too few shapes: against the same model with more.
+    model : float
+        Of the model: against the geometrically exact one.
+    total : float
+        Largest error of all three together, which may be less than their sum.
+    """
+
+    step: float = math.nan
+    shapes: float = math.nan
+    model: float = math.nan
+    total: float = math.nan
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Errors(Part):
+    """Estimated errors of a response.
+
+    Parameters
+    ----------
+    displacement : ErrorEstimate
+        Of the tip's displacement.
+    loads : ErrorEstimate
+        Of the root's force and moment: the larger of both.
+    stress : ErrorEstimate
+        Of the largest size of the normal stress over the stations' sections.
+    note : str
+        Why something is not estimated, or what the estimate leaves out.
+    """
+
+    displacement: ErrorEstimate = field(default_factory=ErrorEstimate)
+    loads: ErrorEstimate = field(default_factory=ErrorEstimate)
+    stress: ErrorEstimate = field(default_factory=ErrorEstimate)
+    note: str = ""
