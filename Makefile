@@ -1,6 +1,7 @@
 # make demo: install and run the main job; make test: the tests; make check: what CI checks besides;
 # make validate: compare with other codes and write docs/validation.md (minutes; what is not installed is left out);
 # make docs: the documentation site, in out/docs;
+# make dist: sdist and wheel into dist/; make wheels: the wheel in empty environments on every Python that is there;
 # make benchmark: how long commands take, and a comparison with Exudyn (minutes; nothing else should run).
 PYTHON ?= python3
 BIN := .venv/bin
@@ -9,9 +10,9 @@ EXAMPLE := examples/f16_8g_turn.toml
 CACHE := $(CURDIR)/.cache/jax
 
 # Folders that ruff reads.
-CODE := src tests validation benchmarks examples
+CODE := src tests validation benchmarks examples .ci
 
-.PHONY: demo test check validate docs benchmark lock clean
+.PHONY: demo test check validate docs benchmark dist wheels lock clean
 
 demo: .venv/installed
 	$(BIN)/gbeam run $(EXAMPLE) --out out/f16_8g_turn
@@ -39,6 +40,12 @@ benchmark: .venv/dev-installed
 	$(BIN)/python benchmarks/latency.py
 	$(BIN)/python benchmarks/exudyn.py
 
+dist: .venv/uv-installed
+	$(BIN)/python .ci/dist.py
+
+wheels: dist
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python .ci/wheels.py
+
 .venv/installed: pyproject.toml requirements.lock
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements.lock
@@ -49,13 +56,16 @@ benchmark: .venv/dev-installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements-dev.lock
 	@touch $@
 
-# After a change of the dependencies: one lock for every supported Python and platform.
-lock: .venv/installed
+.venv/uv-installed: .venv/installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check uv
+	@touch $@
+
+# After a change of the dependencies: one lock for every supported Python and platform.
+lock: .venv/uv-installed
 	$(BIN)/uv pip compile --quiet --universal --no-header --no-emit-index-url --no-annotate \
 		pyproject.toml -o requirements.lock
 	$(BIN)/uv pip compile --quiet --universal --no-header --no-emit-index-url --no-annotate \
 		pyproject.toml --group dev -o requirements-dev.lock
 
 clean:
-	rm -rf .venv .cache out
+	rm -rf .venv .cache out dist

@@ -73,7 +73,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.structure.section import Section as Section
     from gbeam.structure.support import Root as Root
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 # Every public name, and the module it is in.
 _HOME = {
