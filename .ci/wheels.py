@@ -73,7 +73,8 @@ def attempt(wheel: Path, python: str, resolution: str, tests: Sequence[str], *, 
         into = ("--quiet", "--python", interpreter)
         # Releases without a wheel for this Python and platform are passed over: nothing is compiled here.
         binary = ("--only-binary", ":all:")
-        run(UV, "pip", "install", *into, "--resolution", resolution, *binary, wheel)
+        # "Direct" are the requirements of the project, not the wheel, which alone would be lowest.
+        run(UV, "pip", "install", *into, "--resolution", resolution, *binary, "-r", ROOT / "pyproject.toml", wheel)
         run(UV, "pip", "check", *into)
         (folder / "versions.txt").write_text(run(UV, "pip", "freeze", *into), encoding="utf-8")
         use(interpreter, folder)
