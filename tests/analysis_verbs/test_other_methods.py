@@ -1,46 +1,20 @@
-"""Against solutions by another method, written here: Hermite finite elements, and closed forms."""
+"""Against other methods: the finite elements of `validation`, and closed forms."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-import scipy.linalg
 
 from gbeam import Beam, Material, Model, PointMass, Section, assemble
 from gbeam.analysis.equilibrium.static import static
 from gbeam.analysis.vibration.modal import modes
 from gbeam.analysis.vibration.stability import buckling_acceleration, critical_speed
 from gbeam.motion import Hub, constant
+from validation.codes.hermite_beam import HermiteBeam
 
 from .beams import slender, structure_2009
 
-ELEMENTS = 60
-XI, WEIGHT = np.polynomial.legendre.leggauss(6)
-XI, WEIGHT = (XI + 1) / 2, WEIGHT / 2
-
-
-def hermite_flap(length, area, inertia, density, e, rate, radius, tip=0.0):
-    """Flapping frequencies of a rotating beam by cubic finite elements, rad/s; `area` and `inertia` are functions."""
-    h = length / ELEMENTS
-    size = 2 * ELEMENTS + 2
-    mass, stiffness = np.zeros((size, size)), np.zeros((size, size))
-    s = XI
-    shape = np.array([1 - 3 * s**2 + 2 * s**3, h * (s - 2 * s**2 + s**3), 3 * s**2 - 2 * s**3, h * (s**3 - s**2)])
-    slope = np.array([-6 * s + 6 * s**2, h * (1 - 4 * s + 3 * s**2), 6 * s - 6 * s**2, h * (3 * s**2 - 2 * s)]) / h
-    curve = np.array([-6 + 12 * s, h * (-4 + 6 * s), 6 - 12 * s, h * (6 * s - 2)]) / h**2
-    fine_s, fine_w = np.polynomial.legendre.leggauss(40)
-    for k in range(ELEMENTS):
-        x, i = (k + s) * h, slice(2 * k, 2 * k + 4)
-        tension = []
-        for at in x:
-            out = at + (length - at) * (fine_s + 1) / 2
-            pull = np.sum(density * area(out) * (radius + out) * fine_w) * (length - at) / 2
-            tension.append(rate**2 * (pull + tip * (radius + length)))
-        mass[i, i] += (shape * WEIGHT * h * density * area(x)) @ shape.T
-        stiffness[i, i] += (curve * WEIGHT * h * e * inertia(x)) @ curve.T
-        stiffness[i, i] += (slope * WEIGHT * h * np.array(tension)) @ slope.T
-    mass[-2, -2] += tip
-    return np.sqrt(scipy.linalg.eigh(stiffness[2:, 2:], mass[2:, 2:], eigvals_only=True))
+ELEMENTS = 30
 
 
 def flap(beam, count, rate, radius, shapes="clamped-free"):
@@ -50,8 +24,9 @@ def flap(beam, count, rate, radius, shapes="clamped-free"):
 
 @pytest.mark.parametrize("radius", [0.0, 1.0, 3.0])
 def test_hub_radius(radius):
-    wanted = hermite_flap(1.0, np.ones_like, np.ones_like, 1.0, 1.0, 4.0, radius)
-    assert flap(slender(1e4), 14, 4.0, radius)[:3] == pytest.approx(wanted[:3], rel=2e-5)
+    elements = HermiteBeam(1.0, np.ones_like, np.ones_like, np.ones_like, 1.0, 1.0, elements=ELEMENTS)
+    reference = elements.frequencies(np.array([-radius * 16.0, 0, 0]), np.array([0, 0, 4.0]), 3, "w")
+    assert flap(slender(1e4), 14, 4.0, radius)[:3] == pytest.approx(reference, rel=2e-5)
 
 
 def test_taper():
@@ -60,10 +35,18 @@ def test_taper():
     section = Section.rectangle(*ends, stations=(0.0, 0.3))
     beam = Beam(0.3, section, Material(2700.0, 7e10), [PointMass(0.3, 0.002)])
     width, thick = (lambda x: 0.02 * (1 - x / 0.6)), (lambda x: 0.004 * (1 - x / 0.6))
-    wanted = hermite_flap(
-        0.3, lambda x: width(x) * thick(x), lambda x: width(x) * thick(x) ** 3 / 12, 2700.0, 7e10, 300.0, 0.1, tip=0.002
+    elements = HermiteBeam(
+        0.3,
+        lambda x: width(x) * thick(x),
+        lambda x: width(x) * thick(x) ** 3 / 12,
+        lambda x: thick(x) * width(x) ** 3 / 12,
+        2700.0,
+        7e10,
+        0.002,
+        ELEMENTS,
     )
-    assert flap(beam, 10, 300.0, 0.1, "adapted")[:3] == pytest.approx(wanted[:3], rel=1e-4)
+    reference = elements.frequencies(np.array([-0.1 * 300.0**2, 0, 0]), np.array([0, 0, 300.0]), 3, "w")
+    assert flap(beam, 10, 300.0, 0.1, "adapted")[:3] == pytest.approx(reference, rel=1e-4)
 
 
 def test_rotating_bar():
