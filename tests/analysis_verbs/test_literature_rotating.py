@@ -1,4 +1,4 @@
-"""Rotating beams of the literature through `modes` (tables in references.json).
+"""Rotating beams of the literature through `modes` (validation/published/tables.py).
 
 Errata of the sources: 2009 Table 2 divides rad/s by 2 × 3.14; its captions are swapped. Hamza Cherif's chord column has
 no centrifugal pre-stretch, which the exact model has.
@@ -13,25 +13,9 @@ from gbeam import Model, PointMass, assemble
 from gbeam.analysis.vibration.modal import modes
 from gbeam.analysis.vibration.stability import critical_speed
 from gbeam.motion import Hub, constant
+from validation.published.tables import TIP_MASS_FLAP, UNIFORM_FLAP
 
 from .beams import FREE_2009, HUB, HUB_2009, slender, structure_2009
-
-FLAP = {
-    0: (3.516015, 22.034492, 61.697214),
-    1: (3.681647, 22.181011, 61.841763),
-    2: (4.13732, 22.614922, 62.273184),
-    3: (4.797279, 23.320264, 62.984967),
-    6: (7.360373, 26.809082, 66.683914),
-    10: (11.202328, 33.640366, 74.649295),
-    12: (13.17015, 37.603112, 79.614478),
-}
-TIP_MASS = {
-    0: (1.5573, 16.25009),
-    2: (2.66964, 18.19097),
-    5: (5.52185, 26.04153),
-    10: (10.48644, 43.45172),
-    12: (12.48137, 50.85939),
-}
 
 
 def spin(rate: float) -> Hub:
@@ -47,13 +31,13 @@ def along(structure, motion, direction):
 def test_wright_1982_flap():
     structure = assemble(slender(1e4), Model("FOAM", 0, 0, 15))
     # Clamped-free shapes converge as n⁻³: 4e-6 is what fifteen give at the highest speed.
-    for gamma, wanted in FLAP.items():
+    for gamma, (_, wanted) in UNIFORM_FLAP.items():
         assert along(structure, spin(gamma), "z")[:3] == pytest.approx(wanted, rel=1e-5), gamma
 
 
 def test_wright_1982_tip_mass():
     structure = assemble(slender(1e4, PointMass(1.0, 1.0)), Model("FOAM", 0, 0, 8, shapes="adapted"))
-    for gamma, wanted in TIP_MASS.items():
+    for gamma, (_, wanted) in TIP_MASS_FLAP.items():
         assert along(structure, spin(gamma), "z")[:2] == pytest.approx(wanted, rel=5e-4), gamma
 
 

@@ -13,6 +13,7 @@ import pytest
 
 from gbeam import InputError
 from gbeam.integrate import Scheme, gauss, generalized_alpha, hht, integrate, linear, newmark
+from validation.published.tables import SCHEMES_THEORY
 
 from .systems import BEAD, OSCILLATOR, PENDULUM, VARYING, reference
 
@@ -21,22 +22,6 @@ SCHEMES = {
     "HHT -0.1": hht(-0.1),
     "generalised-α 0.9": generalized_alpha(0.9),
     "generalised-α 0.5": generalized_alpha(0.5),
-}
-# h/T: relative period elongation, algorithmic damping ratio of an undamped oscillator; spectral radius at infinity
-THEORY = {
-    "Newmark": ({0.01: (0.0003289, 0), 0.05: (0.0081712, 0), 0.1: (0.032075, 0), 0.2: (0.12003, 0)}, 1.0),
-    "HHT -0.1": (
-        {0.01: (0.00041268, 2.507e-6), 0.05: (0.010202, 0.0002997), 0.1: (0.039506, 0.002106), 0.2: (0.14243, 0.01113)},
-        0.81818,
-    ),
-    "generalised-α 0.9": (
-        {0.01: (0.000333, 1.807e-8), 0.05: (0.0082729, 2.222e-6), 0.1: (0.032472, 1.692e-5), 0.2: (0.12149, 0.0001145)},
-        0.90007,
-    ),
-    "generalised-α 0.5": (
-        {0.01: (0.00049318, 4.584e-6), 0.05: (0.012157, 0.000545), 0.1: (0.046715, 0.00378), 0.2: (0.16536, 0.01951)},
-        0.50008,
-    ),
 }
 DIGITS = 1e-3  # the theory's numbers have four or five
 
@@ -55,21 +40,21 @@ def principal_root(matrix: np.ndarray) -> complex:
     return roots[np.argmax(np.abs(roots) * (roots.imag > 0))]
 
 
-@pytest.mark.parametrize("name", THEORY)
+@pytest.mark.parametrize("name", SCHEMES_THEORY)
 def test_period_elongation_and_damping_of_an_undamped_oscillator(name: str) -> None:
-    for h, (elongation, damping) in THEORY[name][0].items():
+    for h, (elongation, damping) in SCHEMES_THEORY[name][0].items():
         principal = principal_root(amplification(SCHEMES[name], h))
         angle, decay = np.angle(principal), -np.log(np.abs(principal))
         assert 2 * np.pi * h / angle - 1 == pytest.approx(elongation, rel=DIGITS)
         assert decay / np.hypot(angle, decay) == pytest.approx(damping, rel=DIGITS, abs=1e-11)
 
 
-@pytest.mark.parametrize("name", THEORY)
+@pytest.mark.parametrize("name", SCHEMES_THEORY)
 def test_spectral_radius_at_infinite_frequency(name: str) -> None:
     """And nowhere above one on the way there: unconditionally stable."""
     radius = [np.abs(np.linalg.eigvals(amplification(SCHEMES[name], h))).max() for h in np.logspace(-2, 4, 31)]
     assert max(radius) < 1 + 1e-7
-    assert radius[-1] == pytest.approx(THEORY[name][1], abs=1e-3)
+    assert radius[-1] == pytest.approx(SCHEMES_THEORY[name][1], abs=1e-3)
 
 
 def test_gauss_neither_damps_nor_loses_stability() -> None:

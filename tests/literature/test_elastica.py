@@ -9,17 +9,8 @@ import pytest
 
 from gbeam import Beam, Material, Model, PointMass, Section, Structure, assemble, solve_equilibrium
 from gbeam.motion import Base
-
-# F L²/EI: 1 − x/L, y/L and slope of the tip, rad; inextensible elastica (own quadrature; Mattiasson's table of 1981)
-ELASTICA = {
-    1: (0.056433, 0.301721, 0.461352),
-    2: (0.160642, 0.493457, 0.78175),
-    3: (0.25442, 0.603253, 0.986017),
-    5: (0.387628, 0.713792, 1.215368),
-    10: (0.554996, 0.810609, 1.430286),
-}
-# Of the exact model in a plane: statics of the literature share a size, and with it the compiled programs.
-PLANAR = (8, 9, 0)
+from validation.published.specimens import PLANAR
+from validation.published.tables import ELASTICA
 
 
 @cache

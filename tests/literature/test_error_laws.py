@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from gbeam import Beam, Material, Model, PointMass, Section, assemble, static
-
-from .test_elastica import ELASTICA, PLANAR
-from .test_models_2009 import SLEWS, TORQUES
+from validation.published.specimens import PLANAR
+from validation.published.tables import ELASTICA, SLEWS, TORQUES
 
 LENGTH_2009 = 8.0  # m
 

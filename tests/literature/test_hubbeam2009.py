@@ -1,4 +1,5 @@
-"""The 2009 paper on a hub, a beam and a tip mass: its equations, tables and figures. Its errata: hubbeam2009.py.
+"""The 2009 paper on a hub, a beam and a tip mass: its equations, tables and figures. Its errata:
+validation/published/hubbeam2009.py.
 
 "Printed" is the paper's; "independent" was computed outside this project: integrals and eigenvalues with numpy, exact
 references with two codes (an elastica in tangent angles; cubic ANCF elements) and Exudyn 1.13.6.
@@ -18,9 +19,7 @@ from gbeam import (
     Hub,
     Model,
     PointMass,
-    Response,
     ResponseSettings,
-    Sine,
     SmoothStep,
     Structure,
     assemble,
@@ -30,11 +29,13 @@ from gbeam import (
 )
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.equations.residuals import OnHub
+from validation.published.hubbeam2009 import HUB_INERTIA, HUB_RADIUS, LENGTH, Paper
+from validation.published.specimens import pulse, slew
+from validation.published.tables import TABLE_2
 
 from ..differences import jacobian
 from ..lagrange import quickly_compiled
 from ..specimens import appendage, hub_beam
-from .hubbeam2009 import HUB_INERTIA, HUB_RADIUS, LENGTH, Paper
 
 EQUATIONS = 1e-10  # relative to the largest entry of each block row
 GOLDEN = 1e-8  # absolute: the golden numbers have eight decimals
@@ -159,14 +160,6 @@ def lowest(c: Coefficients, rate: float) -> np.ndarray:
     return scipy.linalg.eigh(stiffness[5:, 5:], c.mass[5:, 5:], eigvals_only=True)
 
 
-# kind, rate: printed (4 decimals), and true by independent eigenvalues (5 decimals)
-TABLE_2 = {
-    ("FOAM", 0.0): ([0.4635, 2.9047, 8.1332, 15.9377, 26.3462], [0.46326, 2.90320, 8.12903, 15.92965, 26.33286]),
-    ("TLAM", 1.0): ([0.4353, 2.9003, 8.1316, 15.9369, 26.3457], [0.43506, 2.89883, 8.12747, 15.92886, 26.33238]),
-    ("FOAM", 1.0): ([0.4714, 2.9308, 8.1618, 15.9682, 26.3776], [0.47111, 2.92934, 8.15767, 15.96005, 26.36425]),
-}  # fmt: skip
-
-
 @pytest.mark.parametrize(("kind", "rate"), TABLE_2)
 def test_table_2_true_frequencies(kind: str, rate: float) -> None:
     np.testing.assert_allclose(bending_frequencies(kind, rate) / (2 * np.pi), TABLE_2[kind, rate][1], atol=1.1e-5)
@@ -213,17 +206,6 @@ def test_end_mass_lowers_foams_frequency() -> None:
 
 
 # --- slews, (43): peak and residual amplitude of the tip along y
-
-
-SLEW = dict(duration=50.0, residual_from=30.0)
-
-
-def slew(kind: str, counts: tuple[int, int], rate: float, mt: float = 0.0, **how: Any) -> Response:
-    return simulate(
-        structure(kind, *counts, mt),
-        Hub(radius=HUB_RADIUS, rate=SmoothStep(rate, 30.0)),
-        ResponseSettings(**SLEW, **how),
-    )
 
 
 @pytest.mark.parametrize(
@@ -287,12 +269,6 @@ def test_exact_slew_of_5_rad_per_s() -> None:
 
 
 # --- torque pulses, (44): peak and residual of the tip along y, angle of the hub at 20 s
-
-
-def pulse(kind: str, counts: tuple[int, int], torque: float, mt: float, **how: Any) -> Response:
-    drive = Hub(radius=HUB_RADIUS, inertia=HUB_INERTIA, torque=Sine(torque, 10.0))
-    settings = ResponseSettings(duration=20.0, residual_from=10.0, **{"step": 5e-3, **how})
-    return simulate(structure(kind, *counts, mt), drive, settings)
 
 
 @pytest.mark.slow

@@ -15,41 +15,15 @@ import pytest
 from gbeam import Hub, Sine, SmoothStep
 from gbeam.analysis.response.problem import problem_of
 from gbeam.integrate import integrate, newmark
+from validation.published.hubbeam2009 import HUB_INERTIA, HUB_RADIUS
+from validation.published.tables import SLEWS, TORQUES
 
-from .hubbeam2009 import HUB_INERTIA, HUB_RADIUS
 from .test_hubbeam2009 import structure
 
 # A step for all models: its error, of 5e-4 and less, is common to them and drops out of their differences.
 STEP = 0.02  # s
 EXACT, SHAPES, BENDING = (2, 5), (5, 5), (0, 5)  # BENDING: the Lagrangian form of SFOAM
 PEAK, RESIDUAL = 0.025, 0.2  # %: the references are printed to 0.01 % of the peak and 0.1 % of the residual
-
-# rad/s or N m, kg: the elastica's peak and residual, m; errors of peak and residual, %, of FOAM, then of CFOAM
-SLEWS = {
-    (2.8, 0.0): (0.20433, 8.54e-4, 0.03, 0.0, 0.06, 0.4),
-    (2.8, 0.1): (0.24754, 7.18e-4, 0.03, -0.3, 0.09, -2.8),
-    (2.8, 0.5): (0.40969, 1.96e-3, 0.09, -0.4, 0.29, -5.5),
-    (3.0, 0.0): (0.21708, 7.91e-4, 0.03, 0.1, 0.07, 1.0),
-    (3.0, 0.1): (0.26276, 1.04e-3, 0.04, -0.2, 0.10, -1.8),
-    (3.0, 0.5): (0.43380, 2.85e-3, 0.10, -0.3, 0.33, -3.9),
-    (5.0, 0.0): (0.33242, 8.22e-4, 0.06, 0.1, 0.19, 3.3),
-    (5.0, 0.1): (0.39450, 1.66e-3, 0.09, 0.0, 0.28, -1.0),
-    (5.0, 0.5): (0.63572, 4.51e-3, 0.20, 0.0, 0.78, 0.0),
-}
-TORQUES = {
-    (50.0, 0.0): (0.26961, 0.0246, 0.02, -0.5, -0.07, -3.8),
-    (50.0, 0.1): (0.35208, 0.1228, 0.07, 0.0, 0.20, 0.4),
-    (50.0, 0.5): (0.59384, 0.2441, 0.18, 0.0, 0.38, 0.6),
-    (100.0, 0.0): (0.54819, 0.0746, 0.10, -1.2, -0.18, -9.7),
-    (100.0, 0.1): (0.67994, 0.2296, 0.27, 0.3, 0.86, 2.3),
-    (100.0, 0.5): (1.17474, 0.4529, 0.75, 0.6, 1.58, 4.7),
-    (200.0, 0.0): (1.12747, 0.3050, 0.58, -1.4, 0.53, -14.2),
-    (200.0, 0.1): (1.28835, 0.2747, 0.90, 2.8, 2.00, 27.9),
-    (200.0, 0.5): (2.25654, 0.5715, 2.84, 8.5, 6.45, 73.4),
-    (400.0, 0.0): (1.96617, 0.4713, 2.10, 4.1, 4.92, 42.3),
-    (400.0, 0.1): (2.44375, 0.8549, 3.27, -4.4, 8.02, -99.9),
-    (400.0, 0.5): (3.97840, 2.2485, 9.30, 4.6, 35.6, -89.7),
-}
 
 # Not in the list of references, and so against gbeam's exact model only.
 FAST = [(8.0, 0.0), (8.0, 0.1), (8.0, 0.5)]  # rad/s

@@ -21,73 +21,37 @@ from gbeam import (
     ResponseSettings,
     Section,
     SmoothStep,
-    Structure,
     assemble,
     simulate,
     solve_equilibrium,
 )
-from gbeam.analysis.equilibrium.point import linear_matrices, on_base
 from gbeam.mechanics.equations.linear import Coefficients
-from gbeam.motion import Base
-
-from .test_elastica import PLANAR
+from validation.published.specimens import (
+    PLANAR,
+    exact_unit_beam,
+    frequencies,
+    robot_arm,
+    spinning,
+    unit_beam,
+    unit_coefficients,
+    vibration_about_equilibrium,
+)
+from validation.published.tables import BLADE, SOUTHWELL, TIP_MASS_FLAP, UNIFORM_FLAP
 
 # A beam of unit length, unit mass per length and unit EI: nondimensional, with EA = α², α the slenderness.
 ROUNDED = 6e-4  # published values have three decimals, in places rounded twice
 MODES = 15  # the clamped-free modes converge slowly at high speed
 
 
-def unit_beam(slenderness: float = 1000.0, tip: float = 0.0) -> Beam:
-    area, inertia, modulus = 1.0, slenderness**-2, slenderness**2
-    section = Section.general(area, inertia, inertia)
-    return Beam(1.0, section, Material(1.0, modulus), [PointMass(1.0, tip)])
-
-
-def spinning(rate: float, axis: int, radius: float = 0.0) -> Base:
-    """Steady rotation about y (axis 1) or z (axis 2)."""
-    return Base(np.array([-radius * rate**2, 0.0, 0.0]), rate * np.eye(3)[axis], np.zeros(3))
-
-
-@cache
-def constants(counts: tuple[int, int, int], slenderness: float = 1000.0, tip: float = 0.0) -> Coefficients:
-    return assemble(unit_beam(slenderness, tip), Model("FOAM", *counts)).coefficients
-
-
-def frequencies(c: Coefficients, base: Base, count: int) -> np.ndarray:
-    """Lowest circular frequencies of M q̈ + G q̇ + K q = 0."""
-    G, K, _ = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
-    return gyroscopic_frequencies(c.mass, G, K, count)
-
-
-def gyroscopic_frequencies(M: np.ndarray, G: np.ndarray, K: np.ndarray, count: int) -> np.ndarray:
-    n = len(M)
-    rates = scipy.linalg.eigvals(
-        np.block([[np.zeros((n, n)), np.eye(n)], [-K, -G]]), scipy.linalg.block_diag(np.eye(n), M)
-    )
-    assert np.abs(rates.real).max() < 1e-6 * np.abs(rates).max()  # stable
-    return np.sort(rates.imag[rates.imag > 0])[:count]
-
-
 # --- flap, Wright, Smith, Thresher, Wang (1982), J. Appl. Mech. 49(1) 197-202, hub radius 0; via Bir (2009) AIAA
 #     2009-1035, Table 3a, as transcribed in SMI-Lab-Inha/pyBModes, tests/fem/test_rotating_uniform_blade.py.
 #     ω and Ω in units of √(EI/(mL⁴)).
 
-# speed: published flap 1, 2, 3; independent
-UNIFORM = {
-    0: ([3.516, 22.035, 61.697], [3.516015, 22.034492, 61.697214]),
-    1: ([3.682, 22.181, 61.842], [3.681647, 22.181011, 61.841763]),
-    2: ([4.137, 22.615, 62.273], [4.13732, 22.614922, 62.273184]),
-    3: ([4.797, 23.32, 62.985], [4.797279, 23.320264, 62.984967]),
-    6: ([7.36, 26.809, 66.684], [7.360373, 26.809082, 66.683914]),
-    10: ([11.202, 33.64, 74.649], [11.202328, 33.640366, 74.649295]),
-    12: ([13.17, 37.603, 79.615], [13.17015, 37.603112, 79.614478]),
-}
 
-
-@pytest.mark.parametrize("speed", UNIFORM)
+@pytest.mark.parametrize("speed", UNIFORM_FLAP)
 def test_uniform_blade_flap(speed: float) -> None:
-    published, independent = UNIFORM[speed]
-    found = frequencies(constants((0, MODES, 0)), spinning(speed, axis=1), 3)
+    published, independent = UNIFORM_FLAP[speed]
+    found = frequencies(unit_coefficients((0, MODES, 0)), spinning(speed, axis=1), 3)
     np.testing.assert_allclose(found, published, atol=ROUNDED)
     np.testing.assert_allclose(found, independent, rtol=6e-6)
     # The exact field to second order is the same theory, and its polynomials converge faster.
@@ -99,26 +63,13 @@ def polynomial_shapes() -> Coefficients:
     return assemble(unit_beam(), Model("exact", 0, 12, 0)).coefficients
 
 
-# Wright et al. (1982) via Bir (2010) NREL/CP-500-47953, Table 5: tip mass m_t = mL
-TIP_MASS = {
-    0: ([1.557, 16.25], [1.5573, 16.25009]),
-    2: ([2.67, 18.19], [2.66964, 18.19097]),
-    5: ([5.522, 26.04], [5.52185, 26.04153]),
-    10: ([10.49, 43.45], [10.48644, 43.45172]),
-    12: ([12.48, 50.86], [12.48137, 50.85939]),
-}
-
-
-@pytest.mark.parametrize("speed", TIP_MASS)
+@pytest.mark.parametrize("speed", TIP_MASS_FLAP)
 def test_blade_with_tip_mass_flap(speed: float) -> None:
     """Clamped-free shapes know nothing of the tip mass and converge slowly: 15 of them."""
-    published, independent = TIP_MASS[speed]
-    found = frequencies(constants((0, MODES, 0), tip=1.0), spinning(speed, axis=1), 2)
+    published, independent = TIP_MASS_FLAP[speed]
+    found = frequencies(unit_coefficients((0, MODES, 0), tip=1.0), spinning(speed, axis=1), 2)
     np.testing.assert_allclose(found, published, rtol=5e-4)
     np.testing.assert_allclose(found, independent, rtol=5e-5)
-
-
-SOUTHWELL = [1.193336374, 6.478224864, 17.859519880]
 
 
 def test_southwell_coefficients() -> None:
@@ -130,7 +81,7 @@ def test_southwell_coefficients() -> None:
     1.19441, 6.47746, 17.85925. The slope itself, by perturbation, is the
     same to nine digits by quadrature of the closed forms, by Legendre polynomials and by collocation.
     """
-    c = constants((0, MODES, 0))
+    c = unit_coefficients((0, MODES, 0))
     slope = np.diag(c.k_ww[1, 1])[:3] / np.diag(c.mass)[:3]
     np.testing.assert_allclose(slope, SOUTHWELL, atol=1e-8)
     np.testing.assert_allclose(southwell_by_collocation(24), SOUTHWELL, atol=1e-6)
@@ -169,23 +120,13 @@ def southwell_by_collocation(n: int) -> np.ndarray:
     ("speed", "flap", "chord", "exact_chord"), [(2, 4.1373, 3.6195, 3.6186), (10, 11.2023, 4.97, 4.9484)]
 )
 def test_flap_and_chord_of_slenderness_70(speed: float, flap: float, chord: float, exact_chord: float) -> None:
-    c = constants((6, MODES, 0), slenderness=70.0)
+    c = unit_coefficients((6, MODES, 0), slenderness=70.0)
     assert frequencies(c, spinning(speed, axis=1), 1)[0] == pytest.approx(flap, abs=1e-4)
     assert frequencies(c, spinning(speed, axis=2), 1)[0] == pytest.approx(chord, abs=1e-4)
     # The exact beam is stretched by the rotation before it vibrates: it differs, as it should (independent).
-    stretched = vibration_about_equilibrium(exact_chordwise(70.0), spinning(speed, axis=2), 1)
+    stretched = vibration_about_equilibrium(exact_unit_beam(70.0), spinning(speed, axis=2), 1)
     assert stretched[0] == pytest.approx(exact_chord, rel=1e-4)
     assert abs(stretched[0] - chord) > 8e-4
-
-
-@cache
-def exact_chordwise(slenderness: float) -> Structure:
-    return assemble(unit_beam(slenderness), Model("exact", *PLANAR))
-
-
-def vibration_about_equilibrium(s: Structure, base: Base, count: int) -> np.ndarray:
-    at = linear_matrices(on_base(s, base))
-    return gyroscopic_frequencies(at.mass, at.velocity, at.stiffness, count)
 
 
 # --- the rotating bar, code_aster V3.04.104 and V3.04.105: u(x) = sin ax/(a cos aL) − x, a = ω √(ρ/E)
@@ -230,13 +171,6 @@ def test_rotating_bar_on_a_hub() -> None:
 # --- straight blade of Epps and Chandra (1996) J. Am. Helicopter Soc. 41:29, as modelled by Hodges, Shang and Cesnik
 #     (1995), in byuflowlab/GXBeam.jl, test/examples/rotating.jl. Inch, pound force, s.
 
-# rpm: flap 1 to 3 measured on the blade without sweep; flap 1 to 4 of Euler and Bernoulli's beam (independent), Hz
-BLADE = {
-    0: ([1.4, 10.3, 27.7], [1.49, 9.32, 26.1, 51.14]),
-    500: ([10.2, 25.2, 47.0], [9.19, 23.84, 44.55, 72.61]),
-    750: ([14.8, 36.1, 62.9], [13.55, 34.0, 59.49, 91.81]),
-}
-
 
 @pytest.mark.parametrize("rpm", BLADE)
 def test_straight_blade_flap(rpm: float) -> None:
@@ -252,14 +186,6 @@ def test_straight_blade_flap(rpm: float) -> None:
 # --- spin-up, Simo and Vu-Quoc (1988) CMAME 66:125-161, example 5.1; Kane, Ryan and Banerjee (1987)
 
 SPIN_UP = SmoothStep(6.0, 15.0)  # ψ' of ψ = 6/15 (t²/2 + (15/2π)² (cos(2πt/15) − 1)), 6 rad/s after
-
-
-@cache
-def robot_arm(counts: tuple[int, int, int] = (2, 5, 0)) -> Structure:
-    """EA = 2.8e7 N, EI = 1.4e4 N m², ρA = 1.2 kg/m, L = 10 m; shear (GA = 1e7 N) and rotary inertia are left out."""
-    section = Section.general(4e-4, 2e-7, 2e-7)
-    none = PointMass(10.0, 0.0)  # the size of 2009's beam
-    return assemble(Beam(10.0, section, Material(3000.0, 7e10), [none]), Model("exact", *counts))
 
 
 @pytest.mark.slow

@@ -1,4 +1,5 @@
-"""Zhang 2020, a beam on a three-axis centrifuge: matrices, static figures, vibration. Its errata: zhang2020.py.
+"""Zhang 2020, a beam on a three-axis centrifuge: matrices, static figures, vibration. Its errata:
+validation/published/zhang2020.py.
 
 The paper does not say its arm, its inverse kinematics, or how its corners are rounded. An arm of 3.3 m follows from its
 static excess; a Hann kernel of 59.6 ms is fitted to its vibration, so that the last figure is a consistency check.
@@ -30,8 +31,7 @@ from gbeam import (
 from gbeam.integrate import LinearEquations, gauss, integrate
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.motion import Base, Profile, moved
-
-from .zhang2020 import COUNTS, DENSITY, G0, LENGTH, LINE, THICKNESS, WIDTH, YOUNG, matrices
+from validation.published.zhang2020 import COUNTS, DENSITY, G0, LENGTH, LINE, THICKNESS, WIDTH, YOUNG, matrices
 
 EQUATIONS = 1e-10  # relative to the largest entry
 ARM, MIDDLE = 3.3, 0.15  # m; the control point of the paper is the middle of the beam

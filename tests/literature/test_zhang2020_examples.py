@@ -1,10 +1,10 @@
 """Zhang 2020, section 4: its four examples, each figure with what is printed, what we find, and the verdict.
 
-Errata that matter here (the full list with the equations: zhang2020.py): the control point lies at the intersection of
-axes 2 and 3 (1 and 2 are parallel); arm radius, gravity, inverse kinematics, corner shape, time step, spin-up and the
-load profiles of examples 2 and 3 are not stated; sentence (4) of section 4.4 repeats "flight/centrifugal" wrongly; the
-model has no damping, so that the vibration of every corner persists; a control point that is "always consistent" is
-impossible at a sharp corner.
+Errata that matter here (all, with the equations: validation/published/zhang2020.py): the control point lies at the
+intersection of axes 2 and 3 (1 and 2 are parallel); arm radius, gravity, inverse kinematics, corner shape, time step,
+spin-up and the load profiles of examples 2 and 3 are not stated; sentence (4) of section 4.4 repeats
+"flight/centrifugal" wrongly; the model has no damping, so that the vibration of every corner persists; a control point
+that is "always consistent" is impossible at a sharp corner.
 
 | figure | printed | ours | verdict |
 |---|---|---|---|

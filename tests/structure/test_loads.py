@@ -27,22 +27,15 @@ from gbeam import (
 )
 from gbeam.motion import Base
 from gbeam.structure.loads import Load
+from validation.published.specimens import PLANAR
+from validation.published.tables import ELASTICA
 
 from ..differences import rate
-from ..literature.test_elastica import PLANAR
 from ..residuals import on_base, virtual_work
 from ..specimens import laden, states
 
 STILL = Base(*np.zeros((3, 3)))
 LARGE = Model("exact", *PLANAR)  # all large deflections in one size
-# Elastica under a dead tip force F L²/EI: 1 − x/L, y/L, angle of the tip (elliptic integrals).
-ELASTICA = {
-    1: (0.056433, 0.301721, 0.461352),
-    2: (0.160642, 0.493457, 0.781750),
-    3: (0.254420, 0.603253, 0.986017),
-    5: (0.387628, 0.713792, 1.215368),
-    10: (0.554996, 0.810609, 1.430286),
-}
 
 
 def beam(length: float, bending: float, *loads: Load, axial: float = 1.0, **options: Any) -> Beam:

@@ -15,7 +15,7 @@ Errata of the paper (from a scan: an erratum may be the scan's or the print's; e
 11  G is called damping; it is gyroscopic and skew. The model has no damping: every corner's vibration stays
 12  arm, gravity, inverse kinematics, corners, time step, start and the profiles of Figs. 4 and 6 are not stated
 13  a_C cannot be prescribed exactly at sharp corners
-14  the shift from the control point to the root matters: see `test_variants_of_the_shift`
+14  the shift from the control point to the root matters: test_variants_of_the_shift in tests/literature
 """
 
 from __future__ import annotations

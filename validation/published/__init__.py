@@ -1,0 +1,1 @@
+"""What is in print beside what gbeam answers: both papers number by number, and cases of the literature."""
