@@ -83,7 +83,7 @@ class Row:
 def significant(value: float, digits: int) -> str:
     """A number with so many significant digits, zeros at the end included."""
     if value == 0 or not math.isfinite(value):
-        return str(value)
+        return f"{value:g}"
     power = math.floor(math.log10(abs(value)))
     if -4 <= power < 7:
         return f"{value:.{max(digits - 1 - power, 0)}f}"
