@@ -107,7 +107,7 @@ def test_residual_vibration_is_measured_between_samples() -> None:
 
 def test_the_second_order_warning_looks_at_the_vector() -> None:
     """Bent by 0.09 of the length in each of two directions, the tip moves by more than a tenth."""
-    beam = Beam(LENGTH, Section.circle(0.004), Material(2700.0, 7e10))
+    beam = Beam(LENGTH, Section.circle(0.004), Material(2700.0, 7e10), damping_ratio=0.0)
     structure = assemble(beam, Model("FOAM", 0, 2, 2))
     along = static(structure, acceleration=(0, 0, 1.0)).tip[2] / LENGTH
     load = constant(0.09 / abs(along))
@@ -123,7 +123,9 @@ def test_the_second_order_warning_looks_at_the_vector() -> None:
 
 def yielding(strength: float | None, acceleration: float) -> Response:
     """A strip pressed along its axis: N/A = ρ L a at the root."""
-    beam = Beam(LENGTH, Section.rectangle(0.02, 0.004), Material(2700.0, 7e10, yield_strength=strength))
+    beam = Beam(
+        LENGTH, Section.rectangle(0.02, 0.004), Material(2700.0, 7e10, yield_strength=strength), damping_ratio=0.0
+    )
     structure = assemble(beam, Model("FOAM", 1, 0, 1), [0.15])
     return simulate(structure, Flight(x=constant(acceleration)), duration=0.01, step=1e-3)
 

@@ -71,7 +71,7 @@ def test_state_space_of_a_free_hub():
 
 
 def test_springs_at_the_root_are_states_with_their_own_units():
-    beam = Beam(8.0, BOX, ALUMINIUM, root=Root(rotation_y=500.0, translation_z=2e4))
+    beam = Beam(8.0, BOX, ALUMINIUM, damping_ratio=0.0, root=Root(rotation_y=500.0, translation_z=2e4))
     system = linearize(assemble(beam, Model("FOAM", 0, 0, 1)), HUB_2009, rate=1.0)
     assert [(it.name, it.unit) for it in system.states[:6]] == [
         ("q_z_1", "m"),

@@ -117,7 +117,9 @@ def carried(kind, base, system, rates):
 
 
 def test_names_say_whether_gravity_is_in():
-    beam = assemble(Beam(1.0, Section.rectangle(0.02, 0.004), Material(2700.0, 7e10)), Model("FOAM", 0, 1, 1))
+    beam = assemble(
+        Beam(1.0, Section.rectangle(0.02, 0.004), Material(2700.0, 7e10), damping_ratio=0.0), Model("FOAM", 0, 1, 1)
+    )
     for motion, word in (
         (Flight(z=constant(9.8)), "acceleration"),
         (Hub(radius=0.5, rate=constant(1.0)), "acceleration"),
@@ -130,7 +132,9 @@ def test_names_say_whether_gravity_is_in():
 
 
 def test_a_swinging_hub_is_refused():
-    beam = assemble(Beam(1.0, Section.rectangle(0.02, 0.004), Material(2700.0, 7e10)), Model("FOAM", 0, 1, 0))
+    beam = assemble(
+        Beam(1.0, Section.rectangle(0.02, 0.004), Material(2700.0, 7e10), damping_ratio=0.0), Model("FOAM", 0, 1, 0)
+    )
     swinging = Hub(radius=0.5, inertia=3.0, torque=constant(0.0), gravity=(0.0, -9.8, 0.0))
     with pytest.raises(InputError, match="gbeam run"):
         linearize(beam, swinging, 2.0)

@@ -41,7 +41,9 @@ G, ARM, KERNEL = 9.81, 3.3, 0.0596
 
 @cache
 def specimen() -> Structure:
-    return assemble(Beam(0.3, Section.rectangle(0.02, 0.004), Material(2700.0, 70e9)), Model("FOAM", 1, 3, 3))
+    return assemble(
+        Beam(0.3, Section.rectangle(0.02, 0.004), Material(2700.0, 70e9), damping_ratio=0.0), Model("FOAM", 1, 3, 3)
+    )
 
 
 def tip(motion: Flight | Centrifuge) -> float:

@@ -38,7 +38,7 @@ from ..residuals import on_base
 from ..specimens import HUB_RADIUS, TIP, appendage, laden
 
 MATERIAL = Material(2700.0, 70e9)
-SPECIMEN = Beam(0.3, Section.rectangle(0.02, 0.004), MATERIAL)
+SPECIMEN = Beam(0.3, Section.rectangle(0.02, 0.004), MATERIAL, damping_ratio=0.0)
 M, L = 2700 * 0.02 * 0.004, 0.3
 TAPERED = Beam(
     8.0,

@@ -61,4 +61,18 @@ def labels(name: str, values: list[str] | tuple[str, ...]) -> dict[str, Variable
     return {name: Variable((name,), np.array(values, dtype=object), {})}
 
 
+def known(variables: dict[str, Variable]) -> dict[str, Variable]:
+    """The variables but those of which no value is known: a file has no column of nothing."""
+    return {name: each for name, each in variables.items() if not _unknown(each.values)}
+
+
+def known_attrs(attrs: dict[str, Any]) -> dict[str, Any]:
+    """The attributes but those of which no value is known."""
+    return {name: value for name, value in attrs.items() if isinstance(value, str) or not _unknown(np.asarray(value))}
+
+
+def _unknown(values: Any) -> bool:
+    return values.dtype.kind == "f" and values.size > 0 and bool(np.isnan(values).all())
+
+
 AXIS = labels("axis", ["x", "y", "z"])

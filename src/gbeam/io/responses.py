@@ -6,7 +6,7 @@ from dataclasses import asdict
 
 import numpy as np
 
-from gbeam.io.groups import AXIS, Group, Variable, coordinate, variable
+from gbeam.io.groups import AXIS, Group, Variable, coordinate, known, known_attrs, variable
 from gbeam.io.machine import MACHINE_AXIS, machine_variables
 from gbeam.results.peaks import LoadPeaks
 from gbeam.results.response import HubResult, Response
@@ -72,7 +72,8 @@ def response_group(response: Response) -> Group:
     for name in ("displacement", "loads", "stress"):
         attrs |= {f"error_{name}_{part}": value for part, value in asdict(getattr(response.errors, name)).items()}
     attrs["error_note"] = response.errors.note
-    return Group(data, coordinates, attrs | {"residual_from": response.residual_from})
+    attrs |= {"damping_ratio": np.squeeze(response.damping_ratio)[()], "residual_from": response.residual_from}
+    return Group(known(data), coordinates, known_attrs(attrs))
 
 
 def section_coordinate(loads: Loads) -> dict[str, Variable]:
@@ -125,6 +126,6 @@ def _hub(hub: HubResult) -> dict[str, Variable]:
     data = {
         f"hub_{name}": variable(_T, getattr(hub, name), unit, f"hub {name} about z") for name, unit in names.items()
     }
-    if np.isfinite(hub.drive_torque).any():  # of a free hub it is given, and better than what its inertia implies
+    if hub.drive_torque is not None:  # of a free hub it is given, and better than what its inertia implies
         data["drive_torque"] = variable(_T, hub.drive_torque, "N m", "torque of the hub's drive about z")
     return data

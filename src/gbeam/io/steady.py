@@ -55,7 +55,12 @@ def modes_group(modes: Modes) -> Group:
         **coordinate("station", modes.stations, "m", "position along the beam from the root"),
         **AXIS,
     }
-    attrs = {"gyroscopic": int(modes.gyroscopic), "rigid": modes.rigid, "stable": int(modes.stable)}
+    attrs = {
+        "damping_given": int(modes.damping_given),
+        "gyroscopic": int(modes.gyroscopic),
+        "rigid": modes.rigid,
+        "stable": int(modes.stable),
+    }
     return Group(data, coordinates, {**_where(modes), **attrs})
 
 

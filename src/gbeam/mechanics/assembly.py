@@ -87,7 +87,7 @@ def assemble(
         elasticity.stiffness(),
         loads=None if work is None else work.first_order(len(beam.loads)),
     )
-    first_station = len(rule.node) + len(bodies) + len(loaded)
+    first_station, ratio = len(rule.node) + len(bodies) + len(loaded), beam.damping_ratio
     return Structure(
         kind=model.kind,
         linear=row.truncated,
@@ -98,7 +98,7 @@ def assemble(
         places=places,
         stations=at,
         station_places=field.places()[first_station:],
-        coefficients=c.damped(damping_matrix(beam.damping_ratio, c.mass, c.stiffness)),
+        coefficients=c.damped(damping_matrix(0.0 if ratio is None else ratio, c.mass, c.stiffness)),
         inertia=inertia,
         elasticity=elasticity,
         field=field,
@@ -107,6 +107,7 @@ def assemble(
         history=history,
         work=work,
         load_values=None if history is None else history(np.zeros(())),
+        damping_ratio=ratio,
     )
 
 

@@ -207,5 +207,5 @@ def about_the_hub(loads: Loads, motion: Motion | None, alpha_WB_B: Array) -> Loa
     turned = xp.asarray(hub.mount.R_HB).T
     force_H, moment_H, alpha_H = (x @ turned for x in (loads.root_force, loads.root_moment, alpha_WB_B))
     torque = moment_H[:, 2] + hub.mount.radius * force_H[:, 1]
-    inertia = np.nan if hub.inertia is None else hub.inertia
-    return replace(loads, beam_torque=torque, drive_torque=torque + inertia * alpha_H[:, 2])
+    drive = None if hub.inertia is None else torque + hub.inertia * alpha_H[:, 2]
+    return replace(loads, beam_torque=torque, drive_torque=drive)

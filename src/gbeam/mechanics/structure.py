@@ -88,6 +88,8 @@ class Structure:
         Where they act on the field.
     load_values : (loads, 6) or None
         Components of the loads that static, modes and stability see: those of time zero, see :meth:`at_time`.
+    damping_ratio : float, sequence of float or None
+        Modal, of the modes at rest; None where none is given: then there is no damping, and no response either.
     """
 
     kind: str = static()
@@ -108,6 +110,7 @@ class Structure:
     history: LoadHistory | None = None
     work: LoadWork | None = None
     load_values: Array | None = None
+    damping_ratio: Any = None
 
     def __repr__(self) -> str:
         shapes = ", ".join(f"{n} {way}" for n, way in zip(self.counts, ("axial", "y", "z"), strict=True) if n)
@@ -170,12 +173,22 @@ class Structure:
             stations=np.asarray(r0)[chosen, 0],
             station_places=places[chosen],
             coefficients=c,
+            damping_ratio=damping_ratio,
         )
 
     @property
     def size(self) -> int:
         """Number of coordinates."""
         return self.coefficients.size
+
+    def require_damping(self, answer: str) -> None:
+        """Raise InputError where no damping ratio is given and an `answer` depends on it."""
+        if self.damping_ratio is None:
+            raise InputError(
+                "beam.damping_ratio",
+                f"is missing, and {answer} depends on it",
+                "give a ratio of critical damping, such as 0.01, or 0 for none",
+            )
 
     @property
     def traced(self) -> bool:

@@ -63,7 +63,7 @@ def plot_hub(response: Response, hub: HubResult, title: str = "") -> Figure:
         Angle, rate, and the torque of the drive where the rate is not prescribed.
     """
     shown: list[tuple[Floats, str]] = [(hub.angle, "angle, rad"), (hub.rate, "rate, rad/s")]
-    if np.isfinite(hub.drive_torque).any():
+    if hub.drive_torque is not None:
         unit = unit_for("moment", hub.drive_torque)
         shown.append((unit.factor * hub.drive_torque, f"drive torque, {unit.name}"))
     figure, axes = panels(heading(title, named(response.name, "the hub, about z"), [response]), len(shown))

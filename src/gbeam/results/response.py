@@ -41,14 +41,17 @@ class HubResult(Part):
     ----------
     angle, rate, acceleration : (t,)
         rad, rad/s, rad/s².
-    drive_torque : (t,)
-        Torque of the hub's drive, N m; NaN where the rate is prescribed.
+    drive_torque : (t,) or None
+        Torque of the hub's drive, N m; None where the rate is prescribed and the hub's inertia not known.
+    free : bool
+        Whether the hub's motion is a result: its rate is not prescribed.
     """
 
     angle: Floats
     rate: Floats
     acceleration: Floats
-    drive_torque: Floats
+    drive_torque: Floats | None = None
+    free: bool = False
 
 
 class PlotHeading(Protocol):
@@ -109,6 +112,8 @@ class Response(Figured):
         Static answer of the beam to acceleration fields.
     errors : Errors
         Of displacement, loads and stress, with what they are made of.
+    damping_ratio : float or tuple of float
+        Modal, of the modes of the beam on a base at rest.
     """
 
     name: str
@@ -136,6 +141,7 @@ class Response(Figured):
     loads: Loads | None = None
     influence: Influence | None = None
     errors: Errors = field(default_factory=Errors)
+    damping_ratio: float | tuple[float, ...] = math.nan
 
     @property
     def tip(self) -> Floats:

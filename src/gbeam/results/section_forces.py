@@ -42,7 +42,7 @@ class Loads(Part):
     beam_torque : (t,) or None
         Torque about the hub's axis that the beam takes from the hub, N m.
     drive_torque : (t,) or None
-        The same with the hub's own inertia, N m: what its drive supplies; NaN where the inertia is unknown.
+        The same with the hub's own inertia, N m: what its drive supplies; None where the inertia is unknown.
     root_fibre : (t,) or None
         Normal stress at that extreme fibre of the root where it ranges most, Pa; None where a run is traced.
     yield_strength : float or None

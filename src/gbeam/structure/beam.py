@@ -28,8 +28,10 @@ class Beam:
     section : Section
     material : Material
     masses : sequence of PointMass
-    damping_ratio : float or sequence of float
-        Modal damping ratio: one for all modes, or one per mode of the model, ascending in frequency.
+    damping_ratio : float or sequence of float, optional
+        Modal damping ratio: one for all modes, or one per mode of the model, ascending in frequency; of the modes of
+        the beam on a base at rest, with its root springs and bodies, also where the hub is free. What depends on it,
+        :func:`gbeam.simulate` and :func:`gbeam.linearize`, needs it; the rest takes none without it.
     root : Root
         Springs that hold the root; clamped where there is none.
     loads : sequence of Load
@@ -44,7 +46,7 @@ class Beam:
     section: Section
     material: Material
     masses: Sequence[PointMass] = field(default=())
-    damping_ratio: float | Sequence[float] = 0.0
+    damping_ratio: float | Sequence[float] | None = None
     root: Root = field(default_factory=Root)
     loads: Sequence[Load] = field(default=())
 
@@ -69,12 +71,12 @@ class Beam:
                 f"start at the root, 0 m, and end at the tip, {self.length:g} m",
             )
         ratios = self.damping_ratio
-        if is_jax(ratios):
+        if ratios is None or is_jax(ratios):
             return
         if not isinstance(ratios, (int, float)):
             object.__setattr__(self, "damping_ratio", tuple(float(z) for z in ratios))
-        for i, ratio in enumerate(np.atleast_1d(np.asarray(self.damping_ratio, dtype=float))):
-            place = "damping_ratio" if np.ndim(self.damping_ratio) == 0 else f"damping_ratio[{i}]"
+        for i, ratio in enumerate(np.atleast_1d(np.asarray(ratios, dtype=float))):
+            place = "damping_ratio" if np.ndim(ratios) == 0 else f"damping_ratio[{i}]"
             if not 0 <= ratio < 1:
                 raise InputError(
                     place, f"is {ratio:g}", "give a ratio of critical damping from 0 up to 1, such as 0.01"

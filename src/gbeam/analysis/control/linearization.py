@@ -187,10 +187,12 @@ def linearize(
     Raises
     ------
     InputError
-        If a gauge lies off the beam, a rate is asked of a motion without a hub, or a time of a hub that swings.
+        If the beam has no damping ratio, a gauge lies off the beam, a rate is asked of a motion without a hub, or a
+        time of a hub that swings.
     ComputationError
         If there is no relative equilibrium.
     """
+    structure.require_damping("the state-space model")
     if rate is None:
         point = operating_point(structure, motion, time, q, qd)
     else:

@@ -69,9 +69,12 @@ def place(
     Raises
     ------
     InputError
-        If a measure is unknown or none has weight, or no option can be built: the first one's reason.
+        If the beam has no damping ratio where vibration is judged, a measure is unknown or none has weight, or no
+        option can be built: the first one's reason.
     """
     check_weights(weights)
+    if check or "vibration" in weights:
+        structure.require_damping("the vibration")
     trials = _Trials(structure, flight, choice, settings, weights)
     for width in reversed(choice.widths):  # the widest first, see Answers
         for mounting in choice.mountings:

@@ -77,7 +77,8 @@ def simulate(
     Raises
     ------
     InputError
-        If the integrator cannot run this model, settings are given twice, or a traced run has no step.
+        If the integrator cannot run this model, the beam has no damping ratio, settings are given twice, or a traced
+        run has no step.
     ComputationError
         If there is no relative equilibrium to start from.
     """
@@ -85,6 +86,7 @@ def simulate(
         settings = _settings(options)
     elif options:
         raise InputError(next(iter(options)), "is given beside settings", "give one of them")
+    structure.require_damping("the response")
     motion = motion.over(settings.start, settings.start + settings.duration)
     if holds_jax(structure, motion):
         return _traced(structure, motion, settings, name)
@@ -192,7 +194,7 @@ def _result(
         of_flight = load_peaks(loads.during(flight), lambda steps: at(trajectory, steps)[3], trajectory.time, stride)
         peaks = replace(peaks, loads=of_flight)
     if hub is not None and not motion.free and loads is not None and loads.drive_torque is not None:
-        hub = HubResult(hub.angle, hub.rate, hub.acceleration, loads.drive_torque)
+        hub = replace(hub, drive_torque=loads.drive_torque)
     axes = None if traced or motion.kind != "centrifuge" else axes_result(motion, time)  # type: ignore[arg-type]
     outcome, message, warnings = "done", "", tuple(f"record: {note}" for note in getattr(motion, "notes", ()))
     if not traced:
@@ -224,6 +226,7 @@ def _result(
         frequencies=structure.rest[0],
         loads=loads,
         influence=influence(structure) if motion.kind == "centrifuge" and not traced else None,
+        damping_ratio=structure.damping_ratio,
     )
 
 
@@ -233,11 +236,10 @@ def _moving(motion: Any, time: Floats, y: Array, yd: Array, ydd: Array) -> tuple
     if motion.free:
         angle, rate, acceleration = y[:, 0], yd[:, 0], ydd[:, 0]
         base = motion.mount.base(angle, rate, acceleration)
-        hub = HubResult(angle, rate, acceleration, motion.torque(time))
+        hub = HubResult(angle, rate, acceleration, motion.torque(time), free=True)
     else:
         base = motion.base(time)
         if motion.kind == "hub":
             axis = motion.mount.R_HB[2]
-            unknown = np.full(len(time), np.nan)
-            hub = HubResult(motion.angle(time), base.w_WB_B @ axis, base.alpha_WB_B @ axis, unknown)
+            hub = HubResult(motion.angle(time), base.w_WB_B @ axis, base.alpha_WB_B @ axis)
     return BaseMotion(base.a_WO_B, base.w_WB_B, base.alpha_WB_B), hub

@@ -170,7 +170,7 @@ def _row(
         warnings = answer.warnings if isinstance(answer, Response) else ()
         return ModelRow(kind, name, answer.outcome, answer.message, warnings, seconds=seconds)
     peak, residual = float(answer.peaks.max_abs[axis]), float(answer.peaks.residual_amplitude[axis])
-    angle = nan if answer.hub is None or not np.isfinite(answer.hub.drive_torque).all() else float(answer.hub.angle[-1])
+    angle = nan if answer.hub is None or not answer.hub.free else float(answer.hub.angle[-1])
     against = (nan, nan, nan, nan)
     if isinstance(reference, Response) and reference.outcome == "done":
         top, left = float(reference.peaks.max_abs[axis]), float(reference.peaks.residual_amplitude[axis])

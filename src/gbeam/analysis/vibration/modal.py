@@ -126,6 +126,7 @@ def modes_at(
             ]
         ),
         rigid=int(point.first and not np.abs(linear.stiffness[:, 0]).any()),
+        damping_given=structure.damping_ratio is not None,
         overdamped=np.sort(value[~zero & real & (value.real < 0)].real),
     )
 

@@ -20,6 +20,7 @@ def to_json(modes: Modes) -> dict[str, Any]:
         "time": modes.time,
         "model": modes.model,
         "gyroscopic": modes.gyroscopic,
+        "damping_given": modes.damping_given,
         "base": base_json(modes.base),
         "stable": modes.stable,
         "modes": [
@@ -55,6 +56,8 @@ def text(modes: Modes) -> str:
     lines += [
         f"  {i:>3}  {f:12.6g} Hz  damping {z if abs(z) > ROUNDING else 0.0:8.4g}  along {d}" for i, (f, z, d) in rows
     ]
+    if not modes.damping_given:
+        lines.append("  undamped: beam.damping_ratio is not given")
     if modes.rigid:
         lines.append("  and the free rotation of hub and beam, of zero frequency")
     lines += [

@@ -67,6 +67,8 @@ def _response(response: Response) -> Iterator[RenderableType]:
         yield _indented(Text(_loads(response.loads, response.peaks.loads)))
     if response.hub is not None:
         yield _indented(Text(_hub(response.hub)))
+        if response.hub.free and np.any(response.damping_ratio):
+            yield _indented(Text(_damping(response)))
     if response.axes is not None:
         yield _indented(limits.table(response.axes.limits))
         yield from (_indented(Text(line)) for line in _tracking(response, response.axes))
@@ -105,6 +107,13 @@ def _accuracy(response: Response) -> str:
     else:
         error = f"estimated error {number(response.error_estimate, 2)} of the largest displacement"
     return f"{response.model}, {response.integrator}, {step}; {error}"
+
+
+def _damping(response: Response) -> str:
+    """What the damping ratio is of where that is not obvious: with a free hub the beam's modes are others."""
+    ratios = np.atleast_1d(response.damping_ratio)
+    size = " to ".join(f"{100 * each:.3g}" for each in sorted({float(ratios.min()), float(ratios.max())}))
+    return f"damping {size} % of critical, of the modes of the beam on a hub at rest; those with the free hub have more"
 
 
 def _time(seconds: float) -> str:

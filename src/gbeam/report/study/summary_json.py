@@ -60,6 +60,7 @@ def _response(response: Response) -> dict[str, Any]:
         "steps": response.steps,
         "integrator": response.integrator,
         "model": response.model,
+        "damping_ratio": response.damping_ratio,
         "warnings": list(response.warnings),
     }
     if peaks.displacement is not None:

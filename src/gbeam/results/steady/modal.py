@@ -63,6 +63,8 @@ class Modes(Figured):
         Number of modes of zero frequency, left out: a free hub's turning.
     overdamped : (r,)
         Negative real eigenvalues, 1/s: decay without oscillation. A divergence comes with one.
+    damping_given : bool
+        Whether the beam has a damping ratio, be it zero; without one it is undamped.
     """
 
     motion: str
@@ -79,6 +81,7 @@ class Modes(Figured):
     instabilities: tuple[Instability, ...]
     rigid: int
     overdamped: Floats
+    damping_given: bool = True
 
     @property
     def frequency(self) -> Floats:

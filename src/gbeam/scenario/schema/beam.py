@@ -137,7 +137,12 @@ class Beam(Table):
     length: Length = Field(description="length from root to tip")
     section: Section = Field(description="cross-section, by shape or by properties: { area, inertia_y, inertia_z }")
     material: Material = Field(description="linear elastic material: { density, youngs_modulus, yield_strength }")
-    damping_ratio: Ratios = Field(description="modal damping ratio: one for all modes, or a list with one per mode")
+    damping_ratio: Ratios | None = Field(
+        default=None,
+        description="modal damping ratio: one for all modes, or a list with one per mode, ascending in frequency; of "
+        "the modes of the beam on a base at rest, also where the hub is free. run, place, models and linearize need "
+        "it, 0 for none; the rest take none where it is left out",
+    )
     masses: tuple[PointMass, ...] = Field(default=(), description="masses fixed to the beam: [ { at, mass } ]")
     root: Root = Field(default_factory=Root, description="springs that hold the root, which is rigid where left out")
     loads: tuple[Load, ...] = Field(
