@@ -63,7 +63,7 @@ def compare_models(
     Raises
     ------
     InputError
-        If a kind is unknown.
+        If a kind is unknown, or the beam has no damping ratio.
     """
     for kind in kinds:
         if kind not in KINDS:
@@ -72,6 +72,8 @@ def compare_models(
     answers = {}
     for i, kind in enumerate(chosen):
         structure = _structure(case, kind)
+        if isinstance(structure, Structure):
+            structure.require_damping("the response")
         for name, motion in case.motions.items():
 
             def report(what: str, share: float, doing: str = f"{kind} on {name}", done: int = i) -> None:
