@@ -7,4 +7,4 @@ Each module of MODULES has a TITLE, a docstring that introduces its chapter, the
 versions that found it; `docs/validation.md` is made from all that is kept.
 """
 
-MODULES: tuple[str, ...] = ("codes.kane", "codes.hermite")  # in the page's order, below this package
+MODULES: tuple[str, ...] = ("codes.kane", "codes.hermite", "codes.calculix")  # in the page's order, below this package

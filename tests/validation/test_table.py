@@ -7,6 +7,7 @@ from importlib import import_module
 import pytest
 
 from validation import MODULES, page, record
+from validation import __main__ as main
 from validation.table import AGREES, DIFFERS, EXPLAINED, NOT_COMPARED, Row
 
 
@@ -67,6 +68,14 @@ def test_every_module_is_listed() -> None:
     there = {f"{folder.name}.{path.stem}" for folder in folders for path in folder.glob("*.py")}
     has_rows = {name for name in there if hasattr(import_module(f"validation.{name}"), "rows")}
     assert has_rows == set(MODULES)
+
+
+def test_what_is_missing_is_said(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """Without the program a module does not run, and its kept results stay."""
+    monkeypatch.setattr(record, "need_version", lambda need: None if need == "calculix-ccx" else "1")
+    assert main.run("codes.calculix")
+    assert "not run: needs calculix-ccx; results of" in capsys.readouterr().out
+    assert page.absent("codes.calculix").endswith("\n\nnot run: needs calculix-ccx, numpy, scipy\n")
 
 
 def test_a_difference_without_a_reason_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,115 @@
+"""A clamped strip of solid elements in CalculiX: stressed and stretched by its rotation, then vibrating about that.
+
+*STATIC with NLGEOM under *DLOAD CENTRIF, then *FREQUENCY with PERTURBATION, which adds the stress and takes off the
+spin's softening, and *COMPLEX FREQUENCY, CORIOLIS.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import re
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+# Corners, then middles of edges, of a twenty-node brick, in half elements along x, y and z, in CalculiX's order.
+_BRICK = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2), (1, 0, 0), (2, 1, 0),
+          (1, 2, 0), (0, 1, 0), (1, 0, 2), (2, 1, 2), (1, 2, 2), (0, 1, 2), (0, 0, 1), (2, 0, 1), (2, 2, 1),
+          (0, 2, 1)]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Strip:
+    """Length along x, width along y, thickness along z, m; kg/m³, Pa; elements along each."""
+
+    length: float
+    width: float
+    thickness: float
+    density: float
+    modulus: float
+    poisson: float
+    elements: tuple[int, int, int] = (80, 4, 2)
+
+
+@dataclass(frozen=True)
+class Spin:
+    """Steady rotation at `rate` rad/s about the line through `centre` m along `axis`."""
+
+    rate: float
+    centre: tuple[float, float, float]
+    axis: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Stretch of the tip, m, and frequencies, Hz, with the direction in which each mode takes part, "" for torsion."""
+
+    stretch: float
+    frequency: np.ndarray
+    direction: tuple[str, ...]
+
+
+def solve(strip: Strip, spin: Spin | None, *, coriolis: bool = False, modes: int = 10) -> Answer:
+    """Run ccx in a folder of its own."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "strip.inp").write_text(deck(strip, spin, coriolis, modes), encoding="ascii")
+        subprocess.run(
+            ["ccx", "strip"], cwd=folder, check=True, capture_output=True, env=os.environ | {"OMP_NUM_THREADS": "1"}
+        )
+        return read((Path(folder) / "strip.dat").read_text(encoding="ascii"), coriolis)
+
+
+def deck(strip: Strip, spin: Spin | None, coriolis: bool, modes: int) -> str:
+    """The input file."""
+    nx, ny, nz = strip.elements
+    sides = 2 * nx + 1, 2 * ny + 1, 2 * nz + 1
+
+    def number(i: int, j: int, k: int) -> int:
+        return 1 + i + sides[0] * (j + sides[1] * k)
+
+    places = [at for at in itertools.product(*map(range, sides)) if sum(index % 2 for index in at) <= 1]
+    lines = ["*NODE, NSET=ALL"]
+    for i, j, k in places:
+        x, y, z = (
+            strip.length * i / (2 * nx),
+            strip.width * (j / (2 * ny) - 0.5),
+            strip.thickness * (k / (2 * nz) - 0.5),
+        )
+        lines.append(f"{number(i, j, k)}, {x:.12g}, {y:.12g}, {z:.12g}")
+    lines.append("*ELEMENT, TYPE=C3D20R, ELSET=STRIP")
+    for e, (i, j, k) in enumerate(itertools.product(range(nx), range(ny), range(nz)), 1):
+        nodes = [number(2 * i + a, 2 * j + b, 2 * k + c) for a, b, c in _BRICK]
+        lines += [", ".join(map(str, [e, *nodes[:10]])) + ",", ", ".join(map(str, nodes[10:]))]
+    for name, end in (("ROOT", 0), ("TIP", 2 * nx)):
+        lines += [f"*NSET, NSET={name}", *(f"{number(*at)}" for at in places if at[0] == end)]
+    lines += ["*BOUNDARY", "ROOT, 1, 3", "*MATERIAL, NAME=METAL", "*ELASTIC", f"{strip.modulus}, {strip.poisson}"]
+    lines += ["*DENSITY", f"{strip.density}", "*SOLID SECTION, ELSET=STRIP, MATERIAL=METAL"]
+    if spin is not None:
+        line = ", ".join(f"{value:.12g}" for value in (spin.rate**2, *spin.centre, *spin.axis))
+        lines += ["*STEP, NLGEOM", "*STATIC", "1., 1.", "*DLOAD", f"STRIP, CENTRIF, {line}"]
+        lines += ["*NODE PRINT, NSET=TIP", "U", "*END STEP"]
+    lines += ["*STEP" if spin is None else "*STEP, PERTURBATION", "*FREQUENCY, STORAGE=YES", f"{modes}", "*END STEP"]
+    if coriolis:
+        lines += ["*STEP, PERTURBATION", "*COMPLEX FREQUENCY, CORIOLIS", f"{modes}", "*END STEP"]
+    return "\n".join(lines) + "\n"
+
+
+def read(text: str, coriolis: bool) -> Answer:
+    """Numbers of the .dat file."""
+    before, *tables = re.split(r"E I G E N V A L U E   O U T P U T", text)
+    printed = re.findall(r"^ +\d+ +(\S+) +\S+ +\S+$", before, re.MULTILINE)
+    value = r"([-+]?\d\.\d+E[-+]\d+)"
+    frequencies = re.findall(rf"^ +\d+ +{value} +{value} +{value} +{value}$", tables[0], re.MULTILINE)
+    parts = re.findall(rf"^ +\d+ +{value} +{value} +{value} +{value} +{value} +{value}$", tables[0], re.MULTILINE)
+    shares = np.abs(np.array(parts[: len(frequencies)], dtype=float)[:, :3])
+    largest = shares.max()
+    direction = tuple("xyz"[row.argmax()] if row.max() > 1e-6 * largest else "" for row in shares)
+    hertz = np.array([row[2] for row in frequencies], dtype=float)
+    if coriolis:
+        pairs = re.findall(rf"^ +\d+ +{value} +{value} +{value}$", tables[1], re.MULTILINE)
+        hertz, direction = np.array([row[1] for row in pairs], dtype=float), ("",) * len(pairs)
+    return Answer(float(np.mean([float(x) for x in printed])) if printed else 0.0, hertz, direction)
