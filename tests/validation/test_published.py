@@ -9,7 +9,6 @@ from validation.table import AGREES, DIFFERS, Row
 
 CHEAP = {
     "2020": paper2020.rows,
-    "2009, Table 1": paper2009.table_1,
     "2009, Table 2": paper2009.table_2,
     "flap with a tip mass": references.flap_with_tip_mass,
     "Southwell": references.southwell,

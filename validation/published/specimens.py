@@ -108,7 +108,7 @@ def centrifuge_2020(level: float, control_point: float = MIDDLE_2020) -> Centrif
 def unit_beam(slenderness: float = 1000.0, tip: float = 0.0) -> Beam:
     """Unit length, unit mass per length and unit EI, EA = slenderness²; frequencies come without dimensions."""
     inertia, modulus = slenderness**-2, slenderness**2
-    return Beam(1.0, Section.general(1.0, inertia, inertia), Material(1.0, modulus), [PointMass(1.0, tip)])
+    return Beam(1.0, Section.general(1.0, inertia, inertia), Material(1.0, modulus), [PointMass(1.0, tip)], 0.0)
 
 
 @cache
@@ -128,7 +128,7 @@ def robot_arm(counts: tuple[int, int, int] = (2, 5, 0)) -> Structure:
     """EA = 2.8e7 N, EI = 1.4e4 N m², ρA = 1.2 kg/m, L = 10 m; shear (GA = 1e7 N) and rotary inertia are left out."""
     section = Section.general(4e-4, 2e-7, 2e-7)
     none = PointMass(10.0, 0.0)  # the size of 2009's beam
-    return assemble(Beam(10.0, section, Material(3000.0, 7e10), [none]), Model("exact", *counts))
+    return assemble(Beam(10.0, section, Material(3000.0, 7e10), [none], 0.0), Model("exact", *counts))
 
 
 def spinning(rate: float, axis: int, radius: float = 0.0) -> Base:
