@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from gbeam.cli import VERBS
+from gbeam.cli.program import VERBS
 
 Call = Callable[..., Any]
 EXAMPLES = Path(__file__).parents[2] / "examples"

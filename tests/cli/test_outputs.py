@@ -7,7 +7,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from gbeam.cli.outputs import publish, write_json
+from gbeam.cli.outputs import write_json
+from gbeam.cli.publication import publish
 from gbeam.plots import save
 
 

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import suppress
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +12,6 @@ import numpy as np
 import pytest
 
 from gbeam.analysis.response import simulation
-from gbeam.cli.console import Watch
 from gbeam.errors import ComputationError
 from gbeam.io import netcdf as store
 from gbeam.results.response import Response
@@ -244,22 +241,6 @@ def test_interrupted_quietly(fast: Path, gbeam: Call, monkeypatch: pytest.Monkey
     monkeypatch.setattr("gbeam.analysis.study.study.study", interrupt)
     answer = gbeam("run", fast)
     assert (answer.status, answer.out, answer.err) == (130, "", "")
-
-
-@pytest.fixture
-def handled() -> Iterator[None]:
-    """Interrupts raise, also where the tests run in a background job, which ignores them."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
-
-
-def test_an_interrupt_that_jax_swallows_still_ends_the_run(handled: None) -> None:
-    with pytest.raises(KeyboardInterrupt), Watch() as watch:
-        with suppress(KeyboardInterrupt):  # as a callback of JAX does
-            signal.raise_signal(signal.SIGINT)
-        watch("integrating", 0.5)
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 @pytest.mark.parametrize("wrong", [[], ["--set", "beam.length=short", "--json"]])

@@ -121,6 +121,8 @@ def test_cutoff_and_resampling() -> None:
     with pytest.raises(InputError, match=r"record\.cutoff"):
         fly(F16, cutoff=60.0)
     assert fly(F16, resample=20.0, cutoff=5.0).acceleration.times.size == 320
+    with pytest.raises(InputError, match=r"resample is 0.3 Hz, which leaves fewer than 6 samples of 15.99 s"):
+        fly(F16, resample=0.3, cutoff=0.1)
 
 
 def test_body_rates_turn_the_base() -> None:

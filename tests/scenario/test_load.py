@@ -113,7 +113,7 @@ def test_files(tmp_path: Path, text: str) -> None:
         load(tmp_path / "trun.toml")
     with pytest.raises(ScenarioError, match="gbeam new"):
         load(tmp_path / "other" / "x")
-    with pytest.raises(ScenarioError, match="cannot be read"):
+    with pytest.raises(ScenarioError, match="is a folder"):
         load(tmp_path)
     file.write_bytes(b"\xff\xfe")
     with pytest.raises(ScenarioError, match="is not UTF-8 text"):

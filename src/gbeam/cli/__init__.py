@@ -1,44 +1,14 @@
 """The command line: one file per verb, imported when it is called.
 
 A verb is a function with annotated parameters that reads a scenario, calls a public function of gbeam, prints what
-`gbeam.report` makes of the result, and returns its exit status. To add one, write its file and name it in VERBS.
-Errors are raised; `failures` prints them.
+`gbeam.report` makes of the result, and returns its exit status. To add one, write its file and name it in
+`program.VERBS`. Errors are raised; `failures` prints them. Importing this imports nothing else: signals come first.
 """
 
 from __future__ import annotations
 
-import io
-import os
 import sys
 from collections.abc import Sequence
-
-# A beam's matrices are small: threads of OpenBLAS, started as NumPy and SciPy are imported, would only spin.
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-# No plugin has a part in reading a scenario, and the search for plugins takes as long as the reading.
-os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
-
-from cyclopts import App, CycloptsError
-
-import gbeam
-from gbeam.cli.failures import FAILED, complain, report, report_syntax
-from gbeam.errors import GbeamError
-
-# The help stands here and not only with the verb, so that `gbeam --help` imports none of them.
-VERBS = {
-    "run": "Compute the response in every environment of a scenario, and compare them.",
-    "static": "Where the beam rests relative to its base at one time of the motions.",
-    "modes": "Frequencies, damping and shapes about the equilibrium at one time of a motion.",
-    "campbell": "Frequencies against the speed of a hub, and where its multiples meet them.",
-    "critical-speed": "The hub rate, load or acceleration at which the beam's equilibrium is lost.",
-    "linearize": "State-space model A, B, C, D about the equilibrium at one time of a motion.",
-    "models": "The same scenario by every model, compared with the exact one.",
-    "plan": "Plan the axis motions of a centrifuge within its limits; needs no beam.",
-    "place": "Find where to put the specimen on the centrifuge.",
-    "check": "Say what a scenario means, without computing a response.",
-    "new": "Write a commented scenario to start from.",
-    "schema": "Print the JSON schema of scenario files, for editors.",
-}
-_INTERRUPTED = 130
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -47,62 +17,35 @@ def main(argv: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     argv : sequence of str, optional
-        The arguments after the program's name; by default the process's.
+        The arguments after the program's name; by default the process's, which then ends at once on an interrupt or a
+        request to terminate.
 
     Returns
     -------
     int
-        Exit status: 0 done, 1 the computation failed and said why, 2 the input is wrong and it said where, 130
-        interrupted.
+        Exit status: 0 done, 1 the computation failed and said why, 2 the input is wrong and it said where, 3 a defect
+        of gbeam; of a process that a signal ends 130 (interrupted) or 143 (terminated).
     """
-    tokens = list(sys.argv[1:] if argv is None else argv)
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")  # a terminal without µ or ² is no reason to fail
+    if argv is None:
+        from gbeam.cli.interrupts import end_on_signals
+
+        end_on_signals()
+    from gbeam.cli import streams
+
+    listening = streams.prepare()
+    from gbeam.cli.failures import FAILED, complain
+    from gbeam.cli.program import run
+
     try:
-        status = _status(tokens)
+        status = run(list(sys.argv[1:] if argv is None else argv))
         sys.stdout.flush()
     except OSError as error:
-        # Stdout is closed (`gbeam run ... | head`) or its disk is full.
+        # Stdout is closed (`gbeam run ... | head`) or its disk is full, or a file cannot be read or written.
         if not isinstance(error, BrokenPipeError):
             complain(str(error))
-        _abandon_stdout()
+        streams.abandon_stdout()
+        return FAILED
+    if not listening and status == 0:
+        complain("standard output is closed: the answer could not be printed")
         return FAILED
     return status
-
-
-def _status(tokens: list[str]) -> int:
-    """Run a verb and print what went wrong, if anything; the exit status."""
-    as_json = "--json" in tokens
-    try:
-        status = _app(tokens[0] if tokens else "")(
-            tokens, exit_on_error=False, print_error=False, result_action="return_value"
-        )
-    except CycloptsError as error:
-        return report_syntax(str(error), as_json)
-    except GbeamError as error:
-        return report(error, as_json)
-    except KeyboardInterrupt:
-        return _INTERRUPTED
-    return status if isinstance(status, int) else 0
-
-
-def _abandon_stdout() -> None:
-    """Send what is left in the buffer nowhere, so that Python does not fail once more as it exits."""
-    with open(os.devnull, "wb") as nowhere:
-        os.dup2(nowhere.fileno(), sys.stdout.fileno())
-
-
-def _app(chosen: str) -> App:
-    app = App(
-        name="gbeam",
-        help="How a flexible beam responds while its base moves a lot: in flight, on a centrifuge, on a hub.",
-        version=gbeam.__version__,
-        help_format="markdown" if chosen in VERBS else "plaintext",  # whose renderer is not worth its import
-        suppress_keyboard_interrupt=False,
-    )
-    for verb, summary in VERBS.items():
-        # The help of the chosen verb is its own docstring, which says more.
-        name = verb.replace("-", "_")
-        app.command(f"gbeam.cli.verbs.{name}:{name}", name=verb, help=None if verb == chosen else summary)
-    return app

@@ -1,12 +1,13 @@
-"""Progress on stderr, and interruption."""
+"""Progress on stderr."""
 
 from __future__ import annotations
 
-import signal
 import sys
 from threading import Timer
-from types import FrameType, TracebackType
+from types import TracebackType
 from typing import TYPE_CHECKING
+
+from gbeam.cli.interrupts import cleaned_up
 
 if TYPE_CHECKING:
     from rich.progress import Progress
@@ -17,8 +18,7 @@ PATIENCE = 2.0  # s without a sign of life that need no explanation
 class Watch:
     """A progress bar on stderr that appears only on a terminal, and only when the computation takes long.
 
-    Call it with what is being done and the fraction done; use it as a context, in the main thread. Inside, Ctrl-C is
-    sure to end the computation: JAX runs Python callbacks that swallow a KeyboardInterrupt raised in them.
+    Call it with what is being done and the fraction done; use it as a context.
     """
 
     def __init__(self) -> None:
@@ -26,12 +26,10 @@ class Watch:
         self._done = ("compiling", 0.0)
         # A timer, not a look at the clock in __call__: the long silence is compilation, before the first call.
         self._timer = Timer(PATIENCE, self._draw) if sys.stderr.isatty() else None
-        self._interrupted = False
-        self._before = signal.getsignal(signal.SIGINT)
+        self._cleaned_up = cleaned_up(self._stop)
 
     def __call__(self, what: str, share: float) -> None:
         """Show that `share` of `what` is done."""
-        self._stop_if_interrupted()
         self._done = what, share
         if self._bar is not None:
             self._bar.update(self._bar.task_ids[0], description=what, completed=share, total=1.0)
@@ -48,16 +46,14 @@ class Watch:
         bar.start()
         self._bar = bar
 
-    def _interrupt(self, number: int, frame: FrameType | None) -> None:
-        self._interrupted = True
-        raise KeyboardInterrupt
-
-    def _stop_if_interrupted(self) -> None:
-        if self._interrupted:
-            raise KeyboardInterrupt
+    def _stop(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+        if self._bar is not None:
+            self._bar.stop()  # which shows the cursor again
 
     def __enter__(self) -> Watch:
-        signal.signal(signal.SIGINT, self._interrupt)
+        self._cleaned_up.__enter__()
         if self._timer is not None:
             self._timer.start()
         return self
@@ -65,10 +61,8 @@ class Watch:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        signal.signal(signal.SIGINT, self._before)
         if self._timer is not None:
             self._timer.cancel()
             self._timer.join()  # it may be starting the bar at this moment
-            if self._bar is not None:
-                self._bar.stop()
-        self._stop_if_interrupted()
+        self._stop()
+        self._cleaned_up.__exit__(kind, error, trace)

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import json
+import os
+import shlex
 import sys
+from collections.abc import Sequence
 from typing import Any
 
 from gbeam.errors import ComputationError, GbeamError, InputError
+from gbeam.printable import json_printable, printable
 
 FAILED = 1
 WRONG_INPUT = 2
+DEFECT = 3
 
 
 def report(error: GbeamError, as_json: bool) -> int:
@@ -30,13 +35,62 @@ def report_syntax(message: str, as_json: bool) -> int:
     return _refuse(f"gbeam: {message} (see gbeam --help)", [problem], as_json)
 
 
+def report_memory(error: MemoryError, as_json: bool) -> int:
+    """Print that the memory did not suffice; return the exit status."""
+    why = f" ({error})" if str(error) else ""
+    return report(ComputationError("out of memory", f"the computation needs more than there is{why}"), as_json)
+
+
+def report_defect(error: Exception, arguments: Sequence[str], as_json: bool) -> int:
+    """Print that gbeam itself is wrong, where to report it, and where the traceback is; return the exit status."""
+    import platform
+    from importlib.metadata import PackageNotFoundError, metadata, version
+    from traceback import format_exception
+
+    try:
+        links = dict(link.split(", ", 1) for link in metadata("gbeam").get_all("Project-URL") or ())
+        gbeam = version("gbeam")
+    except PackageNotFoundError:
+        links, gbeam = {}, "unknown"
+    tracker = links.get("Issues", "the project's issue tracker")
+    program = f"gbeam {gbeam}, Python {platform.python_version()}, {platform.platform()}"
+    text = "".join([f"{program}\n{shlex.join(['gbeam', *arguments])}\n\n", *format_exception(error)])
+    file = _kept(text)
+    first = printable(f"{type(error).__name__}: {error}".split("\n")[0])
+    complain(f"defect: {first}")
+    where = "the traceback above" if file is None else f"{file}, which has the traceback,"
+    lines = [
+        f"This is a mistake in {program}, not in your input.",
+        f"Please report {where} and the scenario to {tracker}.",
+    ]
+    print(*(f"    {line}" for line in lines), sep="\n", file=sys.stderr)
+    if as_json:
+        _print({"outcome": "defect", "message": first, "traceback": file, "motions": {}})
+    return DEFECT
+
+
+def _kept(text: str) -> str | None:
+    """Write a traceback into a new file for temporary files, or else on stderr; the file's name."""
+    from tempfile import NamedTemporaryFile
+
+    try:
+        with NamedTemporaryFile(
+            "w", encoding="utf-8", errors="replace", prefix="gbeam-defect-", suffix=".txt", delete=False
+        ) as file:
+            file.write(text)
+    except OSError:
+        print(printable(text), file=sys.stderr)
+        return None
+    return os.fspath(file.name)
+
+
 def complain(message: str) -> None:
     """Print on stderr that a computation failed."""
-    print(f"gbeam: {message}", file=sys.stderr)
+    print(f"gbeam: {printable(message)}", file=sys.stderr)
 
 
 def _refuse(text: str, diagnostics: list[dict[str, Any]], as_json: bool) -> int:
-    print(text, file=sys.stderr)
+    print(printable(text), file=sys.stderr)
     if as_json:
         _print({"error": diagnostics})
     return WRONG_INPUT
@@ -53,4 +107,4 @@ def _diagnostics(error: GbeamError) -> list[dict[str, Any]]:
 
 
 def _print(value: dict[str, Any]) -> None:
-    print(json.dumps(value, indent=2, ensure_ascii=False))
+    print(json_printable(json.dumps(value, indent=2, ensure_ascii=False)))

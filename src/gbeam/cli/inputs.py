@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gbeam.cli.outputs import refuse_unwritable
+from gbeam.cli.publication import refuse_unwritable
 from gbeam.errors import InputError
 
 if TYPE_CHECKING:

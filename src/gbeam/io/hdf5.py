@@ -8,6 +8,7 @@ know the rules as well, but importing the one and the bookkeeping of the other t
 from __future__ import annotations
 
 import os
+import re
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -16,7 +17,9 @@ import h5py
 import numpy as np
 
 from gbeam.io.groups import Group, Variable
+from gbeam.printable import printable
 
+_NOT_STORABLE = re.compile("[\0\ud800-\udfff]")
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable.{:10d}"  # the format's words
 
 
@@ -35,12 +38,18 @@ def write_groups(groups: Mapping[str, Group], path: str | os.PathLike[str]) -> N
     OSError
         If it cannot be written.
     """
+    write_whole(path, _image(groups))
+
+
+def write_whole(path: str | os.PathLike[str], data: bytes) -> None:
+    """Write a file under another name beside it, and rename it once it is on the disk; OSError if that cannot be."""
     final = Path(path)
-    # Beside the file, so that the renaming is one step on the same disk.
-    handle, name = tempfile.mkstemp(prefix=f".{final.name}-", suffix=".nc", dir=final.parent)
-    os.close(handle)
+    handle, name = tempfile.mkstemp(prefix=f".{final.name}-", dir=final.parent)
     try:
-        _write(groups, name)
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
         # mkstemp's files are for their owner only; a result is as readable as any other new file.
         mask = os.umask(0)
         os.umask(mask)
@@ -51,9 +60,11 @@ def write_groups(groups: Mapping[str, Group], path: str | os.PathLike[str]) -> N
         raise
 
 
-def _write(groups: Mapping[str, Group], name: str) -> None:
+def _image(groups: Mapping[str, Group]) -> bytes:
+    """Bytes of the file, made in memory: HDF5 ends the process where a disk is full as it closes a file."""
     dimensions = 0  # so far, in the whole file
-    with h5py.File(name, "w", track_order=True, libver=("earliest", "v110")) as file:
+    options = {"driver": "core", "backing_store": False, "libver": ("earliest", "v110"), "track_order": True}
+    with h5py.File("result.nc", "w", **options) as file:
         for path, group in groups.items():
             place = file
             for part in filter(None, path.split("/")):
@@ -61,6 +72,8 @@ def _write(groups: Mapping[str, Group], name: str) -> None:
             for key, value in group.attrs.items():
                 _describe(place, key, value)
             dimensions = _fill(place, group, dimensions)
+        file.flush()
+        return bytes(file.id.get_file_image())
 
 
 def _fill(place: h5py.Group, group: Group, dimensions: int) -> int:
@@ -88,7 +101,10 @@ def _fill(place: h5py.Group, group: Group, dimensions: int) -> int:
 
 def _create(place: h5py.Group, name: str, variable: Variable) -> h5py.Dataset:
     values = variable.values
-    kind = h5py.string_dtype("utf-8") if values.dtype.kind in "OU" else values.dtype
+    kind = values.dtype
+    if kind.kind in "OU":
+        kind = h5py.string_dtype("utf-8")
+        values = np.array([storable(str(each)) for each in values.flat], dtype=object).reshape(values.shape)
     fill = np.nan if values.dtype.kind == "f" else None  # what xarray takes for a missing number
     made = place.create_dataset(name, data=values, dtype=kind, fillvalue=fill, track_order=True)
     if fill is not None:
@@ -100,4 +116,9 @@ def _create(place: h5py.Group, name: str, variable: Variable) -> h5py.Dataset:
 
 def _describe(place: h5py.Group | h5py.Dataset, key: str, value: str | float | np.ndarray) -> None:
     """Set an attribute: text, or numbers, which netCDF keeps in arrays of one dimension."""
-    place.attrs[key] = value if isinstance(value, str) else np.atleast_1d(value)
+    place.attrs[key] = storable(value) if isinstance(value, str) else np.atleast_1d(value)
+
+
+def storable(text: str) -> str:
+    """Return the text without what HDF5 cannot hold: null characters and lone surrogates, written out."""
+    return _NOT_STORABLE.sub(lambda match: printable(match[0]), text)

@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.printable import json_printable
 from gbeam.results.section_forces import yield_margin
 
 
 def as_json(value: Any) -> str:
     """Write a value as JSON, with null for what is not finite, which JSON has no word for."""
-    return json.dumps(_plain(value), indent=2, ensure_ascii=False, allow_nan=False)
+    return json_printable(json.dumps(_plain(value), indent=2, ensure_ascii=False, allow_nan=False))
 
 
 def _plain(value: Any) -> Any:

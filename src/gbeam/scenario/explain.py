@@ -75,6 +75,8 @@ def _words(source: Source, error: ErrorDetails, path: Path) -> tuple[str, str, M
         return f"has {count} {'entry' if count == 1 else 'entries'}", f"give {few} {limit}", "value", path
     if what == "greater_than_equal":
         return "{value} is negative", f"give {context['ge']} or more", "value", path
+    if what == "less_than_equal":
+        return "{value} is more than is computed", f"give {context['le']} or less", "value", path
     if what in _NOT_A:
         return f"{spoken(value)} is not {_NOT_A[what][0]}", _NOT_A[what][1], "value", path
     # What is left: something else where a table belongs.

@@ -9,8 +9,9 @@ from typing import TypeVar
 
 from pydantic import ValidationError
 
+from gbeam.limits import PROBLEMS
 from gbeam.scenario.schema import Environments, Scenario
-from gbeam.scenario.text.diagnostics import ScenarioError
+from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import Source, parse, read_text
 
@@ -98,4 +99,8 @@ def _validated(kind: type[T], source: Source) -> T:
         from gbeam.scenario.explain import explain  # needed only where something is wrong
 
         details = error.errors(include_url=False, include_input=False)
-        raise ScenarioError(explain(source, detail) for detail in details) from None
+        problems = [explain(source, detail) for detail in details[:PROBLEMS]]
+        if len(details) > PROBLEMS:
+            more = f"has {len(details)} errors, of which {PROBLEMS} are listed"
+            problems.append(Diagnostic(source.name, "", more, "correct these first"))
+        raise ScenarioError(problems) from None

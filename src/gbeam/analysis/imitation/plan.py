@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from gbeam.limits import SAMPLES, refuse_more
 from gbeam.motion import Centrifuge
 from gbeam.motion.centrifuge.history import axes_result, columns
 from gbeam.results.machine import Commands, MachinePlan
@@ -40,11 +41,17 @@ def commands(motion: Centrifuge, sample: float) -> Commands:
     sample : float
         s; one sample is at the flight's first time. The first and the last are those at standstill, or the last that
         lies within the flight where the machine begins and ends at idle.
+
+    Raises
+    ------
+    InputError
+        If there are too many.
     """
     (first, _), (begin, end) = motion.target.span, motion.extent
     still = motion.ends.start != "idle"
     before, after = (float(time) / sample for time in (first - begin, end - first))
     before, after = np.ceil(before - 1e-9), (np.ceil(after - 1e-9) if still else np.floor(after * (1 + 1e-12)))
+    refuse_more("sample", "samples", before + after, SAMPLES, 300.0, f"give {(end - begin) / SAMPLES:.2g} s or more")
     between = int(np.ceil(sample / _FINE))  # axis 1's angle is an integral: finer than the samples
     steps = np.arange(-int(before) * between, int(after) * between + 1)
     time = np.asarray(first + sample / between * steps, dtype=np.float64)

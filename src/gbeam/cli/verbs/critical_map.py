@@ -6,7 +6,8 @@ from pathlib import Path
 
 from gbeam.cli.console import Watch
 from gbeam.cli.inputs import Input, numbers
-from gbeam.cli.outputs import publish, show, write_json
+from gbeam.cli.outputs import show, write_json
+from gbeam.cli.publication import publish
 from gbeam.errors import InputError
 
 

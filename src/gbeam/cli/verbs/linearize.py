@@ -21,7 +21,8 @@ from gbeam.cli.options import (
     ScenarioFile,
     StrainAt,
 )
-from gbeam.cli.outputs import publish, show, write_json
+from gbeam.cli.outputs import show, write_json
+from gbeam.cli.publication import publish
 from gbeam.errors import InputError
 
 

@@ -20,7 +20,8 @@ from gbeam.cli.options import (
     ScenarioFile,
     Widths,
 )
-from gbeam.cli.outputs import publish, show, write
+from gbeam.cli.outputs import show, write
+from gbeam.cli.publication import publish
 from gbeam.errors import InputError
 
 

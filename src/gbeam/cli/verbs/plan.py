@@ -10,7 +10,8 @@ from cyclopts import Parameter
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import number
 from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, ScenarioFile
-from gbeam.cli.outputs import list_files, publish, refuse_unwritable, show, show_table
+from gbeam.cli.outputs import list_files, show, show_table
+from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.errors import InputError
 
 SAMPLE = 0.005  # s, where neither the scenario nor the command line gives one
@@ -64,12 +65,12 @@ def plan(
             for kind, draw in figures(each, given.title).items():
                 save(draw(), hidden, f"{kind}_{name}", "gbeam plan")
 
+    if not json:
+        show_table(report.table(given.title, plans.values()))
     files = [] if out is None else publish(out, make)
     if json:
         show("", report.to_json(given.title, plans.values(), files), json)
-    else:
-        show_table(report.table(given.title, plans.values()))
-        list_files(out, files)
+    list_files(None if json else out, files)
     broken = [each for each in plans.values() if each.outcome != "done"]
     for each in broken:
         complain(f"motion.{each.name} {each.outcome}: {each.message}" + (" (allowed)" if ignore_limits else ""))

@@ -10,7 +10,8 @@ from gbeam.cli.console import Watch
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import read
 from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, ScenarioFile
-from gbeam.cli.outputs import list_files, publish, show, show_table
+from gbeam.cli.outputs import list_files, show, show_table
+from gbeam.cli.publication import publish
 
 
 def run(
@@ -46,16 +47,16 @@ def run(
         netcdf.write(answer, hidden / "result.nc", given.provenance())
         write_plots(answer, hidden, "gbeam run")
 
+    if not json:
+        from gbeam.report.study.summary import table
+
+        show_table(table(answer))
     files = [] if folder is None else publish(folder, make)
     if json:
         from gbeam.report.study.summary_json import to_json
 
         show("", to_json(answer, files), json)
-    else:
-        from gbeam.report.study.summary import table
-
-        show_table(table(answer))
-        list_files(folder, files)
+    list_files(None if json else folder, files)
     for name, failure in answer.unfinished.items():
         complain(f"motion.{name} {failure.outcome}: {failure.message}")
     broken = {name: each.axes.exceeding for name, each in answer.responses.items() if each.axes}

@@ -7,11 +7,13 @@ from numpy.typing import NDArray
 
 from gbeam.checks import positive
 from gbeam.errors import InputError
+from gbeam.limits import SAMPLES, refuse_more
 from gbeam.numerics.filters.low_pass import low_pass
 from gbeam.numerics.intervals import true_runs
 
 Floats = NDArray[np.float64]
 
+FEWEST = 6  # samples of a record
 _WINDOW, _OUTLIER = 3, 6.0  # samples either side; deviations from the window's median
 _LEAST_JUMP = 0.5  # m/s²: a smaller step is no dropout and no spike
 
@@ -75,7 +77,8 @@ def filtered(time: Floats, values: Floats, cutoff: float | None, resample: float
     Raises
     ------
     InputError
-        If the cut-off is at or above half of either sampling rate, or a lower rate is given without a cut-off.
+        If the cut-off is at or above half of either sampling rate, or a lower rate is given without a cut-off, or the
+        rate leaves too few samples or makes too many.
     """
     step = float(time[-1] - time[0]) / (len(time) - 1)
     if cutoff is not None:
@@ -95,6 +98,12 @@ def filtered(time: Floats, values: Floats, cutoff: float | None, resample: float
         )
     import scipy.interpolate  # half a second to import, which only a new rate needs
 
+    length = float(time[-1] - time[0])
+    if length * rate < FEWEST - 1:
+        problem = f"is {rate:g} Hz, which leaves fewer than {FEWEST} samples of {length:g} s"
+        raise InputError("record.resample", problem, f"give {(FEWEST - 1) / length:.3g} Hz or more")
+    each = 24.0 * values[0].size  # a sample and the spline through it
+    refuse_more("record.resample", "samples", length * rate, SAMPLES, each, f"give {SAMPLES / length:.3g} Hz or less")
     fresh = time[0] + np.arange(int(np.floor((time[-1] - time[0]) * rate * (1 + 1e-12))) + 1) / rate
     fresh = np.minimum(fresh, time[-1])
     return fresh, np.asarray(scipy.interpolate.CubicSpline(time, values, axis=0)(fresh))

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.checks import positive
+from gbeam.limits import KNOTS, refuse_more
 from gbeam.numerics.series import Series
 
 
@@ -71,5 +72,8 @@ def smoothed(profile: Profile, width: Any) -> Profile:
 
 
 def sampled(start: float, end: float, step: float) -> NDArray[np.float64]:
-    """Evenly spaced times from `start` to `end`, s, no further apart than `step`."""
-    return np.linspace(start, end, int(np.ceil((end - start) / step)) + 1)
+    """Evenly spaced times from `start` to `end`, s, no further apart than `step`; InputError if they are too many."""
+    count = np.ceil((end - start) / step)
+    fix = f"give {KNOTS * step:.3g} s or less, or smooth over more time"
+    refuse_more("", f"knots over {end - start:.4g} s", count, KNOTS, 4000.0, fix)
+    return np.linspace(start, end, int(count) + 1)

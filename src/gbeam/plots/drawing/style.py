@@ -46,6 +46,7 @@ STYLE: dict[Any, Any] = {
     "xtick.bottom": False,  # the grid shows where
     "ytick.left": False,
     "text.hinting": "none",
+    "text.parse_math": False,  # a dollar sign in a title is one
     "lines.linewidth": 1.1,
     "legend.fontsize": 8.5,
     "legend.frameon": False,

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
+from gbeam.limits import ENTRIES
 from gbeam.scenario.schema.fields import (
     Areas,
     Density,
@@ -31,6 +32,7 @@ class Stations(Table):
 
     stations: tuple[Position, ...] = Field(
         default=(),
+        max_length=ENTRIES,
         description="positions from root to tip at which the dimensions are listed, linear in between",
     )
 
@@ -143,8 +145,12 @@ class Beam(Table):
         "the modes of the beam on a base at rest, also where the hub is free. run, place, models and linearize need "
         "it, 0 for none; the rest take none where it is left out",
     )
-    masses: tuple[PointMass, ...] = Field(default=(), description="masses fixed to the beam: [ { at, mass } ]")
+    masses: tuple[PointMass, ...] = Field(
+        default=(), max_length=ENTRIES, description="masses fixed to the beam: [ { at, mass } ]"
+    )
     root: Root = Field(default_factory=Root, description="springs that hold the root, which is rigid where left out")
     loads: tuple[Load, ...] = Field(
-        default=(), description="forces and moments on the beam: [ { at, force, moment, distributed, follower } ]"
+        default=(),
+        max_length=ENTRIES,
+        description="forces and moments on the beam: [ { at, force, moment, distributed, follower } ]",
     )

@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Discriminator, Field, GetCoreSchemaH
 from pydantic import ValidationError as PydanticError
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
 
+from gbeam.limits import ENTRIES
 from gbeam.scenario.text.kinds import KINDS
 from gbeam.scenario.text.units import UnitError, quantity
 
@@ -132,18 +133,20 @@ RotationalStiffness = Annotated[float, Quantity("rotational stiffness", "positiv
 
 # A union would report the errors of both branches; the tags pick one, and explain drops them from the place.
 ONE_OR_LIST = Discriminator(lambda value: "list" if isinstance(value, (list, tuple)) else "one")
+_SOME = Field(min_length=1, max_length=ENTRIES)
 Lengths = Annotated[
-    Annotated[Length, Tag("one")] | Annotated[tuple[Length, ...], Field(min_length=1), Tag("list")],
+    Annotated[Length, Tag("one")] | Annotated[tuple[Length, ...], _SOME, Tag("list")],
     ONE_OR_LIST,
 ]
 Areas = Annotated[
-    Annotated[Area, Tag("one")] | Annotated[tuple[Area, ...], Field(min_length=1), Tag("list")], ONE_OR_LIST
+    Annotated[Area, Tag("one")] | Annotated[tuple[Area, ...], _SOME, Tag("list")],
+    ONE_OR_LIST,
 ]
 SecondMoments = Annotated[
-    Annotated[SecondMoment, Tag("one")] | Annotated[tuple[SecondMoment, ...], Field(min_length=1), Tag("list")],
+    Annotated[SecondMoment, Tag("one")] | Annotated[tuple[SecondMoment, ...], _SOME, Tag("list")],
     ONE_OR_LIST,
 ]
 Ratios = Annotated[
-    Annotated[Ratio, Tag("one")] | Annotated[tuple[Ratio, ...], Field(min_length=1), Tag("list")],
+    Annotated[Ratio, Tag("one")] | Annotated[tuple[Ratio, ...], _SOME, Tag("list")],
     ONE_OR_LIST,
 ]

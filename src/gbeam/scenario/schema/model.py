@@ -6,9 +6,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field, StrictInt
 
+from gbeam.limits import SHAPES
 from gbeam.scenario.schema.fields import Table
 
-Count = Annotated[StrictInt, Field(ge=0)]
+Count = Annotated[StrictInt, Field(ge=0, le=SHAPES)]
 
 
 class Modes(Table):

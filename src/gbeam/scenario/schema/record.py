@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, StrictBool, Tag, ValidationInfo, model_validator
 
+from gbeam.limits import existing
 from gbeam.scenario.schema.fields import ONE_OR_LIST, Quantity, Table, refuse, wrong
 from gbeam.scenario.text.suggest import closest
 
@@ -14,10 +15,13 @@ from gbeam.scenario.text.suggest import closest
 def _existing(file: str, info: ValidationInfo) -> str:
     """Resolve `file` against the scenario's folder, which load passes as context."""
     path = Path((info.context or {}).get("folder", ".")) / file
-    if path.is_file():
+    if existing(path) and not path.is_dir():
         return str(path)
     folder = path.parent
-    neighbours = sorted(p.name for p in folder.iterdir() if p.is_file()) if folder.is_dir() else []
+    try:
+        neighbours = sorted(p.name for p in folder.iterdir() if p.is_file())
+    except (OSError, ValueError):
+        neighbours = []
     near = closest(path.name, neighbours)
     looked = f"it is looked for in {folder}"
     raise wrong("there is no file {value}", f"did you mean {str(Path(file).with_name(near))!r}?" if near else looked)

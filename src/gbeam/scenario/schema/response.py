@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from gbeam.limits import ENTRIES
 from gbeam.scenario.schema.fields import Duration, Loc, Position, Quantity, Ratio, Step, Table, Time, refuse, wrong
 
 # Which parameters each integrator takes.
@@ -43,6 +44,7 @@ class Response(Table):
     stations: tuple[Position, ...] | None = Field(
         default=None,
         min_length=1,
+        max_length=ENTRIES,
         description="positions from the root for the output; the tip if left out",
     )
 

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Self
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, model_validator
 from pydantic_core import PydanticCustomError
 
+from gbeam.limits import NAME, TITLE
+from gbeam.printable import shortened, unprintable
 from gbeam.scenario.schema.beam import Beam
 from gbeam.scenario.schema.fields import Loc, Table, refuse, wrong
 from gbeam.scenario.schema.model import Model
@@ -23,17 +25,27 @@ if TYPE_CHECKING:
 def _word(name: str) -> str:
     if not name.replace("-", "_").isidentifier() or not name.isascii():
         raise wrong(
-            f"{name!r} is not a word",
+            f"{shortened(repr(name))} is not a word",
             "name a motion with letters, digits, _ and -, a letter first",
             mark="key",
         )
+    if len(name) > NAME:
+        raise wrong(f"{shortened(name)!r} has {len(name)} characters", f"give {NAME} or fewer", mark="key")
     return name
+
+
+def _printable(title: str) -> str:
+    if len(title) > TITLE:
+        raise wrong(f"has {len(title)} characters", f"give {TITLE} or fewer")
+    if bad := unprintable(title):
+        raise wrong(f"holds {bad}, which cannot be printed", "leave it out")
+    return title
 
 
 class _Titled(Table):
     """What every scenario has; a class of its own only to keep the tables in the order they are written in."""
 
-    title: str = Field("", description="what the scenario is about, for reports")
+    title: Annotated[str, AfterValidator(_printable)] = Field("", description="what the scenario is about, for reports")
 
 
 class _Structure(_Titled):

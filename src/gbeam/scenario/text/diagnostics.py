@@ -6,6 +6,10 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 
 from gbeam.errors import GbeamError
+from gbeam.printable import printable, shortened
+
+LONGEST_MESSAGE = 1000  # characters: it may list thirty columns
+_WIDTH = 180  # characters of the line of the file
 
 
 @dataclass(frozen=True)
@@ -45,19 +49,29 @@ class Diagnostic:
         place = self.file if self.line is None else f"{self.file}:{self.line}:{self.column}"
         if self.override is not None:
             place = f"--set {self.override}"
-        lines = [": ".join(part for part in (place, self.path, self.message) if part)]
+        parts = (shortened(place), shortened(self.path), shortened(self.message, LONGEST_MESSAGE))
+        lines = [": ".join(part for part in parts if part)]
         margin = "    "
         if self.source_line is not None and self.column is not None:
             number = f"{self.line}"
             margin += " " * len(number)
+            line, before = self._excerpt(self.source_line, self.column - 1)
             # Tabs stay, so that the caret stands under its column however wide they are shown.
-            indent = "".join(c if c == "\t" else " " for c in self.source_line[: self.column - 1])
-            carets = "^" * max((self.end or 0) - self.column, 1)
-            lines += [f"    {number} | {self.source_line}", f"{margin} | {indent}{carets}"]
+            indent = "".join(c if c == "\t" else " " for c in printable(line[:before]))
+            marked = printable(line[before : before + max((self.end or 0) - self.column, 1)])
+            lines += [f"    {number} | {printable(line)}", f"{margin} | {indent}{'^' * max(len(marked), 1)}"]
             margin += " "
         if self.hint:
-            lines.append(f"{margin}= {self.hint}")
+            lines.append(f"{margin}= {shortened(self.hint, LONGEST_MESSAGE)}")
         return "\n".join(lines)
+
+    @staticmethod
+    def _excerpt(line: str, column: int) -> tuple[str, int]:
+        """What is shown of a line, and where the column is in that: a scenario may be one line of a megabyte."""
+        if len(line) <= _WIDTH:
+            return line, column
+        first = min(max(column - _WIDTH // 3, 0), len(line) - _WIDTH)
+        return line[first : first + _WIDTH], column - first
 
 
 class ScenarioError(GbeamError):

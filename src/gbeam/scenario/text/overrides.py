@@ -8,6 +8,8 @@ from copy import deepcopy
 from dataclasses import dataclass
 from typing import Any
 
+from gbeam.limits import NESTING
+from gbeam.scenario.text.bounds import excess
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.paths import Path, parse_path, path_text
 
@@ -62,12 +64,18 @@ def override(data: dict[str, Any], name: str, texts: Iterable[str]) -> tuple[dic
 def _read(text: str) -> Override:
     key, equals, value = text.partition("=")
     path = parse_path(key.strip())
+    if path is not None and len(path) > NESTING:
+        raise _Refused(f"has more than {NESTING} tables or lists in one another", "shorten the key")
     if not equals or path is None:
         raise _Refused("is not key=value", 'write it such as --set "beam.length=250 mm"')
     return Override(text, path, _value(value.strip()))
 
 
 def _value(text: str) -> Any:
+    beyond = excess(text)
+    if beyond is not None:
+        _, problem, fix = beyond
+        raise _Refused(problem, fix)
     try:
         parsed = tomllib.loads(f"value = {text}")
     except tomllib.TOMLDecodeError:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 Path = tuple[str | int, ...]
 
-_STEP = re.compile(r"([^.\[\]=\s]+)((?:\[\d+\])*)")
+_STEP = re.compile(r"([^.\[\]=\s]+)((?:\[[0-9]{1,9}\])*)")
 
 
 @dataclass(frozen=True)

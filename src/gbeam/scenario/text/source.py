@@ -10,6 +10,9 @@ from functools import cached_property
 from pathlib import Path as File
 from typing import Any, Literal
 
+from gbeam.errors import InputError
+from gbeam.limits import SCENARIO_BYTES, refuse_large_file
+from gbeam.scenario.text.bounds import excess
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.overrides import Override
 from gbeam.scenario.text.paths import Path, Place, Span, path_text
@@ -88,22 +91,31 @@ def at_span(name: str, text: str, span: Span, path: str, message: str, hint: str
 def read_text(path: File) -> str:
     """Read a scenario file, or raise the ScenarioError that says why not."""
     try:
+        refuse_large_file("", path, SCENARIO_BYTES, "give long tables as a record: [motion.NAME.record]")
         return path.read_bytes().decode("utf-8-sig")
+    except InputError as error:
+        problem, hint = error.problem.removeprefix(f"{path} "), error.fix
     except FileNotFoundError:
         folder = path.parent
         neighbours = sorted(p.name for p in folder.glob("*") if p.suffix in (".toml", ".json"))
         near = closest(path.name, neighbours)
         hint = f"did you mean {str(path.with_name(near))!r}?" if near else "`gbeam new` writes one to start from"
         problem = "there is no such file"
-    except OSError as error:
-        problem, hint = f"cannot be read ({error.strerror})", "give the path of a scenario file"
     except UnicodeDecodeError:
         problem, hint = "is not UTF-8 text", "give the path of a scenario file, TOML or JSON"
+    except OSError as error:
+        problem, hint = f"cannot be read ({error.strerror})", "give the path of a scenario file"
+    except ValueError:  # a null character in the name
+        problem, hint = "is no name of a file", "give the path of a scenario file"
     raise ScenarioError([Diagnostic(str(path), "", problem, hint)])
 
 
 def parse(name: str, text: str) -> dict[str, Any]:
     """Parse TOML, or JSON if the text begins with a brace; a ScenarioError says where the syntax is wrong."""
+    beyond = excess(text)
+    if beyond is not None:
+        span, problem, fix = beyond
+        raise ScenarioError([at_span(name, text, span, "", problem, fix)])
     try:
         return json.loads(text) if is_json(text) else tomllib.loads(text)
     except json.JSONDecodeError as error:

@@ -11,6 +11,8 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from gbeam.limits import QUANTITY
+from gbeam.printable import shortened
 from gbeam.scenario.text.kinds import KINDS, USUAL, Kind
 from gbeam.scenario.text.suggest import closest
 
@@ -59,6 +61,9 @@ _NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?
 # pint's tokenizer drops what it does not know ("5 m$", "5 m # note"), so the letters are checked first.
 _UNIT = re.compile(r"[\w°%()*/^+\-·.⁻⁰¹²³⁴-⁹ ]+")
 
+# What would take for ever to work out: any power but by one digit, a power of a power, two superscripts.
+_POWER = re.compile(r"(?:\^|\*\*)(?!\s*[+-]?\s*[0-9](?![0-9.eE_]|\s*(?:\^|\*\*)))|[⁰¹²³⁴-⁹]{2}")
+
 
 class UnitError(ValueError):
     """A quantity that cannot be read: `problem` says what is wrong with it, `hint` what would be right."""
@@ -100,13 +105,18 @@ def quantity(value: object, kind: str) -> float:
     such_as = f'{expected.phrase}, such as "{expected.example}"'
     # bool is an int to Python, a mistake to the reader of a scenario.
     if isinstance(value, (int, float)) and not isinstance(value, bool):
-        shown = f"{value!r}"
+        try:
+            shown = shortened(f"{value!r}")
+        except ValueError:  # too many digits to write
+            shown = "the number"
         try:
             number = float(value)
         except OverflowError:
             number = math.inf
     elif isinstance(value, str):
-        shown = f'"{value}"'
+        shown = f'"{shortened(value)}"'
+        if len(value) > QUANTITY:
+            raise UnitError(f"{shown} has {len(value)} characters", f"expected {such_as}")
         match = _NUMBER.fullmatch(value)
         if match is None:
             raise UnitError(f"{shown} is not a number with a unit", f"expected {such_as}")
@@ -138,7 +148,7 @@ def argument(text: str, kind: str) -> float:
     UnitError
         As for :func:`quantity`.
     """
-    match = _NUMBER.fullmatch(text)
+    match = _NUMBER.fullmatch(text) if len(text) <= QUANTITY else None
     return quantity(float(text) if match and not match[2] else text, kind)
 
 
@@ -162,7 +172,7 @@ def spoken(value: object) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, (int, float, str)):
-        return repr(value)
+        return shortened(repr(value))
     names = {list: "a list", dict: "a table", type(None): "null"}
     return names.get(type(value), f"a {type(value).__name__}")
 
@@ -189,7 +199,7 @@ def parsed_factor(unit: str, kind: str) -> float:
     expected = KINDS[kind]
     registry = _registry()
     unreadable = UnitError(f"has the unreadable unit {unit!r}", f'write it such as "{expected.example}"')
-    if not _UNIT.fullmatch(unit):
+    if not _UNIT.fullmatch(unit) or _POWER.search(unit):
         raise unreadable
     # The same letter is two units: of a mass, except where only an acceleration makes sense.
     text = re.sub(r"\bg\b", "gee", unit) if kind in ("acceleration", "jerk") else unit
@@ -204,7 +214,17 @@ def parsed_factor(unit: str, kind: str) -> float:
         raise UnitError(f"has the unknown unit {name!r}", hint) from None
     except Exception:  # pint's parser lets tokenizer, syntax, type and value errors through
         raise unreadable from None
-    amount = registry.Quantity(1.0, parsed)
+    try:
+        return _converted(registry.Quantity(1.0, parsed), kind, expected)
+    except UnitError:
+        raise
+    except (ArithmeticError, ValueError):  # beyond what a float holds
+        raise unreadable from None
+
+
+def _converted(amount: Any, kind: str, expected: Kind) -> float:
+    """SI value of an amount of pint's; UnitError if it is of another kind."""
+    registry = _registry()
     if kind == "frequency" and amount.dimensionality == registry.parse_units("rad/s").dimensionality:
         return float(amount.to("hertz").magnitude)
     if amount.dimensionality != registry.parse_units(expected.unit).dimensionality:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.errors import InputError
+from gbeam.limits import ELEMENTS, refuse_more
 from gbeam.motion.bases.records.table import Column, Table, array_columns
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def read_hdf5(path: str | os.PathLike[str]) -> Table:
         with open(path, "rb") as file:
             old = file.read(3) == _NETCDF_3
         return Table(tuple(_netcdf_3(path) if old else hdf5_columns(path)))
-    except (OSError, TypeError, ValueError) as error:
+    except Exception as error:  # a damaged file leads to any
         raise InputError("record.file", f"{path} cannot be read ({error})", "give an HDF5 or netCDF file") from None
 
 
@@ -58,6 +59,7 @@ def hdf5_columns(path: str | os.PathLike[str], *, matlab: bool = False) -> list[
     def values(path_inside: str) -> NDArray[Any]:
         with h5py.File(path) as file:
             item = file[path_inside]
+            refuse_more("", "numbers", item.size, ELEMENTS, 40.0, "save fewer at a time")
             array = _unpacked(np.asarray(item), item.attrs)
         return array.T if matlab else array
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import os
 from typing import Any
 
 import numpy as np
 
 from gbeam.errors import InputError
+from gbeam.limits import ELEMENTS, refuse_more
 from gbeam.motion.bases.records.hdf5 import hdf5_columns
 from gbeam.motion.bases.records.table import Column, Table, array_columns
 
@@ -28,19 +30,29 @@ def read_mat(path: str | os.PathLike[str]) -> Table:
         If the file cannot be read, or holds no numeric variables; MATLAB keeps tables and timetables as objects that
         nothing else reads.
     """
-    import scipy.io  # 0.4 s to import
-
     try:
-        variables = scipy.io.loadmat(path, simplify_cells=True)
-        columns = [column for name, value in variables.items() for column in _columns(name, value)]
-    except NotImplementedError:  # scipy's word for version 7.3
-        columns = hdf5_columns(path, matlab=True)
+        columns = _any_version(path)
+    except InputError:
+        raise
     except Exception as error:  # loadmat raises whatever a damaged file leads to
         raise InputError("record.file", f"{path} is not a MAT file ({error})", "save the record by MATLAB") from None
     if not columns:
         fix = "save vectors of numbers; a table T as s = table2struct(T, 'ToScalar', true)"
         raise InputError("record.file", f"{path} holds no numeric variables", fix)
     return Table(tuple(columns))
+
+
+def _any_version(path: str | os.PathLike[str]) -> list[Column]:
+    import scipy.io  # 0.4 s to import
+
+    try:
+        for name, shape, _ in scipy.io.whosmat(path):
+            problem = f"of the variable {name!r}"
+            refuse_more("record.file", f"numbers {problem}", math.prod(shape), ELEMENTS, 8.0, "save fewer at a time")
+        variables = scipy.io.loadmat(path, simplify_cells=True)
+    except NotImplementedError:  # scipy's word for version 7.3
+        return hdf5_columns(path, matlab=True)
+    return [column for name, value in variables.items() for column in _columns(name, value)]
 
 
 def _columns(name: str, value: Any) -> list[Column]:

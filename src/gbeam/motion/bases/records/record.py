@@ -11,7 +11,8 @@ from typing import Literal
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.motion.bases.conditioning import filtered, spikes, without_spikes
+from gbeam.limits import BINARY_BYTES, SAMPLES, refuse_large_file, refuse_more
+from gbeam.motion.bases.conditioning import FEWEST, filtered, spikes, without_spikes
 from gbeam.motion.bases.records.clock import check_interval, check_sampling
 from gbeam.motion.bases.records.hdf5 import read_hdf5
 from gbeam.motion.bases.records.mat import read_mat
@@ -24,7 +25,6 @@ from gbeam.motion.profiles.piecewise import PiecewiseLinear
 
 Quantity = Literal["specific-force", "acceleration"]
 
-FEWEST = 6  # samples
 _HDF5 = (".h5", ".hdf5", ".hdf", ".he5", ".nc", ".nc4", ".cdf")
 # By the end of a file's name; everything else is text.
 READERS: dict[str, Callable[[str | os.PathLike[str]], Table]] = {
@@ -144,6 +144,15 @@ def read_record(
     ).acceleration
 
 
+def _table(path: str | os.PathLike[str]) -> Table:
+    try:
+        refuse_large_file("record.file", path, BINARY_BYTES, "cut the record, or export it at a lower rate")
+    except OSError as error:
+        problem = f"{path} cannot be read ({error.strerror})"
+        raise InputError("record.file", problem, "give the path of a record") from None
+    return READERS.get(Path(path).suffix.lower(), read_text)(path)
+
+
 def read_flight(
     path: str | os.PathLike[str],
     time: str,
@@ -167,7 +176,7 @@ def read_flight(
     skip = conditioning.skipped
     names = {"x": x, "y": y, "z": z}
     turns = {} if rates is None else {"p": rates.p, "q": rates.q, "r": rates.r}
-    table = READERS.get(Path(path).suffix.lower(), read_text)(path)
+    table = _table(path)
 
     def scale(key: str, kind: str, declared: str | None, columns: dict[str, str], otherwise: str) -> tuple[str, float]:
         stated = table.stated_units(columns)
@@ -178,6 +187,7 @@ def read_flight(
     seconds, time_scale = scale("time_unit", "time", time_unit, {"time": time}, "s")
     rate_scale = 1.0 if rates is None else scale("rate_unit", "rate", rates.unit, turns, rates.unit)[1]
     clock = time_scale * table.numbers("time", time)
+    refuse_more("record.file", "samples", len(clock), SAMPLES, 200.0, "cut the record, or export it at a lower rate")
     if len(clock) < FEWEST:
         word = "row" if table.rows is not None else "sample"
         raise InputError("record.file", f"{path} has {len(clock)} {word}(s)", f"give {FEWEST} samples or more")

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.errors import InputError
+from gbeam.limits import COLUMNS
 
 Floats = NDArray[np.float64]
 
@@ -89,7 +90,15 @@ class Table:
 
     def numbers(self, axis: str, name: str) -> Floats:
         """Return a column as finite numbers, shape (t,)."""
-        samples = self.column(axis, name).read()
+        column = self.column(axis, name)
+        try:
+            samples = column.read()
+        except InputError as error:
+            raise InputError(f"record.{axis}", f"column {name!r} {error.problem}", error.fix) from None
+        except Exception as error:  # a damaged file leads its library to any
+            raise InputError(
+                f"record.{axis}", f"column {name!r} cannot be read ({error})", "export the record again"
+            ) from None
         if isinstance(samples, np.ndarray):
             values = np.asarray(samples, dtype=np.float64)
         else:
@@ -174,6 +183,8 @@ def array_columns(
     if len(shape) != 2 or len(long) != 2:
         return []
     across = int(shape[1] <= shape[0])  # the axis that counts the vectors
+    if shape[across] > COLUMNS:
+        return []
 
     def vector(k: int) -> Column:
         index = f"{k + matlab},:" if across == 0 else f":,{k + matlab}"

@@ -12,6 +12,7 @@ import re
 from statistics import mode
 
 from gbeam.errors import InputError
+from gbeam.limits import BINARY_BYTES, TEXT_BYTES, in_bytes, refuse_large_file
 from gbeam.motion.bases.records.table import Column, Table
 from gbeam.motion.bases.records.units import is_unit
 
@@ -67,6 +68,8 @@ def read_text(path: str | os.PathLike[str]) -> Table:
 
 def _decoded(path: str | os.PathLike[str]) -> str:
     try:
+        fix = f"cut the record, or save it as HDF5, of which {in_bytes(BINARY_BYTES)} are read"
+        refuse_large_file("record.file", path, TEXT_BYTES, fix)
         with open(path, "rb") as file:
             data = file.read()
     except OSError as error:
@@ -107,7 +110,10 @@ def _cells(line: str, delimiter: str) -> list[str]:
     if delimiter == " ":  # a unit in brackets belongs to the name before it
         line = _BEFORE_BRACKET.sub("\0", " ".join(line.split()))
     if '"' in line:
-        cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))
+        try:
+            cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))
+        except csv.Error:  # a cell of more than 128 kB
+            cells = line.split(delimiter)
     else:
         cells = line.split(delimiter)
     return [cell.strip().replace("\0", " ") for cell in cells]

@@ -13,6 +13,7 @@ from gbeam.arrays.namespace import is_traced
 from gbeam.checks import positive
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
+from gbeam.limits import KNOTS, refuse_more
 from gbeam.motion.centrifuge.target.gentle_path import gentle, off_axis, unwrapped
 from gbeam.motion.centrifuge.target.load_limits import (
     LEAST_IDLE,
@@ -117,6 +118,9 @@ def build_target(
             load = _nearest(load, None, None, None, gravity)
         none = padded_rows([]), merged_edges([], last)
         return made(load=load, corners=raw, stretches=none[0], edges=none[1], rounded=True, turns=True)
+    if width:
+        fix = f"give {_PER_WIDTH * (last - first) / KNOTS:.2g} s or more, or a shorter duration"
+        refuse_more("smoothing", "knots", _PER_WIDTH * (last - first) / width, KNOTS, 4000.0, fix)
     corners = clamped(raw, first, last)
     flight = smoothed(corners, width) if width else corners
     times = _knots(corners, first, last, width / _PER_WIDTH or _GRID)

@@ -1,0 +1,86 @@
+"""The parser of the command line, and what becomes of what a verb raises."""
+
+from __future__ import annotations
+
+import os
+
+# A beam's matrices are small: threads of OpenBLAS, started as NumPy and SciPy are imported, would only spin.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# No plugin has a part in reading a scenario, and the search for plugins takes as long as the reading.
+os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+
+from cyclopts import App, CycloptsError
+
+import gbeam
+from gbeam.cli.failures import report, report_defect, report_memory, report_syntax
+from gbeam.errors import GbeamError
+
+# The help stands here and not only with the verb, so that `gbeam --help` imports none of them.
+VERBS = {
+    "run": "Compute the response in every environment of a scenario, and compare them.",
+    "static": "Where the beam rests relative to its base at one time of the motions.",
+    "modes": "Frequencies, damping and shapes about the equilibrium at one time of a motion.",
+    "campbell": "Frequencies against the speed of a hub, and where its multiples meet them.",
+    "critical-speed": "The hub rate, load or acceleration at which the beam's equilibrium is lost.",
+    "linearize": "State-space model A, B, C, D about the equilibrium at one time of a motion.",
+    "models": "The same scenario by every model, compared with the exact one.",
+    "plan": "Plan the axis motions of a centrifuge within its limits; needs no beam.",
+    "place": "Find where to put the specimen on the centrifuge.",
+    "check": "Say what a scenario means, without computing a response.",
+    "new": "Write a commented scenario to start from.",
+    "schema": "Print the JSON schema of scenario files, for editors.",
+}
+_INTERRUPTED = 130
+
+
+def run(tokens: list[str]) -> int:
+    """Run a verb and print what went wrong, if anything.
+
+    Parameters
+    ----------
+    tokens : list of str
+        The arguments after the program's name.
+
+    Returns
+    -------
+    int
+        Exit status.
+
+    Raises
+    ------
+    OSError
+        If a file or a stream cannot be read or written.
+    """
+    as_json = "--json" in tokens
+    try:
+        status = _app(tokens[0] if tokens else "")(
+            tokens, exit_on_error=False, print_error=False, result_action="return_value"
+        )
+    except CycloptsError as error:
+        return report_syntax(str(error), as_json)
+    except GbeamError as error:
+        return report(error, as_json)
+    except KeyboardInterrupt:  # called from Python: the command line's own process ends in `interrupts`
+        return _INTERRUPTED
+    except OSError:
+        raise
+    except MemoryError as error:
+        return report_memory(error, as_json)
+    except Exception as error:
+        return report_defect(error, tokens, as_json)
+    return status if isinstance(status, int) else 0
+
+
+def _app(chosen: str) -> App:
+    app = App(
+        name="gbeam",
+        help="How a flexible beam responds while its base moves a lot: in flight, on a centrifuge, on a hub.",
+        version=gbeam.__version__,
+        help_format="markdown" if chosen in VERBS else "plaintext",  # whose renderer is not worth its import
+        suppress_keyboard_interrupt=False,
+    )
+    for verb, summary in VERBS.items():
+        # The help of the chosen verb is its own docstring, which says more.
+        name = verb.replace("-", "_")
+        app.command(f"gbeam.cli.verbs.{name}:{name}", name=verb, help=None if verb == chosen else summary)
+    return app

@@ -1,0 +1,83 @@
+"""How much of anything gbeam takes, in one table: what is more is refused before it is read, parsed or allocated.
+
+Each limit is far beyond what a sound scenario holds; a refusal says what it would have cost.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+from gbeam.errors import InputError
+
+# Text of a scenario.
+SCENARIO_BYTES = 2**20  # of a file, or of one override: 50,000 knots; parsing takes a second
+NESTING = 32  # tables and lists in one another
+NUMBER = 400  # characters of a number: any float has fewer
+QUANTITY = 100  # characters of a quantity with its unit
+EXPONENT = 9  # of a unit
+TITLE = 200  # characters
+NAME = 64  # characters of a motion's name, which becomes a part of file names
+PROBLEMS = 100  # explained at once
+
+# What a scenario asks for.
+SHAPES = 40  # in one direction: assembling takes a second
+ENTRIES = 1000  # masses, loads, stations of a section or of the output
+KNOTS = 500_000  # of a centrifuge's target: about 4 kB each while it is planned
+STEPS = 4_000_000  # in time
+
+# Records of flights.
+TEXT_BYTES = 64 * 2**20  # about 25 bytes of memory each
+BINARY_BYTES = 512 * 2**20
+COLUMNS = 10_000  # of one matrix
+ELEMENTS = 32_000_000  # of one array of a file
+SAMPLES = 4_000_000
+
+
+def refuse_more(where: str, what: str, count: float, most: int, each: float, fix: str) -> None:
+    """Raise InputError if `count` is more than `most`, with the memory that it would take.
+
+    Parameters
+    ----------
+    where : str
+        Place of the quantity that decides.
+    what : str
+        What is counted: ``samples``.
+    count, most : number
+        How many there would be, and may be.
+    each : float
+        Bytes that one takes.
+    fix : str
+        What would be right.
+    """
+    if not count <= most:
+        raise InputError(where, f"makes {count:.4g} {what}, which would take {in_bytes(count * each)}", fix)
+
+
+def refuse_large_file(where: str, path: str | os.PathLike[str], most: int, fix: str) -> None:
+    """Raise InputError unless `path` is a file, with no more bytes than `most`; of what cannot be read, OSError."""
+    status = os.stat(path)
+    if stat.S_ISDIR(status.st_mode):
+        raise InputError(where, f"{path} is a folder", "give the path of a file")
+    if not stat.S_ISREG(status.st_mode):
+        raise InputError(where, f"{path} is a device or a pipe", "save what it holds to a file")
+    if status.st_size > most:
+        raise InputError(where, f"{path} has {in_bytes(status.st_size)}, and {in_bytes(most)} are read at most", fix)
+
+
+def in_bytes(count: float) -> str:
+    """Write a number of bytes: ``24 GB``."""
+    for unit in ("B", "kB", "MB", "GB"):
+        if count < 1000:
+            return f"{count:.3g} {unit}"
+        count /= 1000
+    return f"{count:.3g} TB"
+
+
+def existing(path: Path) -> bool:
+    """Whether there is anything at a path; False for one that no file can have."""
+    try:
+        return path.exists()
+    except (OSError, ValueError):  # too long, or with a null character
+        return False

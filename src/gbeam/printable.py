@@ -1,0 +1,36 @@
+"""Text from outside, as a terminal, a file or a figure may show it."""
+
+from __future__ import annotations
+
+import re
+
+# Control characters but tab and line feed, C1's included; lone surrogates; marks that reverse the direction of writing.
+_UNPRINTABLE = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
+LONGEST = 200  # characters of one value in a message
+
+
+def printable(text: str) -> str:
+    """Return the text with control characters written out, ``\\x1b`` for ESC: a terminal obeys what is left to it."""
+    return _UNPRINTABLE.sub(_escaped, text)
+
+
+def unprintable(text: str) -> str:
+    """Return the first character that :func:`printable` would write out, so written; empty where there is none."""
+    match = _UNPRINTABLE.search(text)
+    return "" if match is None else _escaped(match)
+
+
+def json_printable(text: str) -> str:
+    """Return JSON with what a terminal would obey, inside strings only, as JSON escapes it."""
+    return _UNPRINTABLE.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
+
+
+def shortened(text: str, longest: int = LONGEST) -> str:
+    """Return the text, or its beginning and end where it is longer than that."""
+    half = longest // 2
+    return text if len(text) <= longest else f"{text[:half]} … {text[-half:]}"
+
+
+def _escaped(match: re.Match[str]) -> str:
+    code = ord(match[0])
+    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}"

@@ -1,0 +1,141 @@
+"""What a scenario may cost is limited before it is read, parsed or allocated; the message says what it would take."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import time
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+from gbeam.errors import InputError
+from gbeam.limits import NESTING, SCENARIO_BYTES, in_bytes, refuse_large_file
+from gbeam.motion.bases.conditioning import filtered
+from gbeam.scenario import ScenarioError, load, loads
+from gbeam.scenario.text.bounds import excess
+from gbeam.scenario.text.units import UnitError, quantity
+
+from ..scenarios import FAST
+
+
+def _refused(text: str, *overrides: str) -> str:
+    start = time.perf_counter()
+    with pytest.raises(ScenarioError) as caught:
+        loads(text, "s.toml", overrides)
+    assert time.perf_counter() - start < 5
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (FAST + "x = " + "[" * 3000 + "]" * 3000, "s.toml:22:37: has more than 32 tables or lists in one another"),
+        ('{"a":' * 3000, "has more than 32 tables or lists in one another"),
+        (".".join(["a"] * 100_000) + " = 1", "s.toml:1:1: has more than 32 tables or lists"),
+        ("[" + ".".join(["'a'"] * 100_000) + "]", "s.toml:1:2: has more than 32 tables or lists"),
+        ("x = " + "9" * 4400, "s.toml:1:5: has a number of 4400 characters"),
+        ("x = 1." + "0_1" * 500, "s.toml:1:5: has a number of 1502 characters"),
+        ("x = 0x" + "f" * 4400, "s.toml:1:5: has a number of 4402 characters"),
+        ("#" * (SCENARIO_BYTES + 1), "has 1.05 MB, and 1.05 MB are read at most\n.*give long tables as a record"),
+        ("\n".join(f"a{i} = 1" for i in range(300)), "^s.toml: has 303 errors, of which 100 are listed"),
+    ],
+    ids=["brackets", "json", "key", "header", "digits", "underscores", "hexadecimal", "long", "errors"],
+)
+def test_text(text: str, message: str) -> None:
+    assert re.search(message, _refused(text), re.DOTALL)
+
+
+def test_brackets_in_strings_and_comments_do_not_count() -> None:
+    many = "[" * 50
+    sound = f'a = "{many}"\nb = \'{many}\'\n# {many}\nc = """{many}\n" {many}""""\nd = \'\'\'{many}\'{many}\'\'\'\n'
+    assert excess(sound + "e = " + "[" * NESTING + "]" * NESTING) is None
+    assert excess(sound + "e = " + "[" * (NESTING + 1)) is not None
+    assert excess('{"a\\"": "' + many + '"}') is None
+
+
+@pytest.mark.parametrize(
+    ("override", "message"),
+    [
+        ("beam.length=" + "9" * 4400, "has a number of 4400 characters"),
+        ("title=" + "[" * 3000, "has more than 32 tables"),
+        ("beam" + ".a" * 50 + "=1", "has more than 32 tables"),
+        ("beam.masses[" + "9" * 5000 + "].mass=1", "is not key=value"),
+        ("beam.length=1 " + "m" * 200, "has 202 characters"),
+        ("model.modes.y=200", "200 is more than is computed\n.*give 40 or less"),
+        ("title=" + "x" * 201, "has 201 characters"),
+        ('title="a\\u0000b"', r"title: holds \\x00, which cannot be printed"),
+        ("title=a\x1b[31m", r"title: holds \\x1b"),
+        ("motion." + "x" * 65 + ".kind=flight", "has 65 characters\n.*give 64 or fewer"),
+        ("response.stations=[" + "0," * 1001 + "]", "at most 1000"),
+    ],
+)
+def test_overrides(override: str, message: str) -> None:
+    text = _refused(FAST, override)
+    assert re.search(message, text, re.DOTALL) and len(text) < 3000
+
+
+def test_lone_surrogates_from_json() -> None:
+    data = tomllib.loads(FAST) | {"title": "\ud800"}
+    assert r"title: holds \ud800" in _refused(json.dumps(data))
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["3 m^9^9^9", "3 m**9**9", "3 m^(9^9)", "3 m^99", "3 m⁹⁹", "3 m^1e9", "3 m^9.5e9", "3 " + "Gm^9*" * 6 + "Gm"],
+)
+def test_powers_of_units(text: str) -> None:
+    start = time.perf_counter()
+    with pytest.raises(UnitError):
+        quantity(text, "length")
+    assert time.perf_counter() - start < 2
+
+
+@pytest.mark.skipif(os.name != "posix", reason="makes pipes and sparse files")
+def test_files_that_are_no_files_are_refused_at_once(tmp_path: Path) -> None:
+    pipe, sparse = tmp_path / "pipe.toml", tmp_path / "sparse.toml"
+    os.mkfifo(pipe)
+    with sparse.open("wb") as file:
+        file.truncate(2 * 2**30)
+    for path, problem in (
+        (Path("/dev/zero"), "is a device or a pipe"),
+        (pipe, "is a device or a pipe"),
+        (sparse, "has 2.15 GB, and 1.05 MB are read"),
+        (tmp_path, "is a folder"),
+        (tmp_path / ("a" * 300), "cannot be read .File name too long"),
+        (tmp_path / "a\0b", "is no name of a file"),
+    ):
+        with pytest.raises(ScenarioError, match=problem):
+            load(path)
+    for path in (Path("/dev/zero"), pipe):
+        with pytest.raises(InputError, match="is a device or a pipe"):
+            gb.read_record(path, "t", "x", "y", "z", "g")
+    with pytest.raises(InputError, match=r"has 2.15 GB, and 537 MB are read at most"):
+        gb.read_record(sparse, "t", "x", "y", "z", "g")
+
+
+def test_a_file_that_another_program_makes_longer(tmp_path: Path) -> None:
+    file = tmp_path / "x"
+    file.write_bytes(b"12345")
+    refuse_large_file("f", file, 5, "")
+    with pytest.raises(InputError, match="has 5 B, and 4 B are read at most"):
+        refuse_large_file("f", file, 4, "")
+
+
+def test_samples_and_knots() -> None:
+    times = np.linspace(0, 10, 1001)
+    with pytest.raises(InputError, match=r"resample makes 1e\+10 samples, which would take 720 GB; give 4e\+05 Hz"):
+        filtered(times, np.zeros((1001, 3)), None, 1e9)
+    flight = gb.Flight(z=gb.trapezoid(78.5, jerk=39.2, start=1, hold=4))
+    with pytest.raises(InputError, match=r"smoothing makes 1.2e\+08 knots, which would take 480 GB; give 0.00024 s"):
+        gb.Centrifuge(flight, arm=3.3, control_point=0.1, inverse="flat", smoothing=1e-6, span=(0, 10))
+    with pytest.raises(InputError, match="knots over 1e"):
+        gb.Centrifuge(flight, arm=3.3, control_point=0.1, inverse="flat", smoothing=0, span=(0, 1e300))
+
+
+def test_sizes_in_words() -> None:
+    assert [in_bytes(n) for n in (5, 24e9, 1e15)] == ["5 B", "24 GB", "1e+03 TB"]
