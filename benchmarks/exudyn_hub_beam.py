@@ -196,7 +196,10 @@ class HubBeam:
         return symbolic.IfThenElse(t < d, wave, symbolic.Real(0.0))
 
     def solve(self) -> tuple[np.ndarray, np.ndarray]:
-        """Times, and the tip's displacement across the beam in hub axes, m; empty where the solver fails."""
+        """Times, and the tip's displacement across the beam in hub axes, m; empty where the solver fails.
+
+        `angle` is the hub's from then on, rad, where the hub is rigid.
+        """
         setting, settings = self.setting, exudyn.SimulationSettings()
         integration = settings.timeIntegration
         integration.endTime, integration.numberOfSteps = self.drive.end, setting.steps
@@ -219,7 +222,7 @@ class HubBeam:
         tip, hub = (self.system.GetSensorStoredData(sensor) for sensor in self._sensors)
         x, y = HUB_RADIUS + LENGTH + tip[:, 1], tip[:, 2]
         if self.setting.hub == "rigid":
-            angle = hub[:, 3]
+            self.angle = angle = hub[:, 3]
             return tip[:, 0], np.cos(angle) * y - np.sin(angle) * x
         along, across = 1 + hub[:, 3], hub[:, 4]
         return tip[:, 0], (along * y - across * x) / np.hypot(along, across)

@@ -7,11 +7,13 @@ Each module of MODULES has a TITLE, a docstring that introduces its chapter, the
 versions that found it; `docs/validation.md` is made from all that is kept.
 """
 
+# In the page's order, below this package.
 MODULES: tuple[str, ...] = (
     "codes.kane",
     "codes.hermite",
     "codes.calculix",
+    "codes.exudyn_plane",
     "published.paper2009",
     "published.paper2020",
     "published.references",
-)  # in the page's order, below this package
+)

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from importlib import import_module
 from pathlib import Path
 
 from validation import MODULES
-from validation.record import Record, kept
+from validation.record import Record, heading, kept
 from validation.table import AGREES, DIFFERS, EXPLAINED, NOT_COMPARED, Row
 
 ROOT = Path(__file__).parents[1]
@@ -45,8 +44,8 @@ def page() -> str:
 
 def absent(name: str) -> str:
     """The chapter of a module that has not run."""
-    module = import_module(f"validation.{name}")
-    return f"## {module.TITLE}\n\nnot run: needs {', '.join(module.NEEDS)}\n"
+    title, needs = heading(name)
+    return f"## {title}\n\nnot run: needs {', '.join(needs)}\n"
 
 
 def chapter(record: Record, environments: list[dict[str, str]]) -> str:

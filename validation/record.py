@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import time
 from dataclasses import asdict, dataclass
@@ -47,9 +48,22 @@ def path_of(name: str) -> Path:
     return RESULTS / f"{name}.json"
 
 
+def heading(name: str) -> tuple[str, tuple[str, ...]]:
+    """TITLE and NEEDS of a module, read without importing it: what it needs may be missing."""
+    source = Path(__file__).parent.joinpath(*name.split(".")).with_suffix(".py").read_text(encoding="utf-8")
+    named = {
+        target.id: node.value
+        for node in ast.parse(source).body
+        if isinstance(node, ast.Assign)
+        for target in node.targets
+        if isinstance(target, ast.Name)
+    }
+    return ast.literal_eval(named["TITLE"]), ast.literal_eval(named["NEEDS"])
+
+
 def missing(name: str) -> list[str]:
     """What a module needs and this machine lacks."""
-    return [need for need in import_module(f"validation.{name}").NEEDS if need_version(need) is None]
+    return [need for need in heading(name)[1] if need_version(need) is None]
 
 
 def run(name: str) -> Record:

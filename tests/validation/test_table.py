@@ -66,8 +66,12 @@ def test_kept_results_are_explained(name: str) -> None:
 def test_every_module_is_listed() -> None:
     folders = (page.ROOT / "validation" / folder for folder in ("codes", "published"))
     there = {f"{folder.name}.{path.stem}" for folder in folders for path in folder.glob("*.py")}
-    has_rows = {name for name in there if hasattr(import_module(f"validation.{name}"), "rows")}
-    assert has_rows == set(MODULES)
+    assert {name for name in there if has_rows(name)} == set(MODULES)
+
+
+def has_rows(name: str) -> bool:
+    source = (page.ROOT / "validation" / name.replace(".", "/")).with_suffix(".py").read_text(encoding="utf-8")
+    return "\ndef rows() -> Iterator[Row]:" in source
 
 
 def test_what_is_missing_is_said(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -134,7 +134,7 @@ def slew() -> Iterator[Row]:
     elements = HermiteBeam(8.0, *(lambda x, c=c: c + 0 * x for c in constants), 2766.7, 6.8952e10, elements=8)
     times = np.arange(0.0, end + step / 2, step)
     tip = elements.history(base, times)[:, 1]
-    beam = gb.Beam(8.0, gb.Section.general(*constants), gb.Material(2766.7, 6.8952e10))
+    beam = gb.Beam(8.0, gb.Section.general(*constants), gb.Material(2766.7, 6.8952e10), damping_ratio=0.0)
     structure = gb.assemble(beam, "FOAM", axial=2, y=8)
     hub = gb.Hub(radius=0.5, rate=gb.SmoothStep(level, duration))
     ours = gb.simulate(structure, hub, duration=end, step=step, residual_from=duration)
