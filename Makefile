@@ -1,6 +1,7 @@
 # make demo: install and run the main job; make test: the tests; make check: what CI checks besides;
 # make validate: compare with other codes and write docs/validation.md (minutes; what is not installed is left out);
 # make docs: the documentation site, in out/docs;
+# make mutants: whether the tests catch deliberate errors in the physics (minutes);
 # make dist: sdist and wheel into dist/; make wheels: the wheel in empty environments on every Python that is there;
 # make benchmark: how long commands take, and a comparison with Exudyn (minutes; nothing else should run).
 PYTHON ?= python3
@@ -10,9 +11,9 @@ EXAMPLE := examples/f16_8g_turn.toml
 CACHE := $(CURDIR)/.cache/jax
 
 # Folders that ruff reads.
-CODE := src tests validation benchmarks examples .ci
+CODE := src tests validation mutants benchmarks examples .ci
 
-.PHONY: demo test check validate docs benchmark dist wheels lock clean
+.PHONY: demo test check validate docs benchmark mutants dist wheels lock clean
 
 demo: .venv/installed
 	$(BIN)/gbeam run $(EXAMPLE) --out out/f16_8g_turn
@@ -39,6 +40,10 @@ docs: .venv/dev-installed
 benchmark: .venv/dev-installed
 	$(BIN)/python benchmarks/latency.py
 	$(BIN)/python benchmarks/exudyn.py
+
+# One: .venv/bin/python -m mutants WORDS OF ITS NAME
+mutants: .venv/dev-installed
+	JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/python -m mutants --jobs 2
 
 dist: .venv/uv-installed
 	$(BIN)/python .ci/dist.py

@@ -19,6 +19,13 @@ def test_flight_is_its_load_without_rotation() -> None:
     assert flight.breaks.size == 6
 
 
+def test_a_flight_with_rates_turns_as_its_rates_and_their_derivatives_say() -> None:
+    flight = Flight(z=9.8, rates=vector(x=0.3, y=trapezoid(2.0, jerk=4.0, start=1.0, hold=4.0)))
+    base = flight.base(np.array([0.0, 1.25, 3.0]))
+    np.testing.assert_allclose(base.w_WB_B, [[0.3, 0, 0], [0.3, 1.0, 0], [0.3, 2.0, 0]])
+    np.testing.assert_allclose(base.alpha_WB_B, [[0, 0, 0], [0, 4.0, 0], [0, 0, 0]])
+
+
 def test_components_are_profiles_or_numbers_and_vectors_go_by_name() -> None:
     ramp = trapezoid(98.0, jerk=40.0, start=1.0, hold=4.0)
     flight = Flight(z=ramp, x=-2.0)

@@ -62,6 +62,15 @@ def test_inward_is_a_negative_radius() -> None:
     np.testing.assert_allclose(inward.w_WB_B, [0, 0, 2.0])
 
 
+@pytest.mark.parametrize("pointing", ["outward", "inward"])
+def test_a_setting_angle_turns_the_sections_y_about_the_beam_towards_the_hubs_axis(pointing: str) -> None:
+    side = 1.0 if pointing == "outward" else -1.0
+    base = Hub(radius=0.5, rate=constant(2.0), setting_angle=np.pi / 6, pointing=pointing).base(0.0)
+    # y, which lay in the plane of rotation, rises towards z: half of the rate is about it.
+    np.testing.assert_allclose(base.w_WB_B, [0, 1.0, 3**0.5], atol=1e-12)
+    np.testing.assert_allclose(base.a_WO_B, [-2.0 * side, 0, 0], atol=1e-12)
+
+
 def test_a_setting_angle_mixes_the_planes() -> None:
     """At 90° the section's z lies where y was: the lag and flap stiffnesses change places."""
     both = assemble(BEAM, Model("FOAM", 0, 1, 1)).coefficients
