@@ -27,3 +27,18 @@ def test_the_oldest_python_is_the_first_of_the_classifiers() -> None:
     assert [int(name[2:]) for name in pythons] == list(range(int(pythons[0][2:]), int(pythons[0][2:]) + len(pythons)))
     tried = re.search(r"^PYTHONS = \((.*)\)$", (ROOT / ".ci" / "wheels.py").read_text(encoding="utf-8"), re.MULTILINE)
     assert tried is not None and re.findall(r'"(.*?)"', tried[1]) == pythons
+
+
+def test_the_workflow_runs_what_developers_run_and_the_hook_is_make_check() -> None:
+    workflow = (ROOT / ".github" / "workflows" / "ci.yml").read_text(encoding="utf-8")
+    assert "bash .ci/run" in workflow and (ROOT / ".ci" / "run").exists()
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    targets = re.search(r"target: \[(.*)\]", workflow)
+    assert targets is not None and all(f"\n{name}:" in makefile for name in targets[1].split(", "))
+    assert "entry: make check\n" in (ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8")
+
+
+def test_reports_say_the_version_and_the_scenario() -> None:
+    for name in ("wrong_answer", "fault"):
+        form = (ROOT / ".github" / "ISSUE_TEMPLATE" / f"{name}.yml").read_text(encoding="utf-8")
+        assert "gbeam --version" in form and "label: The scenario\n" in form

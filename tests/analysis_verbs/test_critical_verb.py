@@ -16,7 +16,7 @@ BENDING = 6.8952e10 * 8.2189e-9 / 64  # EI/L², N
 def call(tmp_path, monkeypatch, gbeam):
     """Call the verb: exit status, JSON, stderr."""
     monkeypatch.chdir(tmp_path)
-    Path("column.toml").write_text(COLUMN)
+    Path("column.toml").write_text(COLUMN, encoding="utf-8")
 
     def run(*options):
         answer = gbeam("critical-speed", "column.toml", "--json", *options)

@@ -27,7 +27,7 @@ SCENARIO = (
 def call(tmp_path, monkeypatch, capsys):
     """Call the verb with changes: exit status, JSON, stderr."""
     monkeypatch.chdir(tmp_path)
-    Path("slew.toml").write_text(SCENARIO)
+    Path("slew.toml").write_text(SCENARIO, encoding="utf-8")
 
     def run(*changes):
         status = main(["models", "slew.toml", "--json", *(word for it in changes for word in ("--set", it))])

@@ -19,7 +19,7 @@ from ..scenarios import SLEWING, SLEWING_AND_FLYING
 def scenario(tmp_path, monkeypatch):
     """A slewing hub and a flight of the same beam, in the current folder."""
     monkeypatch.chdir(tmp_path)
-    Path("hub.toml").write_text(SLEWING_AND_FLYING)
+    Path("hub.toml").write_text(SLEWING_AND_FLYING, encoding="utf-8")
 
 
 @pytest.fixture
@@ -127,8 +127,10 @@ def test_campbell(call):
 def test_campbell_speaks_in_the_unit_given(scenario, gbeam):
     answer = gbeam("campbell", "hub.toml", "--modes", "2", "--to", "20 rpm", "--out", "there")
     assert answer.status == 0 and "TLAM, 0 to 20 rpm" in answer.out and "rad/s" not in answer.out
-    assert json.loads(Path("there/campbell.json").read_text())["speed"][-1] == pytest.approx(2 * np.pi / 3)
-    assert "<!-- hub rate, rpm -->" in Path("there/campbell.svg").read_text()
+    assert json.loads(Path("there/campbell.json").read_text(encoding="utf-8"))["speed"][-1] == pytest.approx(
+        2 * np.pi / 3
+    )
+    assert "<!-- hub rate, rpm -->" in Path("there/campbell.svg").read_text(encoding="utf-8")
 
 
 def test_linearize(call):
@@ -178,7 +180,7 @@ def test_unknown_motion_and_time(call):
 
 @pytest.mark.slow
 def test_models(call):
-    Path("hub.toml").write_text(SLEWING)
+    Path("hub.toml").write_text(SLEWING, encoding="utf-8")
     changes = ("motion.slew.rate.level=1 rad/s", "response.residual_from=30 s")
     status, facts, _ = call("models", *(word for change in changes for word in ("--set", change)))
     rows = {row["model"]: row for row in facts["rows"] if row["motion"] == "slew"}

@@ -33,7 +33,7 @@ def test_wrong_command_line(arguments: list[str], gbeam: Call) -> None:
 
 @pytest.mark.parametrize("verb", ["run", "check"])
 def test_wrong_scenario(verb: str, fast: Path, gbeam: Call) -> None:
-    fast.write_text(fast.read_text().replace('"300 mm"', '"300 mn"'))
+    fast.write_text(fast.read_text(encoding="utf-8").replace('"300 mm"', '"300 mn"'), encoding="utf-8")
     answer = gbeam(verb, fast.name)
     assert answer.status == 2 and answer.out == ""
     assert answer.err.startswith("fast.toml:3:10: beam.length:")

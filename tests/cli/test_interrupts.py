@@ -16,7 +16,9 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc to 
 
 def _handles_signals(process: int) -> bool:
     caught = next(
-        line for line in Path(f"/proc/{process}/status").read_text().splitlines() if line.startswith("SigCgt:")
+        line
+        for line in Path(f"/proc/{process}/status").read_text(encoding="utf-8").splitlines()
+        if line.startswith("SigCgt:")
     )
     return bool(int(caught.split()[1], 16) >> (signal.SIGTERM - 1) & 1)
 

@@ -43,7 +43,7 @@ def test_a_defect_is_named_with_its_traceback_in_a_file(
     answer = gbeam("check", fast, "--json")
     assert answer.status == 3 and answer.json["outcome"] == "defect"
     assert "gbeam: defect: KeyError: " in answer.err and "issue" in answer.err and "\x1b" not in answer.err
-    traceback = Path(answer.json["traceback"]).read_text()
+    traceback = Path(answer.json["traceback"]).read_text(encoding="utf-8")
     assert str(traceback).startswith("gbeam 0.") and f"gbeam check {fast}" in traceback and "KeyError" in traceback
 
 
