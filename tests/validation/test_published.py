@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from validation.published import paper2009, paper2020, references
+from validation.published import closed_forms, others, paper2009, paper2020, references
 from validation.table import AGREES, DIFFERS, Row
 
 CHEAP = {
@@ -14,6 +14,15 @@ CHEAP = {
     "Southwell": references.southwell,
     "roll-up": references.roll_up,
     "integrators": references.schemes,
+    "double taper": others.double_taper,
+    "cable": others.cable,
+    "after pulses": closed_forms.corner_and_pulse,
+    "resonance": closed_forms.resonance,
+    "hinged rigid blade": closed_forms.hinged_rigid_blade,
+    "setting angle": closed_forms.setting_angle,
+    "free hub": closed_forms.free_hub,
+    "hanging chain": closed_forms.hanging_chain,
+    "section forces": closed_forms.section_forces,
 }
 
 
