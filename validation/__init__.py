@@ -16,4 +16,6 @@ MODULES: tuple[str, ...] = (
     "published.paper2009",
     "published.paper2020",
     "published.references",
+    "published.others",
+    "published.closed_forms",
 )

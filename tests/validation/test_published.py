@@ -12,7 +12,6 @@ CHEAP = {
     "2009, Table 2": paper2009.table_2,
     "flap with a tip mass": references.flap_with_tip_mass,
     "Southwell": references.southwell,
-    "roll-up": references.roll_up,
     "integrators": references.schemes,
     "double taper": others.double_taper,
     "cable": others.cable,

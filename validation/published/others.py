@@ -17,7 +17,7 @@ from validation.published.specimens import PLANAR, frequencies, spinning, unit_b
 from validation.table import Row
 
 TITLE = "Further cases of the literature and of other codes"
-NEEDS: tuple[str, ...] = ()
+NEEDS = ()
 STILL = Base(*np.zeros((3, 3)))
 
 

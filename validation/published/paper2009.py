@@ -20,7 +20,7 @@ from validation.published.tables import CRITICAL_2009, TABLE_2
 from validation.table import Row
 
 TITLE = "Hub-beam with tip mass (2009): every printed number"
-NEEDS: tuple[str, ...] = ()
+NEEDS = ()
 SOURCE = "Sensors & Transducers, special issue 5, March 2009, pp. 53–68"
 FIVE, ONE = (5, 5), (1, 1)
 PRINTED_PI = 3.14

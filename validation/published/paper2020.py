@@ -26,7 +26,7 @@ from validation.published.specimens import (
 from validation.table import Row
 
 TITLE = "Beam on a three-axis centrifuge (2020): every printed number"
-NEEDS: tuple[str, ...] = ()
+NEEDS = ()
 SOURCE = "Zhang, Lu, Liu and Yang 2020, doi:10.21595/jve.2020.21118"
 KERNEL = 0.0596  # s
 FITTED = f"corners rounded over {1e3 * KERNEL:.1f} ms, a width that is fitted: a consistency check"

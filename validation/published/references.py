@@ -62,7 +62,7 @@ from validation.published.tables import (
 from validation.table import Row
 
 TITLE = "Published cases"
-NEEDS: tuple[str, ...] = ()
+NEEDS = ()
 STILL = Base(*np.zeros((3, 3)))
 LARGE = Model("exact", *PLANAR)
 
