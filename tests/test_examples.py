@@ -1,10 +1,15 @@
 """Every example runs, and says what its source says."""
 
+import math
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 import gbeam
+from gbeam.report.study.summary_json import to_json
 from gbeam.scenario import build, loads, template
 
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.toml"))
@@ -16,11 +21,30 @@ def run(name: str, *overrides: str) -> gbeam.Study:
     return gbeam.study(gbeam.read_scenario(path, overrides))
 
 
+def assert_all_known(answer: gbeam.Study) -> None:
+    """The file of a run that is done holds only numbers, its JSON null only for what it is not asked for or is none."""
+    for path, group in answer.to_xarray().subtree_with_keys:
+        for name, each in group.variables.items():
+            assert each.dtype.kind != "f" or np.isfinite(each.values).all() or name.endswith("_allowed"), (path, name)
+    none = ("residual_amplitude", "relative", "damage_ratio", "errors")
+    assert not [place for place in _nulls(to_json(answer)) if not any(f".{each}" in place for each in none)]
+
+
+def _nulls(value: Any, place: str = "") -> Iterator[str]:
+    if isinstance(value, (dict, list, tuple)):
+        for key, each in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from _nulls(each, f"{place}.{key}")
+    elif isinstance(value, float) and math.isnan(value):
+        yield place
+
+
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
 def test_example_is_done_within_its_tolerance(path: Path) -> None:
     case = gbeam.read_scenario(path)
     answer = gbeam.study(case)
     assert {r.outcome for r in answer.responses.values()} == {"done"}
+    assert not gbeam.describe(case).warnings  # nothing implausible
+    assert_all_known(answer)
     for response in answer.responses.values():
         assert response.error_estimate <= case.response.tolerance
     assert len(answer.comparisons) == len(case.tracks)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from gbeam.io.groups import AXIS, Group, Variable, coordinate, flags, variable, words
+from gbeam.io.groups import AXIS, Group, Variable, coordinate, flags, known, variable, words
 from gbeam.results.imitation.accounting import Accounting, PeakPair
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.fatigue import Fatigue
@@ -51,7 +51,7 @@ def comparison_group(comparison: Comparison) -> Group:
     data |= _whole_flight(comparison.peaks) | _accounting(comparison.accounting)
     accepted = {None: "", True: "true", False: "false"}[comparison.accepted]
     attrs = {"flight": flight, "centrifuge": centrifuge, "verdict": comparison.verdict, "accepted": accepted}
-    return Group(data, coordinates, attrs)
+    return Group(known(data), coordinates, attrs)
 
 
 def _fatigue(fatigue: Fatigue) -> dict[str, Variable]:

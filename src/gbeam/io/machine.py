@@ -22,7 +22,7 @@ def plan_group(plan: MachinePlan) -> Group:
             "arm": plan.arm,
             "outcome": plan.outcome,
             "message": plan.message,
-            "warnings": "\n".join(plan.axes.warnings),
+            "warnings": "\n".join(plan.warnings),
         },
     )
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
@@ -101,7 +101,7 @@ def save(result: Any, path: str | os.PathLike[str]) -> None:
     if isinstance(result, Study):
         write(result, path)
     else:
-        write_groups({"": _GROUPS[type(result)](result)}, path)
+        write_groups({"": _group(result)}, path)
 
 
 def to_xarray(result: Any) -> Any:
@@ -112,7 +112,7 @@ def to_xarray(result: Any) -> Any:
         return xr.Dataset(dict(group.variables), dict(group.coordinates), group.attrs)
 
     if not isinstance(result, Study):
-        return dataset(_GROUPS[type(result)](result))
+        return dataset(_group(result))
     every = _study(result, Provenance())
     return xr.DataTree.from_dict({f"/{path}": dataset(group) for path, group in every.items()})
 
@@ -142,6 +142,12 @@ def read(path: str | os.PathLike[str]) -> xr.DataTree:
     except OSError as error:
         reason = error.strerror or "not a netCDF-4 file"
         raise InputError(str(path), f"cannot be read ({reason})", "give a result.nc written by gbeam run") from None
+
+
+def _group(result: Any) -> Group:
+    """What a file or a Dataset holds of a result that is no study, with its warnings."""
+    group = _GROUPS[type(result)](result)
+    return replace(group, attrs=group.attrs | {"warnings": "\n".join(result.warnings)})
 
 
 def _study(study: Study, provenance: Provenance) -> dict[str, Group]:

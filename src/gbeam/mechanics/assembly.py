@@ -23,6 +23,7 @@ from gbeam.mechanics.models import Kind, Model
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.motion.profiles.piecewise import constant
 from gbeam.structure.beam import Beam
+from gbeam.structure.plausibility import implausible_beam
 
 Array = Any
 
@@ -108,6 +109,7 @@ def assemble(
         work=work,
         load_values=None if history is None else history(np.zeros(())),
         damping_ratio=ratio,
+        warnings=implausible_beam(beam, (counts[1] > 0, counts[2] > 0)),
     )
 
 

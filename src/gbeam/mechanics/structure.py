@@ -90,6 +90,8 @@ class Structure:
         Components of the loads that static, modes and stability see: those of time zero, see :meth:`at_time`.
     damping_ratio : float, sequence of float or None
         Modal, of the modes at rest; None where none is given: then there is no damping, and no response either.
+    warnings : tuple of str
+        What is implausible in the beam; every result has them.
     """
 
     kind: str = static()
@@ -111,6 +113,7 @@ class Structure:
     work: LoadWork | None = None
     load_values: Array | None = None
     damping_ratio: Any = None
+    warnings: tuple[str, ...] = static(default=())
 
     def __repr__(self) -> str:
         shapes = ", ".join(f"{n} {way}" for n, way in zip(self.counts, ("axial", "y", "z"), strict=True) if n)

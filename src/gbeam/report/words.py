@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.printable import json_printable
+from gbeam.results.result import Result
 from gbeam.results.section_forces import yield_margin
 
 
@@ -70,6 +71,11 @@ def stress_words(stations: Any, tension: Any, compression: Any, yield_strength: 
         return words
     margin = float(yield_margin(yield_strength, np.array(stress)))
     return f"{words}, {'margin on yield' if margin >= 0 else 'ABOVE YIELD: margin'} {margin:.3g}"
+
+
+def warning_lines(result: Result) -> list[str]:
+    """A line for each warning of a result."""
+    return [f"  warning: {each}" for each in result.warnings]
 
 
 def sentence(text: str) -> str:

@@ -36,6 +36,8 @@ class Description(Part):
     step : float or None
         s; None for an automatic one.
     integrator : str
+    warnings : tuple of str
+        What is implausible.
     """
 
     title: str
@@ -52,6 +54,7 @@ class Description(Part):
     step: float | None
     integrator: str
     tracks: Mapping[str, str] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
 
     @property
     def total_mass(self) -> float:

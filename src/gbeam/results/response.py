@@ -81,7 +81,6 @@ class Response(Figured):
         done, diverged or not converged.
     message : str
         What happened and what to try, where the outcome is not done.
-    warnings : tuple of str
     time : (t,) s
     stations : (s,) m, the last is the tip
     displacement : (t, s, 3)
@@ -121,7 +120,6 @@ class Response(Figured):
     model: str
     outcome: str
     message: str
-    warnings: tuple[str, ...]
     time: Floats
     stations: Floats
     displacement: Floats

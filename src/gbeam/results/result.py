@@ -7,7 +7,7 @@ neither, and importing a record loads neither.
 from __future__ import annotations
 
 import os
-from dataclasses import fields
+from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,7 +23,7 @@ Flags = NDArray[np.bool_]
 
 def brief(record: Any) -> str:
     """A record on one line: numbers and words as they are, arrays by their shapes, other records by their names."""
-    values = ", ".join(f"{f.name}={_short(getattr(record, f.name))}" for f in fields(record))
+    values = ", ".join(f"{f.name}={_short(getattr(record, f.name))}" for f in fields(record) if f.repr)
     return f"{type(record).__name__}({values})"
 
 
@@ -52,10 +52,17 @@ class Part:
         return brief(self)
 
 
+@dataclass(frozen=True, kw_only=True)
 class Result:
-    """What an analysis returns as a whole: it goes to xarray and to a netCDF file."""
+    """What an analysis returns as a whole: it goes to xarray and to a netCDF file.
 
-    __slots__ = ()
+    Parameters
+    ----------
+    warnings : tuple of str
+        Why it may not be what it seems: implausible input, or an answer that is not to be trusted.
+    """
+
+    warnings: tuple[str, ...] = field(default=(), repr=False)
 
     def to_xarray(self) -> Any:
         """Return the result with named dimensions, units and frames.
@@ -89,8 +96,6 @@ class Result:
 
 class Figured(Result):
     """A result that has figures."""
-
-    __slots__ = ()
 
     def plot(self, what: str = "", *, title: str = "") -> Figure:
         """Draw the result.

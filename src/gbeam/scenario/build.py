@@ -205,7 +205,9 @@ def _response(
     if table.residual_from is not None and not start <= table.residual_from < end:
         fix = f"give a time from {start:g} s to {end:g} s"
         parts.errors.append(InputError("response.residual_from", f"is {table.residual_from:g} s", fix))
-    return ResponseSettings(
+    return parts.attempt(
+        "response",
+        ResponseSettings,
         start=start,
         duration=duration,
         step=None if isinstance(table.step, str) else table.step,

@@ -10,6 +10,7 @@ import numpy as np
 from gbeam.arrays.namespace import is_jax
 from gbeam.checks import positive
 from gbeam.errors import InputError
+from gbeam.plausibility import possible
 from gbeam.structure.bodies import PointMass
 from gbeam.structure.loads import Load
 from gbeam.structure.material import Material
@@ -51,7 +52,7 @@ class Beam:
     loads: Sequence[Load] = field(default=())
 
     def __post_init__(self) -> None:
-        positive("length", self.length, "m")
+        possible("length", "length", positive("length", self.length, "m"))
         object.__setattr__(self, "masses", tuple(self.masses))
         object.__setattr__(self, "loads", tuple(self.loads))
         places = [(f"masses[{i}].at", mass.at) for i, mass in enumerate(self.masses)]

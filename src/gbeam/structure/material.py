@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gbeam.checks import positive
+from gbeam.plausibility import possible
 
 FATIGUE_EXPONENT = 5.0
 
@@ -37,8 +38,8 @@ class Material:
     fatigue_exponent: float = FATIGUE_EXPONENT
 
     def __post_init__(self) -> None:
-        positive("density", self.density, "kg/m³")
-        positive("youngs_modulus", self.youngs_modulus, "Pa")
+        possible("density", "density", positive("density", self.density, "kg/m³"))
+        possible("youngs_modulus", "modulus", positive("youngs_modulus", self.youngs_modulus, "Pa"))
         if self.yield_strength is not None:
             positive("yield_strength", self.yield_strength, "Pa")
         positive("fatigue_exponent", self.fatigue_exponent, "(a number)")

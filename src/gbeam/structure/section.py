@@ -14,6 +14,7 @@ from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.checks import positive
 from gbeam.errors import InputError
+from gbeam.plausibility import possible
 
 Array = NDArray[np.float64]
 
@@ -69,6 +70,11 @@ SHAPES: dict[str, tuple[Rule, tuple[str, ...], tuple[str, ...]]] = {
     "general": (general, ("area", "inertia_y", "inertia_z"), ("extreme_fibre_y", "extreme_fibre_z")),
 }
 ROUND = ("circle", "tube")
+KINDS = {
+    "area": "area",
+    "inertia_y": "second moment",
+    "inertia_z": "second moment",
+}  # of plausible values; else section
 _UNITS = {"area": "m²", "inertia_y": "m⁴", "inertia_z": "m⁴"}
 
 
@@ -112,7 +118,7 @@ class Section:
         for name, values in self.dimensions.items():
             for i, value in enumerate(values):
                 place = f"{name}[{i}]" if len(values) > 1 else name
-                positive(place, value, _UNITS.get(name, "m"))
+                possible(place, KINDS.get(name, "section"), positive(place, value, _UNITS.get(name, "m")))
             if len(values) != count:
                 raise InputError(
                     name, f"has {len(values)} value(s) for {count} station(s)", "give one value per station"

@@ -17,6 +17,7 @@ from gbeam.arrays.tree import record
 from gbeam.errors import InputError
 from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.fields.rooted import RootedField
+from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.motion.bases.base import Base
@@ -239,4 +240,5 @@ def linearize(
         model=structure.kind,
         motion=name,
         time=time,
+        warnings=input_warnings(structure, motion, name=name, span=(time, time), base=point.base),
     )

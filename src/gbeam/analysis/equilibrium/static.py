@@ -10,6 +10,7 @@ from gbeam.analysis.equilibrium.equilibrium import lowest_stiffness
 from gbeam.analysis.equilibrium.operating_point import operating_point
 from gbeam.analysis.equilibrium.point import OperatingPoint, beam_block, on_base
 from gbeam.errors import InputError
+from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
@@ -84,5 +85,6 @@ def deflection_at(
         q=q,
         strain_energy=float(structure.strain_energy(q)),
         stable=lowest > 0,
+        warnings=input_warnings(structure, motion, name=name, span=(time, time), base=base),
         loads=section_forces(structure, over_time, q[None], still, still, np.array([time]), motion=motion),
     )

@@ -18,6 +18,7 @@ from gbeam.analysis.imitation.place_check import verify
 from gbeam.analysis.imitation.place_measures import Answers, Histories
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.errors import InputError
+from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion import Centrifuge, Flight
 from gbeam.motion.centrifuge.machine.limits import exceeded
@@ -109,6 +110,7 @@ def place(
         refused=tuple(trials.refused),
         widths=(choice.widths[0], choice.widths[-1]),
         outcome="done" if allowed else EXCEEDED,
+        warnings=input_warnings(structure, flight, name=names[0], span=trials.span),
     )
 
 

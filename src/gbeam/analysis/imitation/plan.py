@@ -7,6 +7,7 @@ import numpy as np
 from gbeam.limits import SAMPLES, refuse_more
 from gbeam.motion import Centrifuge
 from gbeam.motion.centrifuge.history import axes_result, columns
+from gbeam.motion.plausibility import implausible_motion
 from gbeam.results.machine import Commands, MachinePlan
 
 _GRID, _MOST = 2e-3, 50_000  # s between the times of the result; most of them
@@ -29,7 +30,11 @@ def plan(name: str, motion: Centrifuge, tracks: str = "") -> MachinePlan:
     time = np.linspace(first, last, count + 1)
     axes = axes_result(motion, time)
     outcome = "done" if axes.within_limits else "limits exceeded"
-    return MachinePlan(name, tracks, float(motion.geometry.arm), outcome, axes.exceeding, time, axes)
+    where, span = f"motion.{name}" if name else "motion", motion.target.span
+    warnings = implausible_motion(motion, where, span)
+    warnings += implausible_motion(motion.flight, f"motion.{tracks}" if tracks else "flight", span)
+    arm = float(motion.geometry.arm)
+    return MachinePlan(name, tracks, arm, outcome, axes.exceeding, time, axes, warnings=(*warnings, *axes.warnings))
 
 
 def commands(motion: Centrifuge, sample: float) -> Commands:

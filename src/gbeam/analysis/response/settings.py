@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from gbeam.checks import positive
+from gbeam.plausibility import implausible, possible
+
 
 @dataclass(frozen=True)
 class ResponseSettings:
@@ -26,6 +29,11 @@ class ResponseSettings:
         Relative error at which the automatic step stops refining.
     residual_from : float or None
         Time from which the residual vibration is measured, s.
+
+    Raises
+    ------
+    InputError
+        If duration or step is impossible.
     """
 
     duration: float
@@ -35,3 +43,14 @@ class ResponseSettings:
     parameters: Mapping[str, float] = field(default_factory=dict)
     tolerance: float = 1e-4
     residual_from: float | None = None
+
+    def __post_init__(self) -> None:
+        possible("duration", "duration", positive("duration", self.duration, "s"))
+        if self.step is not None:
+            possible("step", "step", positive("step", self.step, "s"))
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is implausible."""
+        step = () if self.step is None else implausible("response.step", "step", self.step)
+        return (*implausible("response.duration", "duration", self.duration), *step)

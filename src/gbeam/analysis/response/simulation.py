@@ -27,6 +27,7 @@ from gbeam.arrays.namespace import holds_jax, is_jax
 from gbeam.errors import InputError
 from gbeam.integrate.driver import Trajectory
 from gbeam.mechanics.influence import influence
+from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.centrifuge.history import axes_result
@@ -199,7 +200,8 @@ def _result(
     outcome, message, warnings = "done", "", tuple(f"record: {note}" for note in getattr(motion, "notes", ()))
     if not traced:
         outcome, message, own = describe(structure, problem, settings, last, base, peaks, time, q[:, beam], error)
-        warnings = own + (() if axes is None else axes.warnings) + warnings
+        given = input_warnings(structure, motion, name=name, span=(time[0], time[-1]), base=base)
+        warnings = given + settings.warnings + own + (() if axes is None else axes.warnings) + warnings
     return Response(
         name=name,
         environment=motion.kind,

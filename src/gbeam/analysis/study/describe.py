@@ -6,6 +6,7 @@ import numpy as np
 
 from gbeam.analysis.study.case import Case
 from gbeam.mechanics.fields.basis import quadrature
+from gbeam.mechanics.plausibility import input_warnings
 from gbeam.results.description import Description
 
 MODES = 6  # natural frequencies at most
@@ -29,6 +30,8 @@ def describe(case: Case) -> Description:
         If the beam does not fit its model, with its place in the scenario.
     """
     structure, beam, settings = case.assemble(), case.beam, case.response
+    span = settings.start, settings.start + settings.duration
+    doubts = [input_warnings(structure, motion, name=name, span=span) for name, motion in case.motions.items()]
     frequencies, modes = structure.rest
     # Which group of coordinates moves most says along which axis a mode bends.
     groups = np.repeat(("axial", "y", "z"), structure.counts)
@@ -48,4 +51,5 @@ def describe(case: Case) -> Description:
         duration=settings.duration,
         step=settings.step,
         integrator=settings.integrator,
+        warnings=tuple(dict.fromkeys(warning for each in doubts for warning in (*each, *settings.warnings))),
     )

@@ -14,6 +14,7 @@ from gbeam.analysis.vibration.modal import modes_at
 from gbeam.analysis.vibration.speeds import largest_rate
 from gbeam.analysis.vibration.stability import critical_speed, hub_of
 from gbeam.errors import InputError
+from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.solvers.roots import brent
@@ -162,6 +163,7 @@ def campbell(
         orders=tuple(orders),
         crossings=tuple(sorted(crossings, key=lambda crossing: crossing.speed)),
         critical=lost if lost.value is not None else None,
+        warnings=input_warnings(structure, motion, name=name),
     )
 
 

@@ -10,6 +10,7 @@ from gbeam.analysis.equilibrium.equilibrium import lowest_stiffness
 from gbeam.analysis.equilibrium.point import Linear, OperatingPoint, linear_matrices, on_base
 from gbeam.analysis.vibration.modal import directions, eigenvalues, growth_limit, modes_at
 from gbeam.errors import ComputationError
+from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.numerics.solvers.roots import brent
@@ -60,7 +61,8 @@ def first_loss_along(
         return -1.0 if point is None else _margin(linear_matrices(point))
 
     def answer(value: float | None, kind: str, direction: str, reason: str) -> Critical:
-        return Critical(quantity, unit, value, upper, kind, direction, reason, structure.kind)
+        words = kind, direction, reason, structure.kind
+        return Critical(quantity, unit, value, upper, *words, warnings=input_warnings(structure))
 
     structure, _ = path(0.0)
     grid = np.linspace(0.0, upper, SCAN + 1)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from gbeam.analysis.equilibrium.operating_point import operating_point
 from gbeam.analysis.equilibrium.point import Linear, OperatingPoint, linear_matrices
+from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.solvers.eigen import symmetric_modes
@@ -165,4 +167,5 @@ def modes(
         If there is no relative equilibrium.
     """
     point = operating_point(structure, motion, time)
-    return modes_at(structure, point, gyroscopic=gyroscopic, name=name, time=time)
+    warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)
+    return replace(modes_at(structure, point, gyroscopic=gyroscopic, name=name, time=time), warnings=warnings)

@@ -20,6 +20,7 @@ from gbeam.checks import positive
 from gbeam.errors import InputError
 from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.models import Model
+from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.hub import Hub
@@ -111,7 +112,8 @@ def critical_speed_map(
     InputError
         If the motion has no hub, or a mass or a position is impossible.
     """
-    limit = SEARCH_FACTOR * lowest_frequency(assemble(beam, model)) if upper is None else upper
+    unloaded = assemble(beam, model)
+    limit = SEARCH_FACTOR * lowest_frequency(unloaded) if upper is None else upper
     speed = np.full((len(masses), len(positions)), np.nan)
     for i, mass in enumerate(masses):
         for j, at in enumerate(positions):
@@ -119,7 +121,8 @@ def critical_speed_map(
             value = critical_speed(assemble(loaded, model), motion, upper=limit, name=name).value
             speed[i, j] = np.nan if value is None else value
     heavy, where = np.asarray(masses, dtype=float), np.asarray(positions, dtype=float)
-    return CriticalMap(name, model.kind, heavy, where, speed, limit)
+    warnings = input_warnings(unloaded, motion, name=name)
+    return CriticalMap(name, model.kind, heavy, where, speed, limit, warnings=warnings)
 
 
 def buckling_acceleration(structure: Structure, *, upper: float | None = None) -> Critical:

@@ -6,7 +6,7 @@ import textwrap
 from dataclasses import asdict
 from typing import Any
 
-from gbeam.report.words import sentence
+from gbeam.report.words import sentence, warning_lines
 from gbeam.results.imitation.placement import Candidate, Placement
 
 _PLACES = ("current", "best", "middle")
@@ -43,6 +43,7 @@ def to_json(placement: Placement, written: str | None = None) -> dict[str, Any]:
         "verifications": {check.name: asdict(check) for check in placement.verifications},
         "vibration_gain_over_middle": placement.vibration_gain,
         "refused": list(placement.refused),
+        "warnings": list(placement.warnings),
     }
 
 
@@ -65,6 +66,7 @@ def text(placement: Placement, written: str | None = None) -> str:
         flags = " ".join(f'--set "{each}"' for each in settings(placement))
         lines.append(f"  to apply it    {flags}")
         lines.append(f"                 {f'written to {written}' if written else 'or place again with --write'}")
+    lines += warning_lines(placement)
     if placement.message and placement.outcome == "done":
         lines += ["", *textwrap.wrap(sentence(placement.message), _WIDTH)]
     return "\n".join([*lines, *_measures(placement), *_verified(placement), *_candidates(placement, measure)])

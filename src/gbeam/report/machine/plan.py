@@ -34,7 +34,7 @@ def table(title: str, plans: Iterable[MachinePlan]) -> RenderableType:
             Text(f"target held {start:.3f} to {end:.3f} s: {reason}")
             for start, end, reason in not_followed_stretches(axes)[:EPISODES]
         ]
-        lines += [Text(f"warning: {warning}", style="yellow") for warning in axes.warnings]
+        lines += [Text(f"warning: {warning}", style="yellow") for warning in plan.warnings]
         lines += [Text(f"warning: {shortfall}", style="yellow") for shortfall in axes.shortfalls[:SHORTFALLS]]
         if len(axes.shortfalls) > SHORTFALLS:
             lines.append(Text(f"and {len(axes.shortfalls) - SHORTFALLS} more: see --json"))
@@ -69,7 +69,7 @@ def _plan(plan: MachinePlan) -> dict[str, Any]:
         **ends(plan.time, axes),
         "outcome": plan.outcome,
         "message": plan.message,
-        "warnings": list(axes.warnings),
+        "warnings": list(plan.warnings),
         "limits": limits.to_json(axes),
         "tracking_error": asdict(tracking(plan.time, axes)),
         "not_followed": [{"start": start, "end": end, "reason": reason} for start, end, reason in axes.episodes],

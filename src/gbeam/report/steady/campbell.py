@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from gbeam.report.words import warning_lines
 from gbeam.results.steady.modal import Campbell
 
 
@@ -23,6 +24,7 @@ def to_json(diagram: Campbell) -> dict[str, Any]:
         "orders": list(diagram.orders),
         "crossings": [asdict(crossing) for crossing in diagram.crossings],
         "critical_speed": None if diagram.critical is None else diagram.critical.value,
+        "warnings": list(diagram.warnings),
     }
 
 
@@ -48,4 +50,4 @@ def text(diagram: Campbell, unit: str = "rad/s", size: float = 1.0) -> str:
     ]
     if diagram.critical is not None:
         lines.append(f"  {diagram.critical.reason}")
-    return "\n".join(lines)
+    return "\n".join([*lines, *warning_lines(diagram)])

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.report.words import warning_lines
 from gbeam.results.steady.stability import Critical, CriticalMap
 
 KEYS = {"rate": "critical_speed", "loads": "critical_load_factor", "acceleration": "critical_acceleration"}
@@ -33,12 +34,13 @@ def to_json(critical: Critical, motion: str, varied: str = "rate") -> dict[str, 
         "direction": critical.direction,
         "reason": critical.reason,
         "model": critical.model,
+        "warnings": list(critical.warnings),
     }
 
 
 def text(critical: Critical, motion: str) -> str:
     """The answer as one sentence."""
-    return f"{motion}: {critical.reason}"
+    return "\n".join([f"{motion}: {critical.reason}", *warning_lines(critical)])
 
 
 def map_json(critical: CriticalMap) -> dict[str, Any]:
@@ -51,6 +53,7 @@ def map_json(critical: CriticalMap) -> dict[str, Any]:
         "position": critical.position.tolist(),
         "critical_speed": [[None if np.isnan(v) else float(v) for v in row] for row in critical.speed],
         "searched_to": critical.searched_to,
+        "warnings": list(critical.warnings),
     }
 
 
@@ -62,7 +65,7 @@ def map_text(critical: CriticalMap) -> str:
         lines.append(f"  {place:<9.4g}" + "".join("           –" if np.isnan(v) else f"{v:12.5f}" for v in speeds))
     if np.isnan(critical.speed).any():
         lines.append(f"  –: none up to {critical.searched_to:.4g} rad/s")
-    return "\n".join(lines)
+    return "\n".join([*lines, *warning_lines(critical)])
 
 
 def map_csv(critical: CriticalMap) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.report.words import stress_words, tidy, xyz, xyz_lists
+from gbeam.report.words import stress_words, tidy, warning_lines, xyz, xyz_lists
 from gbeam.results.response import BaseMotion
 from gbeam.results.section_forces import Loads
 from gbeam.results.steady.equilibrium import Deflection
@@ -29,6 +29,7 @@ def _deflection(deflection: Deflection) -> dict[str, Any]:
         "displacement": xyz_lists(deflection.displacement),
         "strain_energy": deflection.strain_energy,
         "stable": deflection.stable,
+        "warnings": list(deflection.warnings),
     }
     return values if deflection.loads is None else values | {"loads": loads_json(deflection.loads)}
 
@@ -69,7 +70,8 @@ def _lines(deflection: Deflection) -> str:
     warning = "" if deflection.stable else "; UNSTABLE: the stiffness there is not positive definite"
     tip = f"tip x {x:.6g} mm, y {y:.6g} mm, z {z:.6g} mm"
     first = f"{deflection.motion} at {deflection.time:.4g} s: {tip} ({deflection.model}){warning}"
-    return first if deflection.loads is None else f"{first}\n  {_loads(deflection.loads)}"
+    loads = [] if deflection.loads is None else [f"  {_loads(deflection.loads)}"]
+    return "\n".join([first, *loads, *warning_lines(deflection)])
 
 
 def _loads(loads: Loads) -> str:

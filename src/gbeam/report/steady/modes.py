@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from gbeam.report.steady.deflection import base_json
-from gbeam.report.words import xyz_lists
+from gbeam.report.words import warning_lines, xyz_lists
 from gbeam.results.steady.modal import Modes
 
 ROUNDING = 1e-10  # a damping ratio smaller than this is none
@@ -45,6 +45,7 @@ def to_json(modes: Modes) -> dict[str, Any]:
         ],
         "rigid": modes.rigid,
         "overdamped": [float(value) for value in modes.overdamped],
+        "warnings": list(modes.warnings),
     }
 
 
@@ -64,4 +65,4 @@ def text(modes: Modes) -> str:
         f"  {growing.kind} along {growing.direction}: grows by {growing.growth_rate:.4g} per second"
         for growing in modes.instabilities
     ]
-    return "\n".join(lines)
+    return "\n".join([*lines, *warning_lines(modes)])

@@ -7,6 +7,7 @@ from dataclasses import asdict
 from textwrap import wrap
 from typing import Any
 
+from gbeam.report.words import warning_lines
 from gbeam.results.steady.state_space import Gauge, StateSpace
 
 WIDTH = 100  # columns of the text
@@ -39,6 +40,7 @@ def to_json(system: StateSpace, gauges: Iterable[Gauge] = (), hankel: Iterable[f
         **{key: getattr(system, key.lower()).tolist() for key in "ABCD"},
         "gauges": [asdict(gauge) for gauge in gauges],
         "hankel_singular_values": [float(value) for value in hankel],
+        "warnings": list(system.warnings),
     }
 
 
@@ -59,4 +61,4 @@ def text(system: StateSpace, gauges: Iterable[Gauge] = (), hankel: Iterable[floa
             lines.append(f"  strain_{k} at {gauge.at:g} m, {fibre}")
     if values := list(hankel):
         lines.append("  Hankel singular values " + " ".join(f"{value:.3g}" for value in values))
-    return "\n".join([*lines, "--json prints the matrices, --out writes them for MATLAB too."])
+    return "\n".join([*lines, *warning_lines(system), "--json prints the matrices, --out writes them for MATLAB too."])

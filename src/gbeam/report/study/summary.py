@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from rich.console import Group, RenderableType
@@ -41,8 +41,10 @@ def table(study: Study) -> RenderableType:
         comparisons.
     """
     parts: list[RenderableType] = [Text(study.title, style="bold")] if study.title else []
+    common = _common_warnings(study)
+    parts += [Text(f"warning: {warning}", style="yellow") for warning in common]
     for response in study.responses.values():
-        parts += ["", *_response(response)]
+        parts += ["", *_response(response, common)]
     for name, failure in study.failures.items():
         parts += ["", _heading(name, "", failure.outcome), _indented(Text(sentence(failure.message), style="red"))]
     for each in study.comparisons:
@@ -56,7 +58,13 @@ def _heading(name: str, kind: str, outcome: str) -> Text:
     return Text.from_markup(f"[bold]{escape(name)}[/bold]{kind}: [{colour}]{outcome}[/{colour}]")
 
 
-def _response(response: Response) -> Iterator[RenderableType]:
+def _common_warnings(study: Study) -> list[str]:
+    """Warnings of every response, such as of the beam: they are given once."""
+    first, *others = study.responses.values()
+    return [each for each in first.warnings if others and all(each in other.warnings for other in others)]
+
+
+def _response(response: Response, elsewhere: Sequence[str] = ()) -> Iterator[RenderableType]:
     kind = "" if response.name == response.environment else f" ({response.environment})"
     yield _heading(response.name, kind, response.outcome)
     if response.message:
@@ -73,7 +81,8 @@ def _response(response: Response) -> Iterator[RenderableType]:
         yield _indented(limits.table(response.axes.limits))
         yield from (_indented(Text(line)) for line in _tracking(response, response.axes))
     for warning in response.warnings:
-        yield _indented(Text(f"warning: {warning}", style="yellow"))
+        if warning not in elsewhere:
+            yield _indented(Text(f"warning: {warning}", style="yellow"))
 
 
 def _indented(what: RenderableType) -> Padding:

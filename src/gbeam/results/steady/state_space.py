@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -82,20 +82,15 @@ class StateSpace(Result):
             return list(range(len(names))) if chosen is None else [names.index(name) for name in chosen]
 
         i, o = places(inputs, self.inputs, "inputs"), places(outputs, self.outputs, "outputs")
-        return StateSpace(
-            a=self.a,
+        return replace(
+            self,
             b=self.b[:, i],
             c=self.c[o],
             d=self.d[np.ix_(o, i)],
-            states=self.states,
             inputs=tuple(self.inputs[k] for k in i),
             outputs=tuple(self.outputs[k] for k in o),
-            state=self.state,
             input=self.input[i],
             output=self.output[o],
-            model=self.model,
-            motion=self.motion,
-            time=self.time,
         )
 
     def to_scipy(self) -> Any:

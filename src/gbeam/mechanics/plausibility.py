@@ -1,0 +1,91 @@
+"""What to doubt of an answer before it is computed: implausible values, and directions that the model leaves out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from gbeam.arrays.namespace import holds_jax, is_traced
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.plausibility import implausible_motion, times
+from gbeam.motion.protocol import Motion
+
+NOTICED = 0.01  # of the largest: a smaller share along a direction without shapes is none
+SLOWEST, FASTEST = 1e-3, 1e6  # Hz, of a beam's lowest natural frequency
+
+
+def input_warnings(
+    structure: Structure,
+    motion: Motion | None = None,
+    *,
+    name: str = "",
+    span: tuple[float, float] = (0.0, 0.0),
+    base: Any = None,
+) -> tuple[str, ...]:
+    """Warnings of what is implausible in the input of any analysis; none where JAX traces it.
+
+    Parameters
+    ----------
+    structure : Structure
+        With what :func:`gbeam.assemble` found implausible in its beam.
+    motion : Motion, optional
+    name : str
+        Of the motion.
+    span : tuple of float
+        First and last time that matter, s.
+    base : Base or BaseMotion, optional
+        Motion of the root at the times that matter, (t, 3), where it is known; else that of the motion over the span,
+        but for a machine's, which takes a plan to know.
+    """
+    if structure.traced or holds_jax(motion):
+        return ()
+    where = f"motion.{name}" if name else "motion"
+    found = [*structure.warnings, *_frequency(structure)]
+    if motion is not None:
+        found += implausible_motion(motion, where, span)
+        if base is None and motion.kind != "centrifuge" and not motion.free:
+            base = motion.base(times(motion, span))
+        elif base is None and motion.free:
+            base = motion.mount.base(*np.zeros((3, 1)))  # type: ignore[attr-defined]
+    return (*found, *_without_shapes(structure, base, where, span))
+
+
+def _frequency(structure: Structure) -> Iterator[str]:
+    lowest = float(structure.rest[0][0]) / (2 * np.pi)
+    if not structure.warnings and not SLOWEST <= lowest <= FASTEST:
+        yield (
+            f"the beam's lowest natural frequency at rest is {lowest:.3g} Hz, outside the plausible {SLOWEST:g} to "
+            f"{FASTEST:g} Hz; are the units of length, section and material right?"
+        )
+
+
+def _without_shapes(structure: Structure, base: Any, where: str, span: tuple[float, float]) -> Iterator[str]:
+    """Accelerations and loads across the beam along which the model has no shape: the beam stays straight there."""
+    still = [axis for axis in (1, 2) if not np.any(structure.station_places.first[:, axis])]
+    if structure.field is None or not still:
+        return
+    if base is not None and not is_traced(base.a_WO_B):
+        size = np.abs(np.reshape(base.a_WO_B, (-1, 3))).max(axis=0)
+        for axis in still:
+            if size[axis] > NOTICED * size.max():
+                yield _remark(f"{where} accelerates the root, or gravity does,", f"{size[axis]:.3g} m/s²", axis)
+    if structure.history is None:
+        return
+    when = np.union1d(np.linspace(*span, 201), np.clip(structure.history.breaks, *span))
+    values = np.abs(structure.history(when)).max(axis=0)
+    for axis in still:
+        # A moment about z bends along y, one about y along z.
+        for part, column, unit in (("force", axis, "N"), ("moment", 6 - axis, "N m")):
+            largest = values[:, 3 * (column // 3) : 3 * (column // 3) + 3].max()
+            for i in np.flatnonzero(values[:, column] > NOTICED * largest):
+                yield _remark(f"beam.loads[{i}].{part} bends the beam", f"{values[i, column]:.3g} {unit}", axis)
+
+
+def _remark(what: str, size: str, axis: int) -> str:
+    way = "xyz"[axis]
+    return (
+        f"{what} along {way} with up to {size}, where the model has no shapes: the beam stays straight there; "
+        f"give model.modes.{way} = 1 or more"
+    )
