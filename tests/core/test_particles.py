@@ -7,7 +7,18 @@ from functools import cache
 import numpy as np
 import pytest
 
-from gbeam import Flight, Hub, InputError, SmoothStep, Structure, campbell, modes, simulate, static
+from gbeam import (
+    Flight,
+    Hub,
+    InputError,
+    SmoothStep,
+    Structure,
+    campbell,
+    critical_speed,
+    modes,
+    simulate,
+    static,
+)
 from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
 from gbeam.mechanics.equations.linear import Geometric
 from gbeam.motion import Base, constant
@@ -54,7 +65,7 @@ def particles(*, by_stress: bool) -> Structure:
 @pytest.mark.parametrize("by_stress", [False, True])
 def test_particles_of_a_beam_are_the_beam(by_stress: bool) -> None:
     ours, whole = particles(by_stress=by_stress), beam()
-    assert ours.size == whole.size and ours.length == pytest.approx(8.0, rel=0.01)  # the first one is not at the root
+    assert ours.size == whole.size and ours.length == pytest.approx(8.0)
     for name in ("mass", "damping", "stiffness", "gyroscopic", "k_ww", "k_al", "k_a", "f_ww", "f_al", "f_a", "rigid"):
         theirs = getattr(whole.coefficients, name)
         np.testing.assert_allclose(getattr(ours.coefficients, name), theirs, atol=1e-12 * max(np.abs(theirs).max(), 1))
@@ -170,3 +181,35 @@ def test_blade_of_finite_elements_under_steady_loads() -> None:
     np.testing.assert_allclose(2 * np.pi * diagram.frequency[-1], FLAP[12][:2], rtol=3e-4)
     held = simulate(few, Flight(z=constant(1e-3)), duration=1.0, step=0.02)
     np.testing.assert_allclose(held.tip[:, 2], -1e-3 / 8, rtol=1e-6)
+
+
+def pendulum(mass: float = 2.0, arm: float = 0.4, spring: float = 12.0) -> Structure:
+    """A mass on an arm without mass, on a hinge with a spring."""
+    return Structure.of_particles(
+        np.array([mass]),
+        np.array([[arm, 0.0, 0.0]]),
+        np.array([[[0.0], [arm], [0.0]]]),
+        np.array([[spring]]),
+        second=np.array([[[[-arm]], [[0.0]], [[0.0]]]]),
+    )
+
+
+@pytest.mark.parametrize("rate", [0.0, 5.0, 10.0])
+def test_pendulum_on_a_rotor(rate: float) -> None:
+    """ω² = k/(mL²) + Ω² r/L, the law of centrifugal pendulums."""
+    found = modes(pendulum(), Hub(radius=0.5, rate=rate)).frequency
+    assert 2 * np.pi * found == pytest.approx([np.sqrt(12 / (2 * 0.4**2) + rate**2 * 0.5 / 0.4)], rel=1e-12)
+
+
+def test_pendulum_that_points_inward_falls_over() -> None:
+    """Beyond the critical speed no mode of it oscillates."""
+    inward = Hub(radius=0.5, pointing="inward")
+    assert critical_speed(pendulum(), inward).value == pytest.approx(np.sqrt(12 / (2 * 0.4 * 0.5)), rel=1e-9)
+    fallen = modes(pendulum(), Hub(radius=0.5, pointing="inward", rate=6.0))
+    assert fallen.frequency.size == 0 and not fallen.stable
+
+
+def test_one_particle_has_a_length_to_move_by() -> None:
+    """A run ends where the structure moves by its length: that of one particle is its distance from the root."""
+    turned = simulate(pendulum(), Hub(radius=0.5, rate=SmoothStep(10.0, 2.0)), duration=3.0, step=0.01)
+    assert turned.outcome == "done" and 0 < turned.peaks.max_size < 0.4

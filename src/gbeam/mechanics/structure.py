@@ -65,7 +65,7 @@ class Structure:
     counts : (axial, along y, along z)
         Numbers of shapes; the root's springs come after them.
     length : float
-        m.
+        m; of particles, the largest distance of one from the root.
     mass : (particles,) kg
     places : Places
         Of the particles, to second order.
@@ -170,7 +170,7 @@ class Structure:
             linear=True,
             hub_force=True,
             counts=(0, 0, 0),
-            length=float(np.ptp(np.asarray(r0)[:, 0])),
+            length=float(np.linalg.norm(np.asarray(r0), axis=-1).max()),
             mass=mass,
             places=places,
             stations=np.asarray(r0)[chosen, 0],

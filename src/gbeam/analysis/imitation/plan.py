@@ -22,8 +22,14 @@ def plan(name: str, motion: Centrifuge, tracks: str = "") -> MachinePlan:
     name : str
         Of the motion.
     motion : Centrifuge
+        With the span of the flight that it tracks.
     tracks : str
         Name of the flight.
+
+    Raises
+    ------
+    InputError
+        If the motion has no span, or the load cannot be followed.
     """
     first, last = (float(end) for end in motion.extent)
     count = min(int(np.ceil((last - first) / _GRID)), _MOST)

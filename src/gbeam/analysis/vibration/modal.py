@@ -104,7 +104,7 @@ def modes_at(
     growing, _, grows = pick(~zero & real & (value.real > 0))
     shape = np.moveaxis(stations @ coordinates, -1, 0)
     # Turn each shape so that its largest component is 1.
-    flat = shape.reshape(len(shape), -1)
+    flat = shape.reshape(len(shape), shape.shape[1] * shape.shape[2])  # there may be no mode at all
     largest = flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)]
     flutter = oscillating.real > growth_limit(oscillating, size)
     return Modes(
