@@ -11,7 +11,7 @@ EXAMPLE := examples/f16_8g_turn.toml
 CACHE := $(CURDIR)/.cache/jax
 
 # Folders that ruff reads.
-CODE := src tests validation mutants benchmarks examples .ci
+CODE := src tests validation mutants benchmarks examples docs .ci
 
 .PHONY: demo test check validate docs benchmark mutants dist wheels lock clean
 

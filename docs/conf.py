@@ -39,6 +39,7 @@ html_static_path = ["_static"]
 html_css_files = ["gbeam.css"]
 html_copy_source = False
 html_show_sphinx = False
+html_sidebars = {page: [] for page in ("index", "theory", "validation", "changes")}  # they have no neighbours
 html_math_renderer = "mathml"
 html_theme_options = {
     "logo": {"text": "gbeam"},

@@ -8,7 +8,7 @@ import pytest
 
 from .pages import NOT_CODE, PAGES, ROOT, RUN, Block, Reader, blocks, commands
 
-SLOW = {"docs/howto/flight_record.md"}  # plans the F-16's flight several times
+SLOW = {"docs/howto/flight_record.md", "docs/tutorials/flight_on_a_centrifuge.md"}  # plan and place the F-16's flight
 RUNNABLE = [page for page in PAGES if any(block.language in RUN for block in blocks(page))]
 
 
@@ -30,6 +30,7 @@ def named(page: Path) -> str:
 )
 def test_page_runs(page: Path, reader: Reader, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(reader.folder)
+    monkeypatch.setattr("gbeam.plots.write_plots", lambda *_: [])  # half the time of a run, and tested elsewhere
     reader.read(page)
 
 
