@@ -1,5 +1,6 @@
 # make demo: install and run the main job; make test: the tests; make check: what CI checks besides;
 # make validate: compare with other codes and write docs/validation.md (minutes; what is not installed is left out);
+# make fuzz: 10,000 malformed inputs, then runs that are interrupted, killed and out of disk (half an hour);
 # make docs: the documentation site, in out/docs;
 # make mutants: whether the tests catch deliberate errors in the physics (minutes);
 # make dist: sdist and wheel into dist/; make wheels: the wheel in empty environments on every Python that is there;
@@ -11,9 +12,9 @@ EXAMPLE := examples/f16_8g_turn.toml
 CACHE := $(CURDIR)/.cache/jax
 
 # Folders that ruff reads.
-CODE := src tests validation mutants benchmarks examples docs .ci
+CODE := src tests validation fuzz mutants benchmarks examples docs .ci
 
-.PHONY: demo test check validate docs benchmark mutants dist wheels lock clean
+.PHONY: demo test check validate fuzz docs benchmark mutants dist wheels lock clean
 
 demo: .venv/installed
 	$(BIN)/gbeam run $(EXAMPLE) --out out/f16_8g_turn
@@ -36,6 +37,11 @@ docs: .venv/dev-installed
 	$(BIN)/gbeam schema --markdown > docs/scenario.md
 	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going docs out/docs
 	@echo "out/docs/index.html"
+
+# Linux; a disk that is full needs root. What is wrong is kept in fuzz/findings, and repeated by --repeat FILE.
+fuzz: .venv/dev-installed
+	OPENBLAS_NUM_THREADS=1 JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/python -m fuzz
+	OPENBLAS_NUM_THREADS=1 JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/python -m fuzz.faults
 
 benchmark: .venv/dev-installed
 	$(BIN)/python benchmarks/latency.py

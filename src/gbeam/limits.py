@@ -19,7 +19,7 @@ QUANTITY = 100  # characters of a quantity with its unit
 EXPONENT = 9  # of a unit
 TITLE = 200  # characters
 NAME = 64  # characters of a motion's name, which becomes a part of file names
-PROBLEMS = 100  # explained at once
+PROBLEMS = 50  # explained at once
 
 # What a scenario asks for.
 SHAPES = 40  # in one direction: assembling takes a second

@@ -14,6 +14,11 @@ def printable(text: str) -> str:
     return _UNPRINTABLE.sub(_escaped, text)
 
 
+def on_one_line(text: str) -> str:
+    """Return printable text without line feeds and tabs: a name or a value in a message of one line."""
+    return printable(text).replace("\n", "\\n").replace("\t", "\\t")
+
+
 def unprintable(text: str) -> str:
     """Return the first character that :func:`printable` would write out, so written; empty where there is none."""
     match = _UNPRINTABLE.search(text)

@@ -10,11 +10,12 @@ from collections.abc import Sequence
 from typing import Any
 
 from gbeam.errors import ComputationError, GbeamError, InputError
-from gbeam.printable import json_printable, printable
+from gbeam.printable import json_printable, on_one_line, printable, shortened
 
 FAILED = 1
 WRONG_INPUT = 2
 DEFECT = 3
+LONGEST = 1000  # characters of a message
 
 
 def report(error: GbeamError, as_json: bool) -> int:
@@ -26,13 +27,15 @@ def report(error: GbeamError, as_json: bool) -> int:
         return FAILED
     # A scenario's diagnostics begin with file:line, which editors open: nothing may stand before it.
     mark = "gbeam: " if isinstance(error, InputError) else ""
-    return _refuse(f"{mark}{error}", _diagnostics(error), as_json)
+    words = on_one_line(shortened(str(error), LONGEST)) if mark else str(error)
+    return _refuse(f"{mark}{words}", _diagnostics(error), as_json)
 
 
 def report_syntax(message: str, as_json: bool) -> int:
     """Print that the command line is wrong; return the exit status."""
     problem = {"path": "", "message": message, "hint": "see gbeam --help"}
-    return _refuse(f"gbeam: {message} (see gbeam --help)", [problem], as_json)
+    words = on_one_line(shortened(message, LONGEST))
+    return _refuse(f"gbeam: {words} (see gbeam --help)", [problem], as_json)
 
 
 def report_memory(error: MemoryError, as_json: bool) -> int:

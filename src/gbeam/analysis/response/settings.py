@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from gbeam.checks import positive
+from gbeam.limits import STEPS, refuse_more
 from gbeam.plausibility import implausible, possible
 
 
@@ -33,7 +34,7 @@ class ResponseSettings:
     Raises
     ------
     InputError
-        If duration or step is impossible.
+        If duration or step is impossible, or there are too many steps.
     """
 
     duration: float
@@ -48,6 +49,8 @@ class ResponseSettings:
         possible("duration", "duration", positive("duration", self.duration, "s"))
         if self.step is not None:
             possible("step", "step", positive("step", self.step, "s"))
+            fix = f"give {self.duration / STEPS:.2g} s or more"
+            refuse_more("step", "steps", self.duration / self.step, STEPS, 500.0, fix)
 
     @property
     def warnings(self) -> tuple[str, ...]:

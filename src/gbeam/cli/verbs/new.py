@@ -26,7 +26,7 @@ def new(
     from gbeam.scenario.template import template
 
     if file.suffix != ".toml":
-        raise InputError(str(file), "does not end in .toml", f"name it {file.with_suffix('.toml')}")
+        raise InputError(str(file), "does not end in .toml", f"name it {file.stem or 'wing'}.toml")
     try:
         with file.open("x", encoding="utf-8") as new_file:
             new_file.write(template(kind))

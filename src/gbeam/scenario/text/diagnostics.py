@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 
 from gbeam.errors import GbeamError
-from gbeam.printable import printable, shortened
+from gbeam.printable import on_one_line, printable, shortened
 
 LONGEST_MESSAGE = 1000  # characters: it may list thirty columns
 _WIDTH = 180  # characters of the line of the file
@@ -50,7 +50,7 @@ class Diagnostic:
         if self.override is not None:
             place = f"--set {self.override}"
         parts = (shortened(place), shortened(self.path), shortened(self.message, LONGEST_MESSAGE))
-        lines = [": ".join(part for part in parts if part)]
+        lines = [on_one_line(": ".join(part for part in parts if part))]
         margin = "    "
         if self.source_line is not None and self.column is not None:
             number = f"{self.line}"
@@ -62,7 +62,7 @@ class Diagnostic:
             lines += [f"    {number} | {printable(line)}", f"{margin} | {indent}{'^' * max(len(marked), 1)}"]
             margin += " "
         if self.hint:
-            lines.append(f"{margin}= {shortened(self.hint, LONGEST_MESSAGE)}")
+            lines.append(f"{margin}= {on_one_line(shortened(self.hint, LONGEST_MESSAGE))}")
         return "\n".join(lines)
 
     @staticmethod
@@ -87,5 +87,8 @@ class ScenarioError(GbeamError):
         super().__init__("\n".join(str(d) for d in self.diagnostics))
 
     def as_json(self) -> list[dict[str, str | int | None]]:
-        """Return the diagnostics as objects for JSON."""
-        return [asdict(d) for d in self.diagnostics]
+        """Return the diagnostics as objects for JSON; without the line of the file where that is very long."""
+        brief = (
+            replace(d, source_line=None) if len(d.source_line or "") > LONGEST_MESSAGE else d for d in self.diagnostics
+        )
+        return [asdict(d) for d in brief]

@@ -153,6 +153,7 @@ def _table(path: str | os.PathLike[str]) -> Table:
     return READERS.get(Path(path).suffix.lower(), read_text)(path)
 
 
+@np.errstate(all="ignore")  # numbers beyond a float's are refused by their row, without a warning before
 def read_flight(
     path: str | os.PathLike[str],
     time: str,

@@ -1,0 +1,62 @@
+"""Command lines: verbs, options and values that do not fit together."""
+
+from __future__ import annotations
+
+from fuzz.cases import Case, Random
+from fuzz.scenarios import NUMBERS, UNITS, WORDS, texts
+from gbeam.cli.program import VERBS
+
+# Options of one verb or another, each with a sound value; a flag has none.
+OPTIONS: dict[str, str | None] = {
+    "--set": "beam.length=250 mm", "--out": "out", "--json": None, "--motion": "slew", "--at": "0.1 s",
+    "--ignore-limits": None, "--vary": "rate", "--to": "20 rad/s", "--masses": "0.1 kg, 0.5 kg",
+    "--positions": "2 m, 5 m", "--rate": "2 rad/s", "--modes": "2", "--balanced": "2", "--strain-at": "10 mm",
+    "--inputs": "torque", "--outputs": "tip_y", "--speed": "60 rpm", "--measure": "tip=1", "--smoothing": "60 ms",
+    "--no-proof": None, "--sample": "5 ms", "--kind": "hub", "--markdown": None, "--help": None, "--version": None,
+    "--write": None,
+}  # fmt: skip
+KEYS = [
+    "beam.length", "beam", "model.modes.y", "model.modes", "model", "motion.slew.radius", "beam.masses[0].at",
+    "beam[0]", "title", "response.duration", "response.step", "a.b.c", "motion.x.kind", "", ".", "beam..length",
+    "beam.section.width[0]",
+]  # fmt: skip
+QUICK = ("check", "static", "modes", "campbell", "critical-speed", "linearize", "new", "schema", "plan")
+
+
+def command(chosen: Random) -> Case:
+    """A command line of sound and wrong words."""
+    verb = chosen.choice(QUICK if chosen.random() < 0.9 else (*WORDS, "rnu", *VERBS))
+    words = [verb]
+    if chosen.random() < 0.9:
+        words.append("s.toml" if chosen.random() < 0.8 else chosen.choice((*WORDS, "t.toml", "s.tml", "-", "new.toml")))
+    for _ in range(chosen.choice((0, 1, 1, 2, 3))):
+        option, value = chosen.choice(list(OPTIONS.items()))
+        if option == "--set" and chosen.random() < 0.8:
+            value = f"{chosen.choice(KEYS)}={_value(chosen)}"
+        elif value is not None and chosen.random() < 0.6:
+            value = _value(chosen)
+        words += [option] if value is None else [f"{option}={value}"] if chosen.random() < 0.2 else [option, value]
+    if chosen.random() < 0.1:
+        chosen.shuffle(words)
+    if chosen.random() < 0.1:
+        del words[chosen.randrange(len(words))]
+    if "place" in words or "run" in words or "models" in words:  # what is still valid is to end soon
+        words = ["check", *words[1:]]
+    text = chosen.choice(texts()[1:6] + texts()[-1:])
+    # The system passes no null character.
+    return Case("command", [word.replace("\0", "\\0") for word in words], {"s.toml": text.encode()})
+
+
+def _value(chosen: Random) -> str:
+    match chosen.randrange(5):
+        case 0:
+            return str(chosen.choice(WORDS))
+        case 1:
+            return str(chosen.choice(NUMBERS))
+        case 2:
+            return f"{chosen.choice(NUMBERS)} {chosen.choice(UNITS)}"
+        case 3:
+            return chosen.choice(
+                ("{", "[", "[" * 100, "{a=1}", "[1,2]", "{a={b={c=1}}}", "1,,2", ",", "=", "a=b=c", "'''", "1979-05-27")
+            )
+    return f"{chosen.random() * 10 ** chosen.randrange(-9, 9):g} {chosen.choice(UNITS)}"

@@ -1,0 +1,157 @@
+"""Records of flights: sound files of every kind, with bytes, columns, cells, sizes or names changed."""
+
+from __future__ import annotations
+
+import io
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from fuzz.cases import Case, Random
+from fuzz.scenarios import corrupted
+
+ROWS = 200
+SUFFIXES = (".csv", ".csv", ".csv", ".txt", ".mat", ".h5", ".nc", ".uff")
+CELLS = [
+    "", "nan", "inf", "-inf", "1e999", "1,5", "1;5", '"', '"1', "x", "٣", "\x1b[31m", "0x10", "1_0", "--1",
+    "9" * 500, " ",
+]  # fmt: skip
+KEYS = [
+    "time", "x", "y", "z", "unit", "time_unit", "cutoff", "resample", "despike", "skip_checks", "quantity", "p",
+    "rate_unit",
+]  # fmt: skip
+VALUES = [
+    '"0"', '"-"', '""', '"none"', '"-t"', '"ms"', '"s"', '"g"', '"m/s^2"', '"0.1 Hz"', '"3 Hz"', '"1e9 Hz"',
+    '"1e-9 Hz"', "true", '["spikes"]', '["unit", "sign", "sampling"]', '"acceleration"', '"ax"', '"rad/s"', "-1",
+    '"\\u001b"',
+]  # fmt: skip
+
+
+def columns(rows: int = ROWS) -> dict[str, Any]:
+    """A gentle turn."""
+    t = np.arange(rows) / 50.0
+    return {"t": t, "ax": 0.1 * np.sin(t), "ay": 0.05 * np.cos(3 * t), "az": 1 + np.sin(0.7 * t) ** 2}
+
+
+def record(chosen: Random) -> Case:
+    """A scenario with a record that is malformed, or with a wrong word about a sound one."""
+    suffix = chosen.choice(SUFFIXES)
+    data = text(chosen) if suffix in (".csv", ".txt") else binary(suffix)
+    for _ in range(chosen.choice((0, 1, 1, 2, 4, 20))):
+        data = corrupted(chosen, data)
+    entry = {"file": f'"r{suffix}"', "time": '"t"', "x": '"ax"', "y": '"ay"', "z": '"az"', "unit": '"g"'}
+    if suffix == ".uff":
+        entry |= {"time": '"time"'}
+    if chosen.random() < 0.4:
+        entry[chosen.choice(KEYS)] = chosen.choice(VALUES)
+    if chosen.random() < 0.3:
+        entry |= {"cutoff": chosen.choice(VALUES), "resample": chosen.choice(VALUES)}
+    if chosen.random() < 0.05:
+        entry["file"] = chosen.choice(
+            ('"/dev/zero"', '"."', '""', '"a\\u0000"', '"' + "a" * 300 + '"', '"~"', '"missing.csv"')
+        )
+    table = ", ".join(f"{key} = {value}" for key, value in entry.items())
+    return Case(
+        "record", ["check", "s.toml"], {"s.toml": SCENARIO.replace("RECORD", table).encode(), f"r{suffix}": data}
+    )
+
+
+def text(chosen: Random) -> bytes:
+    """A table of text with cells, rows, a delimiter, an encoding or times that are not sound."""
+    table = columns(chosen.choice((0, 1, 2, 5, 6, ROWS, ROWS)))
+    rows = [[f"{value:.6g}" for value in row] for row in zip(*table.values(), strict=True)]
+    delimiter = chosen.choice((",", ",", ";", "\t", " ", "|"))
+    header = list(table)
+    for _ in range(chosen.choice((0, 0, 1, 1, 3))):
+        i = chosen.randrange(len(rows)) if rows else 0
+        match chosen.randrange(7):
+            case 0 if rows:
+                rows[i][chosen.randrange(4)] = chosen.choice(CELLS)
+            case 1 if rows:
+                rows[i] = rows[i][: chosen.randrange(4)]
+            case 2 if rows:
+                rows[i] = rows[chosen.randrange(len(rows))]
+            case 3:
+                header[chosen.randrange(4)] = chosen.choice(CELLS)
+            case 4:
+                header = header * chosen.choice((1, 2, 500))
+            case 5 if rows:
+                rows[i] = rows[i] * chosen.choice((2, 5000))
+            case _:
+                column, factor = chosen.randrange(4), chosen.choice((-1.0, 0.0, 1e-6, 1e6, 1e300))
+                rows = [[*row[:column], f"{factor * number(row, column):g}", *row[column + 1 :]] for row in rows]
+    lines = [delimiter.join(header), *(delimiter.join(row) for row in rows)]
+    if chosen.random() < 0.2:
+        lines.insert(
+            chosen.randrange(len(lines) + 1), chosen.choice(("# note", "[s],[g],[g],[g]", ";;;", "", '"', "\x00"))
+        )
+    end = chosen.choice(("\n", "\r\n", "\r"))
+    return end.join(lines).encode(chosen.choice(("utf-8", "utf-8", "utf-16", "latin-1")), "replace")
+
+
+def number(row: list[str], column: int) -> float:
+    """A cell as a number; 1 where it is none."""
+    try:
+        return float(row[column])
+    except (IndexError, ValueError):
+        return 1.0
+
+
+@cache
+def binary(suffix: str) -> bytes:
+    """A sound file of a kind by its suffix."""
+    table, file = columns(), io.BytesIO()
+    if suffix == ".mat":
+        from scipy.io import savemat
+
+        savemat(file, {"rec": table, **table}, do_compression=True)
+    elif suffix == ".h5":
+        import h5py
+
+        with h5py.File(file, "w") as opened:
+            for name, values in table.items():
+                opened.create_dataset(name, data=values, compression="gzip", chunks=True).attrs["units"] = (
+                    "s" if name == "t" else "g"
+                )
+            opened["matrix"] = np.zeros((ROWS, 3))
+    elif suffix == ".nc":
+        from scipy.io import netcdf_file
+
+        opened = netcdf_file(file, "w")
+        opened.createDimension("t", ROWS)
+        for name, values in table.items():
+            opened.createVariable(name, "f8", ("t",))[:] = values
+        opened.flush()
+    else:
+        return b"".join(_set_58(name, table["t"], values) for name, values in table.items() if name != "t")
+    return file.getvalue()
+
+
+def _set_58(name: str, t: Any, values: Any) -> bytes:
+    """Universal data set 58: a real, even time response."""
+    lines = [
+        f"{'':4}-1", f"{58:6d}", name, "NONE", "01-Jan-26 00:00:00", "NONE", "NONE",
+        f"{1:5d}{0:10d}{1:5d}{0:10d} {'NONE':10}{1:10d}{3:4d} {'NONE':10}{1:10d}{0:4d}",
+        f"{4:10d}{len(t):10d}{1:10d}{t[0]:13.5e}{t[1] - t[0]:13.5e}{0.0:13.5e}",
+        f"{17:10d}{0:5d}{0:5d}{0:5d} {'Time':20} {'s':20}",
+        f"{12:10d}{0:5d}{0:5d}{0:5d} {'Acceleration':20} {'g':20}",
+        *[f"{0:10d}{0:5d}{0:5d}{0:5d} {'NONE':20} {'NONE':20}"] * 2,
+    ]  # fmt: skip
+    lines += ["".join(f"{value:20.11e}" for value in values[i : i + 4]) for i in range(0, len(values), 4)]
+    return "\n".join([*lines, f"{'':4}-1", ""]).encode()
+
+
+SCENARIO = """\
+[beam]
+length = "300 mm"
+section = { shape = "rectangle", width = "20 mm", thickness = "4 mm" }
+material = { density = "2700 kg/m^3", youngs_modulus = "70 GPa" }
+damping_ratio = 0.01
+[model]
+kind = "FOAM"
+modes = { axial = 0, y = 1, z = 1 }
+[motion.flight]
+kind = "flight"
+record = { RECORD }
+"""

@@ -1,0 +1,107 @@
+"""One case in a process of its own: with limits on time and memory, and what it gave."""
+
+from __future__ import annotations
+
+import os
+import resource
+import signal
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from fuzz.cases import Case
+
+SECONDS = 10  # of processor time
+PATIENCE = 60  # s: a machine that does other things as well
+MEMORY = 2 * 2**30
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a case gave: exit status (negative: the signal that ended it), streams, seconds, bytes, files made."""
+
+    status: int
+    out: str
+    err: str
+    seconds: float
+    memory: int
+    files: tuple[str, ...]
+    traceback: str
+
+
+def warm_up() -> None:
+    """Import what most cases need, once: a fork has it."""
+    import h5py
+    import pint
+    import scipy.interpolate
+    import scipy.io
+
+    import gbeam.analysis.study.describe
+    import gbeam.cli.program
+    import gbeam.cli.verbs.check
+    import gbeam.motion
+    import gbeam.report.description
+    import gbeam.scenario.explain
+    import gbeam.scenario.text.locate_toml
+    from gbeam.scenario.text.units import quantity
+
+    assert all((h5py, pint, scipy.interpolate, scipy.io, gbeam))
+    quantity("1 inch", "length")  # makes the registry of units
+
+
+def call(case: Case, folder: Path) -> Answer:
+    """Run a case in an empty folder."""
+    for name, data in case.files.items():
+        file = folder / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(data)
+    before = set(folder.rglob("*"))
+    with tempfile.TemporaryDirectory() as aside:
+        out, err = Path(aside, "out"), Path(aside, "err")
+        start = time.monotonic()
+        child = os.fork()
+        if child == 0:
+            _child(case.arguments, folder, aside, out, err)
+        _, status, usage = os.wait4(child, 0)
+        made = tuple(sorted(str(each.relative_to(folder)) for each in set(folder.rglob("*")) - before))
+        defects = [each.read_text() for each in Path(aside).glob("gbeam-defect-*")]
+        return Answer(
+            os.waitstatus_to_exitcode(status), _text(out), _text(err),
+            time.monotonic() - start, 1024 * usage.ru_maxrss, made, "\n".join(defects),
+        )  # fmt: skip
+
+
+def _child(arguments: list[str], folder: Path, aside: str, out: Path, err: Path) -> None:
+    """Become the command line; never returns."""
+    status = 70
+    try:
+        os.chdir(folder)
+        tempfile.tempdir = aside
+        for number, file in ((1, out), (2, err)):
+            os.dup2(os.open(file, os.O_CREAT | os.O_WRONLY), number)
+        sys.stdout = os.fdopen(1, "w", encoding="utf-8", closefd=False)
+        sys.stderr = os.fdopen(2, "w", encoding="utf-8", closefd=False)
+        resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS + 5))
+        resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, MEMORY))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        signal.alarm(PATIENCE)
+        from gbeam.cli import main
+
+        status = main(arguments)
+        sys.stdout.flush()
+        sys.stderr.flush()
+    except SystemExit as error:
+        status = error.code if isinstance(error.code, int) else 71
+    except BaseException:
+        import traceback
+
+        traceback.print_exc()
+        sys.stderr.flush()
+    finally:
+        os._exit(status)
+
+
+def _text(file: Path) -> str:
+    return file.read_bytes().decode("utf-8", "replace") if file.exists() else ""

@@ -1,0 +1,49 @@
+"""A slice of the fuzzer: `make fuzz` runs a hundred times as many, interrupts runs and fills disks."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+sys.path.append(str(ROOT))
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="forks, with limits on time and memory")
+
+
+def test_malformed_inputs_are_refused_with_their_place() -> None:
+    command = [sys.executable, "-m", "fuzz", "--count", "100", "--seed", "10"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False, timeout=300)
+    assert done.returncode == 0 and done.stdout.endswith("no faults\n"), done.stdout + done.stderr
+    refused = sum(int(words.split()[0]) for words in done.stdout.replace(":", ",").split(",") if "status 2" in words)
+    assert refused > 75
+
+
+@pytest.mark.parametrize(
+    ("status", "out", "err", "fault"),
+    [
+        (2, "", "s.toml:1:1: beam is missing\n", ""),
+        (2, "", "gbeam: --out x: no\n", ""),
+        (0, "Scenario valid.\n", "", ""),
+        (3, "", "gbeam: defect: KeyError\n", "defect"),
+        (1, "", "Traceback (most recent call last):\nKeyError\n", "defect"),
+        (-24, "", "", "hang"),
+        (-11, "", "", "killed by SIGSEGV"),
+        (2, "half", "s.toml:1:1: beam is missing\n", "output of a refused input"),
+        (2, "", "something\n", "no place"),
+        (2, "", "s.toml: \x1b[31m\n", "control characters"),
+        (1, "", "", "failed without a word"),
+        (1, "", "gbeam: out of memory: x\n", "memory"),
+        (0, "", "a.py:1: RuntimeWarning: overflow\n", "warning"),
+    ],
+)
+def test_the_judge_sees_faults(status: int, out: str, err: str, fault: str) -> None:
+    from fuzz.cases import Case
+    from fuzz.judge import judge
+    from fuzz.worker import Answer
+
+    found = judge(Case("scenario", ["check", "s.toml"]), Answer(status, out, err, 0.1, 1, (), ""))
+    assert found.startswith(fault) and bool(found) == bool(fault)
