@@ -85,7 +85,7 @@ def _kept(seed: int, number: int, case: Case) -> Path:
 
 
 def _loaded(file: Path) -> Case:
-    kept = json.loads(file.read_text())
+    kept = json.loads(file.read_text(encoding="utf-8"))
     return Case(kept["kind"], kept["arguments"], {name: base64.b64decode(data) for name, data in kept["files"].items()})
 
 

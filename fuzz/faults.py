@@ -73,7 +73,7 @@ def ended(process: subprocess.Popen[str]) -> tuple[int, str]:
 def handles_signals(process: int) -> bool:
     """Whether a process has come so far as to handle SIGTERM; False also where it has ended."""
     try:
-        lines = Path(f"/proc/{process}/status").read_text().splitlines()
+        lines = Path(f"/proc/{process}/status").read_text(encoding="utf-8").splitlines()
     except OSError:
         return False
     caught = next((line for line in lines if line.startswith("SigCgt:")), "SigCgt: 0")

@@ -9,6 +9,7 @@ import sys
 import tempfile
 import time
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 
 from fuzz.cases import Case
@@ -16,6 +17,19 @@ from fuzz.cases import Case
 SECONDS = 10  # of processor time
 PATIENCE = 60  # s: a machine that does other things as well
 MEMORY = 2 * 2**30
+WARM = (
+    "h5py",
+    "pint",
+    "scipy.interpolate",
+    "scipy.io",
+    "gbeam.analysis.study.describe",
+    "gbeam.cli.program",
+    "gbeam.cli.verbs.check",
+    "gbeam.motion",
+    "gbeam.report.description",
+    "gbeam.scenario.explain",
+    "gbeam.scenario.text.locate_toml",
+)
 
 
 @dataclass(frozen=True)
@@ -33,21 +47,10 @@ class Answer:
 
 def warm_up() -> None:
     """Import what most cases need, once: a fork has it."""
-    import h5py
-    import pint
-    import scipy.interpolate
-    import scipy.io
-
-    import gbeam.analysis.study.describe
-    import gbeam.cli.program
-    import gbeam.cli.verbs.check
-    import gbeam.motion
-    import gbeam.report.description
-    import gbeam.scenario.explain
-    import gbeam.scenario.text.locate_toml
+    for name in WARM:
+        import_module(name)
     from gbeam.scenario.text.units import quantity
 
-    assert all((h5py, pint, scipy.interpolate, scipy.io, gbeam))
     quantity("1 inch", "length")  # makes the registry of units
 
 

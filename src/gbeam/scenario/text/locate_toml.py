@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from gbeam.scenario.text.paths import Path, Place, Span
@@ -34,15 +34,17 @@ class _Finder:
 
     def __init__(self, text: str) -> None:
         # tree-sitter breaks lines at \n only, and counts columns in bytes.
-        self.lines = [line.encode() for line in text.split("\n")]
+        self.lines = text.split("\n")
+        self.columns: dict[int, Sequence[int]] = {}
         self.places: dict[Path, Place] = {}
 
     def span(self, node: Node) -> Span:
         """Place of a node, cut at the end of its first line."""
         (row, start), (last, stop) = node.start_point, node.end_point
-        line = self.lines[row]
-        end = stop if last == row else len(line.rstrip())
-        return Span(row + 1, len(line[:start].decode()) + 1, len(line[:end].decode()) + 1)
+        if row not in self.columns:
+            self.columns[row] = _columns(self.lines[row])
+        columns = self.columns[row]
+        return Span(row + 1, columns[start] + 1, columns[stop if last == row else -1] + 1)
 
     def note(self, path: Path, key: Node, value: Node) -> None:
         """Keep the first place of `path`: a table may be opened again by a later header or dotted key."""
@@ -90,6 +92,15 @@ class _Finder:
             for i, child in enumerate(_inside(node)):
                 self.note((*path, i), child, child)
                 self.value((*path, i), child)
+
+
+def _columns(line: str) -> Sequence[int]:
+    """The column of every byte of a line, and last where its text ends; made once a line, which may be a megabyte."""
+    end = len(line.rstrip())
+    if line.isascii():
+        return [*range(len(line) + 1), end]
+    counts = [i for i, letter in enumerate(line) for _ in letter.encode()]
+    return [*counts, len(line), end]
 
 
 def _inside(node: Node) -> list[Node]:
