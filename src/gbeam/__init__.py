@@ -65,6 +65,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.results.steady.state_space import Gauge as Gauge
     from gbeam.results.steady.state_space import StateSpace as StateSpace
     from gbeam.results.study import Study as Study
+    from gbeam.results.sweep import Sweep as Sweep
     from gbeam.scenario.build import read_scenario as read_scenario
     from gbeam.structure.beam import Beam as Beam
     from gbeam.structure.bodies import PointMass as PointMass
@@ -72,6 +73,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.structure.material import Material as Material
     from gbeam.structure.section import Section as Section
     from gbeam.structure.support import Root as Root
+    from gbeam.sweeps.sweep import sweep as sweep
 
 __version__ = "0.2.0"
 
@@ -103,6 +105,7 @@ _HOME = {
     "StateSpace": "results.steady.state_space",
     "Structure": "mechanics.structure",
     "Study": "results.study",
+    "Sweep": "results.sweep",
     "Sum": "motion.profiles.combine",
     "assemble": "mechanics.assembly",
     "balanced_truncation": "analysis.control.reduction",
@@ -133,6 +136,7 @@ _HOME = {
     "static": "analysis.equilibrium.static",
     "study": "analysis.study.study",
     "surface_gauges": "analysis.control.gauges",
+    "sweep": "sweeps.sweep",
     "tabulated": "motion.profiles.piecewise",
     "trapezoid": "motion.profiles.piecewise",
     "vector": "motion.profiles.combine",

@@ -26,6 +26,7 @@ VERBS = {
     "models": "The same scenario by every model, compared with the exact one.",
     "plan": "Plan the axis motions of a centrifuge within its limits; needs no beam.",
     "place": "Find where to put the specimen on the centrifuge.",
+    "sweep": "Figures of many cases: over ranges, lists or samples of any values of a scenario.",
     "check": "Say what a scenario means, without computing a response.",
     "new": "Write a commented scenario to start from.",
     "schema": "Print the JSON schema of scenario files, for editors.",

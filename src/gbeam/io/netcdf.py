@@ -24,6 +24,7 @@ from gbeam.io.hdf5 import write_groups
 from gbeam.io.machine import plan_group
 from gbeam.io.responses import response_group
 from gbeam.io.steady import campbell_group, critical_group, critical_map_group, deflection_group, modes_group
+from gbeam.io.sweeps import sweep_group
 from gbeam.io.tables import models_group, placement_group, state_space_group
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.placement import Placement
@@ -34,6 +35,7 @@ from gbeam.results.steady.modal import Campbell, Modes
 from gbeam.results.steady.stability import Critical, CriticalMap
 from gbeam.results.steady.state_space import StateSpace
 from gbeam.results.study import ModelStudy, Study
+from gbeam.results.sweep import Sweep
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,6 +52,7 @@ _GROUPS: dict[type, Callable[[Any], Group]] = {
     ModelStudy: models_group,
     Placement: placement_group,
     StateSpace: state_space_group,
+    Sweep: sweep_group,
 }
 
 

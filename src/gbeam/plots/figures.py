@@ -16,6 +16,7 @@ from gbeam.plots.environment import plot_base, plot_hub
 from gbeam.plots.loads import plot_loads, plot_loads_along
 from gbeam.plots.machine import plot_axes, plot_tracking
 from gbeam.plots.steady import plot_campbell, plot_critical_map, plot_modes, plot_static
+from gbeam.plots.sweep import plot_sweep
 from gbeam.plots.tip import plot_tip
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.machine import AxesResult, MachinePlan
@@ -24,6 +25,7 @@ from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.steady.modal import Campbell, Modes
 from gbeam.results.steady.stability import CriticalMap
 from gbeam.results.study import Study
+from gbeam.results.sweep import Sweep
 
 Draw = Callable[[], Figure]
 
@@ -47,7 +49,7 @@ def figures(result: Any, title: str = "") -> dict[str, Draw]:
 
     Parameters
     ----------
-    result : Response, Study, Comparison, Modes, Campbell, Deflection, CriticalMap or MachinePlan
+    result : Response, Study, Comparison, Modes, Campbell, Deflection, CriticalMap, MachinePlan or Sweep
     title : str
         First line above each; a study has its own.
     """
@@ -73,6 +75,8 @@ def figures(result: Any, title: str = "") -> dict[str, Draw]:
             return {"campbell": partial(plot_campbell, result, title)}
         case CriticalMap():
             return {"critical": partial(plot_critical_map, result, title)}
+        case Sweep():
+            return {name: partial(plot_sweep, result, name, title) for name in result.measures}
     raise TypeError(f"{type(result).__name__} has no figures")
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -68,6 +69,25 @@ def loads(
         With everything that is wrong, each with its place.
     """
     return _validated(Scenario, _source(text, name, overrides, folder))
+
+
+def change(source: Source, overrides: Iterable[str]) -> Scenario:
+    """Validate a scenario that is parsed already, with more changes: what differs between the cases of a sweep.
+
+    Parameters
+    ----------
+    source : Source
+        Of a scenario that was read.
+    overrides : iterable of str
+        As for :func:`load`, after those in the source.
+
+    Raises
+    ------
+    ScenarioError
+        With everything that is wrong, each with its place.
+    """
+    data, done = override(source.data, source.name, overrides)
+    return _validated(Scenario, replace(source, data=data, overrides=source.overrides + done))
 
 
 def load_environments(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Environments:

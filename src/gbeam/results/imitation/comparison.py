@@ -101,13 +101,18 @@ class Comparison(Figured):
         return float(flight), float(machine)
 
     @property
-    def criteria(self) -> tuple[Criterion, ...]:
-        """The limits of `accept`, with the values that are held against them."""
-        values = {name: pair.ratio - 1 for name, pair in self.peaks.items()} | {
+    def figures(self) -> dict[str, float]:
+        """What limits may be set on: relative changes of peaks, errors of load peaks, share of the time followed."""
+        return {name: pair.ratio - 1 for name, pair in self.peaks.items()} | {
             "peaks": self.accounting.largest_error,
             "spread": self.accounting.largest_spread,
             "followed": self.accounting.followed_share,
         }
+
+    @property
+    def criteria(self) -> tuple[Criterion, ...]:
+        """The limits of `accept`, with the values that are held against them."""
+        values = self.figures
         return tuple(Criterion(name, self.accept[name], values[name]) for name in CRITERIA if name in self.accept)
 
     @property

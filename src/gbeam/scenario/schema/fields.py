@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, Tag
 from pydantic import ValidationError as PydanticError
@@ -102,6 +102,20 @@ class Quantity:
         text = {"type": "string", "description": f"{kind.phrase} with its unit", "examples": [kind.example]}
         words: list[JsonSchemaValue] = [{"const": word} for word in self.words]
         return {"anyOf": [number, text, *words], "x-quantity": self.kind, "x-unit": kind.unit}
+
+
+def kind_of(table: BaseModel, key: str) -> str:
+    """Kind of quantity that a key of a table holds, a key of ``KINDS``; empty where it holds none."""
+    field = type(table).model_fields.get(key)
+    return "" if field is None else _kind_in([*field.metadata, field.annotation])
+
+
+def _kind_in(parts: Iterable[Any]) -> str:
+    for part in parts:
+        kind = part.kind if isinstance(part, Quantity) else _kind_in(get_args(part))
+        if kind:
+            return kind
+    return ""
 
 
 Length = Annotated[float, Quantity("length", "positive")]

@@ -16,6 +16,7 @@ from gbeam.scenario.schema.fields import Loc, Table, refuse, wrong
 from gbeam.scenario.schema.model import Model
 from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub, Motion
 from gbeam.scenario.schema.response import Response
+from gbeam.scenario.schema.sweep import Sweep
 from gbeam.scenario.text.suggest import advise
 
 if TYPE_CHECKING:
@@ -60,6 +61,7 @@ class Environments(_Titled):
         min_length=1, description="what the base does: one environment or more, each [motion.NAME]"
     )
     response: Response = Field(default_factory=Response, description="response over time")
+    sweep: Sweep | None = Field(default=None, description="many cases, for gbeam sweep")
 
     _source: Source | None = PrivateAttr(None)
 

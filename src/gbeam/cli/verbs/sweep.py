@@ -1,0 +1,126 @@
+"""``gbeam sweep``: figures of many cases of one scenario."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import Parameter
+
+from gbeam.cli.console import Watch
+from gbeam.cli.failures import FAILED, complain
+from gbeam.cli.inputs import number
+from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile
+from gbeam.cli.outputs import list_files, show
+from gbeam.cli.publication import publish, refuse_unwritable
+
+Verb = Literal["run", "static", "modes", "critical-speed", "plan"]
+
+
+def sweep(
+    scenario: ScenarioFile,
+    /,
+    *,
+    over: Annotated[
+        tuple[str, ...],
+        Parameter(
+            name="--over",
+            negative="",
+            show_default=False,
+            help='What varies, PATH=VALUES; any number of times: "motion.centrifuge.arm=1 m:12 m:12" (from, to, how '
+            'many), "model.kind=FOAM, exact", "beam.damping_ratio=uniform(0.5 %, 2 %)".',
+        ),
+    ] = (),
+    measure: Annotated[
+        tuple[str, ...],
+        Parameter(
+            name="--measure",
+            negative="",
+            show_default=False,
+            help='Figures of the verb by the end of their path in its JSON, "tip.z.max_abs, verdict.tip".',
+        ),
+    ] = (),
+    verb: Annotated[Verb | None, Parameter(help="Whose figures; run by default.")] = None,
+    motion: MotionName = None,
+    at: At = None,
+    samples: Annotated[int | None, Parameter(help="How many are drawn from distributions; 64 by default.")] = None,
+    sampler: Annotated[
+        Literal["sobol", "latin", "random"] | None, Parameter(help="How they are drawn; sobol by default.")
+    ] = None,
+    seed: Annotated[int | None, Parameter(help="The same seed draws the same samples.")] = None,
+    workers: Annotated[int, Parameter(help="Processes of this machine.")] = 1,
+    scheduler: Annotated[str | None, Parameter(help="Address of a Dask scheduler whose workers compute.")] = None,
+    resume: Annotated[
+        bool, Parameter(name="--resume", negative="", show_default=False, help="Compute only what is missing in --out.")
+    ] = False,
+    yes: Annotated[
+        bool, Parameter(name="--yes", negative="", show_default=False, help="More than 100,000 cases are meant.")
+    ] = False,
+    netcdf: Annotated[
+        bool, Parameter(name="--netcdf", negative="", show_default=False, help="Write sweep.nc beside sweep.zarr.")
+    ] = False,
+    overrides: Overrides = (),
+    out: Out = None,
+    json: Json = False,
+) -> int:
+    """Compute figures of many cases of one scenario: every combination of the values given, or samples of them.
+
+    What the command line does not say is what the scenario's [sweep] says.
+
+    Every case is kept in --out (by default out/ and the scenario's name and -sweep) as soon as it is done: after an
+    interruption --resume does what is missing. Writes sweep.zarr, which xarray opens, and a plot of each measure. A
+    case that fails is recorded as such. Exit status: 0 all cases done, 1 some are not, 2 the input is wrong.
+    """
+    folder = out if out is not None else Path("out") / f"{scenario.stem}-sweep"
+    refuse_unwritable(folder)
+    names = [name.strip() for text in measure for name in text.split(",") if name.strip()]
+
+    from gbeam.sweeps.sweep import sweep as compute
+
+    with Watch() as watch:
+
+        def progress(done: int, failed: int, count: int) -> None:
+            watch(f"{done} of {count} cases" + (f", {failed} failed" if failed else ""), done / count)
+
+        answer = compute(
+            scenario,
+            over,
+            names,
+            verb=verb,
+            motion=motion,
+            at=None if at is None else number("--at", at, "time"),
+            overrides=overrides,
+            samples=samples,
+            sampler=sampler,
+            seed=seed,
+            workers=workers,
+            scheduler=scheduler,
+            store=folder,
+            resume=resume,
+            confirmed=yes,
+            progress=progress,
+        )
+
+    def make(hidden: Path) -> None:
+        from gbeam.plots import figures, save
+
+        if len(answer.dimensions) <= 2:
+            for name, draw in figures(answer).items():
+                save(draw(), hidden, re.sub(r"[^\w.-]+", "", name), "gbeam sweep")
+        if netcdf:
+            answer.save(hidden / "sweep.nc")
+
+    from gbeam.io.sweeps import write_zarr
+    from gbeam.report.study import sweep as report
+
+    files = publish(folder, make)
+    write_zarr(answer, folder / "sweep.zarr")
+    files = sorted([*files, folder / "sweep.zarr"])
+    show(report.text(answer), report.to_json(answer, files), json)
+    if not json:
+        list_files(folder, files)
+    lost = answer.outcome.size - answer.counts.get("done", 0)
+    if lost:
+        complain(f"{lost} of {answer.outcome.size} cases are not done")
+    return FAILED if lost else 0

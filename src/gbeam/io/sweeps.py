@@ -1,0 +1,63 @@
+"""What a file holds of a sweep: one array per measure, along the parameters."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from gbeam.io.groups import Group, Variable, variable
+from gbeam.results.sweep import SAMPLE, Parameter, Sweep
+
+
+def sweep_group(sweep: Sweep) -> Group:
+    """Return what a file holds of a sweep; what is drawn is a coordinate along ``sample``."""
+    dims = sweep.dimensions
+    data = {
+        name: variable(dims, values, sweep.units[name] or "1", f"{sweep.verb}: {name}")
+        for name, values in sweep.measures.items()
+    }
+    outcome = {
+        "outcome": Variable(dims, sweep.outcome, {"long_name": "how the case ended"}),
+        "message": Variable(dims, sweep.message, {"long_name": "why the case is not done"}),
+    }
+    coordinates = {each.path: _coordinate(each) for each in sweep.parameters}
+    if SAMPLE in dims:
+        count = sweep.outcome.shape[-1]
+        coordinates[SAMPLE] = variable((SAMPLE,), np.arange(count), "1", "number of the sample")
+    return Group(data | outcome, coordinates, {"title": sweep.title, "verb": sweep.verb})
+
+
+def write_zarr(sweep: Sweep, path: str | os.PathLike[str]) -> None:
+    """Write a sweep as a Zarr store, which ``xarray.open_zarr`` opens, whole or not at all.
+
+    Parameters
+    ----------
+    sweep : Sweep
+    path : path
+        Replaced if it exists.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    final = Path(path)
+    hidden = Path(tempfile.mkdtemp(prefix=f".{final.name}-", dir=final.parent))
+    try:
+        # Format 2 has strings of any length that every reader knows.
+        sweep.to_xarray().to_zarr(hidden / final.name, mode="w", zarr_format=2, consolidated=True)
+        if final.exists():
+            os.rename(final, hidden / "replaced")
+        os.rename(hidden / final.name, final)
+    finally:
+        shutil.rmtree(hidden, ignore_errors=True)
+
+
+def _coordinate(parameter: Parameter) -> Variable:
+    attrs = {"units": parameter.unit or "1"} if parameter.numeric else {}
+    drawn = {"distribution": parameter.drawn} if parameter.drawn else {}
+    return Variable((parameter.dimension,), parameter.values, attrs | {"long_name": parameter.path} | drawn)

@@ -1,0 +1,99 @@
+"""What a verb answers to one case, as the JSON that the command line prints."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from gbeam.errors import InputError
+
+if TYPE_CHECKING:
+    from gbeam.analysis.study.case import Case
+    from gbeam.motion.protocol import Motion
+
+Facts = Mapping[str, Any]
+
+
+def _run(case: Case, motion: str | None, at: float | None) -> Facts:
+    from gbeam.analysis.study.study import study
+    from gbeam.report.study.summary_json import to_json
+
+    answer = study(case)
+    facts = to_json(answer)
+    # By name, not by number; and what may be accepted stands under the verdict whether or not a limit is given.
+    facts["comparisons"] = {
+        each.centrifuge: {**found, "verdict": each.figures}
+        for each, found in zip(answer.comparisons, facts["comparisons"], strict=True)
+    }
+    unfinished = answer.unfinished
+    facts["message"] = "; ".join(f"{name}: {failure.message}" for name, failure in unfinished.items())
+    return facts
+
+
+def _static(case: Case, motion: str | None, at: float | None) -> Facts:
+    from gbeam.analysis.equilibrium.static import static
+    from gbeam.report.steady import deflection
+
+    structure, time = case.assemble(), _time(case, at)
+    names = list(case.motions) if motion is None else [motion]
+    return deflection.to_json(case.title, [static(structure, _prepared(case, name), time, name=name) for name in names])
+
+
+def _modes(case: Case, motion: str | None, at: float | None) -> Facts:
+    from gbeam.analysis.vibration import modal
+    from gbeam.report.steady import modes
+
+    name = _only(case, motion, "")
+    return modes.to_json(modal.modes(case.assemble(), _prepared(case, name), _time(case, at), name=name))
+
+
+def _critical_speed(case: Case, motion: str | None, at: float | None) -> Facts:
+    from gbeam.analysis.vibration import stability
+    from gbeam.report.steady import critical
+
+    name = _only(case, motion, "hub")
+    structure = case.assemble().at_time(_time(case, at))
+    found = stability.critical_speed(structure, _prepared(case, name), name=name)
+    return critical.to_json(found, name)
+
+
+def _plan(case: Case, motion: str | None, at: float | None) -> Facts:
+    from gbeam.analysis.imitation.plan import plan
+    from gbeam.report.machine import plan as report
+
+    machines = {name: m for name, m in case.motions.items() if m.kind == "centrifuge" and motion in (None, name)}
+    if not machines:
+        raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
+    plans = [plan(name, _prepared(case, name), case.tracks[name]) for name in machines]  # type: ignore[arg-type]
+    return report.to_json(case.title, plans, [])
+
+
+VERBS: Mapping[str, Callable[[Case, str | None, float | None], Facts]] = {
+    "run": _run,
+    "static": _static,
+    "modes": _modes,
+    "critical-speed": _critical_speed,
+    "plan": _plan,
+}
+
+
+def _prepared(case: Case, name: str) -> Motion:
+    """A motion prepared for the response's times."""
+    first = case.response.start
+    return case.motions[name].over(first, first + case.response.duration)
+
+
+def _time(case: Case, at: float | None) -> float:
+    return case.response.start if at is None else at
+
+
+def _only(case: Case, name: str | None, kind: str) -> str:
+    """The motion's name: the one given, or the only one (of a kind)."""
+    if name is not None:
+        if name not in case.motions:
+            raise InputError("--motion", f"is {name!r}", f"the scenario has {', '.join(case.motions)}")
+        return name
+    choice = [each for each, motion in case.motions.items() if motion.kind == kind] or list(case.motions)
+    if len(choice) > 1:
+        raise InputError("--motion", "is missing", f"name one of {', '.join(choice)}")
+    return choice[0]

@@ -1,0 +1,221 @@
+"""Many cases of one scenario, from what varies to the arrays of what was measured."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+from gbeam.errors import GbeamError, InputError
+from gbeam.results.sweep import Sweep
+from gbeam.scenario.load import load
+from gbeam.scenario.schema.scenario import Scenario
+from gbeam.scenario.text.suggest import advise
+from gbeam.sweeps.answers import VERBS, Facts
+from gbeam.sweeps.cases import Cases, read_cases
+from gbeam.sweeps.evaluate import Function, Question, Row
+from gbeam.sweeps.journal import Journal, identity, opened
+from gbeam.sweeps.measures import find, unit_at
+from gbeam.sweeps.result import assembled
+from gbeam.sweeps.workers import Task, in_processes, on_scheduler, serially
+
+MANY = 100_000  # cases beyond which a sweep is begun only when that is confirmed
+_BATCH = 0.5  # s: what is lost at most when a process ends, and how often the store is synchronised
+_LONGEST = 256  # cases in a batch
+_TRIED = 20  # cases, all over the sweep, of which one must be possible
+Progress = Callable[[int, int, int], None]
+
+
+def sweep(
+    scenario: str | os.PathLike[str],
+    over: Mapping[str, Any] | Sequence[str] = (),
+    measure: Sequence[str] | Mapping[str, Function] = (),
+    *,
+    verb: str | None = None,
+    motion: str | None = None,
+    at: float | None = None,
+    overrides: Sequence[str] = (),
+    samples: int | None = None,
+    sampler: str | None = None,
+    seed: int | None = None,
+    workers: int = 1,
+    scheduler: str | None = None,
+    store: str | os.PathLike[str] | None = None,
+    resume: bool = False,
+    confirmed: bool = False,
+    progress: Progress | None = None,
+) -> Sweep:
+    """Compute figures of many cases of one scenario. What is not given is what the scenario's [sweep] says.
+
+    Parameters
+    ----------
+    scenario : path
+        Of the scenario file.
+    over : mapping of str to values, or sequence of str
+        What varies: values by the key's path, ``{"motion.centrifuge.arm": ["1 m", "3.3 m"]}``, numbers in SI; or texts
+        such as ``"motion.centrifuge.arm=1 m:12 m:12"`` (a range: from, to, how many), ``"model.kind=FOAM, exact"`` (a
+        list) or ``"beam.damping_ratio=uniform(0.5 %, 2 %)"`` (normal, lognormal, uniform or triangular).
+    measure : sequence of str, or mapping of str to callable
+        Figures of the verb's JSON by the end of their path, such as ``tip.z.max_abs`` or ``verdict.tip``; or functions
+        of a :class:`gbeam.Case` that return a number, by name.
+    verb : str
+        run (the default), static, modes, critical-speed or plan.
+    motion : str, optional
+        Which motion, for a verb that answers for one.
+    at : float, optional
+        Time at which that motion is frozen, s; the start of the response by default.
+    overrides : sequence of str
+        Changes of the scenario that all cases share, such as ``beam.length=250 mm``.
+    samples : int, optional
+        Of what is drawn, 64 by default.
+    sampler : str
+        sobol (the default), latin or random.
+    seed : int
+        The same seed draws the same samples.
+    workers : int
+        Processes of this machine.
+    scheduler : str, optional
+        Address of a Dask scheduler, whose workers compute instead.
+    store : path, optional
+        Folder in which every case is kept as soon as it is done.
+    resume : bool
+        Whether to take from the store what is done.
+    confirmed : bool
+        Whether more than 100,000 cases are meant.
+    progress : callable, optional
+        Called with the number of cases done, of those that failed among them, and of all.
+
+    Returns
+    -------
+    Sweep
+        A case that fails is recorded as such; the rest goes on.
+
+    Raises
+    ------
+    InputError, ScenarioError
+        If the scenario, what varies or a measure is wrong, no case is possible, or the store is another sweep's or in
+        use.
+    ComputationError
+        If the scheduler is lost; the store keeps what is done.
+    """
+    base = load(scenario, overrides)
+    assert base.source is not None  # it was read from a file
+    table = base.sweep
+    if table is not None:
+        over, measure = over or table.over, measure or table.measure
+        verb, samples = verb or table.verb, table.samples if samples is None else samples
+        sampler, seed = sampler or table.sampler, table.seed if seed is None else seed
+    verb = verb or "run"
+    if verb not in VERBS:
+        raise InputError("--verb", f"is {verb!r}", advise(verb, VERBS))
+    names = tuple(measure)
+    if not names or isinstance(measure, str):
+        raise InputError("--measure", "is missing", 'name figures: --measure "tip.z.max_abs, verdict.tip"')
+    if workers < 1:
+        raise InputError("--workers", f"is {workers}", "give one or more")
+    cases = read_cases(_texts(over), samples, sampler or "sobol", seed or 0)
+    question = Question(base.source, verb, motion, at)
+    journal, done = opened(store, resume, identity(question, cases, names))
+    example = _example(question, cases)
+    units = dict.fromkeys(names, "")
+    if isinstance(measure, Mapping):
+        question = replace(question, functions=tuple(measure.values()))
+    else:
+        facts = example.facts
+        keys = tuple(find(facts, name) for name in names)
+        question = replace(question, keys=keys)
+        units = {name: unit_at(facts, each) for name, each in zip(names, keys, strict=True)}
+    known = {row.case for row in done}
+    left = len(cases) - len(known)
+    _confirm(left, example.seconds / workers, confirmed)
+    missing = (number for number in range(len(cases)) if number not in known)
+    size = int(min(_LONGEST, _BATCH / max(example.seconds, 1e-4), left / (4 * workers)))
+    batches = _batches(((number, cases.overrides(number)) for number in missing), max(1, size))
+    if scheduler is not None:
+        found = on_scheduler(question, batches, scheduler)
+    else:
+        found = serially(question, batches) if workers == 1 else in_processes(question, batches, workers)
+    rows = list(done)
+    if journal is None:
+        rows += _collected(found, len(cases), 0, progress)
+    else:
+        with journal.writing(new=not done):
+            rows += _collected(found, len(cases), len(done), progress, journal)
+    return assembled(base.title, verb, cases, example.scenario, units, rows)
+
+
+def _texts(over: Mapping[str, Any] | Sequence[str]) -> list[str]:
+    """What varies, as texts."""
+    if not isinstance(over, Mapping):
+        return list(over)
+    return [f"{path}={values if isinstance(values, str) else _listed(values)}" for path, values in over.items()]
+
+
+def _listed(values: Iterable[Any]) -> str:
+    return ", ".join(value if isinstance(value, str) else repr(np.asarray(value).item()) for value in values)
+
+
+class _Example:
+    """A case that is possible: its scenario, its facts, and how long such a case takes, s."""
+
+    def __init__(self, scenario: Scenario, facts: Facts, seconds: float) -> None:
+        self.scenario, self.facts, self.seconds = scenario, facts, seconds
+
+
+def _example(question: Question, cases: Cases) -> _Example:
+    """The first possible one of some cases all over the sweep; where there is none, what the first of them raised."""
+    first: GbeamError | None = None
+    for number in np.unique(np.linspace(0, len(cases) - 1, _TRIED).astype(int)):
+        try:
+            overrides = cases.overrides(int(number))
+            facts = question.facts(question.case(overrides))  # and what is imported and compiled for the first time
+            begin = time.perf_counter()
+            if len(cases) > _TRIED:
+                question.facts(question.case(overrides))
+            return _Example(question.scenario(overrides), facts, time.perf_counter() - begin)
+        except GbeamError as error:
+            first = first or error
+    assert first is not None
+    raise first
+
+
+def _confirm(count: int, seconds: float, confirmed: bool) -> None:
+    if count > MANY and not confirmed:
+        raise InputError(
+            "--over",
+            f"makes {count:.4g} cases, which take about {duration(count * seconds)} here",
+            "vary less, draw samples instead, or confirm with --yes",
+        )
+
+
+def duration(seconds: float) -> str:
+    """Write a duration in the unit that suits."""
+    for size, unit in ((365.25 * 86400, "years"), (86400, "days"), (3600, "h"), (60, "min")):
+        if seconds >= 2 * size:
+            return f"{seconds / size:.2g} {unit}" if seconds < 100 * size else f"{seconds / size:.0f} {unit}"
+    return f"{seconds:.2g} s"
+
+
+def _batches(tasks: Iterator[Task], size: int) -> Iterator[list[Task]]:
+    while batch := list(islice(tasks, size)):
+        yield batch
+
+
+def _collected(
+    found: Iterator[list[Row]], count: int, before: int, progress: Progress | None, journal: Journal | None = None
+) -> list[Row]:
+    rows: list[Row] = []
+    failed = 0
+    for some in found:
+        if journal is not None:
+            journal.add(some)
+        rows += some
+        failed += sum(row.outcome != "done" for row in some)
+        if progress is not None:
+            progress(before + len(rows), failed, count)
+    return rows

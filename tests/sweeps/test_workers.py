@@ -1,0 +1,49 @@
+"""Cases computed in other processes: the same bytes as in this one, and workers that die."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+
+OVER = {"motion.flight.acceleration.z.level": "1 g:8 g:12"}
+# Kills its process in one case: the first time only, or always.
+MEASURES = """
+import os, signal
+from pathlib import Path
+
+def once(case):
+    if abs(case.beam.length - 0.25) < 1e-9 and not Path("died").exists():
+        Path("died").touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return case.beam.length
+
+def always(case):
+    if abs(case.beam.length - 0.25) < 1e-9:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return case.beam.length
+"""
+
+
+def test_two_processes_give_the_same_bytes(fast: Path) -> None:
+    one = gb.sweep(fast, OVER, ["flight.tip.z"], verb="static")
+    two = gb.sweep(fast, OVER, ["flight.tip.z"], verb="static", workers=2)
+    assert one.measures["flight.tip.z"].tobytes() == two.measures["flight.tip.z"].tobytes()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGKILL")
+def test_a_worker_that_is_killed_loses_no_case(fast: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    Path("deadly.py").write_text(MEASURES, encoding="utf-8")
+    monkeypatch.syspath_prepend(str(fast.parent))
+    import deadly  # type: ignore[import-not-found]
+
+    over = {"beam.length": "0.2 m:0.3 m:5"}
+    found = gb.sweep(fast, over, {"once": deadly.once, "always": deadly.always}, workers=2, store="there")
+    assert found.outcome.tolist() == ["done", "done", "failed", "done", "done"]
+    assert found.message[2] == "the process that computed it died"
+    found = gb.sweep(fast, over, {"once": deadly.once}, workers=2)
+    assert np.array_equal(found.measures["once"], np.linspace(0.2, 0.3, 5)) and found.counts == {"done": 5}
