@@ -11,7 +11,9 @@ import h5py
 import numpy as np
 import pytest
 import xarray as xr
+from scipy.integrate import cumulative_trapezoid
 
+from gbeam import Hub, SmoothStep, simulate
 from gbeam.errors import InputError
 from gbeam.io import netcdf as store
 from gbeam.results.imitation.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
@@ -22,6 +24,8 @@ from gbeam.results.machine import AxesResult, LimitUse, Shortfall
 from gbeam.results.response import BaseMotion, HubResult, Peaks, Response
 from gbeam.results.section_forces import Loads
 from gbeam.results.study import Failure, Study
+
+from ..specimens import hub_beam
 
 T, N = 11, 4
 RANDOM = np.random.default_rng(0)
@@ -178,6 +182,27 @@ def test_every_variable_holds_what_its_name_says(
     for variable, field in fields.items():
         value = operator.attrgetter(field)(study.responses[name])
         np.testing.assert_array_equal(tree[f"motions/{name}"][variable], value, err_msg=variable)
+
+
+def test_what_is_called_a_rate_is_one(tmp_path: Path) -> None:
+    """In the file of a slew: rates integrate to what they are the rates of, by the trapezium rule."""
+    slew = Hub(radius=0.5, rate=SmoothStep(2.0, 1.5))
+    path = tmp_path / "slew.nc"
+    simulate(hub_beam("FOAM", 0, 2), slew, duration=2.0, step=2e-3).save(path)
+    file = store.read(path)
+    (found,) = [node.to_dataset() for node in file.subtree if "hub_rate" in node]
+    time = found["time"].values
+    for rate, whole in (
+        ("hub_rate", "hub_angle"),
+        ("hub_acceleration", "hub_rate"),
+        ("angular_acceleration", "angular_velocity"),
+        ("coordinate_rates", "coordinates"),
+    ):
+        values, wanted = found[rate].values, found[whole].values
+        sums = cumulative_trapezoid(values, time, axis=0, initial=0.0)
+        size = np.abs(wanted).max()
+        assert size > 0
+        np.testing.assert_allclose(sums, wanted - wanted[0], atol=1e-3 * size, err_msg=rate)
 
 
 def test_histories_at_the_root_of_a_comparison(study: Study, tree: xr.DataTree) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
+import scipy.constants as si
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -60,6 +61,31 @@ G0 = 9.80665
 )
 def test_value(text: object, kind: str, value: float) -> None:
     assert quantity(text, kind) == pytest.approx(value, rel=1e-14)
+
+
+# Sizes of units by scipy.constants, which has them from CODATA and from their definitions.
+INDEPENDENT = {
+    "length": {"in": si.inch, "ft": si.foot, "mm": si.milli, "um": si.micro, "km": si.kilo},
+    "mass": {"lb": si.lb, "g": si.gram},
+    "time": {"min": si.minute, "h": si.hour, "ms": si.milli, "us": si.micro},
+    "force": {"lbf": si.lbf, "kN": si.kilo, "MN": si.mega},
+    "pressure": {"psi": si.psi, "kPa": si.kilo, "MPa": si.mega, "GPa": si.giga, "lbf/in^2": si.psi},
+    "torque": {"lbf ft": si.lbf * si.foot, "lbf in": si.lbf * si.inch, "kN m": si.kilo},
+    "density": {"lb/ft^3": si.lb / si.foot**3, "g/cm^3": si.gram / si.centi**3},
+    "acceleration": {"g": si.g, "g0": si.g, "ft/s^2": si.foot, "in/s^2": si.inch},
+    "angle": {"deg": si.degree, "rev": 2 * si.pi, "mrad": si.milli},
+    "angular rate": {"rpm": 2 * si.pi / si.minute, "deg/s": si.degree, "Hz": 2 * si.pi},
+    "power": {"kW": si.kilo, "MW": si.mega},
+    "rotational stiffness": {"lbf in/deg": si.lbf * si.inch / si.degree},
+}
+
+
+@pytest.mark.parametrize("kind", INDEPENDENT)
+def test_every_unit_has_its_size(kind: str) -> None:
+    """Against a table that nobody here wrote, through both doors: the quick one, and the parser."""
+    for unit, size in INDEPENDENT[kind].items():
+        assert quantity(f"1 {unit}", kind) == pytest.approx(size, rel=1e-15, abs=0), unit
+        assert parsed_factor(unit, kind) == pytest.approx(size, rel=1e-15, abs=0), unit
 
 
 @pytest.mark.parametrize("kind", KINDS)
