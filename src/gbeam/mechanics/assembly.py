@@ -14,13 +14,13 @@ from gbeam.mechanics.equations.inertia import Elasticity, Inertia
 from gbeam.mechanics.equations.linear import coefficients
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.adapted import adapted_shapes
-from gbeam.mechanics.fields.basis import Quadrature, quadrature
+from gbeam.mechanics.fields.basis import Families, Quadrature, quadrature
 from gbeam.mechanics.fields.exact import exact_field
 from gbeam.mechanics.fields.projected import projected_field
 from gbeam.mechanics.fields.rooted import RootedField
 from gbeam.mechanics.fields.rotation import Field, Strains
-from gbeam.mechanics.models import Kind, Model
-from gbeam.mechanics.structure import Sections, Structure
+from gbeam.mechanics.models import KINDS, Kind, Model
+from gbeam.mechanics.structure import Sections, Source, Structure
 from gbeam.motion.profiles.piecewise import constant
 from gbeam.structure.beam import Beam
 from gbeam.structure.plausibility import implausible_beam
@@ -67,9 +67,37 @@ def assemble(
     adapted = model.shapes == "adapted"
     breaks = [*beam.section.stations, *(bodies if adapted else ())]
     rule = quadrature(beam.length, _nodes(row, max(counts), adapted=adapted), breaks)
+    families = adapted_shapes(beam, rule, counts) if adapted else None
+    return assembled(beam, model.kind, counts, rule, at, families, model.shapes)
+
+
+def assembled(
+    beam: Beam,
+    kind: str,
+    counts: tuple[int, int, int],
+    rule: Quadrature,
+    at: Array,
+    families: Families | None,
+    shapes: str,
+) -> Structure:
+    """Put a beam into a model with given shapes, quadrature and stations of output, the tip last.
+
+    Parameters
+    ----------
+    beam : Beam
+    kind : str
+        The model's.
+    counts : numbers of shapes
+    rule : Quadrature
+    at : (s,) m
+    families : the shapes; those of the bare uniform beam unless given
+    shapes : str
+        What they are called.
+    """
+    row = KINDS[kind]
+    bodies = [m.at for m in beam.masses]
     loaded = [load.at for load in beam.loads if load.at is not None]
     x = np.concatenate([rule.node, bodies, loaded, at])
-    families = adapted_shapes(beam, rule, counts) if adapted else None
     if row.exact:
         field: Field = exact_field(beam.length, rule, x, counts, families)
     else:
@@ -90,7 +118,7 @@ def assemble(
     )
     first_station, ratio = len(rule.node) + len(bodies) + len(loaded), beam.damping_ratio
     return Structure(
-        kind=model.kind,
+        kind=kind,
         linear=row.truncated,
         hub_force=row.hub_force,
         counts=counts,
@@ -110,6 +138,7 @@ def assemble(
         load_values=None if history is None else history(np.zeros(())),
         damping_ratio=ratio,
         warnings=implausible_beam(beam, (counts[1] > 0, counts[2] > 0)),
+        source=Source(beam, shapes),
     )
 
 

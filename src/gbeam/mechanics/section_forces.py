@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.mechanics.equations.sampled import paths
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
@@ -96,6 +97,8 @@ def sections(
     qd: Array,
     qdd: Array,
     values: Array | None,
+    *,
+    compiled: bool = True,
 ) -> tuple[Array, ...]:
     """What the sections carry, and how they accelerate, over times t.
 
@@ -109,6 +112,8 @@ def sections(
     q, qd, qdd : (t, n)
     values : (t, loads, 6) or None
         Components of the loads on the beam.
+    compiled : bool
+        Whether a complete model's paths are found by JAX, to the last digits; else by NumPy.
 
     Returns
     -------
@@ -117,12 +122,12 @@ def sections(
     acceleration : (t, s, 3) base axes, m/s²; specific force where gravity acts
     """
     count = outboard.mass.shape[0] - 1
-    paths = _of_polynomial if structure.linear else _of_field
-    particles, stations, turned, loaded = paths(structure, count, q, qd, qdd)
+    moving = _of_polynomial if structure.linear else _of_field if compiled else _of_samples
+    particles, stations, turned, loaded = moving(structure, count, q, qd, qdd)
     xp = namespace(q, particles[0], base.a_WO_B)
     root = (xp.zeros_like(stations[0][:, :1]),) * 3
     stations = tuple(xp.concatenate(pair, axis=1) for pair in zip(root, stations, strict=True))
-    a_particles, a_stations = _absolute(xp, base, *particles), _absolute(xp, base, *stations)
+    a_particles, a_stations = absolute_accelerations(xp, base, *particles), absolute_accelerations(xp, base, *stations)
     # Σ m (r − r_x) × a = Σ m r × a − r_x × Σ m a, and so for the loads.
     mass = xp.asarray(outboard.mass)
     force, about_root = -mass @ a_particles, -mass @ _cross(xp, particles[0], a_particles)
@@ -153,13 +158,13 @@ def _of_polynomial(structure: Structure, count: int, q: Array, qd: Array, qdd: A
 
 def _of_field(structure: Structure, count: int, q: Array, qd: Array, qdd: Array) -> tuple[Any, ...]:
     """The same of a complete field, by JAX."""
-    from gbeam.mechanics.equations.compiled import paths
+    from gbeam.mechanics.equations import compiled
 
     assert structure.field is not None
     traced, size = is_jax(q), len(q)
     padded = [x if traced else np.concatenate([x, np.repeat(x[-1:], -size % _BLOCK, axis=0)]) for x in (q, qd, qdd)]
     stations = structure.field.sampled(slice(-count, None))
-    particles, points = (paths(record, *padded) for record in (structure.inertia, stations))
+    particles, points = (compiled.paths(record, *padded) for record in (structure.inertia, stations))
     if not traced:
         particles, points = (tuple(np.asarray(x)[:size] for x in each) for each in (particles, points))
     loaded = None
@@ -168,7 +173,18 @@ def _of_field(structure: Structure, count: int, q: Array, qd: Array, qdd: Array)
     return particles, points, stations.rotation(q), loaded
 
 
-def _absolute(xp: Any, base: Base, r: Array, rd: Array, rdd: Array) -> Array:
+def _of_samples(structure: Structure, count: int, q: Array, qd: Array, qdd: Array) -> tuple[Any, ...]:
+    """The same by NumPy."""
+    assert structure.field is not None and structure.inertia is not None
+    stations = structure.field.sampled(slice(-count, None))
+    particles, points = (paths(place, q, qd, qdd) for place in (structure.inertia.positions, stations.position))
+    loaded = None
+    if structure.work is not None:
+        loaded = structure.work.field.position(q), structure.work.field.rotation(q)
+    return particles, points, stations.rotation(q), loaded
+
+
+def absolute_accelerations(xp: Any, base: Base, r: Array, rd: Array, rdd: Array) -> Array:
     """Absolute accelerations of points, (t, p, 3)."""
     w, alpha = base.w_WB_B, base.alpha_WB_B
     spin = _matrix(xp, w)

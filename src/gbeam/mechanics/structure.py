@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +20,7 @@ from gbeam.mechanics.fields.taylor import Places
 from gbeam.structure.section import SectionValues
 
 if TYPE_CHECKING:
+    from gbeam.structure.beam import Beam
     from gbeam.mechanics.equations.dalembert import Complete, CompleteHub
     from gbeam.mechanics.equations.inertia import Elasticity, Inertia
 
@@ -48,6 +49,21 @@ class Sections:
     loaded: Array
     yield_strength: Any = None
     fatigue_exponent: Any = np.nan
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """What a structure was made of.
+
+    Parameters
+    ----------
+    beam : Beam
+    shapes : str
+        Which shapes its model has.
+    """
+
+    beam: Beam
+    shapes: str
 
 
 @record
@@ -92,6 +108,8 @@ class Structure:
         Modal, of the modes at rest; None where none is given: then there is no damping, and no response either.
     warnings : tuple of str
         What is implausible in the beam; every result has them.
+    source : Source or None
+        What it was made of; None for a structure of particles, whose errors of shapes and model are unknown.
     """
 
     kind: str = static()
@@ -114,6 +132,7 @@ class Structure:
     load_values: Array | None = None
     damping_ratio: Any = None
     warnings: tuple[str, ...] = static(default=())
+    source: Source | None = static(default=None)
 
     def __repr__(self) -> str:
         shapes = ", ".join(f"{n} {way}" for n, way in zip(self.counts, ("axial", "y", "z"), strict=True) if n)

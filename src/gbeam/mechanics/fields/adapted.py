@@ -6,6 +6,9 @@ a polynomial between two corners or bodies: where the section, the shear force o
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -33,6 +36,65 @@ def _family(rule: Quadrature, nodal: Array, length: float, *, axial: bool) -> Fa
     return shapes
 
 
+class Space(NamedTuple):
+    """All displacements in one direction that nodal curvatures (strains, of a bar) and the free root can make.
+
+    Parameters
+    ----------
+    rule : Quadrature
+    length : beam length, m
+    axial : whether the direction is the beam's own
+    mass : (n, n)
+    stiffness : (n,)
+        Its diagonal: of the nodes, then of the root's springs.
+    sensitivity : callable
+        Displacement and slope (p, n) at points x (p,).
+    """
+
+    rule: Quadrature
+    length: float
+    axial: bool
+    mass: Array
+    stiffness: Array
+    sensitivity: Callable[[Array], tuple[Array, Array]]
+
+    def family(self, modes: Array) -> Family:
+        """The shapes that columns (n, k) are without the root's motion."""
+        return _family(self.rule, modes[: len(self.rule.node)], self.length, axial=self.axial)
+
+
+_HELD = (("translation_x", ""), ("translation_y", "rotation_z"), ("translation_z", "rotation_y"))
+
+
+def space(beam: Beam, rule: Quadrature, along: int) -> Space:
+    """The space of displacements along x, y or z (0, 1, 2); the panels of the rule end at corners and bodies.
+
+    Rotation about y turns the slope down: the sign is a matter of the springs' coordinate, not of the shape.
+    """
+    section, e = beam.section.at(rule.node), beam.material.youngs_modulus
+    rigidity = (section.area, section.inertia_z, section.inertia_y)[along]
+    springs = beam.root.springs
+    held = [springs.get(name) for name in _HELD[along]]
+    free = [i for i, k in enumerate(held) if k is not None]
+    sums = rule.cumulative(rule.node)
+
+    def sensitivity(x: Array) -> tuple[Array, Array]:
+        first = rule.cumulative(x)
+        value, slope = (first, 0 * first) if along == 0 else (first @ sums, first)
+        root_value, root_slope = np.stack([x**0, x], axis=1)[:, free], np.stack([0 * x, x**0], axis=1)[:, free]
+        return np.concatenate([value, root_value], axis=1), np.concatenate([slope, root_slope], axis=1)
+
+    value, _ = sensitivity(rule.node)
+    mass = value.T @ ((beam.material.density * section.area * rule.weight)[:, None] * value)
+    for body in beam.masses:
+        value, slope = sensitivity(np.array([body.at]))
+        for m, o in zip(*body.particles(), strict=True):
+            # A particle off the axis moves with the section's slope: f + o_x f' across, −o_along f' along the beam.
+            mass += m * sum(np.outer(d, d) for d in (value[0] + o[0] * slope[0], o[along] * slope[0]))
+    stiffness = np.concatenate([e * rigidity * rule.weight, [held[i] for i in free]])
+    return Space(rule, beam.length, along == 0, mass, stiffness, sensitivity)
+
+
 def adapted_shapes(beam: Beam, rule: Quadrature, counts: tuple[int, int, int]) -> Families:
     """Modes at rest of the beam, direction by direction; the root's motion is left to the springs' own coordinates.
 
@@ -46,41 +108,14 @@ def adapted_shapes(beam: Beam, rule: Quadrature, counts: tuple[int, int, int]) -
     -----
     M κ = μ K κ is solved for the largest μ = 1/ω²: K is diagonal in nodal curvatures, M nearly singular.
     """
-    section, e = beam.section.at(rule.node), beam.material.youngs_modulus
-    once = rule.cumulative(rule.node)
-    bodies = [(np.array([b.at]), *b.particles()) for b in beam.masses]
-    springs = beam.root.springs
 
-    def family(count: int, rigidity: Array, along: int, move: str, turn: str) -> Family:
-        held = [springs.get(move), springs.get(turn)]
-        free = [i for i, k in enumerate(held) if k is not None]
+    def family(along: int) -> Family:
+        count = counts[along]
+        if not count:
+            return lambda x: Shapes(*np.zeros((3, len(x), 0)))
+        of = space(beam, rule, along)
+        scale = 1 / np.sqrt(of.stiffness)
+        modes = np.linalg.eigh(scale[:, None] * of.mass * scale)[1][:, len(scale) - count :]
+        return of.family(scale[:, None] * modes[:, ::-1])
 
-        def sensitivity(x: Array, sums: Array) -> tuple[Array, Array]:
-            """Displacement and slope at x by nodal curvatures and by the root's displacement and rotation."""
-            first = rule.cumulative(x)
-            value, slope = (first, 0 * first) if along == 0 else (first @ sums, first)
-            root_value, root_slope = np.stack([x**0, x], axis=1)[:, free], np.stack([0 * x, x**0], axis=1)[:, free]
-            return np.concatenate([value, root_value], axis=1), np.concatenate([slope, root_slope], axis=1)
-
-        value, _ = sensitivity(rule.node, once)
-        mass = value.T @ ((beam.material.density * section.area * rule.weight)[:, None] * value)
-        for at, masses, offset in bodies:
-            value, slope = sensitivity(at, once)
-            for m, o in zip(masses, offset, strict=True):
-                # A particle off the axis moves with the section's slope: f + o_x f' across, −o_along f' along the beam.
-                mass += m * sum(np.outer(d, d) for d in (value[0] + o[0] * slope[0], o[along] * slope[0]))
-        stiffness = np.concatenate([e * rigidity * rule.weight, [held[i] for i in free]])
-        scale = 1 / np.sqrt(stiffness)
-        size = len(stiffness)
-        modes = np.linalg.eigh(scale[:, None] * mass * scale)[1][:, size - count :]
-        return _family(rule, (scale[:, None] * modes[:, ::-1])[: len(rule.node)], beam.length, axial=along == 0)
-
-    def none(x: Array) -> Shapes:
-        return Shapes(*np.zeros((3, len(x), 0)))
-
-    return (
-        family(counts[0], section.area, 0, "translation_x", "") if counts[0] else none,
-        family(counts[1], section.inertia_z, 1, "translation_y", "rotation_z") if counts[1] else none,
-        # Rotation about y turns the slope down: the sign is a matter of the springs' coordinate, not of the shape.
-        family(counts[2], section.inertia_y, 2, "translation_z", "rotation_y") if counts[2] else none,
-    )
+    return family(0), family(1), family(2)

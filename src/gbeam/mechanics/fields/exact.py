@@ -49,8 +49,11 @@ class ExactField:
 
     def vectors(self, q: Array) -> Array:
         """Tangents (1 + ε) R e₁ at the quadrature nodes at coordinates (..., n), (..., g, 3)."""
-        xp = namespace(self.cumulative, q)
-        strain, y, z = at_nodes(self.nodal, q)
+        return self.tangents(*at_nodes(self.nodal, q))
+
+    def tangents(self, strain: Array, y: Array, z: Array) -> Array:
+        """Tangents (..., 3) at strains and angles (...)."""
+        xp = namespace(self.cumulative, strain)
         stretch = 1 + strain
         if self.planar:  # one of the angles is zero
             return xp.stack([stretch * xp.cos(y + z), stretch * xp.sin(z), -stretch * xp.sin(y)], axis=-1)
@@ -70,13 +73,17 @@ class ExactField:
         (strain, y, z), (slope_y, slope_z) = at_nodes(self.nodal, q), at_nodes(self.node_slopes, q)
         if self.planar:
             return Strains(strain, slope_y, slope_z)
-        sinc, _, _ = exponential_of(y**2 + z**2)
-        # Curvature of exp[φ]×: sinc φ' + (1 − sinc)/φ² (φ·φ') φ − versine φ × φ', the last along x.
-        along = one_minus_sinc(y**2 + z**2) * (y * slope_y + z * slope_z)
-        bend_y, bend_z = sinc * slope_y + along * y, sinc * slope_z + along * z
-        twist = self._twist_rate(q) @ self.node_cumulative.T
+        bend_y, bend_z, rate = self.bending(y, z, slope_y, slope_z)
+        twist = rate @ self.node_cumulative.T
         c, s = xp.cos(twist), xp.sin(twist)
         return Strains(strain, c * bend_y + s * bend_z, c * bend_z - s * bend_y)
+
+    def bending(self, y: Array, z: Array, slope_y: Array, slope_z: Array) -> tuple[Array, Array, Array]:
+        """Curvatures about y and z of exp[φ]×, and −κ_x, the rate α' of the twist, at angles and their slopes (...)."""
+        sinc, versine, _ = exponential_of(y**2 + z**2)
+        # Curvature of exp[φ]×: sinc φ' + (1 − sinc)/φ² (φ·φ') φ − versine φ × φ', the last along x.
+        along = one_minus_sinc(y**2 + z**2) * (y * slope_y + z * slope_z)
+        return sinc * slope_y + along * y, sinc * slope_z + along * z, versine * (y * slope_z - z * slope_y)
 
     def sampled(self, at: Any) -> ExactField:
         """The same field at some of the points."""
@@ -124,8 +131,7 @@ class ExactField:
     def _twist_rate(self, q: Array) -> Array:
         """α' = −κ_x of exp[φ]× at the nodes."""
         (_, y, z), (slope_y, slope_z) = at_nodes(self.nodal, q), at_nodes(self.node_slopes, q)
-        _, versine, _ = exponential_of(y**2 + z**2)
-        return versine * (y * slope_z - z * slope_y)
+        return self.bending(y, z, slope_y, slope_z)[2]
 
 
 def exact_field(

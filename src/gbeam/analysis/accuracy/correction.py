@@ -1,0 +1,135 @@
+"""Linear response of the exact model with more shapes to the residual that a solution leaves there.
+
+Modes that the samples resolve answer in time, by Gauss's method; the others follow statically.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gbeam.analysis.accuracy.reference import Sampled
+from gbeam.integrate.driver import integrate
+from gbeam.integrate.equations import LinearEquations
+from gbeam.integrate.schemes import gauss
+from gbeam.mechanics.equations.hub import FreeHub
+from gbeam.mechanics.structure import Structure
+from gbeam.numerics.solvers.eigen import symmetric_modes
+from gbeam.results.result import Floats
+
+RESOLVED = 2.5  # rad between two samples: a mode that turns faster follows statically
+
+
+class Operator(NamedTuple):
+    """M, and C and K at the times of the samples: (n, n), (t, n, n) each; a free hub's row and column come first."""
+
+    mass: Floats
+    velocity: Floats
+    stiffness: Floats
+
+
+class Correction(NamedTuple):
+    """What a solution lacks, and its first two derivatives in time, (t, n) each."""
+
+    value: Floats
+    rate: Floats
+    acceleration: Floats
+
+
+def operator(structure: Structure, at: Sampled) -> Operator:
+    """The linear equations of small departures from a solution, their places' expansion being the straight beam's."""
+    c, base = structure.coefficients, at.base
+    velocity, stiffness, _ = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, at.loads)
+    if at.hub is None:
+        return Operator(c.mass, velocity, stiffness)
+    hub = structure_on_hub(structure, at)
+    return _hub_operator(hub, at, velocity, stiffness)
+
+
+def structure_on_hub(structure: Structure, at: Sampled) -> FreeHub:
+    """The polynomial equations of the hub and the linear beam."""
+    from gbeam.mechanics.equations.hub import free_hub, ground_of
+
+    return free_hub(structure.coefficients, at.motion.mount, ground_of(at.motion))
+
+
+def _hub_operator(hub: FreeHub, at: Sampled, velocity: Floats, stiffness: Floats) -> Operator:
+    assert at.hub is not None
+    angle, rate, acceleration = at.hub.T
+    n, t = len(hub.f2), len(angle)
+    swept = hub.f2 - at.p @ hub.k2
+    mass = np.zeros((n + 1, n + 1))
+    mass[0, 0], mass[0, 1:], mass[1:, 0], mass[1:, 1:] = hub.ground.inertia + hub.rigid, hub.b0, hub.b0, hub.mass
+    c, k = np.zeros((2, t, n + 1, n + 1))
+    c[:, 0, 0] = hub.ground.damping + 2 * (swept * at.pd).sum(axis=1)
+    c[:, 0, 1:] = 2 * rate[:, None] * swept + at.pd @ (hub.b1 + hub.b1.T).T
+    c[:, 1:, 0] = -2 * rate[:, None] * swept + at.pd @ hub.gyroscopic.T
+    c[:, 1:, 1:], k[:, 1:, 1:] = velocity, stiffness
+    k[:, 0, 0] = hub.ground.stiffness
+    k[:, 0, 1:] = 2 * acceleration[:, None] * swept + at.pdd @ hub.b1 - 2 * rate[:, None] * (at.pd @ hub.k2)
+    if hub.weight is not None:
+        w, (x, y, _) = hub.weight, hub.weight.gravity
+        cos, sin, o = np.cos(angle), np.sin(angle), np.zeros(t)
+        turned = np.stack([-sin * x + cos * y, -cos * x - sin * y, o], axis=1) @ w.R_HB  # ∂g/∂θ, base axes
+        e = w.R_HB[2]
+        k[:, 0, 0] -= turned @ np.cross(e, w.s0)
+        k[:, 1:, 0] -= turned @ w.s1
+        k[:, 0, 1:] -= turned @ w.s1
+    return Operator(mass, c, k)
+
+
+def correction(of: Operator, time: Floats, residual: Floats, start: Floats | None) -> Correction:
+    """Linear response to −R, (t, n) each.
+
+    Parameters
+    ----------
+    of : Operator
+    time : (t,) s
+    residual : (t, n)
+        R.
+    start : (n,) or None
+        Residual of the solution at rest at the first time, in equilibrium; None where the first state is given.
+    """
+    mean = of.stiffness.mean(axis=0)
+    mean = (mean + mean.T) / 2
+    square, modes = symmetric_modes(mean, of.mass)
+    if square[0] < -1e-9 * square[-1]:
+        rest = of.stiffness[0]
+        square, modes = symmetric_modes((rest + rest.T) / 2, of.mass)
+    step = (time[-1] - time[0]) / (len(time) - 1)
+    kept = np.sqrt(np.maximum(square, 0)) * step < RESOLVED
+    kept[: min(2, len(kept))] = True
+    phi, stiff = modes[:, kept], modes[:, ~kept]
+    flexibility = stiff / square[~kept] @ stiff.T
+    c, k = (np.einsum("ia,tij,jb->tab", phi, x, phi, optimize=True) for x in (of.velocity, of.stiffness))
+    force = -residual @ phi
+    first = np.zeros(phi.shape[1]) if start is None else phi.T @ of.mass @ _rest(of.stiffness[0], -start)
+
+    def drive(t: Any) -> Any:
+        place = np.clip((t - time[0]) / step, 0, len(time) - 1)
+        before = np.minimum(place.astype(int), len(time) - 2)
+        return before, place - before
+
+    def matrices(at: Any) -> tuple[Floats, Floats, Floats]:
+        before, share = at
+
+        def between(x: Floats) -> Floats:
+            weight = share.reshape(-1, *[1] * (x.ndim - 1))
+            return x[before] * (1 - weight) + x[before + 1] * weight
+
+        return between(c), between(k), between(force)
+
+    equations = LinearEquations(np.eye(phi.shape[1]), matrices, drive)
+    made = integrate(
+        equations, gauss(), first, 0 * first, step=step, count=len(time) - 1, start=float(time[0])
+    )
+    static = -residual @ flexibility
+    return Correction(made.q @ phi.T + static, made.qd @ phi.T, made.qdd @ phi.T)
+
+
+def _rest(stiffness: Floats, force: Floats) -> Floats:
+    try:
+        return np.linalg.solve(stiffness, force)
+    except np.linalg.LinAlgError:  # a free hub's angle
+        return np.linalg.lstsq(stiffness, force, rcond=1e-12)[0]

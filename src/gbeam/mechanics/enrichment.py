@@ -1,0 +1,81 @@
+"""The same beam with more shapes: what a model's own shapes leave out."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from gbeam.mechanics.assembly import assembled
+from gbeam.mechanics.fields.adapted import adapted_shapes
+from gbeam.mechanics.fields.basis import Families, Quadrature, closed_forms, polynomials, quadrature
+from gbeam.mechanics.fields.enriched import enriched_shapes
+from gbeam.mechanics.models import KINDS
+from gbeam.mechanics.structure import Structure
+from gbeam.structure.beam import Beam
+
+NODES, PER_PANEL = 14, 8  # of the quadrature: over the beam with one shape, and in a panel at least
+
+
+class Enrichment:
+    """A structure's own shapes and those that it lacks, from which models with all of them are made.
+
+    Parameters
+    ----------
+    structure : Structure
+        With a source.
+    """
+
+    def __init__(self, structure: Structure) -> None:
+        assert structure.source is not None
+        self.structure, beam = structure, structure.source.beam
+        own = structure.counts
+        marks = [m.at for m in beam.masses] + [load.at for load in beam.loads if load.at is not None]
+        breaks = [*beam.section.stations, *marks]
+        panels = len(quadrature(beam.length, 1, breaks).edges) - 1
+        self.rule = quadrature(beam.length, max(PER_PANEL, -(-(NODES + 2 * max(own)) // panels)), breaks)
+        self.families, self.new = enriched_shapes(beam, self.rule, _own(structure, beam, self.rule))
+        self.beam = beam
+
+    def model(self, kind: str, *, directions: tuple[bool, bool, bool] = (True, True, True)) -> tuple[Structure, np.ndarray]:
+        """A model with the shapes of some directions, and where the structure's own coordinates are in it.
+
+        Parameters
+        ----------
+        kind : str
+        directions : tuple of bool
+            Whether new shapes along x, y and z are in it.
+        """
+        own = self.structure.counts
+        counts = [n + (more if wanted else 0) for n, more, wanted in zip(own, self.new, directions, strict=True)]
+        if not KINDS[kind].axial:
+            counts[0] = 0
+        families = [_first(family, count) for family, count in zip(self.families, counts, strict=True)]
+        ratio = self.beam.damping_ratio
+        springs = len(self.beam.root.springs)
+        if isinstance(ratio, tuple):
+            ratio = (*ratio, *[ratio[-1]] * (sum(counts) + springs - len(ratio)))
+        beam = replace(self.beam, damping_ratio=ratio)
+        at = np.asarray(self.structure.stations)
+        shapes = self.structure.source.shapes  # type: ignore[union-attr]
+        rich = assembled(beam, kind, tuple(counts), self.rule, at, tuple(families), shapes)
+        starts = np.cumsum([0, *counts])
+        index = np.concatenate(
+            [*(np.arange(n) + start for n, start in zip(own, starts, strict=False)), np.arange(springs) + starts[-1]]
+        )
+        return rich, index.astype(int)
+
+
+def _own(structure: Structure, beam: Beam, rule: Quadrature) -> Families:
+    """The functions that the structure's shapes are."""
+    if structure.source is not None and structure.source.shapes == "adapted":
+        return adapted_shapes(beam, rule, structure.counts)
+    forms = polynomials if KINDS[structure.kind].exact else closed_forms
+    return forms(beam.length, structure.counts)
+
+
+def _first(family, count):
+    def some(x):
+        return type(family(x))(*(part[:, :count] for part in family(x)))
+
+    return some

@@ -1,0 +1,124 @@
+"""A complete model's places, forces and stiffness at many times at once, by NumPy: nothing is compiled.
+
+A field computes with complex numbers, so that a step along the imaginary axis differentiates it. Along a path
+q + iτ q̇ − ½ τ² q̈ that is the path itself at the imaginary time iτ: r + iτ ṙ − ½ τ² r̈ up to terms of third order.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.mechanics.equations.inertia import Elasticity, Inertia
+from gbeam.mechanics.equations.virtual_work import LoadWork
+from gbeam.mechanics.fields.exact import ExactField
+from gbeam.mechanics.fields.rotation import Field, Strains
+
+Array = NDArray[np.float64]
+STEP = 1e-30
+TURN = 1e-3  # by which a coordinate moves in the imaginary time τ, as a share of its largest size
+
+
+def paths(place: Any, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
+    """Places, velocities and accelerations (t, p, 3) of points at coordinates (t, n) and their rates.
+
+    Parameters
+    ----------
+    place : callable
+        Of coordinates (..., n): the points' places (..., p, 3).
+    """
+    r = np.asarray(place(q))
+    fast = max(np.abs(qd).max(initial=0.0), np.sqrt(np.abs(qdd).max(initial=0.0)))
+    if fast == 0:
+        return r, np.zeros_like(r), np.zeros_like(r)
+    tau = TURN / fast
+    moved = np.asarray(place(q - 0.5 * tau**2 * qdd + 1j * tau * qd))
+    return r, moved.imag / tau, 2 * (r - moved.real) / tau**2
+
+
+def pulled_back(function: Any, q: Array, force: Array) -> Array:
+    """Σ (∂f/∂q)·force over all that a function of coordinates gives at each time, (t, n)."""
+    out = np.empty_like(q)
+    flat = force.reshape(len(q), -1)
+    for k in range(q.shape[1]):
+        moved = q.astype(complex)
+        moved[:, k] += 1j * STEP
+        out[:, k] = ((np.asarray(function(moved)).imag / STEP).reshape(len(q), -1) * flat).sum(axis=1)
+    return out
+
+
+def along_places(field: Field, q: Array, force: Array) -> Array:
+    """Generalised forces (t, n) of forces (t, p, 3) at a field's points."""
+    if not isinstance(field, ExactField):
+        return pulled_back(field.position, q, force)
+    at_nodes = np.matmul(field.cumulative.T, force)
+    values = [q @ shapes.T for shapes in field.nodal]
+    total = np.zeros_like(q)
+    for k, shapes in enumerate(field.nodal):
+        moved = [value + (1j * STEP if i == k else 0) for i, value in enumerate(values)]
+        slope = np.asarray(field.tangents(*moved)).imag / STEP
+        total += (slope * at_nodes).sum(axis=-1) @ shapes
+    return total
+
+
+def inertia_forces(inertia: Inertia, q: Array, force: Array) -> Array:
+    """Generalised forces (t, n) of forces (t, k, 3) on the particles."""
+    if inertia.offset is None:
+        return along_places(inertia.field, q, force)
+    total = along_places(inertia.field, q, force)
+    off = np.flatnonzero(np.any(inertia.offset != 0, axis=1))
+    if off.size:
+        offset, field = inertia.offset[off], inertia.field
+
+        def arms(q: Any) -> Any:
+            return np.einsum("...kij,kj->...ki", field.rotation(q, off), offset)
+
+        total = total + pulled_back(arms, q, force[:, off])
+    return total
+
+
+def elastic_forces(elasticity: Elasticity, q: Array, stiffness: Array) -> Array:
+    """∂U/∂q at coordinates (t, n)."""
+    field = elasticity.field
+    if field.linear_strains:
+        return q @ stiffness
+    if isinstance(field, ExactField):
+        return _bent(field, elasticity.rigidity, q)
+
+    def energy(q: Any) -> Any:
+        parts = [((e**2) @ k)[..., None] for k, e in zip(elasticity.rigidity, field.strains(q), strict=True) if len(k)]
+        return 0.5 * sum(parts[1:], start=parts[0])
+
+    return pulled_back(energy, q, np.ones((len(q), 1)))
+
+
+def _bent(field: ExactField, rigidity: Strains, q: Array) -> Array:
+    """The same of an exact field in three dimensions: through the twist, which is an integral."""
+    shapes = [*field.nodal[1:], *field.node_slopes]
+    values = [q @ each.T for each in shapes]
+    bend_y, bend_z, rate = field.bending(*values)
+    twist = rate @ field.node_cumulative.T
+    c, s = np.cos(twist), np.sin(twist)
+    about_y, about_z = c * bend_y + s * bend_z, c * bend_z - s * bend_y
+    m_y, m_z = about_y * rigidity.about_y, about_z * rigidity.about_z
+    of_rate = (m_y * about_z - m_z * about_y) @ field.node_cumulative
+    of_y, of_z = c * m_y - s * m_z, s * m_y + c * m_z
+    total = ((q @ field.nodal[0].T) * rigidity.axial) @ field.nodal[0]
+    for k, each in enumerate(shapes):
+        moved = [value + (1j * STEP if i == k else 0) for i, value in enumerate(values)]
+        slopes = [part.imag / STEP for part in field.bending(*moved)]
+        total += (slopes[0] * of_y + slopes[1] * of_z + slopes[2] * of_rate) @ each
+    return np.asarray(total)
+
+
+def load_forces(work: LoadWork, q: Array, values: Array) -> tuple[Array, Array, Array]:
+    """Forces on the coordinates (t, n) of loads with components (t, loads, 6); their resultants at the root (t, 3)."""
+    r, rotation = work.field.position(q), work.field.rotation(q)
+    force, moment = work.forces(rotation, values)
+    along = along_places(work.field, q, force)
+    if np.any(moment):
+        turning = 0.5 * np.cross(moment[..., :, None], rotation, axis=-2)
+        along = along + pulled_back(work.field.rotation, q, turning)
+    return along, force.sum(axis=1), (np.cross(r, force) + moment).sum(axis=1)
