@@ -134,15 +134,15 @@ def test_error_estimate_brackets_the_error(integrator: str, how: dict[str, Any])
     found = run(strip(), load, 0.4, integrator=integrator, **how)
     truth = run(strip(), load, 0.4, integrator="gauss", step=found.time[1] / 8)
     error = np.abs(found.tip - truth.tip[::8]).max() / np.abs(truth.tip).max()
-    assert error / HONEST < found.error_estimate < error * HONEST
-    assert found.error_estimate <= how["tolerance"]
+    assert error / HONEST < found.errors.displacement.step < error * HONEST
+    assert found.errors.displacement.step <= how["tolerance"]
 
 
 def test_automatic_steps_come_back_to_the_common_grid() -> None:
     """500 or more steps over the duration whatever the refinement; extremes are of every step computed."""
     loose, tight = (run(strip(), flight(RAMP), 0.3, tolerance=t) for t in (1e-2, 1e-5))
     np.testing.assert_allclose(loose.time, tight.time, rtol=1e-12)
-    assert len(loose.time) > 500 and tight.steps > 4 * loose.steps
+    assert len(loose.time) > 500 and tight.steps >= 4 * loose.steps
     assert loose.step == pytest.approx(0.3 / loose.steps)
     assert tight.peaks.max_abs[2] >= np.abs(tight.tip[:, 2]).max()
 
@@ -174,7 +174,7 @@ def test_adaptive_needs_no_corners_in_the_load() -> None:
     assert found.outcome == "done" and np.isnan(found.step)
     error = np.abs(found.tip - gauss.tip).max() / np.abs(gauss.tip).max()
     # Of a run at a tenth of the tolerance of the one that it is compared with.
-    assert error < found.error_estimate < 100 * error < 1e-4
+    assert error < found.errors.displacement.step < 100 * error < 1e-4
 
 
 def test_progress_is_told() -> None:
@@ -195,7 +195,7 @@ def test_tlam_is_warned_about_beyond_its_divergence_only() -> None:
         for share in (0.99, 1.01)
     )
     assert below.outcome == beyond.outcome == "done"
-    assert below.warnings == ()
+    assert not any("definite" in w for w in below.warnings)
     (warning,) = (w for w in beyond.warnings if "definite" in w)
     assert f"turns at {1.01 * stiff:.4g} rad/s" in warning and "not to be trusted" in warning
 
@@ -209,12 +209,12 @@ def test_divergence_stops_the_run_where_the_model_ends() -> None:
 
 
 def test_large_deflection_is_warned_about_in_second_order_models_only() -> None:
-    """Above a tenth of the length, where about 0.35 (v/L)² is lost: 2009, all cases of the exact references."""
+    """Of a dead uniform load a second-order model loses 0.80 (v/L)²: the case at hand says so itself."""
     heavy = flight(constant(1600.0))
     foam = run(strip(), heavy, 0.02, step=1e-3)
-    (warning,) = (w for w in foam.warnings if "of the length" in w)
+    (warning,) = (w for w in foam.warnings if "from the model" in w)
     share = np.linalg.norm(foam.tip, axis=1).max() / LENGTH
-    assert f"{share:.1%}" in warning and f"{0.35 * share**2:.1%}" in warning and "exact" in warning
+    assert foam.errors.displacement.model == pytest.approx(0.80 * share**2, rel=0.1) and "exact" in warning
     small = run(strip(), flight(constant(600.0)), 0.02, step=1e-3)
     assert small.warnings == ()
 

@@ -138,7 +138,7 @@ def assembled(
         load_values=None if history is None else history(np.zeros(())),
         damping_ratio=ratio,
         warnings=implausible_beam(beam, (counts[1] > 0, counts[2] > 0)),
-        source=Source(beam, shapes),
+        source=None if is_jax(c.mass) else Source(beam, shapes),
     )
 
 

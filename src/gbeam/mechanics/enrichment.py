@@ -5,10 +5,20 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gbeam.mechanics.assembly import assembled
 from gbeam.mechanics.fields.adapted import adapted_shapes
-from gbeam.mechanics.fields.basis import Families, Quadrature, closed_forms, polynomials, quadrature
+from gbeam.mechanics.fields.basis import (
+    Array,
+    Families,
+    Family,
+    Quadrature,
+    Shapes,
+    closed_forms,
+    polynomials,
+    quadrature,
+)
 from gbeam.mechanics.fields.enriched import enriched_shapes
 from gbeam.mechanics.models import KINDS
 from gbeam.mechanics.structure import Structure
@@ -37,7 +47,9 @@ class Enrichment:
         self.families, self.new = enriched_shapes(beam, self.rule, _own(structure, beam, self.rule))
         self.beam = beam
 
-    def model(self, kind: str, *, directions: tuple[bool, bool, bool] = (True, True, True)) -> tuple[Structure, np.ndarray]:
+    def model(
+        self, kind: str, *, directions: tuple[bool, bool, bool] = (True, True, True)
+    ) -> tuple[Structure, NDArray[np.int_]]:
         """A model with the shapes of some directions, and where the structure's own coordinates are in it.
 
         Parameters
@@ -50,7 +62,7 @@ class Enrichment:
         counts = [n + (more if wanted else 0) for n, more, wanted in zip(own, self.new, directions, strict=True)]
         if not KINDS[kind].axial:
             counts[0] = 0
-        families = [_first(family, count) for family, count in zip(self.families, counts, strict=True)]
+        s, v, w = (_first(family, count) for family, count in zip(self.families, counts, strict=True))
         ratio = self.beam.damping_ratio
         springs = len(self.beam.root.springs)
         if isinstance(ratio, tuple):
@@ -58,7 +70,7 @@ class Enrichment:
         beam = replace(self.beam, damping_ratio=ratio)
         at = np.asarray(self.structure.stations)
         shapes = self.structure.source.shapes  # type: ignore[union-attr]
-        rich = assembled(beam, kind, tuple(counts), self.rule, at, tuple(families), shapes)
+        rich = assembled(beam, kind, (counts[0], counts[1], counts[2]), self.rule, at, (s, v, w), shapes)
         starts = np.cumsum([0, *counts])
         index = np.concatenate(
             [*(np.arange(n) + start for n, start in zip(own, starts, strict=False)), np.arange(springs) + starts[-1]]
@@ -74,8 +86,8 @@ def _own(structure: Structure, beam: Beam, rule: Quadrature) -> Families:
     return forms(beam.length, structure.counts)
 
 
-def _first(family, count):
-    def some(x):
-        return type(family(x))(*(part[:, :count] for part in family(x)))
+def _first(family: Family, count: int) -> Family:
+    def some(x: Array) -> Shapes:
+        return Shapes(*(part[:, :count] for part in family(x)))
 
     return some

@@ -20,9 +20,9 @@ from gbeam.mechanics.fields.taylor import Places
 from gbeam.structure.section import SectionValues
 
 if TYPE_CHECKING:
-    from gbeam.structure.beam import Beam
     from gbeam.mechanics.equations.dalembert import Complete, CompleteHub
     from gbeam.mechanics.equations.inertia import Elasticity, Inertia
+    from gbeam.structure.beam import Beam
 
 Array = Any
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.printable import json_printable
+from gbeam.results.errors import ErrorEstimate
 from gbeam.results.result import Result
 from gbeam.results.section_forces import yield_margin
 
@@ -44,6 +45,19 @@ def number(value: float, digits: int = 4) -> str:
     if not math.isfinite(value):
         return "–"
     return "0" if value == 0 else f"{value:#.{digits}g}".rstrip(".")
+
+
+def percent(share: float) -> str:
+    """Write a share in percent; a dash where it is not known."""
+    return f"{number(100 * share, 2)} %" if math.isfinite(share) else "–"
+
+
+def error_words(errors: ErrorEstimate) -> str:
+    """An error with what it is made of, the largest first: ``0.29 % (model 0.27, shapes 0.01, step 0.002)``."""
+    parts = {"model": errors.model, "shapes": errors.shapes, "step": errors.step}
+    known = sorted(((size, name) for name, size in parts.items() if size > 0), reverse=True)
+    made = ", ".join(f"{name} {number(100 * size, 2)}" for size, name in known)
+    return f"{percent(errors.total)}{f' ({made})' if len(known) > 1 else ''}"
 
 
 def tidy(values: Iterable[float], size: float) -> list[float]:

@@ -88,8 +88,8 @@ def correction(of: Operator, time: Floats, residual: Floats, start: Floats | Non
     time : (t,) s
     residual : (t, n)
         R.
-    start : (n,) or None
-        Residual of the solution at rest at the first time, in equilibrium; None where the first state is given.
+    start : (beam's n,) or None
+        Residual of the beam at rest at the first time, where it is in equilibrium; None where the first state is given.
     """
     mean = of.stiffness.mean(axis=0)
     mean = (mean + mean.T) / 2
@@ -104,7 +104,10 @@ def correction(of: Operator, time: Floats, residual: Floats, start: Floats | Non
     flexibility = stiff / square[~kept] @ stiff.T
     c, k = (np.einsum("ia,tij,jb->tab", phi, x, phi, optimize=True) for x in (of.velocity, of.stiffness))
     force = -residual @ phi
-    first = np.zeros(phi.shape[1]) if start is None else phi.T @ of.mass @ _rest(of.stiffness[0], -start)
+    first = np.zeros(phi.shape[1])
+    if start is not None:
+        beam = slice(len(modes) - len(start), None)  # a free hub is held
+        first = phi.T @ of.mass[:, beam] @ np.linalg.solve(of.stiffness[0][beam, beam], -start)
 
     def drive(t: Any) -> Any:
         place = np.clip((t - time[0]) / step, 0, len(time) - 1)
@@ -121,15 +124,6 @@ def correction(of: Operator, time: Floats, residual: Floats, start: Floats | Non
         return between(c), between(k), between(force)
 
     equations = LinearEquations(np.eye(phi.shape[1]), matrices, drive)
-    made = integrate(
-        equations, gauss(), first, 0 * first, step=step, count=len(time) - 1, start=float(time[0])
-    )
+    made = integrate(equations, gauss(), first, 0 * first, step=step, count=len(time) - 1, start=float(time[0]))
     static = -residual @ flexibility
     return Correction(made.q @ phi.T + static, made.qd @ phi.T, made.qdd @ phi.T)
-
-
-def _rest(stiffness: Floats, force: Floats) -> Floats:
-    try:
-        return np.linalg.solve(stiffness, force)
-    except np.linalg.LinAlgError:  # a free hub's angle
-        return np.linalg.lstsq(stiffness, force, rcond=1e-12)[0]

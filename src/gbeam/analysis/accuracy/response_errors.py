@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.correction import correction, operator
 from gbeam.analysis.accuracy.reference import Sampled, complete_residual, linear_residual
 from gbeam.mechanics.enrichment import Enrichment
-from gbeam.mechanics.equations.sampled import paths
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
@@ -17,6 +19,8 @@ from gbeam.motion.protocol import Motion
 from gbeam.results.result import Floats
 from gbeam.structure.stress import extreme_stresses
 
+IntArray = NDArray[np.int_]
+SCAN = 200  # samples at which to look for that
 IDLE = 1e-9  # of the largest force: a direction that feels less stays out
 
 
@@ -37,9 +41,28 @@ class Parts(NamedTuple):
     total: Quantities
 
 
-def lacking(
-    structure: Structure, motion: Motion, time: Floats, y: Floats, yd: Floats, ydd: Floats, own: Quantities
-) -> Parts:
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """A solution at equal intervals.
+
+    Parameters
+    ----------
+    time : (t,) s
+    y, yd, ydd : (t, n)
+        Coordinates, rates and accelerations; of a free hub its angle first.
+    """
+
+    time: Floats
+    y: Floats
+    yd: Floats
+    ydd: Floats
+
+    def some(self, chosen: slice | IntArray) -> Solution:
+        """The solution at some of the times."""
+        return Solution(*(x[chosen] for x in (self.time, self.y, self.yd, self.ydd)))
+
+
+def lacking(structure: Structure, motion: Motion, solution: Solution, own: Quantities) -> Parts:
     """What a solution lacks, quantity by quantity, over time.
 
     Parameters
@@ -47,27 +70,25 @@ def lacking(
     structure : Structure
         With a source.
     motion : Motion
-    time : (t,) s
-    y, yd, ydd : (t, n)
-        Coordinates and rates; of a free hub its angle first.
+    solution : Solution
     own : Quantities
         Of the solution.
     """
     more = Enrichment(structure)
-    exact, index = more.model("exact", directions=_driven(more, structure, motion, time, y, yd, ydd))
-    at = _lifted(exact, index, motion, time, y, yd, ydd)
+    exact, index = more.model("exact", directions=_driven(more, structure, motion, solution))
+    at = _lifted(exact, index, motion, solution)
     of = operator(exact, at)
     residual, start = complete_residual(exact, at), _start(exact, at)
-    total = correction(of, time, residual, start)
+    total = correction(of, solution.time, residual, start)
     # In its own coordinates the solution leaves what its model leaves out, in the new ones what its shapes do.
     first = residual.shape[1] - exact.size
     own_rows = np.append(np.arange(first), first + index)
     new, at_start = residual.copy(), start.copy()
-    new[:, own_rows] = at_start[own_rows] = 0.0
-    shapes = correction(of, time, new, at_start)
-    best = at.moved(*total)
-    without = at.moved(*(a - b for a, b in zip(total, shapes, strict=True)))
-    truth, same_shapes = quantities(exact, best), quantities(exact, without)
+    new[:, own_rows] = at_start[index] = 0.0
+    truth, same_shapes = quantities(exact, at.moved(*total)), own
+    if structure.kind != "exact":
+        shapes = correction(of, solution.time, new, at_start)
+        same_shapes = quantities(exact, at.moved(*(a - b for a, b in zip(total, shapes, strict=True))))
     return Parts(
         Quantities(*(a - b for a, b in zip(truth, same_shapes, strict=True))),
         Quantities(*(a - b for a, b in zip(same_shapes, own, strict=True))),
@@ -83,23 +104,30 @@ def quantities(structure: Structure, at: Sampled) -> Quantities:
     )
     tip = structure.displacement(at.p)[:, -1]
     pair = extreme_stresses(structure.sections.values, section_force, section_moment)
-    return Quantities(tip, force[:, 0], moment[:, 0], np.maximum(pair[0], -pair[1]))
+    return Quantities(tip, force[:, 0], moment[:, 0], np.maximum(pair[0], -pair[1]).max(axis=1))
 
 
-def _driven(more, structure, motion, time, y, yd, ydd):
+def _driven(more: Enrichment, structure: Structure, motion: Motion, solution: Solution) -> tuple[bool, bool, bool]:
     """Whether new shapes along x, y and z would be moved."""
+    if all(structure.counts):
+        return True, True, True
+    count = len(solution.time)
+    few = np.linspace(0, count - 1, min(count, SCAN)).astype(int)
     kind = structure.kind if structure.linear else "FOAM"
     rich, index = more.model(kind)
-    at = _lifted(rich, index, motion, time, y, yd, ydd)
+    at = _lifted(rich, index, motion, solution.some(few))
     residual = linear_residual(rich, at)
     counts = np.cumsum([0, *rich.counts])
-    largest = [np.abs(residual[:, a:b]).max(initial=0.0) for a, b in zip(counts, counts[1:], strict=False)]
+    largest = [np.abs(residual[:, a:b]).max(initial=0.0) for a, b in pairwise(counts)]
     c = rich.coefficients
     limit = IDLE * max(np.abs(at.p @ c.stiffness).max(), *largest)
-    return tuple(n > 0 or size > limit for n, size in zip(structure.counts, largest, strict=True))
+    axial, along_y, along_z = (n > 0 or size > limit for n, size in zip(structure.counts, largest, strict=True))
+    return axial, along_y, along_z
 
 
-def _lifted(structure: Structure, index, motion: Any, time, y, yd, ydd) -> Sampled:
+def _lifted(structure: Structure, index: IntArray, motion: Any, solution: Solution) -> Sampled:
+    """A solution in the coordinates of a structure with more shapes, its own at `index`."""
+    time, y, yd, ydd = solution.time, solution.y, solution.yd, solution.ydd
     hub, first = None, 0
     if motion.free:
         hub, first = np.stack([x[:, 0] for x in (y, yd, ydd)], axis=1), 1
@@ -107,11 +135,11 @@ def _lifted(structure: Structure, index, motion: Any, time, y, yd, ydd) -> Sampl
     else:
         base = motion.base(time)
     base = Base(*(np.asarray(x) for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
-    p = np.zeros((3, len(time), structure.size))
-    for k, x in enumerate((y, yd, ydd)):
-        p[k][:, index] = x[:, first:]
+    p, pd, pdd = lifted = np.zeros((3, len(time), structure.size))
+    for onto, x in zip(lifted, (y, yd, ydd), strict=True):
+        onto[:, index] = x[:, first:]
     loads = None if structure.history is None else np.asarray(structure.history(time))
-    return Sampled(time, base, *p, hub, motion if motion.free else None, loads)
+    return Sampled(time, base, p, pd, pdd, hub, motion if motion.free else None, loads)
 
 
 def _start(exact: Structure, at: Sampled) -> Floats:
@@ -123,6 +151,4 @@ def _start(exact: Structure, at: Sampled) -> Floats:
     still = np.zeros((1, exact.size))
     loads = None if at.loads is None else at.loads[:1]
     first = complete_residual(exact, Sampled(at.time[:1], base, at.p[:1], still, still, hub, at.motion, loads))[0]
-    if hub is not None:
-        first[0] = 0.0
-    return first
+    return first if hub is None else first[1:]

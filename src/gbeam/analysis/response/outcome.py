@@ -13,6 +13,7 @@ from gbeam.integrate.driver import Trajectory
 from gbeam.mechanics.fields.exact import ExactField
 from gbeam.mechanics.fields.rooted import RootedField
 from gbeam.mechanics.structure import Structure
+from gbeam.results.errors import Errors
 from gbeam.results.peaks import Peaks
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Floats
@@ -23,13 +24,11 @@ _NEAR = np.radians(160.0)  # of the pole at 180 degrees
 def describe(
     structure: Structure,
     problem: Problem,
-    settings: ResponseSettings,
     trajectory: Trajectory,
     base: BaseMotion,
     peaks: Peaks,
     time: Floats,
     q: Floats,
-    error: float,
 ) -> tuple[str, str, tuple[str, ...]]:
     """Outcome, message and warnings of a run.
 
@@ -37,8 +36,6 @@ def describe(
     ----------
     trajectory : Trajectory
         Every step computed; `base`, at times `time` (t,) s, and the beam's coordinates `q` (t, n) are at those kept.
-    error : float
-        Estimated, as a fraction of the tip's largest displacement.
     """
     loss = first_loss(structure.coefficients, time, base) if structure.linear else None
     lost = (
@@ -70,26 +67,44 @@ def describe(
             "the run starts from an equilibrium that is not stable, which no beam would keep: its stiffness is not "
             "positive definite; `gbeam critical-speed` finds where that begins"
         )
-    share = peaks.max_size / structure.length
-    if structure.kind != "exact" and share > 0.1:
-        warnings.append(
-            f"the tip moves by {share:.1%} of the length: second-order models are then wrong by about "
-            f'{0.35 * share**2:.1%} of the peak (TLAM and CFOAM by more); check with model.kind = "exact"'
-        )
     warnings += _yielding(structure, peaks)
-    if math.isfinite(error) and error > settings.tolerance:
-        warnings.append(
-            f"the estimated error, {error:.2g} of the largest displacement, is above the tolerance "
-            f'{settings.tolerance:g}; give a smaller step, or "auto"'
-        )
-    if math.isnan(error):
-        warnings.append("no error could be estimated: the run with twice the step fails; give a smaller step")
     if (turned := turned_out_of_plane(structure, q)) > _NEAR:
         warnings.append(
             f"the beam's tangent turns by {np.degrees(turned):.0f}° out of one plane: straight back, at 180°, its "
             "rotation vector has a pole, and near it the shapes converge slowly; check with more of them"
         )
     return "done", "", tuple(warnings)
+
+
+def inaccuracies(structure: Structure, errors: Errors, settings: ResponseSettings) -> tuple[str, ...]:
+    """What to say where the estimated errors are above the tolerance, or where there are none: causes and cures."""
+    if math.isnan(errors.displacement.step):
+        return ("no error could be estimated: the run with twice the step fails; give a smaller step",)
+    quantities = {"tip's displacement": errors.displacement, "root's loads": errors.loads}
+    above = {name: each for name, each in quantities.items() if each.total > settings.tolerance}
+    if not above:
+        return ()
+    name, worst = max(above.items(), key=lambda item: item[1].total)
+    cures = {
+        "model": 'check with model.kind = "exact"',
+        "shapes": "raise model.modes, or leave them out",
+        "step": 'give a smaller step, or "auto"',
+    }
+    parts = [(getattr(worst, part), part, cure) for part, cure in cures.items()]
+    causes = [
+        f"{_percent(size)} from {'too few shapes' if part == 'shapes' else f'the {part}'} ({cure})"
+        for size, part, cure in sorted(parts, reverse=True)
+        if size > settings.tolerance / 10
+    ]
+    return (
+        f"the estimated error of the {' and of the '.join(above)}, {_percent(worst.total)} of the largest"
+        f"{f' (of the {name})' if len(above) > 1 else ''}, is above the tolerance {_percent(settings.tolerance)}: "
+        f"{', '.join(causes)}{f'; {errors.note}' if errors.note else ''}",
+    )
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.2g} %"
 
 
 def _yielding(structure: Structure, peaks: Peaks) -> list[str]:

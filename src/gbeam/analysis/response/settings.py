@@ -9,6 +9,8 @@ from gbeam.checks import positive
 from gbeam.limits import STEPS, refuse_more
 from gbeam.plausibility import implausible, possible
 
+FINE = 1e-4
+
 
 @dataclass(frozen=True)
 class ResponseSettings:
@@ -27,7 +29,7 @@ class ResponseSettings:
     parameters : mapping of str to float
         The integrator's own: beta and gamma; alpha; rho_inf.
     tolerance : float
-        Relative error at which the automatic step stops refining.
+        Largest total error, of displacement and root loads, that passes without a warning; see :attr:`aim`.
     residual_from : float or None
         Time from which the residual vibration is measured, s.
 
@@ -42,7 +44,7 @@ class ResponseSettings:
     step: float | None = None
     integrator: str = "newmark"
     parameters: Mapping[str, float] = field(default_factory=dict)
-    tolerance: float = 1e-4
+    tolerance: float = 1e-2
     residual_from: float | None = None
 
     def __post_init__(self) -> None:
@@ -57,3 +59,8 @@ class ResponseSettings:
         """What is implausible."""
         step = () if self.step is None else implausible("response.step", "step", self.step)
         return (*implausible("response.duration", "duration", self.duration), *step)
+
+    @property
+    def aim(self) -> float:
+        """Error that an automatic step and automatic shapes aim at, each: a third of the tolerance, at most 1e-4."""
+        return min(self.tolerance / 3, FINE)

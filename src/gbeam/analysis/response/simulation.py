@@ -9,7 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.response.outcome import describe
+from gbeam.analysis.accuracy.estimate import response_errors
+from gbeam.analysis.accuracy.response_errors import Solution
+from gbeam.analysis.response.outcome import describe, inaccuracies
 from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
 from gbeam.analysis.response.problem import Problem, problem_of
 from gbeam.analysis.response.settings import ResponseSettings
@@ -32,7 +34,7 @@ from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
-from gbeam.results.errors import ErrorEstimate, Errors
+from gbeam.results.errors import Errors
 from gbeam.results.response import BaseMotion, HubResult, Response
 from gbeam.results.result import Floats
 from gbeam.results.section_forces import Loads
@@ -123,14 +125,15 @@ def simulate(
     def run(step: float, what: str) -> Trajectory:
         return integrated(begun, settings, step, **how(what))
 
+    aims = replace(settings, tolerance=settings.aim)
     if settings.integrator == "adaptive":
-        trajectory, step, error = adapted(structure, motion, begun, settings, coarse, too_far, tip)
+        trajectory, step, error = adapted(structure, motion, begun, aims, coarse, too_far, tip)
     elif given is not None:
         order, step = scheme_of(settings).order, given
         trajectory, check = run(step, "integrating"), run(2 * step, "checking with twice the step")
         error = difference(tip(check), tip(trajectory), 2) / (2**order - 1) if check.whole else math.nan
     else:
-        trajectory, step, error = refine(run, tip, moment, coarse, scheme_of(settings).order, settings)
+        trajectory, step, error = refine(run, tip, moment, coarse, scheme_of(settings).order, aims)
     down = None
     if after and trajectory.whole:
         at_end = round(settings.duration / kept)
@@ -198,8 +201,15 @@ def _result(
         hub = replace(hub, drive_torque=loads.drive_torque)
     axes = None if traced or motion.kind != "centrifuge" else axes_result(motion, time)  # type: ignore[arg-type]
     outcome, message, warnings = "done", "", tuple(f"record: {note}" for note in getattr(motion, "notes", ()))
+    displacement = fine[::stride] if up is None and down is None else structure.displacement(q[:, beam])
+    errors = Errors()
     if not traced:
-        outcome, message, own = describe(structure, problem, settings, last, base, peaks, time, q[:, beam], error)
+        outcome, message, own = describe(structure, problem, last, base, peaks, time, q[:, beam])
+        if outcome == "done":
+            solution = Solution(time[flight], q[flight], qd[flight], qdd[flight])
+            during = None if loads is None else loads.during(flight)
+            errors = response_errors(structure, motion, solution, np.asarray(displacement[flight, -1]), during, error)
+            own += inaccuracies(structure, errors, settings)
         given = input_warnings(structure, motion, name=name, span=(time[0], time[-1]), base=base)
         warnings = given + settings.warnings + own + (() if axes is None else axes.warnings) + warnings
     return Response(
@@ -211,7 +221,7 @@ def _result(
         warnings=warnings,
         time=time,
         stations=np.asarray(structure.stations),
-        displacement=fine[::stride] if up is None and down is None else structure.displacement(q[:, beam]),
+        displacement=displacement,
         q=q[:, beam],
         qd=qd[:, beam],
         base=base,
@@ -219,8 +229,8 @@ def _result(
         integrator=settings.integrator,
         step=step,
         steps=sum(len(run.time) - 1 for run in runs if run is not None),
-        error_estimate=error,
-        errors=Errors(displacement=ErrorEstimate(step=error, total=error)),
+        error_estimate=errors.displacement.total,
+        errors=errors,
         residual_from=math.nan if settings.residual_from is None else settings.residual_from,
         hub=hub,
         axes=axes,

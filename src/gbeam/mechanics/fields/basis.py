@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -142,25 +143,24 @@ class Quadrature(NamedTuple):
 
     def _matrix(self, x: Array, *, integrate: bool) -> Array:
         per_panel = len(self.node) // (len(self.edges) - 1)
-        xi, _ = legendre.leggauss(per_panel)
-        to_coefficients = np.linalg.inv(legendre.legvander(xi, per_panel - 1))
-        operator = np.eye(per_panel, per_panel + 1)
-        if integrate:
-            operator[:] = 0
-            for k in range(per_panel):
-                integral = legendre.legint(np.eye(per_panel)[k], lbnd=-1)
-                operator[k, : len(integral)] = integral
-        out = np.zeros((len(x), len(self.node)))
+        onto = _operator(per_panel, integrate=integrate)
         panel = np.clip(np.searchsorted(self.edges, x, side="left") - 1, 0, len(self.edges) - 2)
-        for row, (at, last) in enumerate(zip(x, panel, strict=True)):
-            low, high = self.edges[last], self.edges[last + 1]
-            vander = legendre.legvander(np.array([2 * (at - low) / (high - low) - 1]), per_panel)
-            inside = slice(last * per_panel, (last + 1) * per_panel)
-            out[row, inside] = (vander @ operator.T @ to_coefficients)[0]
-            if integrate:
-                out[row, inside] *= (high - low) / 2
-                out[row, : last * per_panel] = self.weight[: last * per_panel]
-        return out
+        low, high = self.edges[panel], self.edges[panel + 1]
+        inside = legendre.legvander(2 * (x - low) / (high - low) - 1, per_panel) @ onto
+        before = np.arange(len(self.node)) // per_panel
+        out = np.zeros((len(x), len(self.node)))
+        out[before == panel[:, None]] = (inside * ((high - low) / 2)[:, None] if integrate else inside).ravel()
+        return np.where(before < panel[:, None], self.weight, out) if integrate else out
+
+
+@cache
+def _operator(nodes: int, *, integrate: bool) -> Array:
+    """From values at Gauss-Legendre nodes on [−1, 1] to Legendre coefficients, of the integral from −1 if so wished."""
+    xi, _ = legendre.leggauss(nodes)
+    to_coefficients = np.linalg.inv(legendre.legvander(xi, nodes - 1))
+    if not integrate:
+        return np.concatenate([to_coefficients, np.zeros((1, nodes))])
+    return np.asarray(legendre.legint(to_coefficients, lbnd=-1))
 
 
 def quadrature(length: float, per_panel: int, breaks: Sequence[float] = ()) -> Quadrature:

@@ -1,7 +1,7 @@
 """More shapes beside given ones: what the loads do to the beam statically, and what the inertia of that does in turn.
 
 These are load-dependent Ritz vectors (Wilson, Yuan and Dickens 1982): Krylov's sequence K⁻¹F, K⁻¹M K⁻¹F, … of the beam
-with its tapers, bodies and root springs. The static answer is in them, the low modes soon, whatever the given shapes are.
+with its tapers, bodies and root springs. The static answer is in them, and the low modes soon.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ from rich.text import Text
 from gbeam.report.machine import limits
 from gbeam.report.machine.tracking import ends_line, not_followed_stretches, tracking
 from gbeam.report.study import comparison
-from gbeam.report.words import number, sentence, stress_words
+from gbeam.report.words import error_words, number, percent, sentence, stress_words
 from gbeam.results.machine import AxesResult
 from gbeam.results.peaks import LoadPeaks
 from gbeam.results.response import HubResult, Response
@@ -114,7 +114,9 @@ def _accuracy(response: Response) -> str:
     if math.isnan(response.error_estimate) or response.outcome != "done":
         error = "no error estimate"
     else:
-        error = f"estimated error {number(response.error_estimate, 2)} of the largest displacement"
+        error = f"estimated error {error_words(response.errors.displacement)} of the largest displacement"
+        if math.isfinite(response.errors.loads.total):
+            error += f", {percent(response.errors.loads.total)} of the largest root load"
     return f"{response.model}, {response.integrator}, {step}; {error}"
 
 

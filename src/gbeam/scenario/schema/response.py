@@ -38,7 +38,9 @@ class Response(Table):
         default=None, description="parameter of generalized-alpha: spectral radius at infinite frequency"
     )
     tolerance: Annotated[float, Quantity("ratio", "positive")] = Field(
-        default=1e-4, description="relative error that an automatic step and the adaptive integrator aim at"
+        default=1e-2,
+        description="largest total error (step, shapes and model) without a warning; an automatic step aims at a "
+        "third of it, and at 1e-4 at most",
     )
     residual_from: Time | None = Field(default=None, description="time from which the residual vibration is measured")
     stations: tuple[Position, ...] | None = Field(

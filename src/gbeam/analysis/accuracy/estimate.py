@@ -1,0 +1,68 @@
+"""The error estimate of a response: the time step's, that of too few shapes, the model's, and of all together."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from gbeam.analysis.accuracy.response_errors import Quantities, Solution, lacking
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.protocol import Motion
+from gbeam.results.errors import ErrorEstimate, Errors
+from gbeam.results.result import Floats
+from gbeam.results.section_forces import Loads
+
+FEWEST, PER_PERIOD = 500, 6  # samples looked at, in all and in a period of the lowest mode
+LARGEST = 2.0  # times (v/L)²: error of a second-order model, up to what a beam that points inward on a hub has
+BEYOND = "the solution is too far from the exact model's for an estimate; it is the bound 2 (v/L)² of its class"
+UNKNOWN = "shapes and model are not judged: the structure was not made of a beam"
+
+
+def response_errors(
+    structure: Structure, motion: Motion, solution: Solution, tip: Floats, loads: Loads | None, step: float
+) -> Errors:
+    """Estimated errors of a response, as fractions of the largest displacement, load and stress.
+
+    Parameters
+    ----------
+    structure : Structure
+    motion : Motion
+    solution : Solution
+        At equal intervals.
+    tip : (t, 3) m
+    loads : Loads or None
+    step : float
+        Error of the tip's displacement from the time step, a fraction.
+    """
+    if structure.source is None or loads is None or len(solution.time) < 3:
+        return Errors(ErrorEstimate(step=step, total=step), note=UNKNOWN)
+    period = 2 * math.pi / float(structure.rest[0][0])
+    interval = float(solution.time[1] - solution.time[0])
+    stride = max(1, min(int(period / PER_PERIOD / interval), len(solution.time) // FEWEST))
+    few = slice(None, None, stride)
+    every = tip, loads.force[:, 0], loads.moment[:, 0], loads.stress.max(axis=1)
+    own, sizes = Quantities(*(x[few] for x in every)), dict(zip(Quantities._fields, map(_largest, every), strict=True))
+    with np.errstate(all="ignore"):
+        parts = lacking(structure, motion, solution.some(few), own)
+    if not np.isfinite(parts.total.tip).all():
+        return _bounded(structure, sizes["tip"], step)
+
+    def fractions(name: str) -> ErrorEstimate:
+        size = sizes[name] or _largest(getattr(parts.total, name))
+        shares = (_largest(getattr(part, name)) / size if size else 0.0 for part in parts)
+        shapes, model, total = shares
+        return ErrorEstimate(step, shapes, 0.0 if structure.kind == "exact" else model, step + total)
+
+    force, moment = fractions("force"), fractions("moment")
+    return Errors(fractions("tip"), max(force, moment, key=lambda each: each.total), fractions("stress"))
+
+
+def _largest(values: Floats) -> float:
+    """Largest size of numbers over time (t,), or of vectors (t, 3)."""
+    return float(np.abs(values).max()) if values.ndim == 1 else float(np.sqrt((values**2).sum(axis=-1)).max())
+
+
+def _bounded(structure: Structure, size: float, step: float) -> Errors:
+    model = LARGEST * (size / structure.length) ** 2
+    return Errors(ErrorEstimate(step, math.nan, model, step + model), note=BEYOND)
