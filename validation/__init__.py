@@ -13,6 +13,7 @@ MODULES: tuple[str, ...] = (
     "codes.hermite",
     "codes.calculix",
     "codes.exudyn_plane",
+    "codes.exudyn_space",
     "published.paper2009",
     "published.paper2020",
     "published.references",
