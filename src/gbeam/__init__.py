@@ -67,6 +67,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.results.study import Study as Study
     from gbeam.results.sweep import Sweep as Sweep
     from gbeam.scenario.build import read_scenario as read_scenario
+    from gbeam.scenario.rerun import rerun as rerun
     from gbeam.structure.beam import Beam as Beam
     from gbeam.structure.bodies import PointMass as PointMass
     from gbeam.structure.loads import Load as Load
@@ -130,6 +131,7 @@ _HOME = {
     "plan": "analysis.imitation.plan",
     "read_record": "motion.bases.records.record",
     "read_scenario": "scenario.build",
+    "rerun": "scenario.rerun",
     "simulate": "analysis.response.simulation",
     "smoothed": "motion.profiles.profile",
     "solve_equilibrium": "analysis.equilibrium.equilibrium",

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from gbeam.cli.invocation import command
 from gbeam.cli.publication import refuse_unwritable
 from gbeam.errors import InputError
 
 if TYPE_CHECKING:
     from gbeam.analysis.study.case import Case
-    from gbeam.io.netcdf import Provenance
     from gbeam.mechanics.structure import Structure
     from gbeam.motion.protocol import Motion
+    from gbeam.results.provenance import Provenance
     from gbeam.scenario import Scenario
 
 STATIONS = 81  # along the beam, at which shapes are given
@@ -24,11 +24,10 @@ STATIONS = 81  # along the beam, at which shapes are given
 
 @dataclass(frozen=True)
 class Input:
-    """A scenario as read, the case that it describes, and the command that names both."""
+    """A scenario as read, and the case that it describes."""
 
     scenario: Scenario
     case: Case
-    command: str
 
     @contextmanager
     def placing(self, **options: str) -> Iterator[None]:
@@ -87,14 +86,16 @@ class Input:
         length = self.case.beam.length
         return self.case.assemble([length * i / (STATIONS - 1) for i in range(STATIONS)])
 
-    def provenance(self) -> Provenance:
-        """What a result file says about where it came from."""
-        from gbeam.io.netcdf import Provenance
+    def signed(self, facts: dict[str, Any]) -> dict[str, Any]:
+        """The facts of a result, as JSON, with where they come from."""
+        return signed(facts, self.case.provenance)
 
-        source = self.scenario.source
-        if source is None:
-            return Provenance(command=self.command)
-        return Provenance(source.text, tuple(change.text for change in source.overrides), self.command)
+
+def signed(facts: dict[str, Any], provenance: Provenance | None) -> dict[str, Any]:
+    """The facts of a result, as JSON, with where they come from."""
+    from gbeam.report.provenance import to_json
+
+    return facts if provenance is None else {**facts, "provenance": to_json(provenance)}
 
 
 _MOVING = ("run", "place")  # verbs that need all motions
@@ -112,11 +113,11 @@ def read(verb: str, file: Path, overrides: Sequence[str], out: Path | None = Non
     """
     if out is not None:
         refuse_unwritable(out)
-    from gbeam.scenario import build, load  # not needed, nor imported, for help
+    from gbeam.scenario import build, load, provenance  # not needed, nor imported, for help
 
     scenario = load(file, overrides)
-    changes = [word for change in overrides for word in ("--set", change)]
-    return Input(scenario, build(scenario, ahead=verb in _MOVING), shlex.join(["gbeam", verb, str(file), *changes]))
+    case = build(scenario, ahead=verb in _MOVING)
+    return Input(scenario, replace(case, provenance=provenance(scenario, command())))
 
 
 @contextmanager

@@ -12,6 +12,7 @@ os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 from cyclopts import App, CycloptsError
 
 import gbeam
+from gbeam.cli import invocation
 from gbeam.cli.failures import report, report_defect, report_memory, report_syntax
 from gbeam.errors import GbeamError
 
@@ -27,6 +28,7 @@ VERBS = {
     "plan": "Plan the axis motions of a centrifuge within its limits; needs no beam.",
     "place": "Find where to put the specimen on the centrifuge.",
     "sweep": "Figures of many cases: over ranges, lists or samples of any values of a scenario.",
+    "rerun": "Compute a result again from what its file says, and compare every number.",
     "check": "Say what a scenario means, without computing a response.",
     "new": "Write a commented scenario to start from.",
     "schema": "Print the JSON schema of scenario files, for editors.",
@@ -53,6 +55,7 @@ def run(tokens: list[str]) -> int:
         If a file or a stream cannot be read or written.
     """
     as_json = "--json" in tokens
+    invocation.begin(tokens)
     try:
         status = _app(tokens[0] if tokens else "")(
             tokens, exit_on_error=False, print_error=False, result_action="return_value"

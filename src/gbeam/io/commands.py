@@ -8,6 +8,7 @@ import numpy as np
 from scipy.io import savemat
 
 from gbeam.results.machine import Commands, MachinePlan
+from gbeam.results.provenance import Provenance
 
 _UNITS = {"angle": "rad", "rate": "rad_per_s", "acceleration": "rad_per_s2"}
 _STILL = 1e-9  # rad/s, rad/s²: what is slower stands still
@@ -78,9 +79,19 @@ def header(plan: MachinePlan, commands: Commands) -> list[str]:
         *FRAME,
     ]
     lines[1:1] = [f"TARGET HELD {start:.3f} to {end:.3f} s: {why}" for start, end, why in plan.axes.episodes]
+    if plan.provenance is not None:
+        lines += origin_lines(plan.provenance)
     if plan.outcome != "done":
         lines.insert(1, f"{plan.outcome.upper()}: {plan.message}")
     return lines
+
+
+def origin_lines(provenance: Provenance) -> list[str]:
+    """Where the numbers come from."""
+    provenance, environment = provenance.stated()
+    records = [f"Record of {each.motion}: {each.file}, SHA-256 {each.sha256}." for each in provenance.records]
+    made = f"Made by gbeam {environment.gbeam}, Python {environment.python}, {environment.platform}"
+    return [f"{made}: {provenance.command}", f"Scenario SHA-256 {provenance.sha256}.", *records]
 
 
 def _state(commands: Commands, sample: int) -> str:

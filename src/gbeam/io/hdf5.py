@@ -38,7 +38,7 @@ def write_groups(groups: Mapping[str, Group], path: str | os.PathLike[str]) -> N
     OSError
         If it cannot be written.
     """
-    write_whole(path, _image(groups))
+    write_whole(path, image(groups))
 
 
 def write_whole(path: str | os.PathLike[str], data: bytes) -> None:
@@ -60,7 +60,7 @@ def write_whole(path: str | os.PathLike[str], data: bytes) -> None:
         raise
 
 
-def _image(groups: Mapping[str, Group]) -> bytes:
+def image(groups: Mapping[str, Group]) -> bytes:
     """Bytes of the file, made in memory: HDF5 ends the process where a disk is full as it closes a file."""
     dimensions = 0  # so far, in the whole file
     options = {"driver": "core", "backing_store": False, "libver": ("earliest", "v110"), "track_order": True}

@@ -9,19 +9,16 @@ without groups. Variables are SI and carry ``units``, ``long_name`` and, for vec
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable
 from datetime import UTC, datetime
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.io.comparisons import comparison_group
-from gbeam.io.groups import Group, Variable
+from gbeam.io.groups import Group
 from gbeam.io.hdf5 import write_groups
 from gbeam.io.machine import plan_group
+from gbeam.io.provenance import provenance_attrs, provenance_variables
 from gbeam.io.responses import response_group
 from gbeam.io.steady import campbell_group, critical_group, critical_map_group, deflection_group, modes_group
 from gbeam.io.sweeps import sweep_group
@@ -29,7 +26,9 @@ from gbeam.io.tables import models_group, placement_group, state_space_group
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.placement import Placement
 from gbeam.results.machine import MachinePlan
+from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
+from gbeam.results.result import Result
 from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.steady.modal import Campbell, Modes
 from gbeam.results.steady.stability import Critical, CriticalMap
@@ -56,43 +55,6 @@ _GROUPS: dict[type, Callable[[Any], Group]] = {
 }
 
 
-@dataclass(frozen=True)
-class Provenance:
-    """Where a result came from.
-
-    Parameters
-    ----------
-    scenario : str
-        Text of the scenario file.
-    overrides : sequence of str
-        The ``key=value`` changes made to it, in order.
-    command : str
-        The command line.
-    """
-
-    scenario: str = ""
-    overrides: Sequence[str] = ()
-    command: str = ""
-
-
-def write(study: Study, path: str | os.PathLike[str], provenance: Provenance = Provenance()) -> None:
-    """Write a study to a netCDF file, whole or not at all.
-
-    Parameters
-    ----------
-    study : Study
-    path : path
-        Replaced if it exists.
-    provenance : Provenance
-
-    Raises
-    ------
-    OSError
-        If it cannot be written.
-    """
-    write_groups(_study(study, provenance), path)
-
-
 def save(result: Any, path: str | os.PathLike[str]) -> None:
     """Write any result to a netCDF file, whole or not at all.
 
@@ -101,10 +63,18 @@ def save(result: Any, path: str | os.PathLike[str]) -> None:
     OSError
         If it cannot be written.
     """
-    if isinstance(result, Study):
-        write(result, path)
-    else:
-        write_groups({"": _group(result)}, path)
+    write_groups(groups_of(result), path)
+
+
+def groups_of(result: Result) -> dict[str, Group]:
+    """What a file holds of any result, by path: the root says what it is and where it comes from."""
+    groups = _study(result) if isinstance(result, Study) else {"": _GROUPS[type(result)](result)}
+    origin = result.provenance or Provenance()
+    root = groups[""]
+    about = provenance_attrs(origin) | {"warnings": "\n".join(result.warnings)}
+    variables = provenance_variables(origin) if origin.scenario else {}
+    groups[""] = Group(variables | root.variables, root.coordinates, root.attrs | about)
+    return groups
 
 
 def to_xarray(result: Any) -> Any:
@@ -114,10 +84,8 @@ def to_xarray(result: Any) -> Any:
     def dataset(group: Group) -> xr.Dataset:
         return xr.Dataset(dict(group.variables), dict(group.coordinates), group.attrs)
 
-    if not isinstance(result, Study):
-        return dataset(_group(result))
-    every = _study(result, Provenance())
-    return xr.DataTree.from_dict({f"/{path}": dataset(group) for path, group in every.items()})
+    every = {path: dataset(group) for path, group in groups_of(result).items()}
+    return xr.DataTree.from_dict({f"/{path}": each for path, each in every.items()}) if len(every) > 1 else every[""]
 
 
 def read(path: str | os.PathLike[str]) -> xr.DataTree:
@@ -147,28 +115,16 @@ def read(path: str | os.PathLike[str]) -> xr.DataTree:
         raise InputError(str(path), f"cannot be read ({reason})", "give a result.nc written by gbeam run") from None
 
 
-def _group(result: Any) -> Group:
-    """What a file or a Dataset holds of a result that is no study, with its warnings."""
-    group = _GROUPS[type(result)](result)
-    return replace(group, attrs=group.attrs | {"warnings": "\n".join(result.warnings)})
-
-
-def _study(study: Study, provenance: Provenance) -> dict[str, Group]:
-    # The text is a variable: an HDF5 attribute ends at 64 KiB, and a scenario may hold long tables.
-    text = np.array(provenance.scenario, dtype=object)
+def _study(study: Study) -> dict[str, Group]:
     attrs = {
         "title": study.title,
         "outcome": study.outcome,
         "verdict": "\n".join(each.verdict for each in study.comparisons),
         "summary": repr(study),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
-        "gbeam_version": version("gbeam"),
-        "jax_version": version("jax"),
-        "command": provenance.command,
-        "overrides": "\n".join(provenance.overrides),
     }
     attrs |= {f"failure_{name}": f"{failed.outcome}: {failed.message}" for name, failed in study.failures.items()}
-    groups = {"": Group({"scenario": Variable((), text, {"long_name": "text of the scenario file"})}, {}, attrs)}
+    groups = {"": Group({}, {}, attrs)}
     groups |= {f"motions/{name}": response_group(response) for name, response in study.responses.items()}
     groups |= {f"comparisons/{each.centrifuge}": comparison_group(each) for each in study.comparisons}
     return groups

@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from gbeam.results.provenance import Provenance
+
 Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Flags = NDArray[np.bool_]
@@ -60,9 +62,12 @@ class Result:
     ----------
     warnings : tuple of str
         Why it may not be what it seems: implausible input, or an answer that is not to be trusted.
+    provenance : Provenance or None
+        The scenario, the records and the command that it comes from, where there is a scenario.
     """
 
     warnings: tuple[str, ...] = field(default=(), repr=False)
+    provenance: Provenance | None = field(default=None, repr=False)
 
     def to_xarray(self) -> Any:
         """Return the result with named dimensions, units and frames.

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from gbeam.errors import InputError
 from gbeam.scenario import schema
-from gbeam.scenario.collect import Collector
 from gbeam.scenario.load import load
-from gbeam.scenario.placing import placed
+from gbeam.scenario.origin import provenance
+from gbeam.scenario.placing import Collector, placed
 
 if TYPE_CHECKING:
     from gbeam.analysis.response.settings import ResponseSettings
@@ -89,6 +89,7 @@ def build(scenario: schema.Scenario, *, ahead: bool = False) -> Case:
             for name, table in scenario.motion.items()
             if isinstance(table, schema.Centrifuge) and table.accept is not None
         },
+        provenance=provenance(scenario),
     )
 
 

@@ -1,9 +1,9 @@
-"""What the objects of the core refuse, with its place in the scenario."""
+"""What the objects of the core refuse: collected, so that one mistake does not hide the next, and put at its place."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from gbeam.errors import InputError
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
@@ -12,6 +12,23 @@ from gbeam.scenario.text.paths import parse_path
 if TYPE_CHECKING:
     from gbeam.scenario.schema import Environments
     from gbeam.scenario.text.source import Mark, Source
+
+T = TypeVar("T")
+
+
+class Collector:
+    """Collects the InputErrors of what it attempts, in `errors`."""
+
+    def __init__(self) -> None:
+        self.errors: list[InputError] = []
+
+    def attempt(self, where: str, make: Callable[..., T], *args: Any, **options: Any) -> T | None:
+        """Return ``make(*args, **options)``; None, with its error kept as one of `where`, if it refuses."""
+        try:
+            return make(*args, **options)
+        except InputError as error:
+            self.errors.append(error.within(where))
+            return None
 
 
 def placed(scenario: Environments, errors: Iterable[InputError]) -> ScenarioError:

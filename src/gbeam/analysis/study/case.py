@@ -13,6 +13,7 @@ from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.models import Model
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
+from gbeam.results.provenance import Provenance
 from gbeam.structure.beam import Beam
 
 
@@ -35,6 +36,8 @@ class Case:
     accept : mapping of str to mapping of str to float
         By the centrifuge's name, the limits that decide whether it is accepted, and ``tolerance``: see
         :func:`gbeam.compare`.
+    provenance : Provenance, optional
+        Of the scenario; results of the whole case have it.
     """
 
     title: str
@@ -45,6 +48,7 @@ class Case:
     tracks: Mapping[str, str] = field(default_factory=dict)
     stations: tuple[float, ...] = ()
     accept: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    provenance: Provenance | None = None
 
     def assemble(self, stations: ArrayLike | None = None) -> Structure:
         """Put the beam into its model.

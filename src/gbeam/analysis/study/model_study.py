@@ -88,7 +88,7 @@ def compare_models(
         axis = _most_moved(answers, name) if isinstance(reference, Failure) else _axis(reference.peaks.max_abs)
         direction[name] = "xyz"[axis]
         rows += [_row(kind, name, *answers[kind, name], reference, axis) for kind in KINDS if kind in chosen]
-    return ModelStudy(case.title, REFERENCE, direction, tuple(rows))
+    return ModelStudy(case.title, REFERENCE, direction, tuple(rows), provenance=case.provenance)
 
 
 def _structure(case: Case, kind: str) -> Structure | Failure:

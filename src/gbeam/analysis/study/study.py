@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 from gbeam.analysis.imitation.comparison import compare
 from gbeam.analysis.response.simulation import simulate
@@ -44,7 +45,8 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
             if progress is not None:
                 progress(f"{name}: {what}", share)
 
-        return simulate(structure, motion, case.response, name=name, progress=report)
+        response = simulate(structure, motion, case.response, name=name, progress=report)
+        return replace(response, provenance=case.provenance)
 
     responses: dict[str, Response] = {}
     failures: dict[str, Failure] = {}
@@ -59,11 +61,11 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
             first.outcome, "; ".join(f"motion.{n}: {failure.message}" for n, failure in failures.items())
         )
     comparisons = tuple(
-        _compared(responses[flight], responses[name], case.accept.get(name, {}))
+        replace(_compared(responses[flight], responses[name], case.accept.get(name, {})), provenance=case.provenance)
         for name, flight in case.tracks.items()
         if {flight, name} <= responses.keys() and responses[flight].outcome == responses[name].outcome == "done"
     )
-    return Study(case.title, responses, comparisons, failures)
+    return Study(case.title, responses, comparisons, failures, provenance=case.provenance)
 
 
 def _compared(flight: Response, centrifuge: Response, accept: Mapping[str, float]) -> Comparison:

@@ -53,7 +53,7 @@ def campbell(
         diagram = analysis.campbell(
             given.case.assemble(), chosen, start=low, end=high, modes=modes, orders=range(1, orders + 1), name=name
         )
-    facts = report.to_json(diagram)
+    facts = given.signed(report.to_json(diagram))
 
     from gbeam.scenario.text.units import unit_of
 

@@ -20,7 +20,7 @@ def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = No
 
     with given.placing():
         description = describe(given.case)
-    facts = report.to_json(description)
+    facts = given.signed(report.to_json(description))
     write(out, "check", facts)
     show(report.text(description), facts, json)
     return 0

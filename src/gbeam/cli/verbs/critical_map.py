@@ -34,7 +34,7 @@ def critical_map(
 
     with Watch(), given.placing():
         critical = critical_speed_map(case.beam, case.model, chosen, kilograms, places, upper, name=name)
-    facts = report.map_json(critical)
+    facts = given.signed(report.map_json(critical))
 
     def make(hidden: Path) -> None:
         from gbeam.plots import save

@@ -57,7 +57,7 @@ def critical_speed(
             critical = stability.critical_load(structure, held_base(chosen, time), upper=upper)
         else:
             critical = stability.buckling_acceleration(structure, upper=upper)
-    facts = report.to_json(critical, name, vary)
+    facts = given.signed(report.to_json(critical, name, vary))
     write(out, "critical_speed", facts)
     show(report.text(critical, name), facts, json)
     return 0

@@ -76,7 +76,7 @@ def linearize(
                 system = reduction.modal_truncation(system, modes)
             elif balanced is not None:
                 system, hankel = reduction.balanced_truncation(system, balanced)
-    facts = report.to_json(system, gauges, hankel)
+    facts = given.signed(report.to_json(system, gauges, hankel))
 
     def make(hidden: Path) -> None:
         system.to_mat(hidden / "linear.mat")

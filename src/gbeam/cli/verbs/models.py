@@ -23,7 +23,7 @@ def models(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = N
 
     with Watch() as watch, given.placing():
         study = compare_models(given.case, progress=watch)
-    facts = report.to_json(study)
+    facts = given.signed(report.to_json(study))
     write(out, "models", facts)
     if json:
         show("", facts, json)

@@ -37,7 +37,7 @@ def modes(
 
     with Watch(), given.placing():
         modes = modal.modes(given.structure(), chosen, time, gyroscopic=gyroscopic, name=name)
-    facts = report.to_json(modes)
+    facts = given.signed(report.to_json(modes))
 
     write(out, "modes", facts, lambda: {"modes": modes.plot(title=given.case.title)})
     show(report.text(modes), facts, json)

@@ -77,7 +77,7 @@ def place(
             check=check,
         )
     written = _apply(given, scenario, name, placement.changes) if write_back and placement.changes else None
-    facts = report.to_json(placement, written)
+    facts = given.signed(report.to_json(placement, written))
     write(out, "place", facts)
     show(report.text(placement, written), facts, json)
     if placement.outcome != "done":

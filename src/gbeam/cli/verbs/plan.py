@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
 from gbeam.cli.failures import FAILED, complain
-from gbeam.cli.inputs import number
+from gbeam.cli.inputs import number, signed
+from gbeam.cli.invocation import command
 from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, ScenarioFile
 from gbeam.cli.outputs import list_files, show, show_table
 from gbeam.cli.publication import publish, refuse_unwritable
@@ -38,7 +40,7 @@ def plan(
     if out is not None:
         refuse_unwritable(out)
 
-    from gbeam.scenario import build_machines, load_environments, schema
+    from gbeam.scenario import build_machines, load_environments, provenance, schema
 
     given = load_environments(scenario, overrides)
     machines = build_machines(given)
@@ -51,8 +53,12 @@ def plan(
     from gbeam.analysis.imitation import plan as analysis
     from gbeam.report.machine import plan as report
 
+    origin = provenance(given, command())
     tables = {name: table for name, table in given.motion.items() if isinstance(table, schema.Centrifuge)}
-    plans = {name: analysis.plan(name, machine, tables[name].tracks) for name, machine in machines.items()}
+    plans = {
+        name: replace(analysis.plan(name, machine, tables[name].tracks), provenance=origin)
+        for name, machine in machines.items()
+    }
 
     def make(hidden: Path) -> None:
         from gbeam.io.commands import write_commands
@@ -69,7 +75,7 @@ def plan(
         show_table(report.table(given.title, plans.values()))
     files = [] if out is None else publish(out, make)
     if json:
-        show("", report.to_json(given.title, plans.values(), files), json)
+        show("", signed(report.to_json(given.title, plans.values(), files), origin), json)
     list_files(None if json else out, files)
     broken = [each for each in plans.values() if each.outcome != "done"]
     for each in broken:

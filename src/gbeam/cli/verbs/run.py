@@ -44,7 +44,7 @@ def run(
         from gbeam.io import netcdf
         from gbeam.plots import write_plots
 
-        netcdf.write(answer, hidden / "result.nc", given.provenance())
+        netcdf.save(answer, hidden / "result.nc")
         write_plots(answer, hidden, "gbeam run")
 
     if not json:
@@ -55,7 +55,7 @@ def run(
     if json:
         from gbeam.report.study.summary_json import to_json
 
-        show("", to_json(answer, files), json)
+        show("", given.signed(to_json(answer, files)), json)
     list_files(None if json else folder, files)
     for name, failure in answer.unfinished.items():
         complain(f"motion.{name} {failure.outcome}: {failure.message}")

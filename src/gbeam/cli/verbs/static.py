@@ -39,7 +39,7 @@ def static(
         structure = given.structure()
         deflections = [static(structure, each, time, name=name) for name, each in chosen.items()]
     title = given.case.title
-    facts = report.to_json(title, deflections)
+    facts = given.signed(report.to_json(title, deflections))
 
     def figures() -> dict[str, Figure]:
         from gbeam.plots import plot_static

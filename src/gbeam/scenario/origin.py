@@ -1,0 +1,53 @@
+"""What a scenario's results say of where they come from."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+from gbeam.results.provenance import Provenance, RecordFile
+from gbeam.scenario.schema import Environments, Flight
+
+EMBEDDED = 8 * 2**20  # bytes of a record that go with the result; of a larger one only its hash
+
+
+def provenance(scenario: Environments, command: str = "") -> Provenance:
+    """Where results of a scenario come from.
+
+    Parameters
+    ----------
+    scenario : Environments
+    command : str
+        The command line.
+    """
+    source = scenario.source
+    if source is None:
+        return Provenance(command=command)
+    records = tuple(
+        _record(name, table.record.file)
+        for name, table in scenario.motion.items()
+        if isinstance(table, Flight) and table.record is not None
+    )
+    changes = tuple(change.text for change in source.overrides)
+    return Provenance(source.text, changes, fingerprint(source.data), records, command)
+
+
+def fingerprint(data: dict[str, Any]) -> str:
+    """SHA-256 of what a scenario says, however it is written and in whatever order.
+
+    Parameters
+    ----------
+    data : dict
+        The parsed text, with its overrides.
+    """
+    text = json.dumps(data, sort_keys=True, ensure_ascii=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _record(motion: str, file: str) -> RecordFile:
+    content = Path(file).read_bytes()
+    small = len(content) <= EMBEDDED
+    return RecordFile(motion, os.fspath(file), hashlib.sha256(content).hexdigest(), content if small else None)

@@ -1,0 +1,135 @@
+"""A result computed again from what its file says."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import os
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gbeam.errors import InputError
+from gbeam.io.provenance import RECORD
+from gbeam.results.provenance import Provenance, present
+from gbeam.results.reproduction import Difference, Reproduction
+from gbeam.scenario.build import build
+from gbeam.scenario.load import loads
+from gbeam.scenario.origin import fingerprint
+from gbeam.scenario.text.overrides import override
+from gbeam.scenario.text.source import parse
+
+if TYPE_CHECKING:
+    from gbeam.io.stored import Stored
+
+# What the root says of the computation and not of its result.
+_ABOUT = {"date", "command", "overrides", "scenario_sha256"}
+_ABOUT |= {"gbeam_version", "python_version", "platform", "dependencies"}
+
+
+def rerun(path: str | os.PathLike[str]) -> Reproduction:
+    """Compute a result again, from the scenario and the records that its file holds, and compare every number.
+
+    Parameters
+    ----------
+    path : path
+        A ``result.nc`` that ``gbeam run`` or :meth:`gbeam.Study.save` wrote. A record that is too large to be in it is
+        read from where it was.
+
+    Returns
+    -------
+    Reproduction
+        It is reproduced where nothing differs, or, with other versions or on another platform, by no more than 1e-9.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read or holds no scenario, or the scenario or a record is not the one that was run.
+    ComputationError
+        If there is no answer any more.
+    """
+    from gbeam.analysis.study.study import study
+    from gbeam.io.stored import read_stored, stored
+
+    before = read_stored(path)
+    origin = before.provenance
+    if not origin.scenario:
+        fix = "give the result.nc of `gbeam run`, or save a study of a scenario"
+        raise InputError(str(path), "holds no scenario to run again", fix)
+    data, _ = override(parse(str(path), origin.scenario), str(path), origin.overrides)
+    if fingerprint(data) != origin.sha256:
+        fix = "the file was changed after the run; run the scenario again"
+        raise InputError(str(path), "holds another scenario than the one that was run", fix)
+    with TemporaryDirectory(prefix="gbeam-") as folder:
+        changes = [*origin.overrides, *_records(origin, Path(folder))]
+        case = build(loads(origin.scenario, str(path), changes, folder=folder), ahead=True)
+        after = stored(study(replace(case, provenance=None)))
+    assert origin.environment is not None
+    facts = [*_pairs(before, after)]
+    differences = [each for name, then, now in facts if (each := _difference(name, then, now)) is not None]
+    return Reproduction(
+        file=os.fspath(path),
+        compared=len(facts),
+        differences=tuple(sorted(differences, key=lambda each: -each.size)),
+        changed=origin.environment.changes(present()),
+    )
+
+
+def _records(origin: Provenance, folder: Path) -> Iterator[str]:
+    """Put the records into a folder, or find them where they were; the changes that make the scenario read them."""
+    for record in origin.records:
+        if record.content is None:
+            file = Path(record.file).resolve()
+            content = file.read_bytes() if file.is_file() else None
+            if content is None:
+                raise InputError(record.file, "is not where it was", "put the record back: it was too large to be kept")
+        else:
+            content, file = record.content, folder / f"{record.motion}{Path(record.file).suffix}"
+            file.write_bytes(content)
+        if hashlib.sha256(content).hexdigest() != record.sha256:
+            fix = "put back the one with the SHA-256 " + record.sha256
+            raise InputError(record.file, "is another record than the one that was run", fix)
+        yield f"motion.{record.motion}.record.file={file}"
+
+
+def _pairs(before: Stored, after: Stored) -> Iterator[tuple[str, Any, Any]]:
+    """Variables and attributes by their names: then, and now; None where there is none."""
+
+    def facts(of: Stored) -> dict[str, Any]:
+        made = {name: each for name, each in of.variables.items() if name != "scenario" and not name.startswith(RECORD)}
+        for place, attrs in of.attrs.items():
+            if place != "scenario" and not place.startswith(RECORD):
+                made |= {f"{place}@{name}": each for name, each in attrs.items() if place or name not in _ABOUT}
+        return made
+
+    then, now = facts(before), facts(after)
+    for name in (*then, *(name for name in now if name not in then)):
+        yield name, then.get(name), now.get(name)
+
+
+def _difference(name: str, then: Any, now: Any) -> Difference | None:
+    """How a variable or an attribute differs, if it does."""
+    if then is None or now is None:
+        return Difference(name, math.inf, "is not there any more" if now is None else "was not there")
+    old, new = np.asarray(then), np.asarray(now)
+    if old.shape != new.shape:
+        return Difference(name, math.inf, f"had the shape {old.shape}, has {new.shape}")
+    if old.dtype.kind != "f" or new.dtype.kind != "f":
+        return None if np.array_equal(old, new) else Difference(name, math.inf, f"was {_short(then)}, is {_short(now)}")
+    if np.array_equal(old, new, equal_nan=True):
+        return None
+    apart = np.abs(old - new)
+    both = np.isfinite(apart)
+    if (np.isnan(old) != np.isnan(new)).any() or not both.any():
+        return Difference(name, math.inf, f"was {_short(then)}, is {_short(now)}")
+    size = float(apart[both].max() / np.abs(old[np.isfinite(old)]).max(initial=np.finfo(float).tiny))
+    return Difference(name, size, f"differs by up to {size:.2g} of its largest value")
+
+
+def _short(value: Any) -> str:
+    text = str(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."

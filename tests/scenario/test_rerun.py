@@ -1,0 +1,202 @@
+"""Every result says where it comes from, and is computed again from that."""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+
+import gbeam as gb
+from gbeam.results.provenance import Environment
+from gbeam.scenario import provenance
+
+from ..calling import Answer, gbeam
+from ..scenarios import EVERY_MOTION, FAST, FLIGHT, SPECIMEN, model, response
+
+__all__ = ["gbeam"]
+
+RECORD = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
+RECORDED = (
+    'title = "recorded"\n'
+    + SPECIMEN
+    + model("FOAM", 0, 1, 1)
+    + '[motion.flight]\nkind = "flight"\n'
+    + 'record = { file = "turn.csv", time = "time_s", x = "n_x_g", y = "-n_y_g", z = "-n_z_g", unit = "g" }\n'
+    + response("1 s", step="5 ms")
+)
+
+
+@pytest.fixture
+def result(tmp_path: Path, gbeam: Callable[..., Answer], monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The file of a run with a record, from another folder than where it is computed again."""
+    place = tmp_path / "there"
+    place.mkdir()
+    monkeypatch.chdir(place)
+    shutil.copy(RECORD, place / "turn.csv")
+    (place / "s.toml").write_text(RECORDED, encoding="utf-8")
+    assert gbeam("run", "s.toml", "--set", "beam.length=310 mm", "--out", "out").status == 0
+    monkeypatch.chdir(tmp_path)
+    return place / "out" / "result.nc"
+
+
+def test_a_result_is_reproduced_without_its_record(result: Path, gbeam: Callable[..., Answer]) -> None:
+    (result.parents[1] / "turn.csv").unlink()
+    answer = gbeam("rerun", result)
+    assert answer.status == 0 and answer.out.endswith("values and arrays computed again: the same to the last digit\n")
+    again = gb.rerun(result)
+    assert again.reproduced and not again.differences and not again.changed and again.compared > 100
+
+
+def _edited(result: Path, change: Callable[[h5py.File], None]) -> Path:
+    with h5py.File(result, "r+") as file:
+        change(file)
+    return result
+
+
+def _moved(share: float) -> Callable[[h5py.File], None]:
+    def change(file: h5py.File) -> None:
+        values = file["motions/flight/displacement"]
+        moved = values[:]
+        moved[7, -1, 2] += share * np.abs(moved).max()
+        values[:] = moved
+
+    return change
+
+
+def test_what_differs_is_named(result: Path, gbeam: Callable[..., Answer]) -> None:
+    answer = gbeam("rerun", _edited(result, _moved(1e-12)), "--json")
+    assert answer.status == 1 and answer.json["outcome"] == "not reproduced" and answer.json["tolerance"] == 0
+    (difference,) = answer.json["differences"]
+    assert difference["name"] == "motions/flight/displacement"
+    assert difference["size"] == pytest.approx(1e-12, rel=1e-2)
+
+
+@pytest.mark.parametrize(("share", "status"), [(1e-12, 0), (1e-8, 1)])
+def test_elsewhere_a_billionth_is_allowed(
+    result: Path, gbeam: Callable[..., Answer], share: float, status: int
+) -> None:
+    def change(file: h5py.File) -> None:
+        _moved(share)(file)
+        file.attrs["platform"] = "Plan 9"
+        file.attrs["dependencies"] = file.attrs["dependencies"].replace("numpy ", "numpy 1")
+
+    answer = gbeam("rerun", _edited(result, change))
+    assert answer.status == status
+    assert "platform was Plan 9, is " in answer.out and "numpy was 1" in answer.out
+
+
+def test_a_changed_word_or_scenario_is_found(result: Path, gbeam: Callable[..., Answer]) -> None:
+    def other_word(file: h5py.File) -> None:
+        file["motions/flight"].attrs["outcome"] = "diverged"
+
+    answer = gbeam("rerun", _edited(result, other_word))
+    assert answer.status == 1 and "motions/flight@outcome: was diverged, is done" in answer.out
+
+    def other_scenario(file: h5py.File) -> None:
+        text = file["scenario"].asstr()[()]
+        file["scenario"][()] = text.replace("4 mm", "5 mm")
+
+    answer = gbeam("rerun", _edited(result, other_scenario))
+    assert answer.status == 2 and "another scenario than the one that was run" in answer.err
+
+
+def test_a_large_record_is_found_where_it_was(
+    tmp_path: Path, gbeam: Callable[..., Answer], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("gbeam.scenario.origin.EMBEDDED", 1000)
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(RECORD, "turn.csv")
+    Path("s.toml").write_text(RECORDED, encoding="utf-8")
+    assert gbeam("run", "s.toml", "--out", "out").status == 0
+    assert Path("out/result.nc").stat().st_size < 1_000_000
+    assert gbeam("rerun", "out/result.nc").status == 0
+    Path("turn.csv").write_text(RECORD.read_text(encoding="utf-8").replace("0.853805", "0.853806"), encoding="utf-8")
+    answer = gbeam("rerun", "out/result.nc")
+    assert answer.status == 2 and "turn.csv is another record than the one that was run" in answer.err
+    Path("turn.csv").unlink()
+    answer = gbeam("rerun", "out/result.nc")
+    assert answer.status == 2 and "turn.csv is not where it was" in answer.err
+
+
+def test_files_without_a_scenario_are_refused(tmp_path: Path, gbeam: Callable[..., Answer]) -> None:
+    beam = gb.assemble(gb.Beam(0.3, gb.Section.circle(0.01), gb.Material(2700.0, 7e10)), "FOAM", z=1)
+    gb.static(beam, gb.Flight(z=1.0)).save(tmp_path / "static.nc")
+    (tmp_path / "text.nc").write_text("no netCDF", encoding="utf-8")
+    for name, words in (
+        ("static.nc", "holds no scenario to run again"),
+        ("text.nc", "is not a netCDF-4 file"),
+        ("none.nc", "is no file"),
+    ):
+        answer = gbeam("rerun", tmp_path / name)
+        assert answer.status == 2 and words in answer.err
+
+
+def test_a_study_from_python_is_reproduced_too(tmp_path: Path) -> None:
+    (tmp_path / "fast.toml").write_text(FAST, encoding="utf-8")
+    study = gb.study(gb.read_scenario(tmp_path / "fast.toml", ["response.step=1 ms"]))
+    assert study.provenance is not None and study.provenance.overrides == ("response.step=1 ms",)
+    study.save(tmp_path / "x.nc")
+    assert gb.rerun(tmp_path / "x.nc").reproduced
+    tree = study.to_xarray()
+    assert tree.attrs["scenario_sha256"] == study.provenance.sha256
+    flight = study.responses["flight"].to_xarray()
+    assert str(flight["scenario"].values) == FAST and flight.attrs["overrides"] == "response.step=1 ms"
+
+
+def test_every_verb_says_where_its_answer_comes_from(tmp_path: Path, gbeam: Callable[..., Answer]) -> None:
+    file = tmp_path / "s.toml"
+    file.write_text(EVERY_MOTION.replace("4 s", "0.5 s"), encoding="utf-8")
+    verbs: list[tuple[Any, ...]] = [
+        ("check",),
+        ("static", "--motion", "flight"),
+        ("modes", "--motion", "flight"),
+        ("campbell", "--motion", "slew", "--to", "1 rad/s"),
+        ("critical-speed", "--motion", "slew", "--masses", "0.1 kg", "--positions", "0.3 m"),
+        ("linearize", "--motion", "flight"),
+        ("plan",),
+        ("run", "--set", "response.step=5 ms"),
+    ]
+    for verb, *options in verbs:
+        answer = gbeam(verb, file, *options, "--json", "--out", tmp_path / verb)
+        origin = answer.json["provenance"]
+        assert origin["command"].startswith(f"gbeam {verb} {file} ") and origin["command"].endswith(verb)
+        assert origin["scenario"] == file.read_text(encoding="utf-8") and len(origin["scenario_sha256"]) == 64
+        assert origin["gbeam"] == gb.__version__ and origin["dependencies"]["numpy"] == np.__version__
+    commands = (tmp_path / "plan" / "commands_spin.csv").read_text(encoding="utf-8")
+    assert f"# Made by gbeam {gb.__version__}, Python" in commands and f"gbeam plan {file}" in commands
+
+
+def test_the_fingerprint_is_of_what_a_scenario_says(tmp_path: Path) -> None:
+    from gbeam.scenario import loads
+
+    swapped = FAST.replace(FLIGHT, "") + FLIGHT
+    first, second, other = (
+        provenance(loads(text)).sha256 for text in (FAST, "# a remark\n" + swapped, FAST.replace("0.5 s", "0.6 s"))
+    )
+    assert first == second != other
+
+
+def test_a_record_has_the_hash_of_its_bytes(tmp_path: Path) -> None:
+    shutil.copy(RECORD, tmp_path / "turn.csv")
+    (tmp_path / "s.toml").write_text(RECORDED, encoding="utf-8")
+    origin = gb.read_scenario(tmp_path / "s.toml").provenance
+    assert origin is not None
+    (record,) = origin.records
+    assert record.sha256 == hashlib.sha256(RECORD.read_bytes()).hexdigest() and record.content == RECORD.read_bytes()
+
+
+def test_changes_of_the_environment_are_named() -> None:
+    then = Environment("0.1", "3.11", "Linux", {"numpy": "1", "scipy": "1"})
+    now = Environment("0.1", "3.12", "Linux", {"numpy": "2", "jax": "1"})
+    assert then.changes(now) == {
+        "python": ("3.11", "3.12"),
+        "numpy": ("1", "2"),
+        "scipy": ("1", "missing"),
+        "jax": ("missing", "1"),
+    }
