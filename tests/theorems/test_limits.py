@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from gbeam import (  # fmt: skip
+from gbeam import (
     Beam,
     Centrifuge,
     Flight,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from gbeam import (  # fmt: skip
+from gbeam import (
     Beam,
     Flight,
     Hub,
@@ -20,6 +20,7 @@ from gbeam import (  # fmt: skip
     modes,
     simulate,
     solve_equilibrium,
+    vector,
 )
 from gbeam.integrate import LinearEquations, gauss, integrate, newmark
 from gbeam.motion import Base
@@ -60,6 +61,18 @@ def test_a_setting_angle_turns_nothing_round(beam: Beam, rate: float, radius: fl
         for psi in (0.0, angle)
     )
     np.testing.assert_allclose(turned, plain, rtol=1e-8)
+
+
+@theorem
+@given(beam=beams(square=True, bodies=False, damping=0.0), share=numbers(0.01, 0.8))
+def test_a_spin_about_the_beam_is_seen_from_outside_as_none(beam: Beam, share: float) -> None:
+    """A round beam spinning about its axis vibrates in the world as at rest: seen from the base at |ω ± Ω|."""
+    structure = assemble(beam, Model("FOAM", 0, 3, 3))
+    spin = share * first_frequency(beam)
+    base = Flight(x=0.0, rates=vector(x=constant(spin)))
+    rest = structure.rest[0][::2]  # in pairs
+    wanted = np.sort(np.concatenate([rest - spin, rest + spin]))
+    np.testing.assert_allclose(2 * np.pi * modes(structure, base).frequency, wanted, rtol=1e-9)
 
 
 @theorem
