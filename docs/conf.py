@@ -6,11 +6,10 @@ import re
 from pathlib import Path
 from typing import Any
 
+import mathjax
 from docutils import nodes
-from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
 from sphinx.errors import SphinxError
-from sphinx.writers.html5 import HTML5Translator
 
 import gbeam
 
@@ -19,8 +18,9 @@ author = "The gbeam developers"
 project_copyright = "the gbeam developers, MIT licence"
 version = release = gbeam.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "numpydoc"]
 nitpicky = True
+smartquotes = False  # a prime is a derivative
 exclude_patterns = ["_build"]
 
 myst_enable_extensions = ["dollarmath", "colon_fence", "deflist"]
@@ -35,12 +35,14 @@ python_use_unqualified_type_names = True
 
 html_theme = "pydata_sphinx_theme"
 html_title = f"gbeam {release}"
-html_static_path = ["_static"]
+# MathJax is one file, from a package that holds its files and nothing else (it needs no Django).
+html_static_path = ["_static", f"{Path(mathjax.__file__).parent}/static/mathjax/es5/tex-svg.js"]
 html_css_files = ["gbeam.css"]
 html_copy_source = False
 html_show_sphinx = False
 html_sidebars = {page: [] for page in ("index", "theory", "validation", "changes")}  # they have no neighbours
-html_math_renderer = "mathml"
+mathjax_path = "tex-svg.js"
+mathjax3_config = {"options": {"enableMenu": False}}  # the menu loads files that are not there
 html_theme_options = {
     "logo": {"text": "gbeam"},
     "navbar_align": "left",
@@ -52,21 +54,26 @@ html_theme_options = {
 }
 
 
-def inline_math(translator: HTML5Translator, node: nodes.math) -> None:
-    """MathML, which browsers draw themselves: there is no script to bundle."""
-    translator.body.append(tex2mathml(node.astext()))
-    raise nodes.SkipNode
+INDEXED = re.compile(r"(?<=[A-Za-zΑ-ώ\u0307\u0308₀-₉])_(ww|al|ab|ij|[A-Za-zΑ-ώ0-9])(?![A-Za-z0-9_])")
 
 
-def display_math(translator: HTML5Translator, node: nodes.math_block) -> None:
-    """MathML in a block that scrolls by itself where it is wider than the page, with its number beside it."""
-    text, _, tag = node.astext().partition(r"\tag")
-    number = tag.strip("{} \n")
-    translator.body.append('<div class="display-math">' + tex2mathml(text.strip(), as_block=True))
-    if number:
-        translator.body.append(f'<span class="equation-number">({number})</span>')
-    translator.body.append("</div>\n")
-    raise nodes.SkipNode
+def leave_formulas(app: Sphinx, doctree: nodes.document) -> None:
+    """Give a formula to MathJax as it is: Sphinx would put one of several lines into an environment without numbers."""
+    for node in doctree.findall(nodes.math_block):
+        text = node.astext()
+        node["no-wrap"] = True
+        node.children = [nodes.Text(rf"\[{text}\]")]
+
+
+def lower_indices(app: Sphinx, doctree: nodes.document) -> None:
+    """Set the index of a symbol in running text, r_A or ω_y, below the line."""
+    for text in list(doctree.findall(nodes.Text)):
+        if isinstance(text.parent, nodes.paragraph) and INDEXED.search(text):
+            parts: list[nodes.Node] = []
+            for i, part in enumerate(INDEXED.split(text)):
+                if part:
+                    parts.append(nodes.subscript("", part) if i % 2 else nodes.Text(part))
+            text.parent.replace(text, parts)
 
 
 def escape_bars(app: Sphinx, what: str, name: str, value: Any, options: Any, lines: list[str]) -> None:
@@ -87,7 +94,8 @@ def refuse_network(app: Sphinx, exception: Exception | None) -> None:
 
 
 def setup(app: Sphinx) -> None:
-    """Register how formulas are drawn, and what is checked."""
-    app.add_html_math_renderer("mathml", inline_renderers=(inline_math, None), block_renderers=(display_math, None))
+    """Register what happens to formulas and docstrings, and what is checked."""
+    app.connect("doctree-read", leave_formulas)
+    app.connect("doctree-read", lower_indices)
     app.connect("autodoc-process-docstring", escape_bars, priority=900)
     app.connect("build-finished", refuse_network)

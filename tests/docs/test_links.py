@@ -46,7 +46,7 @@ def test_cited_sections_of_the_theory_exist() -> None:
     """`docs/theory.md, section 8.2` or `(8.4)` in a comment."""
     theory = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
     sections = set(re.findall(r"^#+ ([\d.]+) ", theory, re.MULTILINE))
-    equations = set(re.findall(r"\((\d+\.\d+)\)\s*$", theory, re.MULTILINE))
+    equations = set(re.findall(r"\\tag\{(\d+\.\d+)\}", theory))
     cited = 0
     for path in SOURCES:
         text = path.read_text(encoding="utf-8")
