@@ -137,5 +137,12 @@ def test_samples_and_knots() -> None:
         gb.Centrifuge(flight, arm=3.3, control_point=0.1, inverse="flat", smoothing=0, span=(0, 1e300))
 
 
+def test_stations_of_a_section() -> None:
+    at = np.linspace(0, 0.3, 1000)
+    beam = gb.Beam(0.3, gb.Section.rectangle(0.02, np.full(1000, 0.004), stations=at), gb.Material(2700, 70e9))
+    with pytest.raises(InputError, match=r"section.stations makes 2.398e\+04 nodes of integration, .* 13.8 GB"):
+        gb.assemble(beam, "FOAM", z=3)
+
+
 def test_sizes_in_words() -> None:
     assert [in_bytes(n) for n in (5, 24e9, 1e15)] == ["5 B", "24 GB", "1e+03 TB"]

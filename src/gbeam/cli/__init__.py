@@ -26,10 +26,17 @@ def main(argv: Sequence[str] | None = None) -> int:
         Exit status: 0 done, 1 the computation failed and said why, 2 the input is wrong and it said where, 3 a defect
         of gbeam; of a process that a signal ends 130 (interrupted) or 143 (terminated).
     """
-    if argv is None:
-        from gbeam.cli.interrupts import end_on_signals
+    if argv is not None:
+        return _status(list(argv))
+    from gbeam.cli.interrupts import end_on_signals, ignore_signals
 
-        end_on_signals()
+    end_on_signals()
+    status = _status(sys.argv[1:])
+    ignore_signals()  # all is written and printed
+    return status
+
+
+def _status(arguments: list[str]) -> int:
     from gbeam.cli import streams
 
     listening = streams.prepare()
@@ -37,7 +44,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     from gbeam.cli.program import run
 
     try:
-        status = run(list(sys.argv[1:] if argv is None else argv))
+        status = run(arguments)
         sys.stdout.flush()
     except OSError as error:
         # Stdout is closed (`gbeam run ... | head`) or its disk is full, or a file cannot be read or written.

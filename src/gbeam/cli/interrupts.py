@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
@@ -23,6 +24,13 @@ def end_on_signals() -> None:
     for number in _WORDS:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _end)
+
+
+def ignore_signals() -> None:
+    """Let signals come too late: as Python ends it would be killed by one, with another exit status."""
+    for number in _WORDS:
+        if signal.getsignal(number) is _end:
+            signal.signal(number, signal.SIG_IGN)
 
 
 @contextmanager
@@ -57,6 +65,9 @@ def _end(number: int, frame: FrameType | None) -> None:
 
 
 def _exit(number: int) -> None:
+    processes = sys.modules.get("multiprocessing")
+    for child in processes.active_children() if processes else ():  # which would wait for work for ever
+        child.kill()
     for cleanup in reversed(_cleanups):
         with suppress(Exception):
             cleanup()

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.errors import InputError
+from gbeam.limits import NODES, refuse_more
 from gbeam.mechanics.damping import damping_matrix
 from gbeam.mechanics.equations.inertia import Elasticity, Inertia
 from gbeam.mechanics.equations.linear import coefficients
@@ -56,7 +57,8 @@ def assemble(
     Raises
     ------
     InputError
-        If a station lies off the beam, or the list of damping ratios does not fit the model.
+        If a station lies off the beam, the list of damping ratios does not fit the model, or the section has too many
+        stations to integrate between.
     """
     if isinstance(model, str):
         model = Model(model, axial, y, z, shapes)
@@ -67,6 +69,9 @@ def assemble(
     adapted = model.shapes == "adapted"
     breaks = [*beam.section.stations, *(bodies if adapted else ())]
     rule = quadrature(beam.length, _nodes(row, max(counts), adapted=adapted), breaks)
+    # Integrals from the root are a matrix of all nodes to all.
+    nodes = len(rule.node)
+    refuse_more("section.stations", "nodes of integration", nodes, NODES, 24.0 * nodes, "give fewer, or fewer shapes")
     families = adapted_shapes(beam, rule, counts) if adapted else None
     return assembled(beam, model.kind, counts, rule, at, families, model.shapes)
 
