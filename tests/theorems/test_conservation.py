@@ -30,9 +30,23 @@ def truncated(function: Any, q: Any, qd: Any) -> Any:
     return coefficients[:3].sum(axis=0)
 
 
+def places(structure: Structure, hub: Hub, q: Any) -> Any:
+    """Of the particles, from the hub's centre, axes of the hub, m."""
+    return structure.places.positions(q) @ hub.mount.R_HB.T + np.array([float(hub.radius), 0.0, 0.0])
+
+
+def weight(structure: Structure, hub: Hub, angle: Any, q: Any) -> tuple[Any, Any]:
+    """Potential energy of the particles in gravity, J, and its torque about the hub's axis, N m."""
+    x, y, z = np.asarray(hub.mount.gravity)
+    c, s = np.cos(angle), np.sin(angle)
+    g = np.array([c * x + s * y, c * y - s * x, z + 0 * c])
+    r, m = places(structure, hub, q), structure.mass
+    return -(m * (r @ g)).sum(), (m * (r[:, 0] * g[1] - r[:, 1] * g[0])).sum()
+
+
 def motion(structure: Structure, hub: Hub, rate: Any, q: Any, qd: Any) -> tuple[Any, Any]:
     """Kinetic energy, J, and angular momentum about the hub's axis, N m s, of the particles, axes of the hub."""
-    r = structure.places.positions(q) @ hub.mount.R_HB.T + np.array([float(hub.radius), 0.0, 0.0])
+    r = places(structure, hub, q)
     rd = structure.places.slopes(q) @ qd @ hub.mount.R_HB.T
     v = rd + rate * np.stack([-r[:, 1], r[:, 0], 0 * r[:, 0]], axis=1)
     m = structure.mass
@@ -41,15 +55,24 @@ def motion(structure: Structure, hub: Hub, rate: Any, q: Any, qd: Any) -> tuple[
 
 @pytest.mark.parametrize("kind", ["FOAM", "TLAM"])
 @theorem
-@given(beam=beams(springs=True), size=vectors(1.0, 2 * 7 + 3), setting=numbers(0.0, 1.5), radius=numbers(0.0, 1.0))
-def test_a_free_hub(kind: str, beam: Beam, size: np.ndarray, setting: float, radius: float) -> None:
-    """dE/dt = τθ̇ − q̇·Cq̇ − c θ̇², dp/dt = τ − cθ̇ − kθ, at any state, under any torque, at any setting angle."""
+@given(
+    beam=beams(springs=True),
+    size=vectors(1.0, 2 * 7 + 3),
+    setting=numbers(0.0, 1.5),
+    radius=numbers(0.0, 1.0),
+    gravity=vectors(1.0),
+)
+def test_a_free_hub(
+    kind: str, beam: Beam, size: np.ndarray, setting: float, radius: float, gravity: np.ndarray
+) -> None:
+    """dE/dt = τθ̇ − q̇·Cq̇ − c θ̇², dp/dt = τ − cθ̇ − kθ and gravity's torque, at any state and any setting angle."""
     structure = assemble(beam, Model(kind, *COUNTS))
     n = structure.size
     inertia = float(structure.coefficients.rigid[4]) * 3 + beam.length**2
     scale = first_frequency(beam)
     hub = Hub(radius=radius * beam.length, inertia=inertia, stiffness=inertia * scale**2 / 50,
-              damping=inertia * scale / 9, setting_angle=setting)  # fmt: skip
+              damping=inertia * scale / 9, setting_angle=setting,
+              gravity=0.05 * scale**2 * beam.length * gravity)  # fmt: skip
     lengths = beam.length * np.append(SMALL, np.full(n - len(SMALL), 0.01))
     q, qd = size[:n] * lengths, size[n : 2 * n] * lengths * scale
     angle, rate, torque = size[-3], size[-2] * scale / 4, size[-1] * inertia * scale**2 / 20
@@ -65,6 +88,7 @@ def test_a_free_hub(kind: str, beam: Beam, size: np.ndarray, setting: float, rad
         energy = truncated(lambda a, b: motion(structure, hub, spin, a, b)[0], now, speeds)
         momentum = truncated(lambda a, b: motion(structure, hub, spin, a, b)[1], now, speeds)
         stored = 0.5 * now @ structure.coefficients.stiffness @ now + 0.5 * hub.stiffness * turned**2
+        stored = stored + truncated(lambda a, _: weight(structure, hub, turned, a)[0], now, speeds)
         return energy + stored + 0.5 * inertia * spin**2, momentum + inertia * spin
 
     power, moment = (np.imag(x) / 1e-20 for x in totals(1e-20j))  # derivatives, by a complex step
@@ -72,6 +96,7 @@ def test_a_free_hub(kind: str, beam: Beam, size: np.ndarray, setting: float, rad
     terms = np.abs(yd) @ np.abs(mass) @ np.abs(ydd)
     np.testing.assert_allclose(power, torque * rate - lost, atol=1e-9 * terms, rtol=0)
     given_ = torque - hub.damping * rate - hub.stiffness * angle
+    given_ = given_ + truncated(lambda a, _: weight(structure, hub, angle, a)[1], q, qd)
     np.testing.assert_allclose(moment, given_, atol=1e-9 * np.abs(mass[0]) @ np.abs(ydd), rtol=0)
 
 
