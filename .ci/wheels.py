@@ -24,7 +24,7 @@ UV = shutil.which("uv", path=os.pathsep.join([str(Path(sys.executable).parent), 
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 RESOLUTIONS = ("lowest-direct", "highest")
 EXAMPLE = ROOT / "examples" / "f16_8g_turn.toml"
-# Files by h5py and h5netcdf for xarray; JAX and diffrax; pyuff; rainflow; pint; tree-sitter. The demo needs the others.
+# Files by h5py, h5netcdf and zarr; JAX and diffrax; pyuff; rainflow; pint; tree-sitter. The demo needs the others.
 TESTS = (
     "tests/io",
     "tests/integrate/test_driver.py",
@@ -32,6 +32,7 @@ TESTS = (
     "tests/motion/test_record_files.py",
     "tests/comparison/test_fatigue.py",
     "tests/scenario/test_units.py",
+    "tests/sweeps/test_sweep.py::test_files_and_words",
     "tests/scenario/test_locate.py",
 )
 
