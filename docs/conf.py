@@ -1,4 +1,4 @@
-"""The documentation site: `make docs`. Nothing in it is fetched from a network, when it is built or when it is read."""
+"""The documentation site: `make docs`. Nothing in it comes from a network."""
 
 from __future__ import annotations
 
@@ -35,14 +35,21 @@ python_use_unqualified_type_names = True
 
 html_theme = "pydata_sphinx_theme"
 html_title = f"gbeam {release}"
-# MathJax is one file, from a package that holds its files and nothing else (it needs no Django).
-html_static_path = ["_static", f"{Path(mathjax.__file__).parent}/static/mathjax/es5/tex-svg.js"]
+# MathJax is one file, of a package that holds nothing else: it needs no Django.
+html_static_path = [
+    "_static",
+    f"{Path(mathjax.__file__).parent}/static/mathjax/es5/tex-svg.js",
+]
 html_css_files = ["gbeam.css"]
 html_copy_source = False
 html_show_sphinx = False
-html_sidebars = {page: [] for page in ("index", "theory", "validation", "changes")}  # they have no neighbours
+html_sidebars = {
+    page: [] for page in ("index", "theory", "validation", "changes")
+}  # they have no neighbours
 mathjax_path = "tex-svg.js"
-mathjax3_config = {"options": {"enableMenu": False}}  # the menu loads files that are not there
+mathjax3_config = {
+    "options": {"enableMenu": False}
+}  # the menu loads files that are not there
 html_theme_options = {
     "logo": {"text": "gbeam"},
     "navbar_align": "left",
@@ -54,11 +61,13 @@ html_theme_options = {
 }
 
 
-INDEXED = re.compile(r"(?<=[A-Za-zΑ-ώ\u0307\u0308₀-₉])_(ww|al|ab|ij|[A-Za-zΑ-ώ0-9])(?![A-Za-z0-9_])")
+INDEXED = re.compile(
+    r"(?<=[A-Za-zΑ-ώ\u0307\u0308₀-₉])_(ww|al|ab|ij|[A-Za-zΑ-ώ0-9])(?![A-Za-z0-9_])"
+)
 
 
 def leave_formulas(app: Sphinx, doctree: nodes.document) -> None:
-    """Give a formula to MathJax as it is: Sphinx would put one of several lines into an environment without numbers."""
+    """Give a formula to MathJax as it is: Sphinx would take its number from it."""
     for node in doctree.findall(nodes.math_block):
         text = node.astext()
         node["no-wrap"] = True
@@ -72,25 +81,40 @@ def lower_indices(app: Sphinx, doctree: nodes.document) -> None:
             parts: list[nodes.Node] = []
             for i, part in enumerate(INDEXED.split(text)):
                 if part:
-                    parts.append(nodes.subscript("", part) if i % 2 else nodes.Text(part))
+                    parts.append(
+                        nodes.subscript("", part) if i % 2 else nodes.Text(part)
+                    )
             text.parent.replace(text, parts)
 
 
-def escape_bars(app: Sphinx, what: str, name: str, value: Any, options: Any, lines: list[str]) -> None:
-    """In docstrings |x| is a size; reStructuredText would take it for a substitution."""
+def escape_bars(
+    app: Sphinx, what: str, name: str, value: Any, options: Any, lines: list[str]
+) -> None:
+    """In docstrings |x| is a size; in reStructuredText it is a substitution."""
     lines[:] = [re.sub(r"(?<!\\)\|", r"\\|", line) for line in lines]
 
 
+def records_only(
+    app: Sphinx, what: str, name: str, value: Any, skip: bool, options: Any
+) -> bool:
+    """Of the modules of results, the records are described and not their helpers."""
+    return skip or (what == "module" and not isinstance(value, type))
+
+
 def refuse_network(app: Sphinx, exception: Exception | None) -> None:
-    """A page that loads anything from a network is an error; plain links to other places are not."""
+    """A page that loads anything from a network is an error; plain links are not."""
     if exception is not None:
         return
     for page in Path(app.outdir).rglob("*.html"):
         text = page.read_text(encoding="utf-8")
-        loaded = re.findall(r"<(?:script|img|iframe|source)[^>]*\bsrc=\"((?:https?:)?//[^\"]*)", text)
+        loaded = re.findall(
+            r"<(?:script|img|iframe|source)[^>]*\bsrc=\"((?:https?:)?//[^\"]*)", text
+        )
         loaded += re.findall(r"<link[^>]*\bhref=\"((?:https?:)?//[^\"]*)", text)
         if loaded:
-            raise SphinxError(f"{page.name} loads {loaded[0]}: the documentation has to be readable offline")
+            raise SphinxError(
+                f"{page.name} loads {loaded[0]}, and has to be readable offline"
+            )
 
 
 def setup(app: Sphinx) -> None:
@@ -98,4 +122,5 @@ def setup(app: Sphinx) -> None:
     app.connect("doctree-read", leave_formulas)
     app.connect("doctree-read", lower_indices)
     app.connect("autodoc-process-docstring", escape_bars, priority=900)
+    app.connect("autodoc-skip-member", records_only)
     app.connect("build-finished", refuse_network)
