@@ -26,6 +26,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.analysis.imitation.place import place as place
     from gbeam.analysis.imitation.plan import commands as commands
     from gbeam.analysis.imitation.plan import plan as plan
+    from gbeam.analysis.response.initial import Initial as Initial
     from gbeam.analysis.response.settings import ResponseSettings as ResponseSettings
     from gbeam.analysis.response.simulation import simulate as simulate
     from gbeam.analysis.study.case import Case as Case
@@ -91,6 +92,7 @@ _HOME = {
     "Gauge": "results.steady.state_space",
     "GbeamError": "errors",
     "Hub": "motion.bases.hub",
+    "Initial": "analysis.response.initial",
     "InputError": "errors",
     "Load": "structure.loads",
     "MachineLimits": "motion.centrifuge.machine.limits",

@@ -66,7 +66,7 @@ def response_group(response: Response) -> Group:
     if response.axes is not None:
         data |= machine_variables(response.axes)
         coordinates |= MACHINE_AXIS
-    attrs = {name: getattr(response, name) for name in ("environment", "model", "outcome", "message")}
+    attrs = {name: getattr(response, name) for name in ("environment", "model", "outcome", "message", "initial")}
     attrs["warnings"] = "\n".join(response.warnings)
     attrs |= {name: getattr(response, name) for name in ("integrator", "step", "steps", "error_estimate")}
     for name in ("displacement", "loads", "stress"):

@@ -279,6 +279,15 @@ class Structure:
         """Strain energy at coordinates (n,), J."""
         return self.equations.strain_energy(q)
 
+    def station_slopes(self, q: Array) -> Array:
+        """Derivatives of the stations' places with respect to coordinates `q` (n,), (s, 3, n)."""
+        if self.linear:
+            return self.station_places.slopes(q)
+        from gbeam.mechanics.equations.compiled import slopes
+
+        assert self.field is not None
+        return np.asarray(slopes(self.inertia, self.field.sampled(slice(self.first_station, None)), q)[1])
+
     def displacement(self, q: Array) -> Array:
         """Displacement of the stations relative to the base axes at coordinates (..., n), (..., s, 3) m."""
         if self.linear:

@@ -113,6 +113,8 @@ class Response(Figured):
         Of displacement, loads and stress, with what they are made of.
     damping_ratio : float or tuple of float
         Modal, of the modes of the beam on a base at rest.
+    initial : str
+        How it begins, in words.
     """
 
     name: str
@@ -140,6 +142,7 @@ class Response(Figured):
     influence: Influence | None = None
     errors: Errors = field(default_factory=Errors)
     damping_ratio: float | tuple[float, ...] = math.nan
+    initial: str = ""
 
     @property
     def tip(self) -> Floats:

@@ -178,6 +178,7 @@ def _response(
 ) -> ResponseSettings | None:
     """Settings; `records` are what they cover, and without a duration the time that all do."""
     from gbeam import integrate
+    from gbeam.analysis.response.initial import Initial
     from gbeam.analysis.response.settings import ResponseSettings
 
     schemes: dict[str, Callable[..., object]] = {
@@ -206,9 +207,13 @@ def _response(
     if table.residual_from is not None and not start <= table.residual_from < end:
         fix = f"give a time from {start:g} s to {end:g} s"
         parts.errors.append(InputError("response.residual_from", f"is {table.residual_from:g} s", fix))
+    initial = parts.attempt("response.initial", Initial, **table.initial.given)
+    if initial is None:
+        return None
     return parts.attempt(
         "response",
         ResponseSettings,
+        initial=initial,
         start=start,
         duration=duration,
         step=None if isinstance(table.step, str) else table.step,

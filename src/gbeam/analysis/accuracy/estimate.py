@@ -20,7 +20,14 @@ UNKNOWN = "shapes and model are not judged: the structure was not made of a beam
 
 
 def response_errors(
-    structure: Structure, motion: Motion, solution: Solution, tip: Floats, loads: Loads | None, step: float
+    structure: Structure,
+    motion: Motion,
+    solution: Solution,
+    tip: Floats,
+    loads: Loads | None,
+    step: float,
+    *,
+    settled: bool = True,
 ) -> Errors:
     """Estimated errors of a response, as fractions of the largest displacement, load and stress.
 
@@ -34,6 +41,8 @@ def response_errors(
     loads : Loads or None
     step : float
         Error of the tip's displacement from the time step, a fraction.
+    settled : bool
+        Whether it begins in relative equilibrium; a given state has no error.
     """
     if structure.source is None or loads is None or len(solution.time) < 3:
         return Errors(ErrorEstimate(step=step, total=step), note=UNKNOWN)
@@ -44,7 +53,7 @@ def response_errors(
     every = tip, loads.force[:, 0], loads.moment[:, 0], loads.stress.max(axis=1)
     own, sizes = Quantities(*(x[few] for x in every)), dict(zip(Quantities._fields, map(_largest, every), strict=True))
     with np.errstate(all="ignore"):
-        parts = lacking(structure, motion, solution.some(few), own)
+        parts = lacking(structure, motion, solution.some(few), own, settled=settled)
     if not np.isfinite(parts.total.tip).all():
         return _bounded(structure, sizes["tip"], step)
 

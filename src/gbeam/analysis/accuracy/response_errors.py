@@ -62,7 +62,9 @@ class Solution:
         return Solution(*(x[chosen] for x in (self.time, self.y, self.yd, self.ydd)))
 
 
-def lacking(structure: Structure, motion: Motion, solution: Solution, own: Quantities) -> Parts:
+def lacking(
+    structure: Structure, motion: Motion, solution: Solution, own: Quantities, *, settled: bool = True
+) -> Parts:
     """What a solution lacks, quantity by quantity, over time.
 
     Parameters
@@ -73,12 +75,15 @@ def lacking(structure: Structure, motion: Motion, solution: Solution, own: Quant
     solution : Solution
     own : Quantities
         Of the solution.
+    settled : bool
+        Whether the first state is the relative equilibrium, which the truth has its own of; else it is given.
     """
     more = Enrichment(structure)
     exact, index = more.model("exact", directions=_driven(more, structure, motion, solution))
     at = _lifted(exact, index, motion, solution)
     of = operator(exact, at)
-    residual, start = complete_residual(exact, at), _start(exact, at)
+    residual = complete_residual(exact, at)
+    start = _start(exact, at) if settled else np.zeros(exact.size)
     total = correction(of, solution.time, residual, start)
     # In its own coordinates the solution leaves what its model leaves out, in the new ones what its shapes do.
     first = residual.shape[1] - exact.size

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
+from gbeam.analysis.response.initial import Initial, initial_state
 from gbeam.arrays.namespace import namespace
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations
 from gbeam.mechanics.equations.residuals import OnBase, OnHub
@@ -16,6 +16,7 @@ from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 
 Array = Any
+EQUILIBRIUM = Initial()
 
 
 @dataclass(frozen=True)
@@ -40,23 +41,25 @@ class Problem:
     stable: bool
 
 
-def problem_of(structure: Structure, motion: Motion, start: float) -> Problem:
-    """Pose the problem: it starts in relative equilibrium, without vibration.
+def problem_of(structure: Structure, motion: Motion, start: float, initial: Initial = EQUILIBRIUM) -> Problem:
+    """Pose the problem: it starts in relative equilibrium, without vibration, or as `initial` says.
 
     Raises
     ------
+    InputError
+        If the initial state moves the tip along a direction without shapes.
     ComputationError
         If there is no relative equilibrium to start from.
     """
     if motion.free:
-        return _on_free_hub(structure, motion, start)
+        return _on_free_hub(structure, motion, start, initial)
 
     def drive(t: Array) -> tuple[Base, Any]:
         return motion.base(t), None if structure.history is None else structure.history(t)
 
     base = motion.base(np.array([start]))
     first = Base(*(x[0] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
-    q, stable = solve_equilibrium(structure, first, start)
+    q, qd, stable = initial_state(structure, first, start, initial)
     if structure.linear:
         c = structure.coefficients
 
@@ -64,18 +67,16 @@ def problem_of(structure: Structure, motion: Motion, start: float) -> Problem:
             now, loads = inputs
             return c.at(now.a_WO_B, now.w_WB_B, now.alpha_WB_B, loads)
 
-        return Problem(LinearEquations(c.mass, matrices, drive), q, 0.0 * q, 0, stable)
-    return Problem(NonlinearEquations(OnBase(structure.equations), drive), q, 0.0 * q, 0, stable)
+        return Problem(LinearEquations(c.mass, matrices, drive), q, qd, 0, stable)
+    return Problem(NonlinearEquations(OnBase(structure.equations), drive), q, qd, 0, stable)
 
 
-def _on_free_hub(structure: Structure, hub: Any, start: float) -> Problem:
+def _on_free_hub(structure: Structure, hub: Any, start: float, initial: Initial) -> Problem:
     def drive(t: Array) -> tuple[Array, Any]:
         return hub.torque(t), None if structure.history is None else structure.history(t)
 
-    q, stable = np.zeros(structure.size), True
-    if hub.mount.gravity is not None or structure.history is not None:
-        o = np.zeros(())
-        q, stable = solve_equilibrium(structure, hub.mount.base(o, o, o), start)
+    pulled, o = hub.mount.gravity is not None or structure.history is not None, np.zeros(())
+    q, qd, stable = initial_state(structure, hub.mount.base(o, o, o) if pulled else None, start, initial)
     residual = OnHub(structure.on_free_hub(hub), hub.mount)
-    q = namespace(q).append(0.0, q)
-    return Problem(NonlinearEquations(residual, drive), q, 0.0 * q, 1, stable)
+    q, qd = (namespace(x).append(0.0, x) for x in (q, qd))
+    return Problem(NonlinearEquations(residual, drive), q, qd, 1, stable)

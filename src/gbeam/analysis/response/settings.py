@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from gbeam.analysis.response.initial import Initial, begun
 from gbeam.checks import positive
 from gbeam.limits import STEPS, refuse_more
 from gbeam.plausibility import implausible, possible
@@ -32,6 +33,8 @@ class ResponseSettings:
         Largest total error, of displacement and root loads, that passes without a warning; see :attr:`aim`.
     residual_from : float or None
         Time from which the residual vibration is measured, s.
+    initial : Initial
+        State at the start: the relative equilibrium unless given; a name such as ``"undeformed"`` stands for its state.
 
     Raises
     ------
@@ -46,13 +49,20 @@ class ResponseSettings:
     parameters: Mapping[str, float] = field(default_factory=dict)
     tolerance: float = 1e-2
     residual_from: float | None = None
+    initial: Initial | str = field(default_factory=Initial)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "initial", self.begin)
         possible("duration", "duration", positive("duration", self.duration, "s"))
         if self.step is not None:
             possible("step", "step", positive("step", self.step, "s"))
             fix = f"give {self.duration / STEPS:.2g} s or more"
             refuse_more("step", "steps", self.duration / self.step, STEPS, 500.0, fix)
+
+    @property
+    def begin(self) -> Initial:
+        """The initial state, where it was named too."""
+        return begun(self.initial)
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -53,7 +53,8 @@ def simulate(
 ) -> Response:
     """Compute the response of a beam in one environment.
 
-    It starts in relative equilibrium with the base's motion at the start (a free hub at rest), without vibration. A
+    It starts in relative equilibrium with the base's motion at the start (a free hub at rest), without vibration,
+    unless ``initial`` of the settings says otherwise: ``"undeformed"``, or an :class:`Initial` state. A
     machine's run covers its whole motion on the flight's clock: spin-up comes before `start`, and spin-down after the
     duration, in whole steps of the results' grid. The step is chosen, and error and peaks are, for the flight's times.
 
@@ -97,7 +98,7 @@ def simulate(
     given = None if settings.step is None else settings.duration / max(1, round(settings.duration / settings.step))
     kept = given or coarse
     before, after = steps_beyond(motion, settings, kept)
-    problem = problem_of(structure, motion, settings.start - before * kept)
+    problem = problem_of(structure, motion, settings.start - before * kept, settings.begin)
 
     def too_far(y: Floats) -> int | None:
         """A projected field means nothing once it moves by the beam's length."""
@@ -158,7 +159,7 @@ def _traced(structure: Structure, motion: Motion, settings: ResponseSettings, na
     step = settings.duration / max(1, round(settings.duration / settings.step))
     before, after = steps_beyond(motion, settings, step)
     start, count = settings.start - before * step, round(settings.duration / step)
-    problem = problem_of(structure, motion, start)
+    problem = problem_of(structure, motion, start, settings.begin)
     # One program for all of it, which is then taken apart.
     entire = integrated(problem, replace(settings, start=start, duration=(before + count + after) * step), step)
     up, trajectory, down = split(entire, before, count, after)
@@ -208,7 +209,8 @@ def _result(
         if outcome == "done":
             solution = Solution(time[flight], q[flight], qd[flight], qdd[flight])
             during = None if loads is None else loads.during(flight)
-            errors = response_errors(structure, motion, solution, np.asarray(displacement[flight, -1]), during, error)
+            settled, tip = up is not None or settings.begin.settled, np.asarray(displacement[flight, -1])
+            errors = response_errors(structure, motion, solution, tip, during, error, settled=settled)
             own += inaccuracies(structure, errors, settings)
         given = input_warnings(structure, motion, name=name, span=(time[0], time[-1]), base=base)
         warnings = given + settings.warnings + own + (() if axes is None else axes.warnings) + warnings
@@ -239,6 +241,7 @@ def _result(
         loads=loads,
         influence=influence(structure) if motion.kind == "centrifuge" and not traced else None,
         damping_ratio=structure.damping_ratio,
+        initial=str(settings.begin),
     )
 
 

@@ -71,6 +71,8 @@ def _response(response: Response, elsewhere: Sequence[str] = ()) -> Iterator[Ren
         yield _indented(Text(sentence(response.message), style="red"))
     yield _indented(_tip(response))
     yield _indented(Text(_accuracy(response)))
+    if response.initial:
+        yield _indented(Text(response.initial))
     if response.loads is not None and response.peaks.loads is not None:
         yield _indented(Text(_loads(response.loads, response.peaks.loads)))
     if response.hub is not None:

@@ -61,6 +61,7 @@ def _response(response: Response) -> dict[str, Any]:
         "integrator": response.integrator,
         "model": response.model,
         "damping_ratio": response.damping_ratio,
+        "initial": response.initial,
         "warnings": list(response.warnings),
     }
     if peaks.displacement is not None:

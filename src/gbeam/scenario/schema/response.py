@@ -3,13 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from gbeam.limits import ENTRIES
-from gbeam.scenario.schema.fields import Duration, Loc, Position, Quantity, Ratio, Step, Table, Time, refuse, wrong
+from gbeam.scenario.schema.fields import (
+    Acceleration,
+    Duration,
+    Loc,
+    Offset,
+    Position,
+    Quantity,
+    Ratio,
+    Step,
+    Table,
+    Time,
+    refuse,
+    wrong,
+)
 
 # Which parameters each integrator takes.
 PARAMETERS: dict[str, tuple[str, ...]] = {
@@ -19,6 +32,49 @@ PARAMETERS: dict[str, tuple[str, ...]] = {
     "gauss": (),
     "adaptive": (),
 }
+
+
+class TipDisplacement(Table):
+    """A displacement of the tip across the beam, by components; those left out are free."""
+
+    y: Offset | None = Field(default=None, description="component along the width")
+    z: Offset | None = Field(default=None, description="component through the thickness")
+
+
+class TipVelocity(Table):
+    """A velocity of the tip across the beam, by components; those left out are free."""
+
+    y: Annotated[float, Quantity("speed")] | None = Field(default=None, description="component along the width")
+    z: Annotated[float, Quantity("speed")] | None = Field(default=None, description="component through the thickness")
+
+
+class Initial(Table):
+    """The state of the beam, relative to its base, in which a response begins; a machine's with its spin-up."""
+
+    state: Literal["equilibrium", "undeformed"] = Field(
+        default="equilibrium",
+        description="equilibrium: at rest in the relative equilibrium with the base's motion and the loads then; "
+        "undeformed: straight and at rest",
+    )
+    acceleration: tuple[Acceleration, Acceleration, Acceleration] | None = Field(
+        default=None,
+        description='released from the static deflection under this acceleration of the root, [0, 0, "2 g"], and under '
+        "the loads then",
+    )
+    tip_displacement: TipDisplacement | None = Field(
+        default=None,
+        description="released from the static deflection by a force at the tip that displaces it so: { y, z }",
+    )
+    tip_velocity: TipVelocity | None = Field(
+        default=None,
+        description="velocity of the tip relative to the base, the beam moving in the shape of that deflection: "
+        "{ y, z }",
+    )
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """What is given, as the object takes it."""
+        return self.model_dump(exclude_none=True)
 
 
 class Response(Table):
@@ -41,6 +97,9 @@ class Response(Table):
         default=1e-2,
         description="largest total error (step, shapes and model) without a warning; an automatic step aims at a "
         "third of it, and at 1e-4 at most",
+    )
+    initial: Initial = Field(
+        default_factory=Initial, description="state at the start; the relative equilibrium if left out"
     )
     residual_from: Time | None = Field(default=None, description="time from which the residual vibration is measured")
     stations: tuple[Position, ...] | None = Field(
