@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 
 AGREES, DIFFERS, EXPLAINED, NOT_COMPARED = "agrees", "DIFFERS", "differs", "not compared"
@@ -61,10 +62,12 @@ class Row:
         return EXPLAINED if self.remark and math.isfinite(self.difference) else DIFFERS
 
     def numbers(self) -> tuple[str, str]:
-        """Reference and ours, with as many digits as show their difference, four to seven."""
+        """Reference and ours, with as many digits as show their difference, four to seven, and as text has."""
         digits = 4
+        if isinstance(self.reference, str):
+            digits = max(digits, len(re.sub(r"\D", "", self.reference.split("e")[0]).lstrip("0")))
         if self.difference:
-            digits = min(max(4, 2 - math.floor(math.log10(abs(self.difference)))), 7)
+            digits = min(max(digits, 2 - math.floor(math.log10(abs(self.difference)))), 7)
         shown = [
             "–" if value is None else value if isinstance(value, str) else significant(value, digits)
             for value in (self.reference, self.ours)

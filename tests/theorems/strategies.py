@@ -44,6 +44,7 @@ def beams(
     square: bool = False,
     bodies: bool = True,
     springs: bool = False,
+    taper: bool = True,
     damping: float | None = None,
 ) -> Beam:
     """Beams of 0.2 to 2 m, slender, of light and heavy metals.
@@ -56,6 +57,8 @@ def beams(
         Whether there is a body off the axis at some place, with rotary inertia.
     springs : bool
         Whether the root may turn on springs.
+    taper : bool
+        Whether width and thickness fall towards the tip.
     damping : float, optional
         Modal damping ratio; by default up to 5 %.
     """
@@ -64,6 +67,10 @@ def beams(
     width = thickness if square else thickness * draw(numbers(1.0, 4.0))
     material = Material(draw(numbers(1500.0, 9000.0)), draw(numbers(4e10, 2.2e11)))
     mass = material.density * length * width * thickness
+    section = Section.rectangle(width, thickness)
+    if taper:
+        ends = [1.0, draw(numbers(0.5, 1.0))]
+        section = Section.rectangle(width * np.array(ends), thickness * np.array(ends), [0.0, length])
     more: dict[str, Any] = {}
     if bodies:
         m = mass * draw(numbers(0.1, 1.0))
@@ -75,7 +82,7 @@ def beams(
         soft = material.youngs_modulus * width * thickness**3 / 12 / length
         more["root"] = Root(rotation_y=soft * draw(numbers(1.0, 20.0)), rotation_z=soft * draw(numbers(1.0, 20.0)))
     ratio = draw(numbers(0.0, 0.05)) if damping is None else damping
-    return Beam(length, Section.rectangle(width, thickness), material, damping_ratio=ratio, **more)
+    return Beam(length, section, material, damping_ratio=ratio, **more)
 
 
 def first_frequency(beam: Beam) -> float:

@@ -36,7 +36,7 @@ def about_x(angle: float) -> np.ndarray:
 
 @pytest.mark.parametrize("kind", ["TLAM", "FOAM", "exact"])
 @few
-@given(beam=beams(square=True), a=vectors(20.0), w=vectors(1.0), al=vectors(1.0), angle=numbers(-3.0, 3.0))
+@given(beam=beams(square=True, taper=False), a=vectors(20.0), w=vectors(1.0), al=vectors(1.0), angle=numbers(-3.0, 3.0))
 def test_turning_the_world_about_the_beam(
     kind: str, beam: Beam, a: np.ndarray, w: np.ndarray, al: np.ndarray, angle: float
 ) -> None:
@@ -113,10 +113,11 @@ def test_dimensionless_groups(beam: Beam, lengths: float, moduli: float, densiti
     times = lengths * np.sqrt(densities / moduli)
     (body,) = beam.masses
     mass = densities * lengths**3
-    widths = [lengths * beam.section.dimensions[name][0] for name in ("width", "thickness")]
+    widths = [lengths * np.array(beam.section.dimensions[name]) for name in ("width", "thickness")]
+    ends = lengths * np.array(beam.section.stations)
     scaled = Beam(
         lengths * beam.length,
-        Section.rectangle(*widths),
+        Section.rectangle(*widths, ends),
         Material(densities * beam.material.density, moduli * beam.material.youngs_modulus),
         [PointMass(lengths * body.at, mass * body.mass, inertia=tuple(mass * lengths**2 * np.array(body.inertia)),
                    offset=tuple(lengths * np.array(body.offset)))],

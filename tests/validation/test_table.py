@@ -47,6 +47,7 @@ def test_what_is_not_compared_says_why() -> None:
         (2.0, 2.5, ("2.000", "2.500")),
         ("0.02", 0.0205, ("0.02", "0.02050")),
         (1.5e9, 1.5e9, ("1.500e+09", "1.500e+09")),
+        ("2.7667e3", 2766.7, ("2.7667e3", "2766.7")),
     ],
 )
 def test_numbers_show_their_difference(reference: float | str, ours: float, shown: tuple[str, str]) -> None:
