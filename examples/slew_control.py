@@ -15,6 +15,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import scipy.linalg
+from jax.tree_util import Partial
 
 from gbeam import Beam, Hub, Material, Model, PointMass, Section, assemble, constant
 from gbeam.analysis.control.linearization import linearize
@@ -37,14 +38,16 @@ def structure(kind: str, axial: int, y: int):
 HUB = Hub(radius=0.5, inertia=200.0, torque=constant(0.0))
 
 
+def driven_residual(equations, torque, y, yd, ydd, t):
+    """Residual of hub and beam under torque(t, y, ẏ)."""
+    return equations.residual(y, yd, ydd, torque(t, y, yd))
+
+
 def simulate(beam, torque):
     """Motion of hub and beam (t, 1 + n) under torque(t, y, ẏ)."""
 
-    def residual(equations, y, yd, ydd, t):
-        return equations.residual(y, yd, ydd, torque(t, y, yd))
-
-    # The equations' arrays are arguments of the compiled program and not constants in it, which would take longer.
-    driven = jax.tree_util.Partial(residual, beam.on_free_hub(HUB))
+    # Arrays are arguments of the compiled program and not constants in it: torques of one form share a program.
+    driven = Partial(driven_residual, beam.on_free_hub(HUB), torque)
     rest = np.zeros(beam.size + 1)
     found = integrate(
         NonlinearEquations(driven, lambda t: t), newmark(), rest, rest, step=STEP, count=round(END / STEP)
@@ -73,7 +76,14 @@ def feedback(design, exact):
         r, rd = jax.jvp(lambda q: exact.displacement(q)[-1, 1], (y[1:],), (yd[1:],))
         return -(k_angle * (y[0] - ANGLE) + k_tip * r + k_rate * yd[0] + k_tip_rate * rd)
 
-    return torque
+    return Partial(torque)
+
+
+def pushes(level, late, shares, t, y, yd):
+    """Torque of bang-bang pushes, each a share of `level` and so much too late."""
+    since = t - late
+    forth, back = (since >= 0) & (since < PUSH / 2), (since >= PUSH / 2) & (since < PUSH)
+    return jnp.sum(level * shares * (1.0 * forth - 1.0 * back))
 
 
 def shaped(design, zvd):
@@ -87,15 +97,7 @@ def shaped(design, zvd):
     half, zeta = np.pi / found.eigenvalue[0].imag, found.damping_ratio[0]
     k = np.exp(-np.pi * zeta / np.sqrt(1 - zeta**2))
     shares = np.array([1, 2 * k, k**2]) / (1 + k) ** 2
-    shaper = tuple(zip((0.0, half, 2 * half), shares, strict=True)) if zvd else ((0.0, 1.0),)
-
-    def torque(t, y, yd):
-        def push(s):
-            return jnp.where(s < 0, 0.0, jnp.where(s < PUSH / 2, level, jnp.where(s < PUSH, -level, 0.0)))
-
-        return sum(share * push(t - late) for late, share in shaper)
-
-    return torque
+    return Partial(pushes, level, half * np.arange(3), shares if zvd else np.eye(3)[0])
 
 
 def main() -> dict[str, float]:
