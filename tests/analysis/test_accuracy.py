@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -88,3 +89,43 @@ def test_a_complete_residual_at_many_times_is_the_compiled_one() -> None:
     u = residual.pack(Base(base.a_WO_B[0], base.w_WB_B[0], base.alpha_WB_B[0]), loads[0])
     theirs = np.asarray(evaluated(residual, q[0], qd[0], qdd[0], u))
     np.testing.assert_allclose(ours[0], theirs, rtol=0, atol=1e-8 * np.abs(theirs).max())
+
+
+def test_errors_of_frequencies_are_stated() -> None:
+    """At γ = 50 three shapes are wrong by 37 % in the plane of rotation; it was not said."""
+    blade = gb.Beam(1.0, gb.Section.general(1.0, 1e-8, 1e-8), gb.Material(1.0, 1e8))
+    hub = gb.Hub(radius=0.0, rate=50.0)
+    few, many = (gb.modes(gb.assemble(blade, "FOAM", y=n, z=n), hub) for n in (3, 25))
+    chord, flap = few.frequency[:2] / many.frequency[:2] - 1
+    assert chord == pytest.approx(0.366, abs=1e-3)
+    np.testing.assert_allclose(few.errors.total[:2], [chord, flap], rtol=0.01)
+    np.testing.assert_allclose(few.errors.shapes[:2], [chord, flap], rtol=0.01)
+    assert many.errors.total[0] < 2e-3 and any("too few shapes" in warning for warning in few.warnings)
+    diagram = gb.campbell(gb.assemble(blade, "FOAM", y=3, z=3), hub, speeds=[0.0, 25.0, 50.0], modes=2)
+    np.testing.assert_allclose(diagram.errors.total, few.errors.total[:2], rtol=1e-6)
+
+
+def test_error_of_a_mode_beside_a_mass_is_that_against_its_frequency_equation() -> None:
+    """The fifth mode of a mast with a body at its tip: 1.8 % too high with five shapes."""
+    mast = gb.Beam(
+        8.0,
+        gb.Section.general(7.2968e-5, 8.2189e-9, 8.2189e-9),
+        gb.Material(2766.7, 6.8952e10),
+        [gb.PointMass(8.0, 0.5)],
+    )
+    five, truth = (
+        gb.modes(gb.assemble(mast, "FOAM", y=n, shapes=how)) for n, how in ((5, "clamped-free"), (9, "adapted"))
+    )
+    np.testing.assert_allclose(five.errors.shapes, five.frequency / truth.frequency[:5] - 1, rtol=0.05, atol=1e-7)
+
+
+@pytest.mark.parametrize("kind", ["CFOAM", "exact"])
+def test_a_model_is_expanded_by_numpy_as_it_is_by_jax(kind: str) -> None:
+    structure = laden(kind)
+    (q,) = states(structure.size, 1, 0.05, 7)
+    compiled, plain = (replace(structure, compiled=how).about(q) for how in (True, False))
+    np.testing.assert_allclose(plain[1], compiled[1], rtol=1e-9, atol=1e-9 * np.abs(compiled[1]).max())
+    for name in ("mass", "stiffness", "gyroscopic", "k_ww", "k_al", "k_a", "f_ww", "f_al", "f_a"):
+        ours, theirs = (getattr(each[0], name) for each in (plain, compiled))
+        np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-8 * max(np.abs(theirs).max(), 1e-12), err_msg=name)
+    np.testing.assert_allclose(plain[0].loads.slope, compiled[0].loads.slope, rtol=0, atol=1e-8)

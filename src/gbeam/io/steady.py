@@ -6,6 +6,7 @@ import numpy as np
 
 from gbeam.io.groups import AXIS, Group, Variable, coordinate, variable, words
 from gbeam.io.responses import load_variables, section_coordinate
+from gbeam.results.errors import FrequencyErrors
 from gbeam.results.response import BaseMotion
 from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.steady.modal import Campbell, Modes
@@ -49,6 +50,7 @@ def modes_group(modes: Modes) -> Group:
             ("station", "axis"), modes.equilibrium, "m", "displacement about which the beam vibrates"
         ),
         **_base(modes.base),
+        **_errors(modes.errors),
     }
     coordinates = {
         **coordinate("mode", np.arange(1, len(modes.frequency) + 1), "1", "number of the mode"),
@@ -64,6 +66,16 @@ def modes_group(modes: Modes) -> Group:
     return Group(data, coordinates, {**_where(modes), **attrs})
 
 
+def _errors(errors: FrequencyErrors | None) -> dict[str, Variable]:
+    if errors is None:
+        return {}
+    causes = {"shapes": "from too few shapes", "model": "of the model against exact", "total": "in all"}
+    return {
+        f"frequency_error_{name}": variable(("mode",), getattr(errors, name), "1", f"estimated error {cause}")
+        for name, cause in causes.items()
+    }
+
+
 def campbell_group(diagram: Campbell) -> Group:
     """Return what a file holds of a Campbell diagram."""
     vk, c = ("speed", "mode"), ("crossing",)
@@ -73,6 +85,7 @@ def campbell_group(diagram: Campbell) -> Group:
         "mac": variable(vk, diagram.mac, "1", "modal assurance criterion to the speed before"),
         "direction": words(("mode",), diagram.direction, "direction in which the beam moves most, at the first speed"),
     }
+    data |= _errors(diagram.errors)
     if diagram.crossings:
         numbers = {
             "mode": ([each.track + 1 for each in diagram.crossings], "1", "number of the mode"),

@@ -19,9 +19,10 @@ from gbeam.mechanics.fields.basis import (
     polynomials,
     quadrature,
 )
-from gbeam.mechanics.fields.enriched import enriched_shapes
+from gbeam.mechanics.fields.enriched import axial_force, enriched_shapes
 from gbeam.mechanics.models import KINDS
 from gbeam.mechanics.structure import Structure
+from gbeam.motion.bases.base import Base
 from gbeam.structure.beam import Beam
 
 NODES, PER_PANEL = 14, 8  # of the quadrature: over the beam with one shape, and in a panel at least
@@ -34,9 +35,11 @@ class Enrichment:
     ----------
     structure : Structure
         With a source.
+    base : Base, optional
+        Motion of the base, at one time or many: what it pulls along the beam changes the shapes that are lacking.
     """
 
-    def __init__(self, structure: Structure) -> None:
+    def __init__(self, structure: Structure, base: Base | None = None) -> None:
         assert structure.source is not None
         self.structure, beam = structure, structure.source.beam
         own = structure.counts
@@ -44,7 +47,11 @@ class Enrichment:
         breaks = [*beam.section.stations, *marks]
         panels = len(quadrature(beam.length, 1, breaks).edges) - 1
         self.rule = quadrature(beam.length, max(PER_PANEL, -(-(NODES + 2 * max(own)) // panels)), breaks)
-        self.families, self.new = enriched_shapes(beam, self.rule, _own(structure, beam, self.rule))
+        force = None
+        if base is not None:
+            along, spin = np.asarray(base.a_WO_B)[..., 0], (np.asarray(base.w_WB_B)[..., 1:] ** 2).sum(axis=-1)
+            force = axial_force(beam, self.rule, np.atleast_1d(along), np.atleast_1d(spin))
+        self.families, self.new = enriched_shapes(beam, self.rule, _own(structure, beam, self.rule), force)
         self.beam = beam
 
     def model(
@@ -75,7 +82,7 @@ class Enrichment:
         index = np.concatenate(
             [*(np.arange(n) + start for n, start in zip(own, starts, strict=False)), np.arange(springs) + starts[-1]]
         )
-        return rich, index.astype(int)
+        return replace(rich, compiled=False), index.astype(int)
 
 
 def _own(structure: Structure, beam: Beam, rule: Quadrature) -> Families:

@@ -12,6 +12,7 @@ from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.errors import InputError
 from gbeam.mechanics.damping import damping_matrix, rest_modes
+from gbeam.mechanics.equations import sampled
 from gbeam.mechanics.equations.hub import FreeHub, free_hub, ground_of
 from gbeam.mechanics.equations.linear import Coefficients, Geometric, LoadTerms, coefficients
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
@@ -110,6 +111,8 @@ class Structure:
         What is implausible in the beam; every result has them.
     source : Source or None
         What it was made of; None for a structure of particles, whose errors of shapes and model are unknown.
+    compiled : bool
+        Whether a complete model is expanded by JAX, to rounding; else by NumPy, to nine digits.
     """
 
     kind: str = static()
@@ -133,6 +136,7 @@ class Structure:
     damping_ratio: Any = None
     warnings: tuple[str, ...] = static(default=())
     source: Source | None = static(default=None)
+    compiled: bool = static(default=True)
 
     def __repr__(self) -> str:
         shapes = ", ".join(f"{n} {way}" for n, way in zip(self.counts, ("axial", "y", "z"), strict=True) if n)
@@ -247,9 +251,11 @@ class Structure:
         c = self.coefficients
         if self.linear:
             return c, c.stiffness @ q
+        assert self.inertia is not None and self.elasticity is not None
+        if not self.compiled:
+            return self._expanded(q)
         from gbeam.mechanics.equations.expansion import elastic_about, loads_about, places_about
 
-        assert self.elasticity is not None
         xp = namespace(c.mass, q)
         places = Places(*(xp.asarray(x) for x in places_about(self.inertia, q)))
         elastic, stiffness = c.stiffness @ q, c.stiffness
@@ -258,6 +264,17 @@ class Structure:
         loads = None
         if self.work is not None:
             loads = LoadTerms(*(xp.asarray(x) for x in loads_about(self.work, q, self.load_values)))
+        return coefficients(self.mass, places, stiffness, damping=c.damping, loads=loads), elastic
+
+    def _expanded(self, q: Array) -> tuple[Coefficients, Array]:
+        """The same of a complete model by NumPy."""
+        assert self.inertia is not None and self.elasticity is not None
+        c = self.coefficients
+        elastic, stiffness = sampled.elastic_about(self.elasticity, q, c.stiffness)
+        loads = None
+        if self.work is not None and self.load_values is not None:
+            loads = LoadTerms(*sampled.loads_about(self.work, q, len(self.load_values)))
+        places = Places(*sampled.places_about(self.inertia, q))
         return coefficients(self.mass, places, stiffness, damping=c.damping, loads=loads), elastic
 
     @cached_property

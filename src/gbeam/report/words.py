@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Mapping
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 from gbeam.printable import json_printable
-from gbeam.results.errors import ErrorEstimate
+from gbeam.results.errors import ErrorEstimate, FrequencyErrors
 from gbeam.results.result import Result
 from gbeam.results.section_forces import yield_margin
 
@@ -58,6 +59,14 @@ def error_words(errors: ErrorEstimate) -> str:
     known = sorted(((size, name) for name, size in parts.items() if size > 0), reverse=True)
     made = ", ".join(f"{name} {number(100 * size, 2)}" for size, name in known)
     return f"{percent(errors.total)}{f' ({made})' if len(known) > 1 else ''}"
+
+
+def frequency_errors(errors: FrequencyErrors | None, count: int) -> list[dict[str, float]]:
+    """Errors of frequencies, mode by mode; NaN where there is no estimate."""
+    if errors is None:
+        return [dict.fromkeys(("shapes", "model", "total"), math.nan) for _ in range(count)]
+    parts = asdict(errors)
+    return [{name: float(values[i]) for name, values in parts.items()} for i in range(count)]
 
 
 def tidy(values: Iterable[float], size: float) -> list[float]:

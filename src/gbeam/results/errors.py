@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from gbeam.results.result import Part
+from gbeam.results.result import Floats, Part
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -52,3 +52,22 @@ class Errors(Part):
     loads: ErrorEstimate = field(default_factory=ErrorEstimate)
     stress: ErrorEstimate = field(default_factory=ErrorEstimate)
     note: str = ""
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class FrequencyErrors(Part):
+    """Estimated errors of frequencies, as fractions, (k,) each; NaN where there is no estimate.
+
+    Parameters
+    ----------
+    shapes : (k,)
+        Of too few shapes: against the same model with more.
+    model : (k,)
+        Of the model with enough shapes, against the geometrically exact one.
+    total : (k,)
+        Of both, against the exact model with more shapes.
+    """
+
+    shapes: Floats
+    model: Floats
+    total: Floats

@@ -78,7 +78,7 @@ def lacking(
     settled : bool
         Whether the first state is the relative equilibrium, which the truth has its own of; else it is given.
     """
-    more = Enrichment(structure)
+    more = Enrichment(structure, _base(motion, solution)[0])
     exact, index = more.model("exact", directions=_driven(more, structure, motion, solution))
     at = _lifted(exact, index, motion, solution)
     of = operator(exact, at)
@@ -133,18 +133,22 @@ def _driven(more: Enrichment, structure: Structure, motion: Motion, solution: So
 def _lifted(structure: Structure, index: IntArray, motion: Any, solution: Solution) -> Sampled:
     """A solution in the coordinates of a structure with more shapes, its own at `index`."""
     time, y, yd, ydd = solution.time, solution.y, solution.yd, solution.ydd
-    hub, first = None, 0
-    if motion.free:
-        hub, first = np.stack([x[:, 0] for x in (y, yd, ydd)], axis=1), 1
-        base = motion.mount.base(*hub.T)
-    else:
-        base = motion.base(time)
-    base = Base(*(np.asarray(x) for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
+    base, hub = _base(motion, solution)
+    first = 0 if hub is None else 1
     p, pd, pdd = lifted = np.zeros((3, len(time), structure.size))
     for onto, x in zip(lifted, (y, yd, ydd), strict=True):
         onto[:, index] = x[:, first:]
     loads = None if structure.history is None else np.asarray(structure.history(time))
     return Sampled(time, base, p, pd, pdd, hub, motion if motion.free else None, loads)
+
+
+def _base(motion: Any, solution: Solution) -> tuple[Base, Floats | None]:
+    """Motion of the base; of a free hub its angle, rate and acceleration too, (t, 3)."""
+    hub = None
+    if motion.free:
+        hub = np.stack([x[:, 0] for x in (solution.y, solution.yd, solution.ydd)], axis=1)
+    base = motion.base(solution.time) if hub is None else motion.mount.base(*hub.T)
+    return Base(*(np.asarray(x) for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B))), hub
 
 
 def _start(exact: Structure, at: Sampled) -> Floats:

@@ -89,10 +89,10 @@ def _jacobian(structure: Structure, residual: OnBase | OnHub, y: Array, yd: Arra
         from gbeam.analysis.equilibrium.compiled import jacobian
 
         return np.asarray(jacobian(residual, np.concatenate([y, yd, ydd]), u))
-    return _stepped(residual, y, yd, ydd, u)
+    return stepped(residual, y, yd, ydd, u)
 
 
-def _stepped(residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
+def stepped(residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
     """Derivatives of a linear model's residual, by a complex step."""
     n = len(y)
 
@@ -119,7 +119,7 @@ def linear_matrices(point: OperatingPoint) -> Linear:
         return Linear(c.mass, velocity, stiffness, inputs)
     about = residual if structure.linear else OnHub(residual.equations.about(c), residual.mount)
     y = np.concatenate([point.y[: point.first], q])
-    return _split(_stepped(about, y, point.yd, point.ydd, point.u), n)
+    return _split(stepped(about, y, point.yd, point.ydd, point.u), n)
 
 
 def _split(d: Array, n: int) -> Linear:

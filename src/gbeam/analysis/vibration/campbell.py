@@ -9,7 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from gbeam.analysis.equilibrium.hub_point import on_hub
-from gbeam.analysis.equilibrium.point import linear_matrices, on_base, steady_base
+from gbeam.analysis.equilibrium.point import OperatingPoint, linear_matrices, on_base, steady_base
+from gbeam.analysis.vibration.eigenvalues import mac
+from gbeam.analysis.vibration.errors import Richer, doubtful
 from gbeam.analysis.vibration.modal import modes_at
 from gbeam.analysis.vibration.speeds import largest_rate
 from gbeam.analysis.vibration.stability import critical_speed, hub_of
@@ -18,10 +20,13 @@ from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.solvers.roots import brent
+from gbeam.results.errors import FrequencyErrors
 from gbeam.results.result import Complex, Floats
 from gbeam.results.steady.modal import Campbell, Crossing
 
 CONFIDENT = 0.9  # a mode that resembles itself less from one speed to the next is looked at in between
+SURE = 0.95  # of a critical speed: nearer, a frequency goes to zero and has no relative error
+PARTS = "shapes", "model", "total"
 DEPTH = 8  # halvings of a step at most: what veers faster is a crossing to every eye
 
 
@@ -34,12 +39,6 @@ class _Speed(NamedTuple):
     coordinates: Complex
     mass: Floats
     direction: tuple[str, ...]
-
-
-def mac(first: Complex, second: Complex, mass: Floats) -> Floats:
-    """Modal assurance criteria |φᴴMψ|²/(φᴴMφ ψᴴMψ) of modes in rows, (k, l)."""
-    left, right = (np.einsum("ki,ij,kj->k", x.conj(), mass, x).real for x in (first, second))
-    return np.abs(first.conj() @ mass @ second.T) ** 2 / np.outer(left, right)
 
 
 def _paired(before: _Speed, after: _Speed) -> tuple[np.ndarray, Floats]:
@@ -119,8 +118,11 @@ def campbell(
     # The last speed is short of the critical one, where a frequency is zero.
     last = end if lost.value is None or lost.value <= start else start + (lost.value - start) * (1 - 1e-6)
 
+    def point_at(rate: float) -> OperatingPoint:
+        return on_hub(structure, hub, rate) if hub.free else on_base(structure, steady_base(hub, rate))
+
     def at(rate: float) -> _Speed:
-        point = on_hub(structure, hub, rate) if hub.free else on_base(structure, steady_base(hub, rate))
+        point = point_at(rate)
         linear = linear_matrices(point)
         found = modes_at(structure, point, linear)
         beam = linear.mass[point.first :, point.first :]
@@ -152,6 +154,14 @@ def campbell(
         for order in orders
         for crossing in _crossings(at, followed, index, rates, frequency[:, k], k, order)
     ]
+    errors = None
+    if structure.source is not None:
+        until = len(rates) - 1 if lost.value is None else int(np.searchsorted(rates, SURE * last, "right")) - 1
+        richer = Richer(structure, point_at(float(rates[until])).base)
+        looked = [
+            _errors(richer, point_at(followed[i].rate), followed[i], index[i]) for i in sorted({0, until // 2, until})
+        ]
+        errors = FrequencyErrors(*(np.fmax.reduce([getattr(e, part) for e in looked]) for part in PARTS))
     return Campbell(
         motion=name,
         model=structure.kind,
@@ -163,8 +173,20 @@ def campbell(
         orders=tuple(orders),
         crossings=tuple(sorted(crossings, key=lambda crossing: crossing.speed)),
         critical=lost if lost.value is not None else None,
-        warnings=input_warnings(structure, motion, name=name),
+        errors=errors,
+        warnings=input_warnings(structure, motion, name=name) + (() if errors is None else doubtful(errors)),
     )
+
+
+def _errors(richer: Richer, point: OperatingPoint, speed: _Speed, track: np.ndarray) -> FrequencyErrors:
+    """Errors of the modes followed, at one speed; NaN for those that no longer oscillate."""
+    there = track >= 0
+    chosen = track[there]
+    value = 2j * np.pi * speed.frequency[chosen]
+    found = richer.errors(point, value, speed.coordinates[chosen])
+    every = np.full((3, len(track)), np.nan)
+    every[:, there] = [getattr(found, part) for part in PARTS]
+    return FrequencyErrors(*every)
 
 
 def _crossings(

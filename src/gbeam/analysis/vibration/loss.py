@@ -8,7 +8,8 @@ import numpy as np
 
 from gbeam.analysis.equilibrium.equilibrium import lowest_stiffness
 from gbeam.analysis.equilibrium.point import Linear, OperatingPoint, linear_matrices, on_base
-from gbeam.analysis.vibration.modal import directions, eigenvalues, growth_limit, modes_at
+from gbeam.analysis.vibration.eigenvalues import eigenvalues, growth_limit
+from gbeam.analysis.vibration.modal import directions, modes_at
 from gbeam.errors import ComputationError
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure

@@ -18,6 +18,7 @@ from gbeam.mechanics.fields.rotation import Field, Strains
 
 Array = NDArray[np.float64]
 STEP = 1e-30
+BEND = 1e-2  # rad, of differences of fourth order
 TURN = 1e-3  # by which a coordinate moves in the imaginary time τ, as a share of its largest size
 
 
@@ -122,3 +123,51 @@ def load_forces(work: LoadWork, q: Array, values: Array) -> tuple[Array, Array, 
         turning = 0.5 * np.cross(moment[..., :, None], rotation, axis=-2)
         along = along + pulled_back(work.field.rotation, q, turning)
     return along, force.sum(axis=1), (np.cross(r, force) + moment).sum(axis=1)
+
+
+def places_about(inertia: Inertia, q: Array) -> tuple[Array, Array, Array]:
+    """Places (k, 3) of the particles at q (n,), and their first and second derivatives, (k, 3, n) and (k, 3, n, n)."""
+
+    def slopes(q: Array) -> Array:
+        moved = q[..., None, :] + 1j * STEP * np.eye(q.shape[-1])
+        return np.moveaxis(np.asarray(inertia.positions(moved)).imag / STEP, -3, -1)
+
+    return np.asarray(inertia.positions(q)), slopes(q), _differences(slopes, q, _steps(inertia.field, len(q)))
+
+
+def elastic_about(elasticity: Elasticity, q: Array, stiffness: Array) -> tuple[Array, Array]:
+    """Gradient (n,) and second derivatives (n, n) of the strain energy at q (n,)."""
+
+    def gradient(q: Array) -> Array:
+        return elastic_forces(elasticity, q, stiffness)
+
+    return gradient(q[None])[0], _differences(gradient, q, _steps(elasticity.field, len(q)))
+
+
+def loads_about(work: LoadWork, q: Array, loads: int) -> tuple[Array, Array]:
+    """Generalised forces of unit components at q, (loads, 6, 6 + n), and their derivatives (loads, 6, 6 + n, n)."""
+    unit = np.eye(6 * loads).reshape(-1, loads, 6)
+
+    def forces(q: Array) -> Array:
+        every = [load_forces(work, np.repeat(one[None], len(unit), axis=0), unit) for one in np.atleast_2d(q)]
+        return np.stack([np.concatenate([total, about, along], axis=1) for along, total, about in every])
+
+    shape = (loads, 6, 6 + len(q))
+    slope = _differences(forces, q, _steps(work.field, len(q)))
+    return forces(q)[0].reshape(shape), slope.reshape(*shape, len(q))
+
+
+def _steps(field: Any, n: int) -> Array:
+    """Steps of the coordinates by which no section turns by more than BEND."""
+    inner = getattr(field, "inner", field)
+    slopes = inner.nodal[1:] if isinstance(inner, ExactField) else inner.node_slopes
+    largest = np.abs(slopes).max(axis=(0, 1))
+    return BEND / np.concatenate([np.where(largest > 0, largest, 1.0), np.ones(n - len(largest))])
+
+
+def _differences(function: Any, q: Array, steps: Array) -> Array:
+    """Derivative of a function of coordinates (p, n), by differences of fourth order; last axis: the coordinate."""
+    moves = np.diag(steps)
+    far, near = (function(q + k * moves) - function(q - k * moves) for k in (2, 1))
+    slope = (8 * near - far) / 12
+    return np.moveaxis(slope / steps.reshape(-1, *[1] * (slope.ndim - 1)), 0, -1)

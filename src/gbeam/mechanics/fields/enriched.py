@@ -18,7 +18,34 @@ LEVELS = (2, 3, 3)  # of the sequence, along x, y, z
 NEW = 1e-6  # of a vector's length: less of it is nothing that the others have not
 
 
-def enriched_shapes(beam: Beam, rule: Quadrature, own: Families) -> tuple[Families, tuple[int, int, int]]:
+TENSION = 1.0  # N L²/EI: from there on the axial force bends the shapes
+
+
+def axial_force(beam: Beam, rule: Quadrature, along: Array, spin: Array) -> Array:
+    """Axial force at the quadrature nodes, (g,) N, of that instant of many at which it is largest.
+
+    Parameters
+    ----------
+    beam : Beam
+    rule : Quadrature
+    along : (t,)
+        Acceleration of the root along the beam, m/s².
+    spin : (t,)
+        Square of the rate about the axes across the beam, 1/s².
+    """
+    line = beam.material.density * beam.section.at(rule.node).area
+    until = rule.cumulative(rule.node)
+    mass, moment = (rule.weight @ f - until @ f for f in (line, line * rule.node))
+    for body in beam.masses:
+        outboard = rule.node < body.at
+        mass, moment = mass + body.mass * outboard, moment + body.mass * body.at * outboard
+    k = int(np.argmax(np.abs(spin * moment[0] - along * mass[0])))
+    return np.asarray(spin[k] * moment - along[k] * mass)
+
+
+def enriched_shapes(
+    beam: Beam, rule: Quadrature, own: Families, force: Array | None = None
+) -> tuple[Families, tuple[int, int, int]]:
     """The given shapes first, then those that they lack, direction by direction.
 
     Parameters
@@ -26,17 +53,19 @@ def enriched_shapes(beam: Beam, rule: Quadrature, own: Families) -> tuple[Famili
     beam : Beam
     rule : quadrature with panels that end at the section's corners, at the bodies and at the loads
     own : the given shapes
+    force : (g,), optional
+        Axial force at the nodes, N: where it stiffens or softens the beam, the answers under it are added.
 
     Returns
     -------
     families, and how many shapes are new in each
     """
-    made = [_enriched(beam, space(beam, rule, along), own[along], along) for along in range(3)]
+    made = [_enriched(beam, space(beam, rule, along), own[along], along, force) for along in range(3)]
     (s, a), (v, b), (w, c) = made
     return (s, v, w), (a, b, c)
 
 
-def _enriched(beam: Beam, of: Space, own: Family, along: int) -> tuple[Family, int]:
+def _enriched(beam: Beam, of: Space, own: Family, along: int, force: Array | None) -> tuple[Family, int]:
     nodes = len(of.rule.node)
     given = own(of.rule.node)
     strain = given.slope if of.axial else given.curvature
@@ -45,17 +74,19 @@ def _enriched(beam: Beam, of: Space, own: Family, along: int) -> tuple[Family, i
     basis = np.concatenate([np.eye(size)[:, nodes:], np.pad(strain, ((0, size - nodes), (0, 0)))], axis=1)
     root = np.sqrt(of.stiffness)[:, None]
     known = np.linalg.qr(root * basis)[0]
-    vectors, added = _loads(beam, of, along) / of.stiffness[:, None], []
-    for _ in range(LEVELS[along]):
-        for vector in (root * vectors).T:
-            length = np.linalg.norm(vector)
-            rest = vector - known @ (known.T @ vector)
-            rest = rest - known @ (known.T @ rest)
-            if length > 0 and np.linalg.norm(rest) > NEW * length:
-                rest = rest / np.linalg.norm(rest)
-                known = np.concatenate([known, rest[:, None]], axis=1)
-                added.append(rest)
-        vectors = of.mass @ vectors / of.stiffness[:, None]
+    loads, added = _loads(beam, of, along), []
+    for flexibility in _flexibilities(of, force):
+        vectors = flexibility @ loads
+        for _ in range(LEVELS[along]):
+            for vector in (root * vectors).T:
+                length = np.linalg.norm(vector)
+                rest = vector - known @ (known.T @ vector)
+                rest = rest - known @ (known.T @ rest)
+                if length > 0 and np.linalg.norm(rest) > NEW * length:
+                    rest = rest / np.linalg.norm(rest)
+                    known = np.concatenate([known, rest[:, None]], axis=1)
+                    added.append(rest)
+            vectors = flexibility @ (of.mass @ vectors)
     more = of.family(np.stack(added, axis=1) / root) if added else None
 
     def both(x: Array) -> Shapes:
@@ -64,6 +95,20 @@ def _enriched(beam: Beam, of: Space, own: Family, along: int) -> tuple[Family, i
         return Shapes(*(np.concatenate(pair, axis=1) for pair in zip(own(x), more(x), strict=True)))
 
     return (own if count == 0 and more is None else both), len(added)
+
+
+def _flexibilities(of: Space, force: Array | None) -> list[Array]:
+    """The inverse of the stiffness, and of that with what an axial force adds where that matters."""
+    elastic = np.diag(of.stiffness)
+    alone = np.diag(1 / of.stiffness)
+    if force is None or of.axial:
+        return [alone]
+    _, slope = of.sensitivity(of.rule.node)
+    size = np.abs(force).max() * of.length**2 / np.min(of.stiffness[: len(force)] / of.rule.weight)
+    stiffness = elastic + slope.T @ ((of.rule.weight * force)[:, None] * slope)
+    if size < TENSION or np.linalg.eigvalsh(stiffness / np.sqrt(np.outer(of.stiffness, of.stiffness)))[0] <= 0:
+        return [alone]
+    return [alone, np.asarray(np.linalg.inv(stiffness))]
 
 
 def _loads(beam: Beam, of: Space, along: int) -> Array:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gbeam.results.errors import FrequencyErrors
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Complex, Figured, Floats
 from gbeam.results.steady.stability import Critical
@@ -65,6 +66,8 @@ class Modes(Figured):
         Negative real eigenvalues, 1/s: decay without oscillation. A divergence comes with one.
     damping_given : bool
         Whether the beam has a damping ratio, be it zero; without one it is undamped.
+    errors : FrequencyErrors or None
+        Of the frequencies; None where there is no estimate.
     """
 
     motion: str
@@ -82,6 +85,7 @@ class Modes(Figured):
     rigid: int
     overdamped: Floats
     damping_given: bool = True
+    errors: FrequencyErrors | None = None
 
     @property
     def frequency(self) -> Floats:
@@ -148,6 +152,8 @@ class Campbell(Figured):
     crossings : tuple of Crossing
     critical : Critical or None
         Where the equilibrium is lost within the range.
+    errors : FrequencyErrors or None
+        Of the modes' frequencies, the largest of those at the first, a middle and the last speed.
     """
 
     motion: str
@@ -160,6 +166,7 @@ class Campbell(Figured):
     orders: tuple[int, ...]
     crossings: tuple[Crossing, ...]
     critical: Critical | None
+    errors: FrequencyErrors | None = None
 
     def __repr__(self) -> str:
         of = f" {self.motion!r}" if self.motion else ""

@@ -1,0 +1,60 @@
+"""Eigenvalues and modes of M ÿ + C ẏ + K y = 0, which of them grow, and how alike two modes are."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gbeam.analysis.equilibrium.point import Linear
+from gbeam.numerics.solvers.eigen import symmetric_modes
+from gbeam.results.result import Complex, Floats
+
+ZERO = 1e-11  # of the largest eigenvalue: a smaller one is rounding about zero
+# Of a mode's frequency: a base that speeds up, once frozen, feeds or drains a mode by 1e-7, and means nothing by it.
+FLUTTER = 1e-6
+
+
+def growth_limit(value: Complex, largest: float) -> Floats:
+    """Real part above which each of some eigenvalues counts as one that grows, 1/s; `largest` is that of all."""
+    return np.maximum(np.where(value.imag != 0, FLUTTER * np.abs(value), 0.0), ZERO * largest)
+
+
+def eigenvalues(linear: Linear, *, gyroscopic: bool = True) -> tuple[Complex, Complex]:
+    """Eigenvalues λ and modes of M ÿ + C ẏ + K y = 0.
+
+    Parameters
+    ----------
+    linear : Linear
+        NumPy arrays.
+    gyroscopic : bool
+        False leaves out the skew part of C.
+
+    Returns
+    -------
+    eigenvalue : (2n − r,), 1/s
+        Without the r zeros of coordinates on which nothing depends, such as a free hub's angle.
+    mode : (n, 2n − r)
+        In columns, of unit length in M.
+    """
+    mass, velocity, stiffness, _ = linear
+    damping = velocity if gyroscopic else (velocity + velocity.T) / 2
+    # In modes of the symmetric part, each scaled by its own frequency, all blocks are of the size of the frequencies:
+    # the raw companion matrix loses half the digits of the low ones.
+    square, basis = symmetric_modes((stiffness + stiffness.T) / 2, (mass + mass.T) / 2)
+    reference = np.sqrt(np.abs(square).max())
+    scale = np.maximum(np.sqrt(np.abs(square)), 1e-6 * reference)
+    k, c = basis.T @ stiffness @ basis, basis.T @ damping @ basis
+    n = len(square)
+    moving = np.abs(k).max(axis=0) > 1e-13 * reference**2
+    a = np.block([[np.zeros((n, n)), np.diag(scale)], [-k / scale, -c]])
+    keep = np.concatenate([moving, np.ones(n, dtype=bool)])
+    value, vector = np.linalg.eig(a[np.ix_(keep, keep)])
+    # The velocities hold a mode also where its coordinate was dropped.
+    mode = basis @ vector[-n:]
+    weight = np.sqrt(np.einsum("ik,ij,jk->k", mode.conj(), mass, mode).real)
+    return value, mode / weight
+
+
+def mac(first: Complex, second: Complex, mass: Floats) -> Floats:
+    """Modal assurance criteria |φᴴMψ|²/(φᴴMφ ψᴴMψ) of modes in rows, (k, l)."""
+    left, right = (np.einsum("ki,ij,kj->k", x.conj(), mass, x).real for x in (first, second))
+    return np.abs(first.conj() @ mass @ second.T) ** 2 / np.outer(left, right)

@@ -1,0 +1,113 @@
+"""Errors of frequencies: from too few shapes, against the same model with more; in all, against the exact one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
+from gbeam.analysis.equilibrium.point import Linear, OperatingPoint, stepped
+from gbeam.analysis.vibration.eigenvalues import eigenvalues, mac
+from gbeam.errors import ComputationError
+from gbeam.mechanics.enrichment import Enrichment
+from gbeam.mechanics.equations.hub import free_hub
+from gbeam.mechanics.equations.residuals import OnHub
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.bases.base import Base
+from gbeam.results.errors import FrequencyErrors
+from gbeam.results.result import Complex, Floats
+
+LIMIT = 0.01  # an error above is warned of
+
+
+def doubtful(errors: FrequencyErrors) -> tuple[str, ...]:
+    """What to say where frequencies are wrong by more than one in a hundred."""
+    above = np.flatnonzero(errors.total > LIMIT)
+    if not above.size:
+        return ()
+    worst = int(above[errors.total[above].argmax()])
+    which = f"mode {above[0] + 1}" if len(above) == 1 else f"{len(above)} modes, from mode {above[0] + 1} on,"
+    cause, cure = "too few shapes", "raise model.modes or leave them out"
+    if errors.model[worst] > errors.shapes[worst]:
+        cause, cure = "the model", 'check with model.kind = "exact"'
+    size = f"{100 * errors.total[worst]:.2g} %" + " at most" * (len(above) > 1)
+    return (f"the frequency of {which} is wrong by an estimated {size}: {cause}; {cure}",)
+
+
+class Richer:
+    """A structure's model with more shapes, and the exact one.
+
+    Parameters
+    ----------
+    structure : Structure
+        With a source.
+    base : Base
+        Where it turns fastest.
+    """
+
+    def __init__(self, structure: Structure, base: Base) -> None:
+        more, (_, along_y, along_z) = Enrichment(structure, base), structure.counts
+        directions = True, along_y > 0, along_z > 0
+        self.exact = more.model("exact", directions=directions)
+        self.same = self.exact if structure.kind == "exact" else more.model(structure.kind, directions=directions)
+
+    def errors(
+        self, point: OperatingPoint, eigenvalue: Complex, coordinates: Complex, *, gyroscopic: bool = True
+    ) -> FrequencyErrors:
+        """Errors of the frequencies of some modes about an operating point.
+
+        Parameters
+        ----------
+        point : OperatingPoint
+            Of the structure, in equilibrium.
+        eigenvalue : (k,) 1/s
+        coordinates : (k, n)
+            Of the beam.
+        gyroscopic : bool
+        """
+        own = np.abs(eigenvalue)
+
+        def reference(richer: tuple[Structure, NDArray[np.int_]]) -> Floats:
+            try:
+                return _frequencies(*richer, point, coordinates, gyroscopic=gyroscopic)
+            except (ComputationError, np.linalg.LinAlgError):
+                return np.full(len(own), np.nan)
+
+        exact = reference(self.exact)
+        same = exact if self.same is self.exact else reference(self.same)
+        return FrequencyErrors(np.abs(own / same - 1), np.abs(same / exact - 1), np.abs(own / exact - 1))
+
+
+def _frequencies(
+    rich: Structure, index: NDArray[np.int_], point: OperatingPoint, coordinates: Complex, *, gyroscopic: bool
+) -> Floats:
+    """Circular frequencies of the rich structure's modes that are most like those given, rad/s."""
+    linear, first = _about_equilibrium(rich, point), point.first
+    value, mode = eigenvalues(linear, gyroscopic=gyroscopic)
+    oscillating = value.imag > 0
+    lifted = np.zeros((len(coordinates), rich.size), dtype=complex)
+    lifted[:, index] = coordinates
+    beam = slice(first, None)
+    alike = mac(lifted, mode[beam, oscillating].T, linear.mass[beam, beam])
+    return np.asarray(np.abs(value[oscillating])[alike.argmax(axis=1)])
+
+
+def _about_equilibrium(rich: Structure, point: OperatingPoint) -> Linear:
+    """M, C and K of a rich structure about its own equilibrium on the base of a point."""
+    loads, base = point.residual.unpack(point.u)[1], point.base
+    rich = replace(rich, load_values=loads)
+    q = solve_equilibrium(rich, base).q
+    c = rich.coefficients
+    if not rich.linear:
+        c, q = rich.about(q)[0], 0 * q
+    if not isinstance(point.residual, OnHub):
+        velocity, stiffness, _ = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
+        return Linear(c.mass, velocity, stiffness, np.zeros((rich.size, 0)))
+    hub = point.residual
+    equations = free_hub(c, hub.mount, hub.equations.ground, hub_force=rich.hub_force)
+    y, yd, ydd = (np.append(x[0], beam) for x, beam in ((point.y, q), (point.yd, 0 * q), (point.ydd, 0 * q)))
+    n = len(y)
+    d = stepped(OnHub(equations, hub.mount), y, yd, ydd, point.u)
+    return Linear(d[:, 2 * n : 3 * n], d[:, n : 2 * n], d[:, :n], -d[:, 3 * n :])
