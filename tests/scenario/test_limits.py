@@ -67,6 +67,8 @@ def test_brackets_in_strings_and_comments_do_not_count() -> None:
         ("beam.masses[" + "9" * 5000 + "].mass=1", "is not key=value"),
         ("beam.length=1 " + "m" * 200, "has 202 characters"),
         ("model.modes.y=200", "200 is more than is computed\n.*give 40 or less"),
+        ("motion.flight.acceleration.z.level=1e300 g", "1e300 g is too large to compute with"),
+        ("motion.flight.acceleration.z.level=1e-300", "too small to compute with"),
         ("title=" + "x" * 201, "has 201 characters"),
         ('title="a\\u0000b"', r"title: holds \\x00, which cannot be printed"),
         ("title=a\x1b[31m", r"title: holds \\x1b"),

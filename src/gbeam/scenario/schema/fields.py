@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Discriminator, Field, GetCoreSchemaH
 from pydantic import ValidationError as PydanticError
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
 
-from gbeam.limits import ENTRIES
+from gbeam.limits import ENTRIES, LARGEST, SMALLEST
 from gbeam.scenario.text.kinds import KINDS
 from gbeam.scenario.text.units import UnitError, quantity
 
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 Sign = Literal["any", "positive", "zero or more"]
 Loc = tuple[int | str, ...]
+
+# Kinds of which the objects say what is possible, and which unit was meant: gbeam.plausibility.
+_OF_OBJECTS = ("length", "area", "second moment of area", "density", "pressure", "time")
 
 
 class Table(BaseModel):
@@ -79,6 +82,9 @@ class Quantity:
             number = quantity(value, self.kind)
         except UnitError as error:
             raise wrong(error.problem, error.hint + otherwise) from None
+        if number and self.kind not in _OF_OBJECTS and not SMALLEST <= abs(number) <= LARGEST:
+            size = "large" if abs(number) > LARGEST else "small"
+            raise wrong(f"{{value}} is too {size} to compute with", f"give a size from {SMALLEST:g} to {LARGEST:g}")
         if number < 0 and self.sign != "any":
             raise wrong("{value} is negative", f"give {self._signed}{otherwise}")
         if number == 0 and self.sign == "positive":

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.errors import InputError
-from gbeam.limits import COLUMNS
+from gbeam.limits import COLUMNS, LARGEST
 
 Floats = NDArray[np.float64]
 
@@ -106,7 +106,7 @@ class Table:
                 values = np.array(samples, dtype=np.float64)
             except ValueError:
                 values = np.array([_number(cell) for cell in samples])
-        bad = np.flatnonzero(~np.isfinite(values))
+        bad = np.flatnonzero(~(np.abs(values) <= LARGEST))
         if bad.size:
             i = int(bad[0])
             cell = samples[i]
