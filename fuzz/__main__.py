@@ -54,6 +54,8 @@ def run(seed: int, numbers: range, kinds: dict = KINDS) -> Counter[str]:
         case = make(seed, number, kinds)
         answer = _called(case)
         statuses[case.kind, answer.status] += 1
+        if number % 500 == 499:
+            print(f"{number + 1} …", flush=True)
         slowest, largest = max(slowest, (answer.seconds, number)), max(largest, answer.memory)
         if fault := judge(case, answer):
             faults[fault] += 1

@@ -2,34 +2,24 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import resource
 import signal
 import sys
 import tempfile
 import time
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from importlib import import_module
+from io import StringIO
 from pathlib import Path
 
-from fuzz.cases import Case
+from fuzz.cases import ROOT, Case
 
 SECONDS = 10  # of processor time
 PATIENCE = 60  # s: a machine that does other things as well
 MEMORY = 2 * 2**30
-WARM = (
-    "h5py",
-    "pint",
-    "scipy.interpolate",
-    "scipy.io",
-    "gbeam.analysis.study.describe",
-    "gbeam.cli.program",
-    "gbeam.cli.verbs.check",
-    "gbeam.motion",
-    "gbeam.report.description",
-    "gbeam.scenario.explain",
-    "gbeam.scenario.text.locate_toml",
-)
 
 
 @dataclass(frozen=True)
@@ -47,11 +37,17 @@ class Answer:
 
 def warm_up() -> None:
     """Import what most cases need, once: a fork has it."""
-    for name in WARM:
+    for name in ("h5py", "scipy.interpolate", "scipy.io"):
         import_module(name)
-    from gbeam.scenario.text.units import quantity
+    from gbeam.cli import main
 
-    quantity("1 inch", "length")  # makes the registry of units
+    scenario = str(ROOT / "examples" / "hubbeam2009_slew_3.toml")
+    with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
+        for words in ([], ["--json"], ["--set", "beam.length=x"], ["--set", "beam.length=99 inch"]):
+            for verb in ("check", "static", "modes", "campbell", "critical-speed", "linearize"):
+                main([verb, scenario, *words])
+    gc.freeze()  # forks do not copy what is never collected
+    assert "jax" not in sys.modules, "a process that JAX has threads in cannot be forked"
 
 
 def call(case: Case, folder: Path) -> Answer:
