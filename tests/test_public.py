@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -45,6 +46,22 @@ def test_every_name_is_documented(name: str) -> None:
         # What every result has is documented once.
         documented = _documented(text) | (_documented(inspect.getdoc(Result) or "") if _is_result(value) else set())
         assert [each.name for each in named if each.name not in documented] == [], name
+
+
+@pytest.mark.parametrize("name", [name for name in gbeam.__all__ if isinstance(getattr(gbeam, name), type)])
+def test_every_argument_of_every_method_is_documented(name: str) -> None:
+    """Among its parameters, or in its one line: there or where the method is declared."""
+    kind = getattr(gbeam, name)
+    for method, function in inspect.getmembers(kind, callable):
+        if method.startswith("_") or not str(getattr(function, "__module__", "")).startswith("gbeam"):
+            continue
+        declared = [inspect.getdoc(vars(base)[method]) or "" for base in kind.__mro__ if method in vars(base)]
+        text = "\n\n".join(declared)
+        named = [
+            each.name for each in inspect.signature(function).parameters.values() if each.kind is not each.VAR_KEYWORD
+        ]
+        known = set().union(*map(_documented, declared), re.findall(r"`(\w+)`", text), ("self", "cls"))
+        assert text and [each for each in named if each not in known] == [], f"{name}.{method}"
 
 
 def _is_result(value: object) -> bool:

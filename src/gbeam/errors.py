@@ -26,7 +26,7 @@ class InputError(GbeamError, ValueError):
         super().__init__(f"{where} {problem}; {fix}" if where else f"{problem}; {fix}")
 
     def within(self, prefix: str) -> InputError:
-        """Return the same error seen from one level further out."""
+        """Return the same error seen from one level further out, `prefix`."""
         joint = "" if not self.where or self.where.startswith("[") else "."
         return InputError(f"{prefix}{joint}{self.where}", self.problem, self.fix)
 

@@ -283,7 +283,7 @@ class Structure:
         return rest_modes(self.coefficients.mass, self.coefficients.stiffness)
 
     def at_time(self, time: float) -> Structure:
-        """The same structure with its loads frozen as they are at a time, s; static, modes and stability see those."""
+        """The same structure with its loads frozen as they are at a `time`, s: what static, modes and stability see."""
         return self if self.history is None else replace(self, load_values=self.history(np.asarray(float(time))))
 
     @cached_property
@@ -293,7 +293,7 @@ class Structure:
         return self.work.field.places()
 
     def strain_energy(self, q: Array) -> Array:
-        """Strain energy at coordinates (n,), J."""
+        """Strain energy at coordinates `q` (n,), J."""
         return self.equations.strain_energy(q)
 
     def station_slopes(self, q: Array) -> Array:
@@ -306,7 +306,7 @@ class Structure:
         return np.asarray(slopes(self.inertia, self.field.sampled(slice(self.first_station, None)), q)[1])
 
     def displacement(self, q: Array) -> Array:
-        """Displacement of the stations relative to the base axes at coordinates (..., n), (..., s, 3) m."""
+        """Displacement of the stations relative to the base axes at coordinates `q` (..., n), (..., s, 3) m."""
         if self.linear:
             return self.station_places.positions(q) - self.station_places.r0
         assert self.field is not None

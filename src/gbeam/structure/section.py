@@ -167,17 +167,41 @@ class Section:
 
     @classmethod
     def rectangle(cls, width: ArrayLike, thickness: ArrayLike, stations: ArrayLike = ()) -> Section:
-        """Rectangle: `width` along y and `thickness` along z, m."""
+        """Rectangle.
+
+        Parameters
+        ----------
+        width, thickness : array_like
+            Along y and along z, the soft direction, m; numbers, or one per station.
+        stations : array_like
+            Positions from the root at which the other values are listed, m; empty for a constant section.
+        """
         return cls.of("rectangle", stations, width=width, thickness=thickness)
 
     @classmethod
     def circle(cls, diameter: ArrayLike, stations: ArrayLike = ()) -> Section:
-        """Solid circle of the given `diameter`, m."""
+        """Solid circle.
+
+        Parameters
+        ----------
+        diameter : array_like
+            m; a number, or one per station.
+        stations : array_like
+            Positions from the root at which the other values are listed, m; empty for a constant section.
+        """
         return cls.of("circle", stations, diameter=diameter)
 
     @classmethod
     def tube(cls, diameter: ArrayLike, wall: ArrayLike, stations: ArrayLike = ()) -> Section:
-        """Round tube: outer `diameter` and `wall` thickness, m."""
+        """Round tube.
+
+        Parameters
+        ----------
+        diameter, wall : array_like
+            Outer diameter and thickness of the wall, m; numbers, or one per station.
+        stations : array_like
+            Positions from the root at which the other values are listed, m; empty for a constant section.
+        """
         return cls.of("tube", stations, diameter=diameter, wall=wall)
 
     @classmethod
@@ -190,7 +214,19 @@ class Section:
         extreme_fibre_y: ArrayLike | None = None,
         extreme_fibre_z: ArrayLike | None = None,
     ) -> Section:
-        """Any section: `area` m², second moments I_y and I_z m⁴, extreme fibres along y and z m (for stress)."""
+        """Any section, by its properties: numbers, or one per station each.
+
+        Parameters
+        ----------
+        area : array_like
+            m².
+        inertia_y, inertia_z : array_like
+            Second moments ∫z² dA, which bends the beam along z, and ∫y² dA, along y, m⁴.
+        stations : array_like
+            Positions from the root at which the other values are listed, m; empty for a constant section.
+        extreme_fibre_y, extreme_fibre_z : array_like, optional
+            Of the outermost fibres along y and along z, m; without them there is no stress.
+        """
         return cls.of(
             "general",
             stations,

@@ -82,11 +82,11 @@ class Flight:
         return self.acceleration.breaks if self.rates is None else merged_breaks(self.acceleration, self.rates)
 
     def over(self, start: float, end: float) -> Self:
-        """The flight itself: it needs no preparation."""
+        """The flight itself, from `start` to `end` (s): it needs no preparation."""
         return self
 
     def beyond(self, start: float, end: float) -> tuple[float, float]:
-        """Nothing: a flight has no spin-up of its own."""
+        """Nothing before `start` or after `end` (s): a flight has no spin-up of its own."""
         return 0.0, 0.0
 
 

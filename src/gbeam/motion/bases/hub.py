@@ -130,11 +130,11 @@ class Hub:
         return driving.breaks
 
     def over(self, start: float, end: float) -> Self:
-        """The hub itself: it needs no preparation."""
+        """The hub itself, from `start` to `end` (s): it needs no preparation."""
         return self
 
     def beyond(self, start: float, end: float) -> tuple[float, float]:
-        """Nothing: a hub has no spin-up of its own."""
+        """Nothing before `start` or after `end` (s): a hub has no spin-up of its own."""
         return 0.0, 0.0
 
     def _prescribed(self) -> Profile:

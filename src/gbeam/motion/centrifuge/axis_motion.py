@@ -73,7 +73,7 @@ class AxisMotion:
         return course
 
     def axes(self, t: Any) -> Axes:
-        """States of the three axes at times `t` (s); :func:`gbeam.motion.axis_history` unwraps the angles."""
+        """States of the three axes at times `t` (s)."""
         first, second, third = self._ready().derivatives(t, 2)
         return Axes(*first[:2], *second, *third)
 
@@ -92,7 +92,7 @@ class AxisMotion:
         return self.actual_by(self.axes(t))
 
     def actual_by(self, axes: Axes) -> Any:
-        """Load that given states of the axes make at the control point, base axes, m/s², shape (..., 3)."""
+        """Load that given states of the `axes` make at the control point, base axes, m/s², shape (..., 3)."""
         return control_point_load(axes, self.geometry.arm, self.geometry.gravity)
 
     def tracking_error(self, t: Any) -> Any:

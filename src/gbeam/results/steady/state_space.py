@@ -68,6 +68,11 @@ class StateSpace(Result):
     def select(self, *, inputs: tuple[str, ...] | None = None, outputs: tuple[str, ...] | None = None) -> StateSpace:
         """The same system with some of its inputs and outputs only, by name.
 
+        Parameters
+        ----------
+        inputs, outputs : tuple of str, optional
+            Those that are kept, in this order; all where left out.
+
         Raises
         ------
         InputError
@@ -119,7 +124,13 @@ class StateSpace(Result):
         )
 
     def to_mat(self, path: str | os.PathLike[str]) -> None:
-        """Write a MATLAB file: A, B, C, D, the operating point, names and units."""
+        """Write a MATLAB file: A, B, C, D, the operating point, names and units.
+
+        Parameters
+        ----------
+        path : path
+            Replaced if it exists.
+        """
         import scipy.io
 
         named = {"state": self.states, "input": self.inputs, "output": self.outputs}
