@@ -200,3 +200,36 @@ def test_changes_of_the_environment_are_named() -> None:
         "scipy": ("1", "missing"),
         "jax": ("missing", "1"),
     }
+
+
+@pytest.mark.parametrize(
+    "verb",
+    [
+        ("modes", "--motion", "flight", "--at", "0.2 s"),
+        ("static", "--motion", "flight"),
+        ("critical-speed", "--motion", "slew", "--to", "500 rad/s"),
+        ("check",),
+    ],
+)
+def test_the_json_of_a_verb_is_computed_again(
+    verb: tuple[str, ...], tmp_path: Path, gbeam: Callable[..., Answer]
+) -> None:
+    file = tmp_path / "s.toml"
+    file.write_text(EVERY_MOTION.replace("4 s", "0.5 s"), encoding="utf-8")
+    assert gbeam(verb[0], file, *verb[1:], "--set", "beam.length=0.31", "--out", tmp_path / "out").status == 0
+    file.unlink()
+    (written,) = (tmp_path / "out").glob("*.json")
+    answer = gbeam("rerun", written)
+    assert answer.status == 0 and answer.out.endswith("computed again: the same to the last digit\n"), answer
+    text = written.read_text(encoding="utf-8")
+    written.write_text(text.replace('"model": "FOAM"', '"model": "TLAM"').replace('"kind": "FOAM"', '"kind": "TLAM"'))
+    answer = gbeam("rerun", written)
+    assert answer.status == 1 and "was TLAM, is FOAM" in answer.out
+
+
+def test_json_that_is_none_of_gbeams_is_refused(tmp_path: Path, gbeam: Callable[..., Answer]) -> None:
+    for text in ("{}", "[1]", "no JSON", '{"provenance": {"command": "rm"}}'):
+        (tmp_path / "x.json").write_text(text, encoding="utf-8")
+        answer = gbeam("rerun", tmp_path / "x.json")
+        assert answer.status == 2 and "is no JSON of gbeam with a provenance" in answer.err
+    assert gbeam("rerun", tmp_path / "none.json").status == 2

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
+from inspect import BoundArguments
 
 # A beam's matrices are small: threads of OpenBLAS, started as NumPy and SciPy are imported, would only spin.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -73,6 +75,15 @@ def run(tokens: list[str]) -> int:
     except Exception as error:
         return report_defect(error, tokens, as_json)
     return status if isinstance(status, int) else 0
+
+
+def parsed(tokens: list[str]) -> tuple[Callable[..., object], BoundArguments]:
+    """The verb that a command line calls, and its arguments; ValueError where it calls none."""
+    try:
+        verb, bound, _ = _app(tokens[0] if tokens else "").parse_args(tokens, exit_on_error=False, print_error=False)
+    except CycloptsError as error:
+        raise ValueError(str(error)) from None
+    return verb, bound
 
 
 def _app(chosen: str) -> App:

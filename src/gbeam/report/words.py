@@ -75,7 +75,7 @@ def tidy(values: Iterable[float], size: float) -> list[float]:
 
 
 def stress_words(stations: Any, tension: Any, compression: Any, yield_strength: float | None) -> str:
-    """The largest normal stress along the beam, where it is, its sign, and the margin on yield where that is known.
+    """The extreme normal stresses along the beam, where the larger is, and the margin on yield where that is known.
 
     Parameters
     ----------
@@ -89,7 +89,8 @@ def stress_words(stations: Any, tension: Any, compression: Any, yield_strength: 
     stress = float(max(sizes))
     worst = sizes.index(stress)
     sign = "tension" if tension[worst] >= -compression[worst] else "compression"
-    words = f"stress up to {number(1e-6 * stress)} MPa ({sign}) at {number(float(stations[worst]))} m"
+    low, high = (number(1e-6 * float(each)) for each in (min(compression), max(tension)))
+    words = f"stress {low} to {high} MPa, largest in {sign} at {number(float(stations[worst]))} m"
     if yield_strength is None or stress == 0:
         return words
     margin = float(yield_margin(yield_strength, np.array(stress)))

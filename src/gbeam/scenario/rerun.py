@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -57,29 +57,47 @@ def rerun(path: str | os.PathLike[str]) -> Reproduction:
 
     before = read_stored(path)
     origin = before.provenance
-    if not origin.scenario:
-        fix = "give the result.nc of `gbeam run`, or save a study of a scenario"
-        raise InputError(str(path), "holds no scenario to run again", fix)
-    data, _ = override(parse(str(path), origin.scenario), str(path), origin.overrides)
-    if fingerprint(data) != origin.sha256:
-        fix = "the file was changed after the run; run the scenario again"
-        raise InputError(str(path), "holds another scenario than the one that was run", fix)
+    checked(str(path), origin)
     with TemporaryDirectory(prefix="gbeam-") as folder:
-        changes = [*origin.overrides, *_records(origin, Path(folder))]
+        changes = [*origin.overrides, *records(origin, Path(folder))]
         case = build(loads(origin.scenario, str(path), changes, folder=folder), ahead=True)
         after = stored(study(replace(case, provenance=None)))
+    return reproduction(os.fspath(path), _facts(before), _facts(after), origin)
+
+
+def reproduction(file: str, then: Mapping[str, Any], now: Mapping[str, Any], origin: Provenance) -> Reproduction:
+    """Compare what a file holds with what has been computed again.
+
+    Parameters
+    ----------
+    file : str
+    then, now : mapping of str to array, number or text
+    origin : Provenance
+        With its environment.
+    """
     assert origin.environment is not None
-    facts = [*_pairs(before, after)]
-    differences = [each for name, then, now in facts if (each := _difference(name, then, now)) is not None]
+    names = [*then, *(name for name in now if name not in then)]
+    differences = [each for name in names if (each := _difference(name, then.get(name), now.get(name))) is not None]
     return Reproduction(
-        file=os.fspath(path),
-        compared=len(facts),
+        file=file,
+        compared=len(names),
         differences=tuple(sorted(differences, key=lambda each: -each.size)),
         changed=origin.environment.changes(present()),
     )
 
 
-def _records(origin: Provenance, folder: Path) -> Iterator[str]:
+def checked(file: str, origin: Provenance) -> None:
+    """Raise InputError unless there is a scenario, and it is the one that was run."""
+    if not origin.scenario:
+        fix = "give the result of a scenario: a result.nc of `gbeam run`, or a verb's JSON"
+        raise InputError(file, "holds no scenario to run again", fix)
+    data, _ = override(parse(file, origin.scenario), file, origin.overrides)
+    if fingerprint(data) != origin.sha256:
+        fix = "the file was changed after the run; run the scenario again"
+        raise InputError(file, "holds another scenario than the one that was run", fix)
+
+
+def records(origin: Provenance, folder: Path) -> Iterator[str]:
     """Put the records into a folder, or find them where they were; the changes that make the scenario read them."""
     for record in origin.records:
         if record.content is None:
@@ -96,19 +114,13 @@ def _records(origin: Provenance, folder: Path) -> Iterator[str]:
         yield f"motion.{record.motion}.record.file={file}"
 
 
-def _pairs(before: Stored, after: Stored) -> Iterator[tuple[str, Any, Any]]:
-    """Variables and attributes by their names: then, and now; None where there is none."""
-
-    def facts(of: Stored) -> dict[str, Any]:
-        made = {name: each for name, each in of.variables.items() if name != "scenario" and not name.startswith(RECORD)}
-        for place, attrs in of.attrs.items():
-            if place != "scenario" and not place.startswith(RECORD):
-                made |= {f"{place}@{name}": each for name, each in attrs.items() if place or name not in _ABOUT}
-        return made
-
-    then, now = facts(before), facts(after)
-    for name in (*then, *(name for name in now if name not in then)):
-        yield name, then.get(name), now.get(name)
+def _facts(of: Stored) -> dict[str, Any]:
+    """Variables and attributes by their names, but those that say of the computation and not of its result."""
+    made = {name: each for name, each in of.variables.items() if name != "scenario" and not name.startswith(RECORD)}
+    for place, attrs in of.attrs.items():
+        if place != "scenario" and not place.startswith(RECORD):
+            made |= {f"{place}@{name}": each for name, each in attrs.items() if place or name not in _ABOUT}
+    return made
 
 
 def _difference(name: str, then: Any, now: Any) -> Difference | None:

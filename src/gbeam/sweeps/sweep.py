@@ -14,6 +14,7 @@ import numpy as np
 from gbeam.errors import GbeamError, InputError
 from gbeam.results.sweep import Sweep
 from gbeam.scenario.load import load
+from gbeam.scenario.origin import provenance
 from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.text.suggest import advise
 from gbeam.sweeps.answers import VERBS, Facts
@@ -146,7 +147,8 @@ def sweep(
     else:
         with journal.writing(new=not done):
             rows += _collected(found, len(cases), len(done), progress, journal)
-    return assembled(base.title, verb, cases, example.scenario, units, rows)
+    made = assembled(base.title, verb, cases, example.scenario, units, rows)
+    return replace(made, provenance=provenance(base))
 
 
 def _texts(over: Mapping[str, Any] | Sequence[str]) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
 from gbeam.cli.console import Watch
@@ -76,6 +77,7 @@ def linearize(
                 system = reduction.modal_truncation(system, modes)
             elif balanced is not None:
                 system, hankel = reduction.balanced_truncation(system, balanced)
+    system = replace(system, provenance=given.case.provenance)
     facts = given.signed(report.to_json(system, gauges, hankel))
 
     def make(hidden: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -10,7 +11,8 @@ from cyclopts import Parameter
 
 from gbeam.cli.console import Watch
 from gbeam.cli.failures import FAILED, complain
-from gbeam.cli.inputs import number
+from gbeam.cli.inputs import number, signed
+from gbeam.cli.invocation import command
 from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile
 from gbeam.cli.outputs import list_files, show
 from gbeam.cli.publication import publish, refuse_unwritable
@@ -102,6 +104,9 @@ def sweep(
             progress=progress,
         )
 
+    assert answer.provenance is not None  # it is of a scenario
+    answer = replace(answer, provenance=replace(answer.provenance, command=command()))
+
     def make(hidden: Path) -> None:
         from gbeam.plots import figures, save
 
@@ -117,7 +122,7 @@ def sweep(
     files = publish(folder, make)
     write_zarr(answer, folder / "sweep.zarr")
     files = sorted([*files, folder / "sweep.zarr"])
-    show(report.text(answer), report.to_json(answer, files), json)
+    show(report.text(answer), signed(report.to_json(answer, files), answer.provenance), json)
     if not json:
         list_files(folder, files)
     lost = answer.outcome.size - answer.counts.get("done", 0)

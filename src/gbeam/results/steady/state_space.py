@@ -138,6 +138,9 @@ class StateSpace(Result):
         for key, signals in named.items():
             words[f"{key}_name"] = np.array([each.name for each in signals], dtype=object)
             words[f"{key}_unit"] = np.array([each.unit for each in signals], dtype=object)
+        if self.provenance is not None:
+            stated, environment = self.provenance.stated()
+            words["provenance"] = f"gbeam {environment.gbeam}: {stated.command}; scenario SHA-256 {stated.sha256}"
         points = {"x0": self.state, "u0": self.input, "y0": self.output}
         scipy.io.savemat(
             os.fspath(path),

@@ -1,0 +1,97 @@
+"""The JSON of a verb computed again, by the command that it names."""
+
+from __future__ import annotations
+
+import io
+import json
+import shlex
+from collections.abc import Iterator
+from contextlib import redirect_stdout
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+from gbeam.errors import InputError
+
+if TYPE_CHECKING:
+    from gbeam.results.provenance import Provenance
+    from gbeam.results.reproduction import Reproduction
+
+_ABOUT = ("provenance", "files", "seconds", "written")  # of the computation, not of its result
+
+
+def answer_again(file: Path) -> Reproduction:
+    """Run the command of a verb's JSON again, on the scenario that the JSON holds, and compare every value.
+
+    Parameters
+    ----------
+    file : Path
+        Such as modes.json.
+
+    Raises
+    ------
+    InputError
+        If it is no such file, or the scenario or a record is not the one that was run.
+    """
+    from gbeam.scenario.rerun import checked, records, reproduction
+
+    facts, origin = _read(file)
+    checked(str(file), origin)
+    with TemporaryDirectory(prefix="gbeam-") as folder:
+        scenario = Path(folder) / "scenario.toml"
+        scenario.write_text(origin.scenario, encoding="utf-8")
+        again = _answered(file, origin, scenario, tuple(records(origin, Path(folder))))
+    return reproduction(str(file), dict(_leaves(facts)), dict(_leaves(again)), origin)
+
+
+def _read(file: Path) -> tuple[dict[str, Any], Provenance]:
+    from gbeam.limits import BINARY_BYTES, refuse_large_file
+    from gbeam.results.provenance import Environment, Provenance, RecordFile
+
+    fix = "give the JSON that a verb of gbeam wrote into --out, or a result.nc"
+    try:
+        refuse_large_file("", file, BINARY_BYTES, fix)
+        facts = json.loads(file.read_text(encoding="utf-8"))
+        origin = facts["provenance"]
+        environment = Environment(origin["gbeam"], origin["python"], origin["platform"], origin["dependencies"])
+        records = tuple(RecordFile(**each) for each in origin["records"])
+        words = origin["scenario"], tuple(origin["overrides"]), origin["scenario_sha256"], records, origin["command"]
+        return facts, Provenance(*words, environment)
+    except OSError as error:
+        raise InputError(str(file), f"cannot be read ({error.strerror})", fix) from None
+    except (ValueError, KeyError, TypeError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(str(file), "is no JSON of gbeam with a provenance", fix) from None
+
+
+def _answered(file: Path, origin: Provenance, scenario: Path, changes: tuple[str, ...]) -> dict[str, Any]:
+    from gbeam.cli.program import parsed
+
+    try:
+        verb, bound = parsed(shlex.split(origin.command)[1:])
+    except ValueError as error:
+        raise InputError(str(file), f"names a command that cannot be run ({error})", "run the verb again") from None
+    arguments = bound.arguments
+    if "scenario" not in arguments:
+        raise InputError(str(file), "is of no verb that reads a scenario", "give the result of another")
+    arguments |= {"scenario": scenario, "overrides": (*arguments.get("overrides", ()), *changes), "json": True}
+    arguments |= {"out": None} | ({"write_back": False} if "write_back" in arguments else {})
+    printed = io.StringIO()
+    with redirect_stdout(printed):
+        verb(*bound.args, **bound.kwargs)
+    return dict(json.loads(printed.getvalue()))
+
+
+def _leaves(value: Any, place: str = "") -> Iterator[tuple[str, Any]]:
+    """Numbers, texts and lists of numbers by their places."""
+    if isinstance(value, list) and not all(isinstance(each, (int, float)) or each is None for each in value):
+        value = dict(enumerate(value))
+    if isinstance(value, dict):
+        for key, each in value.items():
+            if key not in _ABOUT:
+                yield from _leaves(each, f"{place}.{key}" if place else str(key))
+    elif isinstance(value, list):
+        yield place, [float("nan") if each is None else float(each) for each in value]
+    else:
+        yield place, float(value) if isinstance(value, (int, float)) else str(value)
