@@ -218,10 +218,10 @@ def pulsed(kind: str, torque: float, counts: tuple[int, int] = FIVE) -> Response
     return pulse(kind, counts, torque, step=2.5e-3)
 
 
-def hub_force(torque: float) -> float:
+def hub_force(torque: float, counts: tuple[int, int] = FIVE) -> float:
     """Largest |Q_θ| of (32), N m: the terms of the hub's row that are quadratic in the rates."""
-    response = pulsed("FOAM", torque)
-    equations = hub_beam("FOAM", *FIVE, mass=0.0).on_free_hub(FREE_HUB)
+    response = pulsed("FOAM", torque, counts)
+    equations = hub_beam("FOAM", *counts, mass=0.0).on_free_hub(FREE_HUB)
     none, still = np.zeros(response.q.shape[1] + 1), np.zeros(())
     assert response.hub is not None
     return max(
@@ -238,7 +238,7 @@ def table_3() -> Iterator[Row]:
     yield row(where, "second torque", "10", 100.0, "N m", 0.0, "misprint, or the scan's: 50, 100, 200, 400 is meant")
     for torque, value in printed.items():
         lost = "" if torque == 400 else "the exponent is not legible, ours decides it; "
-        why = f"{lost}no variant of (32) that was tried gives the printed digits (one mode: 5 to 17 % off)"
+        why = f"{lost}not reproduced; one mode has {hub_force(torque, ONE):.4g} N m"
         yield row(where, f"largest Q_θ at {torque:g} N m", value, ours[torque], "N m", 0.01, why)
     yield row("p. 64, Fig. 7", "largest Q_θ at 400 N m", "2.62", ours[400.0], "N m", 0.01, "as in Table 3")
     yield row("p. 64, section 4.3", "the same over the torque", "6.5", 100 * ours[400.0] / 400, "%", 0.01,
@@ -258,7 +258,7 @@ def residual_wave(response: Response) -> tuple[float, float]:
 def figure_8() -> Iterator[Row]:
     """SFOAM as printed, without Q_θ, against FOAM."""
     case = "p. 65, Fig. 8"
-    why = "not reproduced by any variant tried (sign of Q_θ, half of it, constant inertia, linear stiffness, one mode)"
+    why = "not reproduced: nor with Q_θ times −10 to 10, nor without D in M_θθ and Q_θ, nor without Coriolis' term"
     small = pulsed("SFOAM", 50.0, (0, 5)).tip[:, 1] - pulsed("FOAM", 50.0).tip[:, 1]
     gap = np.abs(small).max() / pulsed("FOAM", 50.0).peaks.max_abs[1]
     yield row(f"{case}(a)", '"almost coincided" at 50 N m: largest difference over the peak', "0", gap, "", 0.01)
