@@ -114,6 +114,13 @@ def test_a_direction_without_shapes_is_warned_of(words: str) -> None:
     assert not gb.static(full, motion).warnings
 
 
+def test_results_print_their_warnings() -> None:
+    long = gb.assemble(beam(600.0), "FOAM", y=1)
+    hub = gb.Hub(radius=0.5, rate=1.0)
+    for result in (gb.static(long), gb.modes(long), gb.critical_speed(long, hub), gb.linearize(long, hub)):
+        assert repr(result).endswith("warning: " + result.warnings[-1])
+
+
 def test_a_root_spring_is_a_shape() -> None:
     sprung = gb.assemble(beam(root=gb.Root(rotation_z=100.0)), "FOAM", z=1)
     assert not gb.static(sprung, gb.Flight(y=1.0)).warnings

@@ -92,10 +92,15 @@ class Input:
 
 
 def signed(facts: dict[str, Any], provenance: Provenance | None) -> dict[str, Any]:
-    """The facts of a result, as JSON, with where they come from."""
-    from gbeam.report.provenance import to_json
+    """The facts of a result, as JSON, with where they come from: found when it is printed, since that takes a while."""
 
-    return facts if provenance is None else {**facts, "provenance": to_json(provenance)}
+    def origin() -> dict[str, Any]:
+        from gbeam.report.provenance import to_json
+
+        assert provenance is not None
+        return to_json(provenance)
+
+    return facts if provenance is None else {**facts, "provenance": origin}
 
 
 _MOVING = ("run", "place")  # verbs that need all motions

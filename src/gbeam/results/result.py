@@ -69,6 +69,10 @@ class Result:
     warnings: tuple[str, ...] = field(default=(), repr=False)
     provenance: Provenance | None = field(default=None, repr=False)
 
+    def _with_warnings(self, *lines: str) -> str:
+        """Lines on the screen, with the warnings below."""
+        return "\n  ".join([*lines, *(f"warning: {each}" for each in self.warnings)])
+
     def to_xarray(self) -> Any:
         """Return the result with named dimensions, units and frames.
 

@@ -53,4 +53,4 @@ class Deflection(Figured):
         of = f" {self.motion!r}" if self.motion else ""
         tip = ", ".join(f"{1e3 * each:.4g}" for each in self.tip)
         rest = "stable" if self.stable else "NOT stable: the stiffness is not positive definite"
-        return f"Deflection{of} ({self.model}) at {self.time:.4g} s: tip ({tip}) mm; {rest}"
+        return self._with_warnings(f"Deflection{of} ({self.model}) at {self.time:.4g} s: tip ({tip}) mm; {rest}")

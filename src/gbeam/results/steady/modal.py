@@ -108,7 +108,7 @@ class Modes(Figured):
         more = f" and {len(modes) - SHOWN} more" if len(modes) > SHOWN else ""
         lines = [f"Modes{of} ({self.model}) at {self.time:.4g} s: {', '.join(modes[:SHOWN])}{more}"]
         lines += [f"{e.kind} along {e.direction}, growing with {e.growth_rate:.4g} 1/s" for e in self.instabilities]
-        return "\n  ".join(lines)
+        return self._with_warnings(*lines)
 
 
 @dataclass(frozen=True)

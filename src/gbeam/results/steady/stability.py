@@ -39,7 +39,7 @@ class Critical(Result):
 
     def __repr__(self) -> str:
         value = f"none up to {self.searched_to:.6g}" if self.value is None else f"{self.value:.6g}"
-        return f"Critical {self.quantity} ({self.model}): {value} {self.unit}\n  {self.reason}"
+        return self._with_warnings(f"Critical {self.quantity} ({self.model}): {value} {self.unit}", self.reason)
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -155,7 +155,7 @@ class StateSpace(Result):
             f"{len(signals)} {what} ({', '.join(each.name for each in signals[:4])}{', …' if len(signals) > 4 else ''})"
             for what, signals in (("states", self.states), ("inputs", self.inputs), ("outputs", self.outputs))
         ]
-        return "\n  ".join([f"StateSpace{of}{f' on {self.motion!r}' if self.motion else ''}", *counts])
+        return self._with_warnings(f"StateSpace{of}{f' on {self.motion!r}' if self.motion else ''}", *counts)
 
 
 def import_control() -> Any:
