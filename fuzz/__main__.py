@@ -16,11 +16,12 @@ from fuzz.cases import Case, make
 from fuzz.commands import command
 from fuzz.judge import judge
 from fuzz.records import record
+from fuzz.results import result
 from fuzz.scenarios import scenario
 from fuzz.worker import Answer, call, warm_up
 from gbeam.printable import shortened
 
-KINDS = {"scenario": scenario, "record": record, "command": command}
+KINDS = {"scenario": scenario, "record": record, "command": command, "result": result}
 FINDINGS = Path(__file__).parent / "findings"
 
 

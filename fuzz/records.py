@@ -66,14 +66,14 @@ def text(chosen: Random) -> bytes:
     for _ in range(chosen.choice((0, 0, 1, 1, 3))):
         i = chosen.randrange(len(rows)) if rows else 0
         match chosen.randrange(7):
-            case 0 if rows:
-                rows[i][chosen.randrange(4)] = chosen.choice(CELLS)
+            case 0 if rows and rows[i]:
+                rows[i][chosen.randrange(len(rows[i]))] = chosen.choice(CELLS)
             case 1 if rows:
                 rows[i] = rows[i][: chosen.randrange(4)]
             case 2 if rows:
                 rows[i] = rows[chosen.randrange(len(rows))]
             case 3:
-                header[chosen.randrange(4)] = chosen.choice(CELLS)
+                header[chosen.randrange(len(header))] = chosen.choice(CELLS)
             case 4:
                 header = header * chosen.choice((1, 2, 500))
             case 5 if rows:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from typing import Any
 import pytest
 
 from gbeam.cli.program import report_defect
+from gbeam.cli.streams import shorten_warnings
 
 Call = Callable[..., Any]
 ESCAPE = "\x1b[31m"
@@ -83,3 +85,15 @@ def test_a_terminal_obeys_nothing_from_outside(gbeam: Call, fast: Path, argument
         answer = gbeam(*words)
         assert answer.status == 2 and answer.err
         assert not {"\x1b", "\x9b"} & set(answer.out + answer.err)
+
+
+def test_warnings_of_libraries_are_a_line_and_said_once(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("warnings.showwarning", warnings.showwarning)
+    shorten_warnings()
+    for name in "ab":
+        text = f"Error reading persistent compilation cache entry for '{name}': error: Error -3\nwhile"
+        warnings.showwarning(UserWarning(text), UserWarning, "", 1)
+    said = "the cache of compiled programs cannot be used, they are compiled again: error: Error -3"
+    assert capsys.readouterr().err == f"gbeam: warning: {said}\\nwhile\n"

@@ -31,6 +31,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     from gbeam.cli.interrupts import end_on_signals, ignore_signals
 
     end_on_signals()
+    from gbeam.cli.streams import shorten_warnings
+
+    shorten_warnings()
     status = _status(sys.argv[1:])
     ignore_signals()  # all is written and printed
     return status

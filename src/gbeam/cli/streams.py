@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import sys
+import warnings
+
+from gbeam.printable import on_one_line, shortened
+
+_ALIKE = 40  # characters in which alike warnings agree
+_CACHE = re.compile(r"Error (?:reading|writing) persistent compilation cache entry.*?: (.*)", re.DOTALL)
 
 
 def prepare() -> bool:
@@ -22,6 +29,19 @@ def prepare() -> bool:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without µ or ² is no reason to fail
     return given
+
+
+def shorten_warnings() -> None:
+    """Print what libraries warn of on one line, without the place in their source, and what is alike once."""
+    shown: set[str] = set()
+
+    def show(message: Warning | str, *_: object, **__: object) -> None:
+        text = _CACHE.sub(r"the cache of compiled programs cannot be used, they are compiled again: \1", str(message))
+        if text[:_ALIKE] not in shown:
+            shown.add(text[:_ALIKE])
+            print(f"gbeam: warning: {on_one_line(shortened(text))}", file=sys.stderr)
+
+    warnings.showwarning = show
 
 
 def abandon_stdout() -> None:

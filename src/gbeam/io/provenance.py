@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.io.groups import Variable
+from gbeam.limits import BINARY_BYTES
 from gbeam.results.provenance import Environment, Provenance, RecordFile
 
 RECORD = "record_"  # before the flight's name
@@ -60,7 +61,7 @@ def provenance_of(variables: Mapping[str, Any], attrs: Mapping[str, Mapping[str,
     for name, values in variables.items():
         if name.startswith(RECORD) and "sha256" in attrs[name]:
             packed = values.tobytes()
-            content = zlib.decompress(packed) if len(packed) > 1 else None
+            content = zlib.decompressobj().decompress(packed, BINARY_BYTES) if len(packed) > 1 else None
             file, digest = (str(attrs[name][key]) for key in ("file", "sha256"))
             records.append(RecordFile(name.removeprefix(RECORD), file, digest, content))
     return Provenance(

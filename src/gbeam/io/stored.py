@@ -15,6 +15,7 @@ from gbeam.errors import InputError
 from gbeam.io.hdf5 import image
 from gbeam.io.netcdf import groups_of
 from gbeam.io.provenance import provenance_of
+from gbeam.limits import existing
 from gbeam.results.provenance import Provenance
 from gbeam.results.result import Result
 
@@ -57,12 +58,14 @@ def read_stored(path: str | os.PathLike[str]) -> Stored:
         If there is none, or it is no netCDF-4 file.
     """
     fix = "give a result.nc written by gbeam run"
-    if not Path(path).is_file():
+    if not existing(Path(path)) or not Path(path).is_file():
         raise InputError(str(path), "is no file", fix)
     try:
         with h5py.File(path) as file:
             return _contents(file)
-    except OSError:
+    except MemoryError:
+        raise
+    except Exception:  # a damaged file leads HDF5 to any
         raise InputError(str(path), "is not a netCDF-4 file that can be read", fix) from None
 
 

@@ -56,7 +56,11 @@ def rerun(path: str | os.PathLike[str]) -> Reproduction:
     from gbeam.io.stored import read_stored, stored
 
     before = read_stored(path)
-    origin = before.provenance
+    try:
+        origin = before.provenance
+    except Exception:  # zlib's, where bytes are damaged, or what lacks an attribute
+        fix = "give the file as `gbeam run` wrote it"
+        raise InputError(str(path), "does not say where it comes from: it is damaged", fix) from None
     checked(str(path), origin)
     with TemporaryDirectory(prefix="gbeam-") as folder:
         changes = [*origin.overrides, *records(origin, Path(folder))]
@@ -99,14 +103,15 @@ def checked(file: str, origin: Provenance) -> None:
 
 def records(origin: Provenance, folder: Path) -> Iterator[str]:
     """Put the records into a folder, or find them where they were; the changes that make the scenario read them."""
-    for record in origin.records:
+    for number, record in enumerate(origin.records):
         if record.content is None:
             file = Path(record.file).resolve()
             content = file.read_bytes() if file.is_file() else None
             if content is None:
                 raise InputError(record.file, "is not where it was", "put the record back: it was too large to be kept")
         else:
-            content, file = record.content, folder / f"{record.motion}{Path(record.file).suffix}"
+            # Not by a name that the file gives: it could lead elsewhere.
+            content, file = record.content, folder / f"{number}{Path(record.file).suffix}"
             file.write_bytes(content)
         if hashlib.sha256(content).hexdigest() != record.sha256:
             fix = "put back the one with the SHA-256 " + record.sha256
