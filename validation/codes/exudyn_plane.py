@@ -2,6 +2,9 @@
 (`benchmarks/exudyn_hub_beam.py`), against gbeam's exact model, which works in the hub's axes with polynomial strains
 and rotations. Slews (43) and torques (44) of the paper and beyond. "Mesh and step" is what half the elements and twice
 the step change in Exudyn's answer.
+
+FOAM is not exact, nor is the exact model with too few shapes: the last rows of a case compare the largest difference of
+their tip from Exudyn's across the beam, over their own peak, with the error that gbeam states beside their result.
 """
 
 from __future__ import annotations
@@ -30,57 +33,77 @@ CASES = {
 }
 ELEMENTS, STEP = 24, 2e-3
 PEAK, RESIDUAL = 1e-4, 2e-3
+STATED = 0.2  # of a stated error: its size is asked for, not its digits
 
 
 @dataclass(frozen=True)
-class Sizes:
-    """Peak and residual amplitude of the tip across the beam, m, and the hub's last angle, rad."""
+class Answer:
+    """Displacement of the tip across the beam, m, over time, s, and the hub's last angle, rad; what gbeam states as its
+    error, a fraction of the peak.
+    """
 
-    peak: float
-    residual: float
+    drive: Drive
+    tip: CubicSpline
     angle: float
+    stated_error: float = np.nan
+
+    @property
+    def peak(self) -> float:
+        """Largest size of the tip's displacement, m."""
+        return float(np.abs(self.tip(self._turns)).max())
+
+    @property
+    def residual(self) -> float:
+        """Half peak-to-peak after the drive has ended, m."""
+        late = np.append(self._turns[self._turns >= self.drive.duration], [self.drive.duration, self.drive.end])
+        return float(np.ptp(self.tip(late)) / 2)
+
+    @property
+    def _turns(self) -> np.ndarray:
+        return self.tip.derivative().roots(extrapolate=False)
 
 
 def rows() -> Iterator[Row]:
-    """Peak, residual vibration and, on a free hub, its angle."""
+    """Peak, residual vibration and, on a free hub, its angle; then FOAM's error."""
     source = f"{ELEMENTS} elements, generalised-α, {1e3 * STEP:g} ms"
+    quantities = {
+        "peak of the tip": ("peak", "m", PEAK),
+        "residual vibration": ("residual", "m", RESIDUAL),
+        "hub's last angle": ("angle", "rad", PEAK),
+    }
     for case, drive in CASES.items():
-        theirs, coarse, ours = exudyn(drive, ELEMENTS, STEP), exudyn(drive, ELEMENTS // 2, 2 * STEP), exact(drive)
-        names = {"peak": ("m", PEAK), "residual": ("m", RESIDUAL), "angle": ("rad", PEAK)}
-        for name, (unit, tolerance) in names.items():
+        theirs, coarse = exudyn(drive, ELEMENTS, STEP), exudyn(drive, ELEMENTS // 2, 2 * STEP)
+        ours = gbeam(drive, "exact", 7)
+        for words, (name, unit, tolerance) in quantities.items():
             if name == "angle" and drive.rate is not None:
                 continue
             reference, found = getattr(theirs, name), getattr(ours, name)
             change = getattr(coarse, name) / reference - 1
-            what = {"residual": "residual vibration", "angle": "hub's last angle"}.get(name, "peak of the tip")
-            row = Row(case, what, reference, found, unit, tolerance, source)
-            near = abs(row.difference or 0.0) < 2 * abs(change)
-            yield Row(case, what, reference, found, unit, tolerance, source,
+            near = abs(found / reference - 1) < 2 * abs(change)
+            yield Row(case, words, reference, found, unit, tolerance, source,
                       f"mesh and step {100 * change:+.1g} %" if near else "")  # fmt: skip
+        for kind, count in (("FOAM", 7), ("exact", 1), ("exact", 2)):
+            coarser = gbeam(drive, kind, count)
+            true = np.abs(theirs.tip(coarser.tip.x) - coarser.tip(coarser.tip.x)).max() / coarser.peak
+            words = f"error of {kind} with {count} shape{'s' * (count > 1)}, true and as stated"
+            yield Row(case, words, 100 * true, 100 * coarser.stated_error, "%", STATED, source)
 
 
-def sizes(drive: Drive, time: np.ndarray, tip: np.ndarray, angle: float) -> Sizes:
-    """Of a history: its extremes, by a cubic spline."""
-    curve = CubicSpline(time, tip)
-    turns = curve.derivative().roots(extrapolate=False)
-    late = np.append(turns[turns >= drive.duration], [drive.duration, drive.end])
-    return Sizes(float(np.abs(curve(turns)).max()), float(np.ptp(curve(late)) / 2), angle)
-
-
-def exudyn(drive: Drive, elements: int, step: float) -> Sizes:
+def exudyn(drive: Drive, elements: int, step: float) -> Answer:
     """Exudyn's answer."""
     system = HubBeam(drive, Setting("rigid", elements, round(drive.end / step)))
-    return sizes(drive, *system.solve(), float(system.angle[-1]))
+    return Answer(drive, CubicSpline(*system.solve()), float(system.angle[-1]))
 
 
-def exact(drive: Drive) -> Sizes:
-    """The answer of gbeam's exact model."""
+def gbeam(drive: Drive, kind: str, shapes: int) -> Answer:
+    """The answer of a model."""
     masses = [gb.PointMass(8.0, drive.mass)] if drive.mass else []
     section, material = gb.Section.general(7.2968e-5, 8.2189e-9, 8.2189e-9), gb.Material(2766.7, 6.8952e10)
-    structure = gb.assemble(gb.Beam(8.0, section, material, masses, damping_ratio=0.0), "exact", axial=2, y=7)
+    structure = gb.assemble(gb.Beam(8.0, section, material, masses, damping_ratio=0.0), kind, axial=2, y=shapes)
     if drive.rate is not None:
         hub = gb.Hub(radius=0.5, rate=gb.SmoothStep(drive.rate, drive.duration))
     else:
         hub = gb.Hub(radius=0.5, inertia=200.0, torque=gb.Sine(drive.torque, drive.duration))
     found = gb.simulate(structure, hub, duration=drive.end, integrator="gauss", step=0.02)
-    return sizes(drive, np.asarray(found.time), np.asarray(found.tip[:, 1]), float(found.hub.angle[-1]))
+    tip = CubicSpline(found.time, found.tip[:, 1])
+    return Answer(drive, tip, float(found.hub.angle[-1]), found.errors.displacement.total)
