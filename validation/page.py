@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
@@ -11,6 +12,7 @@ from validation.record import Record, heading, kept
 from validation.table import AGREES, DIFFERS, EXPLAINED, NOT_COMPARED, Row
 
 ROOT = Path(__file__).parents[1]
+VERDICTS = (AGREES, EXPLAINED, DIFFERS, NOT_COMPARED)
 PAGE = ROOT / "docs" / "validation.md"
 ASSERTED = Path(__file__).parent / "asserted.md"
 
@@ -31,7 +33,7 @@ def page() -> str:
     """The page's text."""
     records = {name: kept(name) for name in MODULES}
     environments = list({str(r.environment): r.environment for r in records.values() if r}.values())
-    parts = [HEAD]
+    parts = [HEAD, summary([record for record in records.values() if record])]
     for name, record in records.items():
         parts.append(chapter(record, environments) if record else absent(name))
     parts.append(ASSERTED.read_text(encoding="utf-8"))
@@ -42,6 +44,17 @@ def page() -> str:
     return "\n".join(parts)
 
 
+def summary(records: list[Record]) -> str:
+    """How many rows of each chapter agree."""
+    lines = ["| chapter | agree | differ, reason given | differ, without | not compared |", "|---|---|---|---|---|"]
+    for record in records:
+        slug = re.sub(r"[^\w\- ]", "", record.title.lower()).replace(" ", "-")
+        counts = Counter(row.verdict for row in record.rows)
+        cells = [f"[{record.title}](#{slug})", *(str(counts[verdict]) for verdict in VERDICTS)]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
 def absent(name: str) -> str:
     """The chapter of a module that has not run."""
     title, needs = heading(name)
@@ -50,28 +63,17 @@ def absent(name: str) -> str:
 
 def chapter(record: Record, environments: list[dict[str, str]]) -> str:
     """Introduction, versions and table of one module."""
-    counts = Counter(row.verdict for row in record.rows)
-    tally = ", ".join(
-        f"{counts[verdict]} {label}"
-        for verdict, label in (
-            (AGREES, "agree"),
-            (EXPLAINED, "differ for the reason given"),
-            (DIFFERS, "DIFFER without a reason"),
-            (NOT_COMPARED, "cannot be compared"),
-        )
-        if counts[verdict]
-    )
     codes = "".join(f"{name} {version}, " for name, version in record.versions.items())
     ran = f"`validation/{record.name.replace('.', '/')}.py`, {codes}{record.date}, {record.seconds:.0f} s"
     number = environments.index(record.environment) + 1
     return (
-        f"## {record.title}\n\n{record.introduction}\n\n{tally} ({ran}, [environment](#environments) {number}).\n\n"
-        f"{table(record.rows)}\n"
+        f"## {record.title}\n\n{record.introduction}\n\n{ran}, [environment](#environments) {number}.\n\n"
+        f"{table(record.rows)}"
     )
 
 
 def table(rows: Iterable[Row]) -> str:
-    """Markdown table; a source that all rows share stands above it, and so does no column of empty remarks."""
+    """Markdown table; a case is named once, a source that all rows share stands above, empty remarks have no column."""
     rows = list(rows)
     sources = {row.source for row in rows}
     columns = ["case", "quantity", "reference", "gbeam", "difference", "allowed", "verdict"]
@@ -79,12 +81,21 @@ def table(rows: Iterable[Row]) -> str:
     columns += ["source"] * each_source + ["remark"] * any_remark
     lines = [] if each_source else [f"Reference: {next(iter(sources), '')}.\n"]
     lines += ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
+    case = ""
     for row in rows:
         unit = "" if row.unit in {"", "–"} else f", {row.unit}"
         zero = row.reference is not None and float(row.reference) == 0
         allowed = "–" if row.difference is None else f"{row.tolerance:g}" if zero else f"{100 * row.tolerance:.2g} %"
-        cells = [row.case, row.quantity + unit, *row.numbers(), row.deviation(), allowed, row.verdict]
+        cells = [
+            "" if row.case == case else row.case,
+            row.quantity + unit,
+            *row.numbers(),
+            row.deviation(),
+            allowed,
+            row.verdict,
+        ]
         cells += [row.source] * each_source + [row.remark] * any_remark
+        case = row.case
         lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
     return "\n".join(lines) + "\n"
 

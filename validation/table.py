@@ -66,7 +66,9 @@ class Row:
         digits = 4
         if isinstance(self.reference, str):
             digits = max(digits, len(re.sub(r"\D", "", self.reference.split("e")[0]).lstrip("0")))
-        if self.difference:
+        if self.reference is not None and float(self.reference) == 0:
+            digits = 2  # ours is all error
+        elif self.difference:
             digits = min(max(digits, 2 - math.floor(math.log10(abs(self.difference)))), 7)
         shown = [
             "–" if value is None else value if isinstance(value, str) else significant(value, digits)

@@ -109,8 +109,9 @@ class HubAndBody:
 
 def hub_with_body(
     case: HubAndBody, torque: Callable[[float], float], torsion: float, end: float, step: float, elements: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Times, displacement of the tip in the hub's axes (t, 3) m, and the hub's angle (t,) rad.
+) -> tuple[np.ndarray, np.ndarray]:
+    """Times (t,) s; displacement of the tip m, force N and moment N m of the hub on the root in its axes, and its angle
+    rad, (t, 10).
 
     `torsion` is the torsional stiffness, N m²; the stiffness in shear is that in tension.
     """
@@ -140,20 +141,31 @@ def hub_with_body(
     )
     rim = system.AddMarker(items.MarkerBodyRigid(bodyNumber=hub, localPosition=[case.radius, 0, 0]))
     system.AddObject(items.ObjectJointGeneric(markerNumbers=[ground, axle], constrainedAxes=[1, 1, 1, 1, 1, 0]))
-    system.AddObject(items.ObjectJointGeneric(markerNumbers=[rim, root]))
+    clamp = system.AddObject(items.ObjectJointGeneric(markerNumbers=[rim, root]))
 
     def drive(mbs, t, loadVector):  # type: ignore[no-untyped-def]
         return [0.0, 0.0, torque(t)]
 
     system.AddLoad(items.LoadTorqueVector(markerNumber=axle, loadVector=[0, 0, 1], loadVectorUserFunction=drive))
-    outputs = exudyn.OutputVariableType
-    sensors = _sensor(system, nodes[-1], outputs.Position), _sensor(system, centre, outputs.RotationMatrix)
+    outputs, stored = exudyn.OutputVariableType, {"storeInternal": True, "writeToFile": False}
+    sensors = [
+        _sensor(system, nodes[-1], outputs.Position),
+        _sensor(system, centre, outputs.RotationMatrix),
+        *(
+            system.AddSensor(items.SensorObject(objectNumber=clamp, outputVariableType=output, **stored))
+            for output in (outputs.ForceLocal, outputs.TorqueLocal)
+        ),
+    ]
     system.Assemble()
     system.SolveDynamic(_settings(step, round(end / step), "EigenSparse"))
-    tip, turned = (system.GetSensorStoredData(sensor) for sensor in sensors)
-    axes = turned[:, 1:].reshape(-1, 3, 3)
-    moved = np.einsum("tij,ti->tj", axes, tip[:, 1:]) - [case.radius + case.length, 0, 0]
-    return tip[:, 0], moved, np.unwrap(np.arctan2(axes[:, 1, 0], axes[:, 0, 0]))
+    time = system.GetSensorStoredData(sensors[0])[:, 0]
+    tip, turned, force, multipliers = (system.GetSensorStoredData(sensor)[:, 1:] for sensor in sensors)
+    axes = turned.reshape(-1, 3, 3)
+    moved = np.einsum("tij,ti->tj", axes, tip) - [case.radius + case.length, 0, 0]
+    # The joint's torques are multipliers of z0·y1, z0·x1 and x0·y1: with the force's sign, of turns about x, −y and −z.
+    moment = multipliers * [-1, 1, 1]
+    angle = np.unwrap(np.arctan2(axes[:, 1, 0], axes[:, 0, 0]))
+    return time, np.column_stack([moved, -force, moment, angle])
 
 
 def _about_node(case: HubAndBody) -> dict[str, object]:
