@@ -173,9 +173,6 @@ CASES = {
     "neither source": (
         INLINE + "\n", "", "motion.flight", "record or acceleration is missing", "add one of them", "flight",
     ),
-    "rate and inertia": (
-        RATE, RATE + "\ninertia = 1", "motion.slew.inertia", "is given beside rate", "needs none", "inertia",
-    ),
     "unit of a level": (
         '"60 rpm"', '"6 g"', "motion.slew.rate.level", '"6 g" is a mass', "expected an angular rate", '"6 g"',
     ),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,8 @@ from gbeam import (
     SmoothStep,
     assemble,
     constant,
+    read_scenario,
+    study,
 )
 from gbeam.mechanics.equations.residuals import OnHub
 from gbeam.structure.loads import Load
@@ -26,6 +29,7 @@ from gbeam.structure.loads import Load
 from ..differences import rate
 from ..lagrange import energy_of, hub_kinetic
 from ..residuals import MOUNTED_HUB, gravity_potential, on_base, on_hub
+from ..scenarios import SLEWING
 from ..specimens import HUB_INERTIA, HUB_RADIUS, laden, states
 
 BOX, METAL = Section.general(AREA, INERTIA, INERTIA), Material(DENSITY, MODULUS)
@@ -116,3 +120,17 @@ def test_a_moment_at_the_root_drives_the_hub_as_a_torque_does() -> None:
 def test_impossible_mounts_are_refused(wrong: dict[str, Any], words: str) -> None:
     with pytest.raises(InputError, match=words):
         Hub(radius=0.5, inertia=200.0, torque=constant(0.0), **wrong)
+
+
+def test_the_drive_of_a_slewing_hub_turns_hub_and_beam(tmp_path: Path) -> None:
+    """τ = J dΩ/dt + what the beam takes: of a scenario's hub with a rate and an inertia, in its file."""
+    file = tmp_path / "slew.toml"
+    file.write_text(SLEWING, encoding="utf-8")
+    changes = ["motion.slew.inertia=200 kg m^2", "response.step=20 ms", "model.kind=FOAM", "response.duration=5 s"]
+    slew = study(read_scenario(file, changes)).responses["slew"]
+    assert slew.hub is not None and slew.loads is not None and slew.loads.beam_torque is not None
+    turned = 200.0 * slew.hub.acceleration + slew.loads.beam_torque
+    np.testing.assert_allclose(slew.hub.drive_torque, turned, atol=1e-9 * np.abs(turned).max())
+    np.testing.assert_array_equal(slew.to_xarray()["drive_torque"], slew.hub.drive_torque)
+    unknown = study(read_scenario(file, changes[1:])).responses["slew"]
+    assert "drive_torque" not in unknown.to_xarray() and unknown.hub is not None and unknown.hub.drive_torque is None

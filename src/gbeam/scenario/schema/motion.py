@@ -172,7 +172,8 @@ class Hub(Table):
     radius: Position = Field(description="from the hub's axis to the beam's root")
     rate: RateProfile | None = Field(default=None, description="profile of the hub's rate; or inertia and torque")
     inertia: Annotated[float, Quantity("moment of inertia", "positive")] | None = Field(
-        default=None, description="moment of inertia of the hub about its axis"
+        default=None,
+        description="moment of inertia of the hub about its axis; beside a rate it gives the torque of the drive",
     )
     torque: TorqueProfile | None = Field(default=None, description="profile of the torque on the hub; needs inertia")
     stiffness: Annotated[float, Quantity("rotational stiffness", "zero or more")] | None = Field(
@@ -197,9 +198,6 @@ class Hub(Table):
     def _one_drive(self) -> Hub:
         if self.rate is None and self.torque is None:
             refuse([_missing("rate", "torque")])
-        if self.rate is not None and self.torque is None and self.inertia is not None:
-            hint = "a hub with a prescribed rate needs none"
-            refuse([(("inertia",), wrong("is given beside rate", hint, mark="key"))])
         return self
 
 
