@@ -12,7 +12,10 @@ import numpy as np
 from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
 
-from gbeam import Beam, Material, PointMass, Root, Section
+from gbeam import Beam, Material, PointMass, Root, Section, Structure
+from gbeam.analysis.equilibrium.operating_point import operating_point
+from gbeam.analysis.vibration.modal import modes_at
+from gbeam.motion.protocol import Motion
 
 # A counterexample is as random as any example: it is not made smaller, which takes minutes.
 theorem = settings(
@@ -89,3 +92,8 @@ def first_frequency(beam: Beam) -> float:
     """About that of the first mode along z, rad/s: the scale of time."""
     s, m = beam.section.at(0.0), beam.material
     return float(3.516 * np.sqrt(m.youngs_modulus * s.inertia_y / (m.density * s.area)) / beam.length**2)
+
+
+def frequencies(structure: Structure, motion: Motion, *, gyroscopic: bool = True) -> np.ndarray:
+    """Of `gbeam.modes`, without its estimate of their errors, which takes longer than all else; Hz."""
+    return modes_at(structure, operating_point(structure, motion), gyroscopic=gyroscopic).frequency
