@@ -58,7 +58,7 @@ def scenario(chosen: Random) -> Case:
     files = {}
     if chosen.random() < 0.6:
         for _ in range(chosen.choice((1, 1, 1, 2, 3))):
-            _change(chosen, data)
+            change(chosen, data)
         as_json = chosen.random() < 0.3
         changed = (json.dumps(data) if as_json else toml(data)).encode("utf-8", "surrogatepass")
     else:
@@ -102,7 +102,7 @@ def corrupted(chosen: Random, text: bytes) -> bytes:
     return b"\n".join(lines)
 
 
-def _change(chosen: Random, data: dict[str, Any]) -> None:
+def change(chosen: Random, data: dict[str, Any]) -> None:
     """Change one entry, in place."""
     places = list(_places(data))
     if not places:

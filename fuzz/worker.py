@@ -39,12 +39,13 @@ def warm_up() -> None:
     """Import what most cases need, once: a fork has it."""
     for name in ("h5py", "scipy.interpolate", "scipy.io"):
         import_module(name)
-    from fuzz.results import sound
+    from fuzz.results import sound, sound_json
     from gbeam.cli import main
 
     scenario = str(ROOT / "examples" / "hubbeam2009_slew_3.toml")
     with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
         sound()
+        sound_json()
         import_module("xarray")
         for words in ([], ["--json"], ["--set", "beam.length=x"], ["--set", "beam.length=99 inch"]):
             for verb in ("check", "static", "modes", "campbell", "critical-speed", "linearize"):

@@ -59,7 +59,7 @@ def _read(file: Path) -> tuple[dict[str, Any], Provenance]:
         return facts, Provenance(*words, environment)
     except OSError as error:
         raise InputError(str(file), f"cannot be read ({error.strerror})", fix) from None
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
         if isinstance(error, InputError):
             raise
         raise InputError(str(file), "is no JSON of gbeam with a provenance", fix) from None
