@@ -139,6 +139,15 @@ def test_samples_and_knots() -> None:
         gb.Centrifuge(flight, arm=3.3, control_point=0.1, inverse="flat", smoothing=0, span=(0, 1e300))
 
 
+def test_steps() -> None:
+    beam = gb.Beam(0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9), damping_ratio=0.01)
+    model = gb.assemble(beam, "FOAM", z=1)
+    with pytest.raises(InputError, match=r"response.duration makes 7.\d+e\+07 steps, which would take 7"):
+        gb.simulate(model, gb.Flight(z=10.0), duration=1e5)
+    with pytest.raises(InputError, match=r"step makes 1e\+08 steps, .* give 2.5e-06 s or more"):
+        gb.simulate(model, gb.Flight(z=10.0), duration=10.0, step=1e-7)
+
+
 def test_stations_of_a_section() -> None:
     at = np.linspace(0, 0.3, 1000)
     beam = gb.Beam(0.3, gb.Section.rectangle(0.02, np.full(1000, 0.004), stations=at), gb.Material(2700, 70e9))

@@ -28,6 +28,7 @@ from gbeam.analysis.response.trajectories import (
 from gbeam.arrays.namespace import holds_jax, is_jax
 from gbeam.errors import InputError
 from gbeam.integrate.driver import Trajectory
+from gbeam.limits import HISTORY_BYTES, STEPS, refuse_more
 from gbeam.mechanics.influence import influence
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import section_forces
@@ -81,8 +82,8 @@ def simulate(
     Raises
     ------
     InputError
-        If the integrator cannot run this model, the beam has no damping ratio, settings are given twice, or a traced
-        run has no step.
+        If the integrator cannot run this model, the beam has no damping ratio, settings are given twice, there are too
+        many steps, or a traced run has no step.
     ComputationError
         If there is no relative equilibrium to start from.
     """
@@ -97,6 +98,10 @@ def simulate(
     coarse = first_step(structure, motion, settings)
     given = None if settings.step is None else settings.duration / max(1, round(settings.duration / settings.step))
     kept = given or coarse
+    each = 8.0 * (3 * sum(structure.counts) + 9 * len(structure.stations))
+    most = min(STEPS, int(HISTORY_BYTES / each))
+    fix = f"give {most * kept:.3g} s or less, or fewer stations"
+    refuse_more("response.duration", "steps", settings.duration / kept, most, each, fix)
     before, after = steps_beyond(motion, settings, kept)
     problem = problem_of(structure, motion, settings.start - before * kept, settings.begin)
 
