@@ -19,4 +19,5 @@ MODULES: tuple[str, ...] = (
     "published.references",
     "published.others",
     "published.closed_forms",
+    "accuracy.random_scenarios",
 )

@@ -128,3 +128,17 @@ def test_a_model_is_expanded_by_numpy_as_it_is_by_jax() -> None:
         ours, theirs = (getattr(each[0], name) for each in (plain, compiled))
         np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-8 * max(np.abs(theirs).max(), 1e-12), err_msg=name)
     np.testing.assert_allclose(plain[0].loads.slope, compiled[0].loads.slope, rtol=0, atol=1e-7)
+
+
+def test_shapes_are_added_until_they_are_enough() -> None:
+    """A force at the tip beside a taper; what is given by the user is kept, and a warning says what it lacks."""
+    load = gb.Load(0.3, force=gb.vector(z=gb.trapezoid(1.0, jerk=20.0, start=0.05, hold=0.1)))
+    section = gb.Section.rectangle((0.03, 0.01), (0.006, 0.002), stations=(0.0, 0.3))
+    beam = gb.Beam(0.3, section, gb.Material(2700, 70e9), damping_ratio=0.01, loads=[load])
+    flight = {"flight": gb.Flight(z=0.0)}
+    few = gb.study(gb.Case("", beam, gb.Model("FOAM", 1, 0, 1), flight, gb.ResponseSettings(0.2))).responses["flight"]
+    enough = gb.study(gb.Case("", beam, gb.Model.of("FOAM"), flight, gb.ResponseSettings(0.2))).responses["flight"]
+    assert few.q.shape[1] == 2 and few.errors.displacement.shapes > 0.05
+    assert any("raise model.modes" in warning for warning in few.warnings)
+    assert enough.q.shape[1] > 7 and enough.errors.displacement.shapes < 1e-3 and not enough.warnings
+    assert gb.assemble(beam, "FOAM").counts == (1, 3, 3) and gb.assemble(beam, "SFOAM").counts == (0, 3, 3)

@@ -37,7 +37,7 @@ def assemble(
     axial: int = 0,
     y: int = 0,
     z: int = 0,
-    shapes: str = "clamped-free",
+    shapes: str | None = None,
 ) -> Structure:
     """Put a beam into a model.
 
@@ -48,7 +48,7 @@ def assemble(
         A model, or the kind of one with the numbers of its shapes: ``assemble(beam, "FOAM", axial=1, y=3, z=3)``.
     stations : (s,) positions along the beam where displacements are put out, m; the tip is always added last
     axial, y, z, shapes
-        Of the model where only its kind is given, see :class:`Model`.
+        Of the model where only its kind is given, see :class:`Model`; without any number those of :meth:`Model.of`.
 
     Returns
     -------
@@ -61,7 +61,8 @@ def assemble(
         stations to integrate between.
     """
     if isinstance(model, str):
-        model = Model(model, axial, y, z, shapes)
+        given = axial or y or z
+        model = Model(model, axial, y, z, shapes or "clamped-free") if given else Model.of(model, shapes)
     row, counts = model.row, model.counts
     _refuse_traced_places(beam, adapted=model.shapes == "adapted")
     at = _stations(beam, stations)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from gbeam.errors import InputError
 
@@ -33,6 +33,8 @@ class Kind:
     axial: bool = True
 
 
+FIRST, FIRST_EXACT = (1, 3), (2, 4)  # automatic numbers of shapes along and across the beam
+MOST = 9  # across it
 SHAPES = ("clamped-free", "adapted")
 KINDS = {
     "TLAM": Kind(foreshortening=False),
@@ -58,6 +60,8 @@ class Model:
     shapes : str
         clamped-free: those of the bare uniform beam (for exact, polynomials). adapted: the modes at rest of the beam
         with its tapers, bodies and root springs.
+    automatic : bool
+        Whether the numbers are gbeam's own, which a study raises until what they leave out is small.
 
     Raises
     ------
@@ -70,6 +74,29 @@ class Model:
     y: int = 0
     z: int = 0
     shapes: str = "clamped-free"
+    automatic: bool = False
+
+    @classmethod
+    def of(cls, kind: str, shapes: str | None = None) -> Model:
+        """The model of a kind with the numbers of shapes that a study begins with.
+
+        Parameters
+        ----------
+        kind : str
+        shapes : str, optional
+            Adapted ones unless given, of which fewer are needed; for exact, polynomials.
+        """
+        row = KINDS.get(kind, Kind())
+        axial, across = FIRST_EXACT if row.exact else FIRST
+        own = "clamped-free" if row.exact else "adapted"
+        return cls(kind, axial if row.axial else 0, across, across, shapes or own, automatic=True)
+
+    def richer(self) -> Model | None:
+        """The same with two more shapes across the beam, and one more along it; None where that is too many."""
+        if max(self.y, self.z) + 2 > MOST:
+            return None
+        y, z = (n + 2 if n else 0 for n in (self.y, self.z))
+        return replace(self, axial=self.axial + 1 if self.axial else 0, y=y, z=z)
 
     def __post_init__(self) -> None:
         for name, value, choices in (("kind", self.kind, tuple(KINDS)), ("shapes", self.shapes, SHAPES)):

@@ -162,7 +162,10 @@ def _load(parts: Collector, where: str, table: schema.Load) -> Load | None:
 def _model(parts: Collector, table: schema.Model) -> Model | None:
     from gbeam.mechanics.models import Model
 
-    return parts.attempt("model", Model, table.kind, table.modes.axial, table.modes.y, table.modes.z, table.shapes)
+    if table.modes is None:
+        return parts.attempt("model", Model.of, table.kind, table.shapes)
+    counts = table.modes.axial, table.modes.y, table.modes.z
+    return parts.attempt("model", Model, table.kind, *counts, table.shapes or "clamped-free")
 
 
 def _covered(record: PiecewiseLinear) -> tuple[float, float, float]:

@@ -25,7 +25,7 @@ def response_errors(
     solution: Solution,
     tip: Floats,
     loads: Loads | None,
-    step: float,
+    steps: tuple[float, float, float],
     *,
     settled: bool = True,
 ) -> Errors:
@@ -39,13 +39,14 @@ def response_errors(
         At equal intervals.
     tip : (t, 3) m
     loads : Loads or None
-    step : float
-        Error of the tip's displacement from the time step, a fraction.
+    steps : (3,)
+        Errors of displacement, loads and stress from the time step, fractions.
     settled : bool
         Whether it begins in relative equilibrium; a given state has no error.
     """
     if structure.source is None or loads is None or len(solution.time) < 3:
-        return Errors(ErrorEstimate(step=step, total=step), note=UNKNOWN)
+        alone = [ErrorEstimate(step=step, total=step) for step in steps]
+        return Errors(alone[0], alone[1], alone[2], UNKNOWN)
     period = 2 * math.pi / float(structure.rest[0][0])
     interval = float(solution.time[1] - solution.time[0])
     stride = max(1, min(int(period / PER_PERIOD / interval), len(solution.time) // FEWEST))
@@ -55,16 +56,17 @@ def response_errors(
     with np.errstate(all="ignore"):
         parts = lacking(structure, motion, solution.some(few), own, settled=settled)
     if not np.isfinite(parts.total.tip).all():
-        return _bounded(structure, sizes["tip"], step)
+        return _bounded(structure, sizes["tip"], steps[0])
 
-    def fractions(name: str) -> ErrorEstimate:
+    def fractions(name: str, step: float) -> ErrorEstimate:
         size = sizes[name] or _largest(getattr(parts.total, name))
         shares = (_largest(getattr(part, name)) / size if size else 0.0 for part in parts)
         shapes, model, total = shares
         return ErrorEstimate(step, shapes, 0.0 if structure.kind == "exact" else model, step + total)
 
-    force, moment = fractions("force"), fractions("moment")
-    return Errors(fractions("tip"), max(force, moment, key=lambda each: each.total), fractions("stress"))
+    force, moment = fractions("force", steps[1]), fractions("moment", steps[1])
+    worst = max(force, moment, key=lambda each: each.total)
+    return Errors(fractions("tip", steps[0]), worst, fractions("stress", steps[2]))
 
 
 def _largest(values: Floats) -> float:

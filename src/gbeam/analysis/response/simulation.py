@@ -215,7 +215,7 @@ def _result(
             solution = Solution(time[flight], q[flight], qd[flight], qdd[flight])
             during = None if loads is None else loads.during(flight)
             settled, tip = up is not None or settings.begin.settled, np.asarray(displacement[flight, -1])
-            errors = response_errors(structure, motion, solution, tip, during, error, settled=settled)
+            errors = response_errors(structure, motion, solution, tip, during, (error,) * 3, settled=settled)
             own += inaccuracies(structure, errors, settings)
         given = input_warnings(structure, motion, name=name, span=(time[0], time[-1]), base=base)
         warnings = given + settings.warnings + own + (() if axes is None else axes.warnings) + warnings

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from gbeam.analysis.imitation.comparison import compare
+from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.study.case import Case
 from gbeam.errors import ComputationError
@@ -13,6 +14,8 @@ from gbeam.results.imitation.accounting import TOLERANCE
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.response import Response
 from gbeam.results.study import Failure, Study
+
+ENOUGH = 1e-3  # error from too few shapes, at most, where their numbers are automatic
 
 
 def study(case: Case, progress: Callable[[str, float], None] | None = None) -> Study:
@@ -36,6 +39,30 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
     ComputationError
         If no motion has a relative equilibrium to start from; the message names each.
     """
+    responses, failures = _answers(case, progress)
+    while case.model.automatic and _lacks_shapes(responses, case.response):
+        richer = case.model.richer()
+        if richer is None:
+            break
+        case = replace(case, model=richer)
+        responses, failures = _answers(case, progress)
+    if not responses:
+        first = next(iter(failures.values()))
+        raise ComputationError(
+            first.outcome, "; ".join(f"motion.{n}: {failure.message}" for n, failure in failures.items())
+        )
+    comparisons = tuple(
+        replace(_compared(responses[flight], responses[name], case.accept.get(name, {})), provenance=case.provenance)
+        for name, flight in case.tracks.items()
+        if {flight, name} <= responses.keys() and responses[flight].outcome == responses[name].outcome == "done"
+    )
+    return Study(case.title, responses, comparisons, failures, provenance=case.provenance)
+
+
+def _answers(
+    case: Case, progress: Callable[[str, float], None] | None
+) -> tuple[dict[str, Response], dict[str, Failure]]:
+    """The responses in all environments, and why some have none."""
     structure = case.assemble()
 
     def answer(name: str) -> Response:
@@ -55,17 +82,13 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
             responses[name] = answer(name)
         except ComputationError as error:
             failures[name] = Failure(error.outcome, str(error))
-    if not responses:
-        first = next(iter(failures.values()))
-        raise ComputationError(
-            first.outcome, "; ".join(f"motion.{n}: {failure.message}" for n, failure in failures.items())
-        )
-    comparisons = tuple(
-        replace(_compared(responses[flight], responses[name], case.accept.get(name, {})), provenance=case.provenance)
-        for name, flight in case.tracks.items()
-        if {flight, name} <= responses.keys() and responses[flight].outcome == responses[name].outcome == "done"
-    )
-    return Study(case.title, responses, comparisons, failures, provenance=case.provenance)
+    return responses, failures
+
+
+def _lacks_shapes(responses: Mapping[str, Response], settings: ResponseSettings) -> bool:
+    """Whether more shapes would change a response by more than a third of the tolerance, or by 1e-3."""
+    limit = min(settings.tolerance / 3, ENOUGH)
+    return any(max(e.displacement.shapes, e.loads.shapes) > limit for e in (r.errors for r in responses.values()))
 
 
 def _compared(flight: Response, centrifuge: Response, accept: Mapping[str, float]) -> Comparison:

@@ -27,9 +27,13 @@ class Model(Table):
         description="TLAM: linear, no foreshortening. FOAM: first order with foreshortening. SFOAM: FOAM "
         "without axial coordinates. CFOAM: FOAM's field, complete energy. exact: any rotation"
     )
-    modes: Modes = Field(description="numbers of shapes: { axial, y, z }")
-    shapes: Literal["clamped-free", "adapted"] = Field(
-        default="clamped-free",
-        description="clamped-free: shapes of the bare uniform beam (for `exact`, polynomials). adapted: the modes at "
-        "rest of this beam with its tapers, masses and root springs, of which fewer are needed",
+    modes: Modes | None = Field(
+        default=None,
+        description="numbers of shapes: { axial, y, z }; where left out, `run` raises them until they are enough",
+    )
+    shapes: Literal["clamped-free", "adapted"] | None = Field(
+        default=None,
+        description="clamped-free: shapes of the bare uniform beam (for `exact`, polynomials); the default for `exact` "
+        "and where `modes` are given. adapted: the modes at rest of this beam with its tapers, masses and root "
+        "springs, of which fewer are needed; the default where `modes` are left out",
     )

@@ -121,6 +121,6 @@ class Scenario(Environments, _Structure):
             if isinstance(motion, Hub):
                 # A section set at a right angle bends along z in the plane of the hub.
                 axis = "y" if abs(math.cos(motion.setting_angle)) > 1e-9 else "z"
-                if not getattr(self.model.modes, axis):
+                if self.model.modes is not None and not getattr(self.model.modes, axis):
                     problem = f"there is no bending shape along {axis}, the plane of the hub {name!r}"
                     yield ("model", "modes", axis), wrong(problem, f"give {axis} = 1 or more")

@@ -1,0 +1,21 @@
+"""A few of the random scenarios of `make validate`: those that share one compiled program."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from validation.accuracy.draw import draw
+from validation.accuracy.random_scenarios import judge, ratios
+
+# Slews, hubs with the beam inwards, flights and machines, by linear models; one shape, four, and what lies between.
+SEEDS = (0, 1, 3, 6, 10, 20, 21, 24)
+
+
+def test_stated_errors_hold_in_random_scenarios() -> None:
+    judged = [judge(seed, draw(seed, ("FOAM", "SFOAM", "TLAM"))) for seed in SEEDS]
+    known = [each for each in judged if each is not None]
+    assert len(known) >= len(SEEDS) - 1
+    of = ratios([each.tip for each in known])
+    assert (3 * of >= 1).all() and (of >= 0.1).all()
+    assert np.median(of) == pytest.approx(1.0, abs=0.3)
