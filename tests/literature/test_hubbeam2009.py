@@ -236,7 +236,9 @@ def test_slew_of_3_rad_per_s_with_newmark_in_automatic_steps() -> None:
     result = slew("FOAM", (5, 5), 3.0)
     assert result.peaks.max_abs[1] == pytest.approx(0.2171, rel=1e-3)
     assert result.peaks.residual_amplitude[1] == pytest.approx(7.9e-4, rel=1e-2)
-    assert result.error_estimate < 1e-4
+    assert result.errors.displacement.step < 1e-4
+    # FOAM itself is 0.03 % off the elastica in the peak: SLEWS.
+    assert 1e-4 < result.error_estimate < 1e-3
 
 
 @pytest.mark.parametrize(("mt", "rate", "critical"), [(0.0, 3.0, 2.911), (0.5, 2.0, 1.936)])
