@@ -22,6 +22,7 @@ from matplotlib.lines import Line2D
 from matplotlib.path import Path
 
 from gbeam.plots.drawing.layout import PANEL, WIDTH, arrange
+from gbeam.printable import printable
 from gbeam.results.response import PlotHeading
 from gbeam.results.result import Flags, Floats
 
@@ -90,7 +91,7 @@ def panels(title: str, count: int, *, heights: Iterable[float] | None = None) ->
     FigureCanvasAgg(figure)
     grid = figure.subplots(count, 1, sharex=True, squeeze=False, height_ratios=ratios)
     axes: list[Axes] = list(grid[:, 0])
-    figure.suptitle(title, ha="left", va="top", fontsize=10.5, fontweight="bold")
+    figure.suptitle(printable(title), ha="left", va="top", fontsize=10.5, fontweight="bold")
     axes[-1].set_xlabel("time, s")
     for panel in axes:
         panel.add_artist(Grid(axes[-1].xaxis, panel, across=True))
