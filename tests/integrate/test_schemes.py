@@ -13,6 +13,7 @@ import pytest
 
 from gbeam import InputError
 from gbeam.integrate import Scheme, gauss, generalized_alpha, hht, integrate, linear, newmark
+from gbeam.integrate.steps import fitted
 from validation.published.tables import SCHEMES_THEORY
 
 from .systems import BEAD, OSCILLATOR, PENDULUM, VARYING, reference
@@ -28,9 +29,8 @@ DIGITS = 1e-3  # the theory's numbers have four or five
 
 def amplification(scheme: Scheme, h: float) -> np.ndarray:
     """Matrix of one step on what the scheme carries: q, q̇ and, where it damps, its own acceleration."""
-    tableau = scheme.tableau(h)
-    carried = [np.reshape(z, (-1, 1)) for z in np.eye(len(tableau.g))]
-    columns = [linear.chunk(OSCILLATOR, scheme, tableau, z, np.zeros(1), h)[0][:, 0] for z in carried]
+    carried, steps = [np.reshape(z, (-1, 1)) for z in np.eye(len(scheme.unit.g))], fitted(0.0, h, 1)
+    columns = [linear.chunk(OSCILLATOR, scheme, z, steps)[0][:, 0] for z in carried]
     return np.array(columns).T
 
 
@@ -108,7 +108,7 @@ def test_known_members_of_the_family() -> None:
 
 def parameters(scheme: Scheme) -> tuple[float, float, float, float]:
     """α_m, α_f, γ and β from the tableau at a step of 1 s."""
-    t = scheme.tableau(1.0)
+    t = scheme.unit
     known, carried = t.first[2, 2], t.d[2, 0]  # (α_f − α_m)/(1 − α_m), and that over 1 − α_m
     alpha_m = 1 - known / carried
     return alpha_m, alpha_m + known * (1 - alpha_m), t.c_v[0, 0] / (1 - known), t.c_q[0, 0] / (1 - known)

@@ -9,8 +9,10 @@ from gbeam.integrate.adaptive import integrate_adaptively
 from gbeam.integrate.driver import Trajectory, integrate
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations
 from gbeam.integrate.schemes import Scheme, gauss, generalized_alpha, hht, newmark
+from gbeam.integrate.steps import Corners
 
 __all__ = [
+    "Corners",
     "LinearEquations",
     "NonlinearEquations",
     "Scheme",

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.integrate.driver import Floats, Trajectory
+from gbeam.integrate.driver import Trajectory
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations
+from gbeam.integrate.steps import Floats
 
 
 def integrate_adaptively(

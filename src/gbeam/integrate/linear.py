@@ -1,6 +1,7 @@
 """Linear equations in time: every step is an affine map of the state, found for many steps at once.
 
-The same lines serve NumPy, where a plain loop applies the maps (nothing is compiled), and JAX, where a scan does.
+The same lines serve NumPy, where a plain loop applies the maps (nothing is compiled), and JAX, where a scan does. An
+affine map of z (m, n) is an array (..., m n + 1), whose last column is what it adds.
 """
 
 from __future__ import annotations
@@ -11,17 +12,18 @@ import numpy as np
 
 from gbeam.arrays.namespace import namespace
 from gbeam.integrate.equations import LinearEquations
-from gbeam.integrate.schemes import Scheme, Tableau
+from gbeam.integrate.schemes import Scheme
+from gbeam.integrate.steps import Steps
 
 Array = Any
 
 
-def start(equations: LinearEquations, tableau: Tableau, time: float, q: Array, qd: Array) -> tuple[Array, Array]:
+def start(equations: LinearEquations, scheme: Scheme, steps: Steps, q: Array, qd: Array) -> tuple[Array, Array]:
     """The first z (m, n) from an initial state, and the accelerations (n,) that its equations demand."""
-    c, k, f = (x[0] for x in equations.matrices(equations.drive(np.array([time]))))
+    c, k, f = (x[0] for x in equations.matrices(equations.drive(steps.first[:1])))
     xp = namespace(equations.mass, k, q)
     qdd = _solved(xp, equations.mass, (f - k @ q - c @ qd)[:, None])[:, 0]
-    return tableau.first @ xp.stack([q, qd, qdd]), qdd
+    return scheme.tableau(steps.length[0]).first @ xp.stack([q, qd, qdd]), qdd
 
 
 def _solved(xp: Any, left: Array, right: Array) -> Array:
@@ -34,53 +36,78 @@ def _solved(xp: Any, left: Array, right: Array) -> Array:
         return np.stack([_solved(xp, *pair) for pair in zip(left, right, strict=True)])
 
 
+def _sum(weights: Array, values: Array) -> Array:
+    """Sums over k of weights (t or 1, j, k) and values (t or 1, k, ...)."""
+    w = weights.reshape(*weights.shape, *(1,) * (values.ndim - 2))
+    return sum(w[:, :, k] * values[:, None, k] for k in range(w.shape[2]))
+
+
 def chunk(
-    equations: LinearEquations, scheme: Scheme, tableau: Tableau, z: Array, times: Array, step: float
+    equations: LinearEquations, scheme: Scheme, z: Array, steps: Steps
 ) -> tuple[Array, tuple[Array, Array, Array]]:
-    """Steps from `times` (t,) s; returns the next z, and q, q̇, q̈ at the ends of the steps, (t, n) each."""
-    count, stages, m, n = len(times), len(scheme.offsets), z.shape[0], z.shape[1]
-    at = [equations.matrices(equations.drive(times + offset * step)) for offset in scheme.offsets]
-    xp = namespace(equations.mass, z, *at[0])
-    mass = equations.mass
-    t = tableau
+    """Take steps from z (m, n); returns the next z, and q, q̇, q̈ at the ends of those that are kept, (k, n) each."""
+    t = scheme.tableau(steps.length[:1] if steps.equal else steps.length)
+    count, stages, (m, n) = len(steps), len(scheme.offsets), z.shape
+    at = [equations.matrices(equations.drive(steps.times(offset))) for offset in scheme.offsets]
+    xp, mass = namespace(equations.mass, z, *at[0]), equations.mass
     # S x = F − L z at all stages together.
+    c_v, c_q, w_v, w_q = (weights[..., None, None] for weights in (t.c_v, t.c_q, t.w_v, t.w_q))
     rows, sides = [], []
     for i, (c, k, f) in enumerate(at):
-        blocks = [t.c_v[i, j] * c + t.c_q[i, j] * k + (mass if i == j else 0) for j in range(stages)]
-        onto = [t.w_v[i, a] * c + t.w_q[i, a] * k for a in range(m)]
+        blocks = [c_v[:, i, j] * c + c_q[:, i, j] * k + (mass if i == j else 0) for j in range(stages)]
+        onto = [-(w_v[:, i, a] * c + w_q[:, i, a] * k) for a in range(m)]
         rows.append(xp.concatenate(blocks, axis=-1) if stages > 1 else blocks[0])
         sides.append(xp.concatenate([*onto, xp.broadcast_to(f, (count, n))[..., None]], axis=-1))
     left = xp.concatenate(rows, axis=-2) if stages > 1 else rows[0]
-    solved = _solved(xp, left, xp.concatenate(sides, axis=-2) if stages > 1 else sides[0])
-    solved = xp.reshape(solved, (count, stages, n, m * n + 1))
-    # z₊ = g z + d x with x = f − X z.
-    added = xp.reshape(xp.tensordot(t.d, solved, axes=((1,), (1,))).swapaxes(0, 1), (count, m * n, m * n + 1))
-    maps, shifts = np.kron(t.g, np.eye(n)) - added[..., :-1], added[..., -1]
-    before, last = _recur(xp, maps, shifts, xp.reshape(z, (-1,)))
-    x = solved[..., -1] - (solved[..., :-1] @ before[:, None, :, None])[..., 0]
-    zs = xp.reshape(before, (count, m, n))
-    after = xp.reshape(last, (m, n))
-    ends = xp.tensordot(t.end_z, zs, axes=((1,), (1,))) + xp.tensordot(t.end_x, x, axes=((1,), (1,)))
-    q, qd = ends[0], ends[1]
-    if scheme.ends:
-        return after, (q, qd, x[:, -1])
-    c, k, f = equations.matrices(equations.drive(times + step))
-    force = f - (k @ q[..., None] + c @ qd[..., None])[..., 0]
-    return after, (q, qd, xp.linalg.solve(mass, force.T).T)
+    x = _solved(xp, left, xp.concatenate(sides, axis=-2) if stages > 1 else sides[0])
+    x = xp.reshape(x, (count, stages, n, m * n + 1))
+    unit = np.eye(m * n, m * n + 1).reshape(1, m, n, m * n + 1)
+    maps = _sum(t.g, unit) + _sum(t.d, x)
+    if scheme.ends and not steps.equal:
+        maps = _started_anew(equations, scheme, maps, _sum(t.end_z, unit) + _sum(t.end_x, x), steps)
+    before, last = _recur(xp, xp.reshape(maps, (count, m * n, m * n + 1)), xp.reshape(z, (-1,)))
+    x = (x[..., :-1] @ before[:, None, :, None])[..., 0] + x[..., -1]
+    ends = _sum(t.end_z, xp.reshape(before, (count, m, n))) + _sum(t.end_x, x)
+    q, qd, qdd = (values if steps.kept.all() else values[steps.kept] for values in (ends[:, 0], ends[:, 1], x[:, -1]))
+    # The last stage's acceleration is that at the end, unless the stage lies before it, or just before a jump.
+    again = np.flatnonzero(steps.jump[steps.kept]) if scheme.ends else np.arange(len(q))
+    if again.size:
+        c, k, f = equations.matrices(equations.drive(steps.end[steps.kept][again]))
+        force = f - (k @ q[again, :, None] + c @ qd[again, :, None])[..., 0]
+        there = xp.linalg.solve(mass, force.T).T
+        if scheme.ends:
+            qdd[again] = there
+        else:
+            qdd = there
+    return xp.reshape(last, (m, n)), (q, qd, qdd)
 
 
-def _recur(xp: Any, maps: Array, shifts: Array, z: Array) -> tuple[Array, Array]:
+def _started_anew(equations: LinearEquations, scheme: Scheme, maps: Array, ends: Array, steps: Steps) -> Array:
+    """Maps (t, m, n, m n + 1) to the next z; where the scheme starts anew, by q, q̇ and the equations' accelerations."""
+    some = np.flatnonzero(steps.anew)
+    if not some.size:
+        return maps
+    c, k, f = equations.matrices(equations.drive(steps.resume[some]))
+    q, qd = ends[some, 0], ends[some, 1]
+    force = -(k @ q + c @ qd)
+    force[..., -1] += f
+    qdd = _solved(np, equations.mass, force)
+    maps[some] = _sum(scheme.tableau(steps.following[some]).first, np.stack([q, qd, qdd], axis=1))
+    return maps
+
+
+def _recur(xp: Any, maps: Array, z: Array) -> tuple[Array, Array]:
     """States before each step, (t, m n), and the one after the last."""
     if xp is np:
-        before = np.empty_like(shifts)
-        for k in range(len(shifts)):
-            before[k] = z
-            z = maps[k] @ z + shifts[k]
-        return before, z
+        states = np.ones((len(maps) + 1, z.size + 1))
+        states[0, :-1] = z
+        for one, before, after in zip(maps, states[:-1], states[1:, :-1], strict=True):
+            np.dot(one, before, out=after)
+        return states[:-1, :-1], states[-1, :-1]
     import jax
 
-    def step(z: Array, at: tuple[Array, Array]) -> tuple[Array, Array]:
-        return at[0] @ z + at[1], z
+    def step(z: Array, one: Array) -> tuple[Array, Array]:
+        return one[:, :-1] @ z + one[:, -1], z
 
-    last, before = jax.lax.scan(step, z, (maps, shifts))
+    last, before = jax.lax.scan(step, z, maps)
     return before, last

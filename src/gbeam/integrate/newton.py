@@ -79,29 +79,34 @@ def _next(t: Tableau, carry: Carry, x: Array) -> tuple[Carry, Array, Array]:
     return Carry(t.g @ carry.z + t.d @ x, x, carry.x), q, qd
 
 
-def steps(residual: Any, t: Tableau, carry: Carry, inputs: Any, at_ends: Any, corrections: Any) -> Any:
+def steps(residual: Any, tableau: Tableau, carry: Carry, inputs: Any, at_ends: Any, last: Any, corrections: Any) -> Any:
     """Steps with a given number of corrections each.
 
     Parameters
     ----------
     residual : callable record
         (q, q̇, q̈, inputs) -> (n,).
-    t : Tableau
-    inputs : arrays (chunks, steps, s, ...)
-        At the stages; one Jacobian for each chunk.
-    at_ends : arrays (chunks · steps, ...) or None
+    tableau : Tableau
+        Of the groups.
+    inputs : arrays (groups, steps, s, ...)
+        At the stages; one Jacobian for each group.
+    at_ends : arrays (groups · steps, ...) or None
         Inputs at the ends of the steps; None where these are the last stages.
+    last : (groups,)
+        Index of the last step of each group that the next goes on from; the rest are fillings. A scheme that carries
+        more than q and q̇ does not go on from a group with fillings.
     corrections : int
         A plain number where the run is to be differentiated backwards.
 
     Returns
     -------
-    Carry, and q, q̇, q̈ at the ends (chunks · steps, n) with the relative error that each step's corrections left
+    Carry, and q, q̇, q̈ at the ends (groups · steps, n) with the relative error that each step's corrections left
     """
     stages, n = carry.x.shape
 
-    def chunk(carry: Carry, chunk_inputs: Any) -> Any:
-        first = jax.tree.map(lambda leaf: leaf[0], chunk_inputs)
+    def group(carry: Carry, of_group: Any) -> Any:
+        t, group_inputs, end = of_group
+        first = jax.tree.map(lambda leaf: leaf[0], group_inputs)
         inverse = _inverse_jacobian(residual, t, carry.z, first, 2 * carry.x - carry.before)
 
         def step(carry: Carry, at: Any) -> Any:
@@ -112,14 +117,21 @@ def steps(residual: Any, t: Tableau, carry: Carry, inputs: Any, at_ends: Any, co
                 return x, _size(correction, x), last
 
             far = jnp.full((), jnp.inf)
-            x, last, before = jax.lax.fori_loop(0, corrections, correct, (2 * carry.x - carry.before, far, far))
+            x, size, before = jax.lax.fori_loop(0, corrections, correct, (2 * carry.x - carry.before, far, far))
             after, q, qd = _next(t, carry, x)
-            return after, (q, qd, x[-1], _left(last, before))
+            return after, (q, qd, x[-1], _left(size, before))
 
-        return jax.lax.scan(step, carry, chunk_inputs)
+        after, made = jax.lax.scan(step, carry, group_inputs)
+        if stages > 1:  # z is q and q̇
+            q, qd, qdd, _ = (values[end] for values in made)
+            filled = end < len(made[0]) - 1
+            guess = jnp.broadcast_to(qdd, (stages, n))
+            other = Carry(jnp.stack([q, qd]), guess, guess)
+            after = jax.tree.map(lambda a, b: jnp.where(filled, a, b), other, after)
+        return after, made
 
-    carry, by_chunk = jax.lax.scan(chunk, carry, inputs)
-    q, qd, qdd, left = (x.reshape(-1, *x.shape[2:]) for x in by_chunk)
+    carry, by_group = jax.lax.scan(group, carry, (tableau, inputs, last))
+    q, qd, qdd, left = (x.reshape(-1, *x.shape[2:]) for x in by_group)
     return carry, (q, qd, qdd if at_ends is None else accelerations(residual, q, qd, at_ends), left)
 
 
@@ -127,15 +139,17 @@ quick = jax.jit(steps)
 
 
 @jax.jit
-def safe(residual: Any, t: Tableau, carry: Carry, inputs: Any, at_ends: Any) -> Any:
+def safe(residual: Any, tableau: Tableau, carry: Carry, inputs: Any, at_ends: Any, inside: Any) -> Any:
     """Steps by Newton's method with as many iterations as each needs, the Jacobian renewed every fourth.
 
-    Parameters and returns as for :func:`steps`, with (steps, ...) in place of (chunks, steps, ...) and, in place of the
-    error left, whether the step has been solved.
+    Parameters and returns as for :func:`steps`, with (steps, ...) in place of (groups, steps, ...), flags of the steps
+    that are no fillings and, in place of the error left, whether the step has been solved.
     """
     stages, n = carry.x.shape
 
-    def step(carry: Carry, at: Any) -> Any:
+    def step(carry: Carry, of_step: Any) -> Any:
+        t, at, counts = of_step
+
         def flat(x: Array) -> Array:
             return _stage_residual(residual, t, carry.z, at, x.reshape(stages, n)).ravel()
 
@@ -156,7 +170,8 @@ def safe(residual: Any, t: Tableau, carry: Carry, inputs: Any, at_ends: Any) -> 
         x, _, size, _, _ = jax.lax.while_loop(go_on, iterate, begin)
         x = x.reshape(stages, n)
         after, q, qd = _next(t, carry, x)
+        after = jax.tree.map(lambda a, b: jnp.where(counts, a, b), after, carry)
         return after, (q, qd, x[-1], (size <= _ROUNDING * _TOLERANCE) & jnp.all(jnp.isfinite(x)))
 
-    carry, (q, qd, qdd, solved) = jax.lax.scan(step, carry, inputs)
+    carry, (q, qd, qdd, solved) = jax.lax.scan(step, carry, (tableau, inputs, inside))
     return carry, (q, qd, qdd if at_ends is None else accelerations(residual, q, qd, at_ends), solved)

@@ -12,8 +12,9 @@ the classical scheme for linear systems and second order for configuration-depen
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +27,7 @@ Floats = NDArray[np.float64]
 
 @record
 class Tableau:
-    """A scheme at one length of step; see the module.
+    """A scheme at one length of step, or, with a leading axis, at several; see the module.
 
     Parameters
     ----------
@@ -61,62 +62,79 @@ class Scheme:
     order : int
     offsets : tuple of float
         Times of the stages in a step, in steps.
-    tableau : callable
-        Of the length of a step, s.
+    unit : Tableau
+        At a step of one second.
     """
 
     name: str
     order: int
     offsets: tuple[float, ...]
-    tableau: Callable[[float], Tableau]
+    unit: Tableau
 
     @property
     def ends(self) -> bool:
         """Whether the last stage is the end of the step, so that the equations hold there with its acceleration."""
         return self.offsets[-1] == 1.0
 
+    def tableau(self, step: Any) -> Tableau:
+        """At a length of step, s, or at several (t,)."""
+        h = np.asarray(step, dtype=np.float64)[..., None, None]
+        return Tableau(**{name: unit * h**power for name, (unit, power) in self._powers.items()})
+
+    @cached_property
+    def _powers(self) -> dict[str, tuple[Floats, Any]]:
+        """Every array with the powers of the step that its entries have.
+
+        z = (q*, v*, c) and (q, q̇, q̈) are of the orders 0, 1, 2 of one over the step.
+        """
+        t = self.unit
+        m, stages = t.d.shape
+        k, pair, x = np.arange(m), np.arange(2)[:, None], np.full(stages, 2)
+        powers = {
+            "w_q": k, "w_v": k - 1, "c_q": 2, "c_v": 1, "g": k - k[:, None], "d": x - k[:, None], "end_z": k - pair,
+            "end_x": x - pair, "first": np.arange(3) - k[:, None],
+        }  # fmt: skip
+        return {name: (getattr(t, name), np.asarray(power, dtype=np.float64)) for name, power in powers.items()}
+
 
 def _one_step(name: str, alpha_m: float, alpha_f: float, beta: float, gamma: float) -> Scheme:
     """The one-step family: weights of the old acceleration and forces (Chung and Hulbert), Newmark's parameters."""
     share = (1 - alpha_f) / (1 - alpha_m)
-
-    def tableau(h: float) -> Tableau:
-        # z = (q*, v*, c): what the stage starts from, and the share c of the new a that is known before.
-        q, v, c, x = np.eye(4)
-        a = c + share * x
-        q_new, v_new = q + h**2 * beta * share * x, v + h * gamma * share * x
-        carried = (alpha_f * x - alpha_m * a) / (1 - alpha_m)
-        rows = np.stack(
-            [
-                q_new + h * v_new + h**2 * ((0.5 - beta) * a + beta * carried),
-                v_new + h * ((1 - gamma) * a + gamma * carried),
-                carried,
-            ]
-        )
-        known = (alpha_f - alpha_m) / (1 - alpha_m)
-        first = np.array(
-            [
-                [1.0, h, h**2 * ((0.5 - beta) + beta * known)],
-                [0.0, 1.0, h * ((1 - gamma) + gamma * known)],
-                [0.0, 0.0, known],
-            ]
-        )
-        # Newmark's scheme carries nothing.
-        m = 3 if alpha_m or alpha_f else 2
-        c_q, c_v = np.array([[h**2 * beta * share]]), np.array([[h * gamma * share]])
-        return Tableau(
-            w_q=np.eye(1, m),
-            w_v=np.eye(1, m, k=1),
-            c_q=c_q,
-            c_v=c_v,
-            g=rows[:m, :m],
-            d=rows[:m, 3:],
-            end_z=np.eye(2, m),
-            end_x=np.concatenate([c_q, c_v]),
-            first=first[:m],
-        )
-
-    return Scheme(name, 2, (1.0,), tableau)
+    # z = (q*, v*, c): what the stage starts from, and the share c of the new a that is known before.
+    q, v, c, x = np.eye(4)
+    a = c + share * x
+    q_new, v_new = q + beta * share * x, v + gamma * share * x
+    carried = (alpha_f * x - alpha_m * a) / (1 - alpha_m)
+    rows = np.stack(
+        [
+            q_new + v_new + (0.5 - beta) * a + beta * carried,
+            v_new + (1 - gamma) * a + gamma * carried,
+            carried,
+        ]
+    )
+    known = (alpha_f - alpha_m) / (1 - alpha_m)
+    first = np.array(
+        [
+            [1.0, 1.0, (0.5 - beta) + beta * known],
+            [0.0, 1.0, (1 - gamma) + gamma * known],
+            [0.0, 0.0, known],
+        ]
+    )
+    # Newmark's scheme carries nothing.
+    m = 3 if alpha_m or alpha_f else 2
+    c_q, c_v = np.array([[beta * share]]), np.array([[gamma * share]])
+    unit = Tableau(
+        w_q=np.eye(1, m),
+        w_v=np.eye(1, m, k=1),
+        c_q=c_q,
+        c_v=c_v,
+        g=rows[:m, :m],
+        d=rows[:m, 3:],
+        end_z=np.eye(2, m),
+        end_x=np.concatenate([c_q, c_v]),
+        first=first[:m],
+    )
+    return Scheme(name, 2, (1.0,), unit)
 
 
 def newmark(beta: float = 0.25, gamma: float = 0.5) -> Scheme:
@@ -170,18 +188,16 @@ def gauss() -> Scheme:
     a = np.array([[0.25, 0.25 - root], [0.25 + root, 0.25]])
     c = np.array([0.5 - root, 0.5 + root])
 
-    def tableau(h: float) -> Tableau:
-        g, d = np.array([[1.0, h], [0.0, 1.0]]), np.stack([h**2 * 0.5 * (1 - c), np.full(2, 0.5 * h)])
-        return Tableau(
-            w_q=np.stack([np.ones(2), h * c], axis=1),
-            w_v=np.array([[0.0, 1.0], [0.0, 1.0]]),
-            c_q=h**2 * (a @ a),
-            c_v=h * a,
-            g=g,
-            d=d,
-            end_z=g,
-            end_x=d,
-            first=np.eye(2, 3),
-        )
-
-    return Scheme("gauss", 4, (float(c[0]), float(c[1])), tableau)
+    g, d = np.array([[1.0, 1.0], [0.0, 1.0]]), np.stack([0.5 * (1 - c), np.full(2, 0.5)])
+    unit = Tableau(
+        w_q=np.stack([np.ones(2), c], axis=1),
+        w_v=np.array([[0.0, 1.0], [0.0, 1.0]]),
+        c_q=a @ a,
+        c_v=a,
+        g=g,
+        d=d,
+        end_z=g,
+        end_x=d,
+        first=np.eye(2, 3),
+    )
+    return Scheme("gauss", 4, (float(c[0]), float(c[1])), unit)

@@ -1,0 +1,134 @@
+"""The steps of a run: equal ones, split where what drives the equations has a corner or jumps.
+
+A scheme has its order where the solution is smooth over each step. A jump of the drive within a step leaves an error of
+first order, whatever the scheme; a corner one of third, which only schemes of fourth order feel.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.integrate.equations import Drive
+from gbeam.integrate.schemes import Scheme
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+_NEAR, _ULPS = 1e-8, 8  # of a step, and roundings of a time: nearer to one another, two times are one
+_JUMP = 1e-4  # of the largest value at any corner: less is no jump
+_BESIDE = 1e-12  # of the span: where a drive is looked at on both sides of a corner
+
+
+@dataclass(frozen=True)
+class Corners:
+    """Times at which the drive has a corner, s, ascending, and at which of them it jumps; (k,) each."""
+
+    time: Floats
+    jump: Flags
+
+    @staticmethod
+    def of(times: Any, drive: Drive, start: float, end: float) -> Corners:
+        """Those among `times` (s) that lie from `start` to before `end`, judged by the drive's values on both sides."""
+        time = np.unique(np.asarray(times, dtype=np.float64))
+        time = time[(time >= start) & (time < end)]
+        if not len(time):
+            return Corners(time, np.zeros(0, dtype=bool))
+        beside = _BESIDE * (end - start) + _ULPS * np.spacing(max(abs(start), abs(end)))
+        jump = np.zeros(len(time), dtype=bool)
+        for before, after in zip(_leaves(drive(time - beside)), _leaves(drive(time + beside)), strict=True):
+            values = [np.asarray(side).reshape(len(time), -1) for side in (before, after)]
+            change = np.abs(values[1] - values[0]).max(axis=1, initial=0.0)
+            jump |= change > _JUMP * np.abs(values).max(initial=0.0)
+        return Corners(time, jump)
+
+    def felt_by(self, scheme: Scheme) -> Corners:
+        """Those that a scheme's steps have to end at."""
+        return self if scheme.order > 2 else Corners(self.time[self.jump], self.jump[self.jump])
+
+
+def _leaves(inputs: Any) -> Iterator[Any]:
+    """Arrays of what a drive returns: records, tuples, arrays and None."""
+    if dataclasses.is_dataclass(inputs):
+        inputs = [getattr(inputs, field.name) for field in dataclasses.fields(inputs)]
+    if isinstance(inputs, list | tuple):
+        for part in inputs:
+            yield from _leaves(part)
+    elif inputs is not None:
+        yield inputs
+
+
+@dataclass(frozen=True)
+class Steps:
+    """Steps in order, (t,) each.
+
+    Parameters
+    ----------
+    begin, length, end : s
+    first, last : s
+        The ends of the step, or just inside it where the drive jumps there.
+    kept : bool
+        Whether the end belongs to the result.
+    jump : bool
+        Whether the drive jumps at the end.
+    anew : bool
+        Whether the scheme starts anew at the end: the drive jumps there, or the next step has another length.
+    resume, following : s
+        The next step's `first` and `length`.
+    """
+
+    begin: Floats
+    length: Floats
+    end: Floats
+    first: Floats
+    last: Floats
+    kept: Flags
+    jump: Flags
+    anew: Flags
+    resume: Floats
+    following: Floats
+
+    def __len__(self) -> int:
+        return len(self.begin)
+
+    def __getitem__(self, which: Any) -> Steps:
+        return Steps(*(getattr(self, field.name)[which] for field in dataclasses.fields(self)))
+
+    def times(self, offset: float) -> Floats:
+        """Times a share `offset` of the way through the steps, s."""
+        return np.clip(self.begin + offset * self.length, self.first, self.last)
+
+    @property
+    def equal(self) -> bool:
+        """Whether all have one length, and the scheme starts anew after none."""
+        return bool((self.length == self.length[0]).all() and not self.anew.any())
+
+
+def fitted(start: float, step: float, count: int, corners: Corners | None = None) -> Steps:
+    """Return `count` steps of length `step`, each split at the corners within it; splits are not kept.
+
+    Times are products, not sums, so that they do not drift.
+    """
+    nodes = np.asarray(start + step * np.arange(count + 1), dtype=np.float64)
+    if corners is None or not len(corners.time):
+        ones, length = np.ones(count, dtype=bool), np.full(count, step)
+        return Steps(nodes[:-1], length, nodes[1:], nodes[:-1], nodes[1:], ones, ~ones, ~ones, nodes[1:], length)
+    near = _NEAR * step + _ULPS * np.spacing(np.abs(nodes).max())
+    nearest = np.clip(np.round((corners.time - start) / step).astype(int), 0, count)
+    apart = np.abs(corners.time - nodes[nearest]) > near
+    cuts = corners.time[apart & (corners.time > start) & (corners.time < nodes[-1])]
+    cuts = cuts[np.append(np.diff(cuts) > near, True)[: len(cuts)]]
+    times, kept = np.concatenate([nodes, cuts]), np.arange(len(nodes) + len(cuts)) <= count
+    order = np.argsort(times)
+    times, kept = times[order], kept[order]
+    jump = np.zeros(len(times), dtype=bool)
+    jump[np.searchsorted(times, corners.time[corners.jump] - near).clip(max=len(times) - 1)] = True
+    length = np.where(kept[1:] & kept[:-1], step, np.diff(times))
+    first, last = times[:-1] + 2 * near * jump[:-1], times[1:] - 2 * near * jump[1:]
+    following, resume = np.append(length[1:], length[-1]), np.append(first[1:], times[-1])
+    anew = jump[1:] | (following != length)
+    return Steps(times[:-1], length, times[1:], first, last, kept[1:], jump[1:], anew, resume, following)
