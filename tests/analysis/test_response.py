@@ -135,7 +135,8 @@ def test_error_estimate_brackets_the_error(integrator: str, how: dict[str, Any])
     found = run(strip(), load, 0.4, integrator=integrator, **how)
     truth = run(strip(), load, 0.4, integrator="gauss", step=found.time[1] / 8)
     error = np.abs(found.tip - truth.tip[::8]).max() / np.abs(truth.tip).max()
-    assert error / HONEST < found.errors.displacement.step < error * HONEST
+    # An order that has not been observed is not believed: of Gauss's method two runs differ by 15 times the error.
+    assert error / HONEST < found.errors.displacement.step < error * (20 if integrator == "gauss" else HONEST)
     assert found.errors.displacement.step <= how["tolerance"]
 
 
@@ -174,15 +175,20 @@ def test_adaptive_needs_no_corners_in_the_load() -> None:
     gauss = run(strip(), load, 0.3, integrator="gauss", tolerance=1e-7)
     assert found.outcome == "done" and np.isnan(found.step)
     error = np.abs(found.tip - gauss.tip).max() / np.abs(gauss.tip).max()
-    # Of a run at a tenth of the tolerance of the one that it is compared with.
-    assert error < found.errors.displacement.step < 100 * error < 1e-4
+    # Of a run at ten times the tolerance, which bounds that of the result.
+    assert 1.5 * error < found.errors.displacement.step < 20 * error
+    assert found.errors.displacement.step < found.errors.loads.step < 1e-4
 
 
 def test_progress_is_told() -> None:
     told: list[tuple[str, float]] = []
     settings = ResponseSettings(duration=0.1, step=1e-3)
     simulate(strip(), flight(RAMP), settings, progress=lambda what, share: told.append((what, share)))
-    assert {what for what, _ in told} == {"integrating", "checking with twice the step"}
+    assert {what for what, _ in told} == {
+        "integrating",
+        "checking with twice the step",
+        "checking with four times the step",
+    }
     assert told[-1][1] == 1.0
 
 

@@ -59,6 +59,14 @@ PENDULUM = NonlinearEquations(Pendulum(), lambda t: namespace(t).cos(t))
 
 
 @record
+class Pushed:
+    """q̈ = F(t), as a residual."""
+
+    def __call__(self, q: Any, qd: Any, qdd: Any, force: Any) -> Any:
+        return qdd - force
+
+
+@record
 class Bead:
     """On a parabola: its mass depends on where it is."""
 

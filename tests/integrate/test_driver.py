@@ -14,7 +14,7 @@ from gbeam.integrate import NonlinearEquations, gauss, integrate, integrate_adap
 from gbeam.integrate.driver import _LINEAR_CHUNK as LINEAR_CHUNK
 from gbeam.integrate.driver import CHUNK
 
-from .systems import OSCILLATOR, VARYING, Bead, driven, one, reference, undriven
+from .systems import OSCILLATOR, VARYING, Bead, Pushed, driven, one, reference, undriven
 
 H = 0.02  # of the oscillator's period
 ROUNDING = 1e-10
@@ -66,14 +66,6 @@ def test_inputs_are_taken_at_the_right_times() -> None:
     cubic = driven(1.0, lambda t: t**2)
     run = integrate(cubic, gauss(), one(0.0), one(start**3 / 3), step=h, count=count, start=start)
     np.testing.assert_allclose(run.q[:, 0], (run.time**4 - start**4) / 12, rtol=1e-12, atol=1e-12)
-
-
-@record
-class Pushed:
-    """q̈ = F(t), as a residual."""
-
-    def __call__(self, q: Any, qd: Any, qdd: Any, force: Any) -> Any:
-        return qdd - force
 
 
 def test_inputs_of_a_residual_are_taken_at_the_right_times() -> None:

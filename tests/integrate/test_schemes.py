@@ -5,18 +5,33 @@ Newmark 1959; Hilber, Hughes and Taylor 1977; Chung and Hulbert 1993; Hairer, N�
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from gbeam import InputError
-from gbeam.integrate import Scheme, gauss, generalized_alpha, hht, integrate, linear, newmark
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record
+from gbeam.integrate import (
+    Corners,
+    LinearEquations,
+    NonlinearEquations,
+    Scheme,
+    gauss,
+    generalized_alpha,
+    hht,
+    integrate,
+    linear,
+    newmark,
+)
 from gbeam.integrate.steps import fitted
 from validation.published.tables import SCHEMES_THEORY
 
-from .systems import BEAD, OSCILLATOR, PENDULUM, VARYING, reference
+from .systems import BEAD, OSCILLATOR, PENDULUM, VARYING, Pushed, driven, reference
 
 SCHEMES = {
     "Newmark": newmark(),
@@ -131,3 +146,70 @@ def test_unstable_parameters_are_refused(make: Callable[[], Scheme], where: str)
         make()
     assert caught.value.where == where
     assert caught.value.fix
+
+
+CORNERS = [0.37, 1.1, 2.03]  # a jump, a corner and a jump, none at a step's end
+
+
+def cornered(t: Any) -> Any:
+    xp = namespace(t)
+    return xp.where(t < 0.37, 0.0, 1.0) * xp.cos(3 * t) + 2 * xp.maximum(t - 1.1, 0) - xp.where(t < 2.03, 0.0, 1.5)
+
+
+@record
+class Duffing:
+    def __call__(self, q: Any, qd: Any, qdd: Any, force: Any) -> Any:
+        return qdd + 0.2 * qd + 20 * q + 5 * q**3 - force
+
+
+def duffing_at(end: float, cubic: float) -> np.ndarray:
+    """(q, q̇) at the end, by an explicit method that starts anew at the corners."""
+    state = np.array([0.3, 0.0])
+    for begin, stop in itertools.pairwise([0.0, *CORNERS, end]):
+
+        def right(t: float, y: np.ndarray, low: float = begin + 1e-12, high: float = stop - 1e-12) -> np.ndarray:
+            force = float(cornered(np.clip(t, low, high)))
+            return np.array([y[1], force - 0.2 * y[1] - 20 * y[0] - cubic * y[0] ** 3])
+
+        state = solve_ivp(right, (begin, stop), state, method="DOP853", rtol=1e-12, atol=1e-14).y[:, -1]
+    return state
+
+
+def linear_duffing() -> LinearEquations:
+    def matrices(f: Any) -> Any:
+        ones = np.ones((len(f), 1, 1))
+        return 0.2 * ones, 20 * ones, f[:, None]
+
+    return LinearEquations(np.eye(1), matrices, cornered)
+
+
+@pytest.mark.parametrize("name", ["Newmark", "HHT -0.1", "generalised-α 0.5", "Gauss"])
+@pytest.mark.parametrize("kind", ["linear", "nonlinear"])
+def test_corners_and_jumps_between_steps_leave_the_order(kind: str, name: str) -> None:
+    """Steps that pass over them leave every scheme of first order here."""
+    system: Any = linear_duffing() if kind == "linear" else NonlinearEquations(Duffing(), cornered)
+    scheme, exact = {**SCHEMES, "Gauss": gauss()}[name], duffing_at(3.0, 0.0 if kind == "linear" else 5.0)
+    corners = Corners.of(CORNERS, cornered, 0.0, 3.0)
+    np.testing.assert_array_equal(corners.jump, [True, False, True])
+
+    def error(count: int, known: Corners | None) -> float:
+        run = integrate(system, scheme, np.array([0.3]), np.zeros(1), step=3 / count, count=count, corners=known)
+        assert run.whole and len(run.time) == len(run.qdd) == count + 1
+        return float(np.abs([run.q[-1, 0], run.qd[-1, 0]] - exact).max())
+
+    counts = (50, 100) if scheme.order > 2 else (400, 800)
+    assert np.log2(error(counts[0], corners) / error(counts[1], corners)) == pytest.approx(scheme.order, abs=0.2)
+    assert scheme.order == 2 or error(counts[1], None) > 100 * error(counts[1], corners)
+
+
+def test_results_at_a_jump_are_those_of_the_time_itself() -> None:
+    """A step ends at the load from the left and the next begins with that from the right; the result has the latter."""
+    kick = lambda t: namespace(t).where(t < 1.0, 0.0, 1.0)  # noqa: E731
+    for scheme in (newmark(), generalized_alpha(0.8), gauss()):
+        for system in (driven(1.0, kick), NonlinearEquations(Pushed(), kick)):
+            corners = Corners.of([1.0], kick, 0.0, 2.0)
+            run = integrate(system, scheme, np.zeros(1), np.zeros(1), step=0.1, count=20, corners=corners)
+            after = np.maximum(run.time - 1, 0)
+            np.testing.assert_allclose(run.q[:, 0], after**2 / 2, atol=1e-8)
+            np.testing.assert_allclose(run.qd[:, 0], after, atol=1e-8)
+            np.testing.assert_allclose(run.qdd[:, 0], kick(run.time), atol=1e-12)

@@ -120,7 +120,7 @@ def test_a_load_with_corners_needs_no_smoothing_for_a_plan() -> None:
 
 def test_sharp_corners_only_for_quasi_static_and_a_load_that_does_not_turn() -> None:
     sharp = machine(smoothing=None, gravity=False, inverse="quasi-static")
-    assert np.isfinite(sharp.base(np.linspace(0, 12, 61)).alpha_WB_B).all() and sharp.breaks.size
+    assert np.isfinite(sharp.base(np.linspace(0, 12, 61)).alpha_WB_B).all() and sharp.corners(0.1).size
     for inverse, gravity in (("flat", False), ("quasi-static", True)):
         with pytest.raises(InputError, match="60 ms") as caught:
             machine(smoothing=None, gravity=gravity, inverse=inverse)

@@ -16,7 +16,7 @@ def test_flight_is_its_load_without_rotation() -> None:
     np.testing.assert_allclose(base.a_WO_B, flight.acceleration(t))
     assert not np.any(base.w_WB_B) and not np.any(base.alpha_WB_B) and base.w_WB_B.shape == (25, 3)
     assert flight.base(2.0).a_WO_B.shape == (3,)
-    assert flight.breaks.size == 6
+    assert flight.corners(1.0).size == 4
 
 
 def test_a_flight_with_rates_turns_as_its_rates_and_their_derivatives_say() -> None:

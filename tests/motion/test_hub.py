@@ -40,7 +40,7 @@ def test_vector_of_times_and_steady_rate() -> None:
 def test_free_hub_keeps_its_numbers() -> None:
     hub = Hub(radius=0.5, inertia=200.0, torque=Sine(200.0, 10.0))
     assert float(hub.torque(2.5)) == pytest.approx(200.0) and float(hub.inertia) == 200.0
-    np.testing.assert_allclose(hub.breaks, [0, 10])
+    np.testing.assert_allclose(hub.corners(0.1), [0, 10])
 
 
 def test_refusals() -> None:

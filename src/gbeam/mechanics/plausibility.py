@@ -73,7 +73,8 @@ def _without_shapes(structure: Structure, base: Any, where: str, span: tuple[flo
                 yield _remark(f"{where} accelerates the root, or gravity does,", f"{size[axis]:.3g} m/s²", axis)
     if structure.history is None:
         return
-    when = np.union1d(np.linspace(*span, 201), np.clip(structure.history.breaks, *span))
+    inside = np.clip(structure.history.corners((span[1] - span[0]) / 200), *span)
+    when = np.union1d(np.linspace(*span, 201), inside)
     values = np.abs(structure.history(when)).max(axis=0)
     for axis in still:
         # A moment about z bends along y, one about y along z.

@@ -1,7 +1,7 @@
 """What the base does: profiles, records, flight, hub and centrifuge. Knows nothing of beams.
 
-Every motion is a :class:`Motion`: it has a `kind`, ``base(t)`` (a :class:`Base`), `breaks` and ``over(start, end)``; a
-hub that is `free` to turn has a torque in place of a motion.
+Every motion is a :class:`Motion`: it has a `kind`, ``base(t)`` (a :class:`Base`), ``corners(step)`` and ``over(start,
+end)``; a hub that is `free` to turn has a torque in place of a motion.
 """
 
 from gbeam.constants import STANDARD_GRAVITY

@@ -47,5 +47,5 @@ def _each(motion: Any, where: str, span: tuple[float, float]) -> Iterator[str]:
 
 def times(motion: Motion, span: tuple[float, float]) -> np.ndarray:
     """Times at which a motion is looked at: evenly over the span, and at its corners."""
-    inside = np.clip(np.asarray(motion.breaks, dtype=float), *span)
+    inside = np.clip(motion.corners((span[1] - span[0]) / SAMPLES), *span)
     return np.unique(np.concatenate([np.linspace(*span, SAMPLES), inside]))

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Protocol, Self
 
+import numpy as np
+from numpy.typing import NDArray
+
 from gbeam.motion.bases.base import Base
 
 
@@ -25,9 +28,8 @@ class Motion(Protocol):
         """Motion of the base at times `t` (s, any shape)."""
         ...
 
-    @property
-    def breaks(self) -> Any:
-        """Times at which an integrator should stop and start afresh, s, shape (b,)."""
+    def corners(self, step: float) -> NDArray[np.float64]:
+        """Times that steps of a length should not pass unseen, s, ascending."""
         ...
 
     def over(self, start: float, end: float) -> Self:

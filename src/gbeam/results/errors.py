@@ -71,3 +71,21 @@ class FrequencyErrors(Part):
     shapes: Floats
     model: Floats
     total: Floats
+
+
+@dataclass(frozen=True)
+class StepErrors:
+    """Estimated errors of the time steps as fractions of the largest size; NaN where there is no estimate.
+
+    Parameters
+    ----------
+    displacement : float
+        Of the tip's displacement.
+    loads : float
+        Of the root's force and moment, the larger of both.
+    stress : float
+    """
+
+    displacement: float = math.nan
+    loads: float = math.nan
+    stress: float = math.nan

@@ -94,7 +94,7 @@ def _momentum_of_the_torque(structure: Structure, hub: Any, time: float, q: Arra
         return 0.0
     unit = on_hub(structure, hub, 1.0, q=np.zeros(structure.size) if q is None else q)
     decay = float(hub.damping) / angular_momentum(unit)
-    breaks = [float(b) for b in np.asarray(hub.breaks) if 0 < b < time]
+    breaks = [float(b) for b in np.asarray(hub.torque.breaks) if 0 < b < time]
     import scipy.integrate  # only a free hub under a torque needs it
 
     momentum, _ = scipy.integrate.quad(

@@ -34,9 +34,8 @@ class _Carried:
         none = namespace(load).zeros_like(load)
         return Base(load, none, none)
 
-    @property
-    def breaks(self) -> Any:
-        return self.centrifuge.breaks
+    def corners(self, step: float) -> Floats:
+        return self.centrifuge.corners(step)
 
     def over(self, start: float, end: float) -> Self:
         return self

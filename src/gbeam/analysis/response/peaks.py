@@ -130,6 +130,23 @@ def vector_peaks(time: Floats, vectors: Floats) -> tuple[Floats, Floats]:
     return maxima(time, sizes, t, _sizes(between[:, :, None]))
 
 
+def peaks_of_coordinates(trajectory: Trajectory, vectors: Floats, of: Callable[[Floats], Floats]) -> Floats:
+    """Largest sizes of the components and the length of a vector of the coordinates, between steps too, (4,).
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+    vectors : (t, 3)
+        At its times.
+    of : callable
+        Coordinates (..., n) -> the vector (..., 3); between steps they are quintic Hermite polynomials.
+    """
+    time, sizes = trajectory.time, _sizes(vectors[:, None])
+    t, q = quintic_hermite(time, trajectory.q, trajectory.qd, trajectory.qdd, near_maxima(time, sizes))
+    value, _ = maxima(time, sizes, t, _sizes(of(q)[:, :, None]))
+    return value
+
+
 def _table(loads: Loads) -> Floats:
     """What has peaks, (t, c): forces, moments, tension, compression, and the torque for the beam on a hub.
 

@@ -15,7 +15,8 @@ from gbeam.analysis.response.outcome import describe, inaccuracies
 from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
 from gbeam.analysis.response.problem import Problem, problem_of
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.stepping import difference, first_step, refine, scheme_of
+from gbeam.analysis.response.step_errors import Readings, Run
+from gbeam.analysis.response.stepping import check, corners, first_step, refine, scheme_of
 from gbeam.analysis.response.trajectories import (
     adapted,
     going_on,
@@ -29,13 +30,14 @@ from gbeam.arrays.namespace import holds_jax, is_jax
 from gbeam.errors import InputError
 from gbeam.integrate.driver import Trajectory
 from gbeam.limits import HISTORY_BYTES, STEPS, refuse_more
+from gbeam.integrate.steps import Corners
 from gbeam.mechanics.influence import influence
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
-from gbeam.results.errors import Errors
+from gbeam.results.errors import Errors, StepErrors
 from gbeam.results.response import BaseMotion, HubResult, Response
 from gbeam.results.result import Floats
 from gbeam.results.section_forces import Loads
@@ -115,38 +117,53 @@ def simulate(
     def how(what: str) -> dict[str, Any]:
         return {"stop": too_far, "progress": None if progress is None else lambda share: progress(what, share)}
 
-    def tip(trajectory: Trajectory) -> Floats:
-        return np.asarray(structure.displacement(trajectory.q[:, problem.first :])[:, -1])
+    def tip(y: Floats) -> Floats:
+        return np.asarray(structure.displacement(y[..., problem.first :])[..., -1, :])
 
-    def moment(trajectory: Trajectory) -> Floats:
+    def moment(y: Floats) -> Floats:
         """Root moment by the elastic forces K q, which the coordinates' inertia balances, of the straight beam."""
         c = structure.coefficients
-        return np.asarray(trajectory.q[:, problem.first :] @ (c.f_al @ np.linalg.solve(c.mass, c.stiffness)).T)
+        return np.asarray(y[..., problem.first :] @ (c.f_al @ np.linalg.solve(c.mass, c.stiffness)).T)
+
+    def loads(trajectory: Trajectory, stride: int) -> list[Floats]:
+        """Force and moment at the root, and both sides' stress at every section."""
+        some = slice(None, None, stride)
+        time, q, qd, qdd = (x[some] for x in (trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd))
+        base, _ = _moving(motion, time, q, qd, qdd)
+        q, qd, qdd = (x[:, problem.first :] for x in (q, qd, qdd))
+        made = section_forces(structure, base, q, qd, qdd, time, motion=motion)
+        if made is None:
+            return []
+        stress = np.concatenate([made.stress_tension, made.stress_compression], axis=1)[..., None]
+        return [made.section_force[:, 0], made.section_moment[:, 0], stress]
 
     up = ramp(problem, settings, kept, -before, before, **how("spinning up")) if before else None
     if up is not None and not up.whole:
-        return _result(structure, motion, settings, problem, (None, up, None), name, kept, math.nan, 1)
+        return _result(structure, motion, settings, problem, (None, up, None), name, kept, StepErrors(), 1)
     begun = problem if up is None else going_on(problem, up)
 
-    def run(step: float, what: str) -> Trajectory:
-        return integrated(begun, settings, step, **how(what))
+    times, end = corners(structure, motion, coarse), settings.start + settings.duration
+    felt = Corners.of(times, begun.equations.drive, settings.start, end)
+    readings = Readings(tip, moment, loads)
+
+    def run(step: float, what: str) -> Run:
+        return Run(integrated(begun, settings, step, corners=felt, **how(what)), step, readings)
 
     aims = replace(settings, tolerance=settings.aim)
     if settings.integrator == "adaptive":
-        trajectory, step, error = adapted(structure, motion, begun, aims, coarse, too_far, tip)
+        made, errors = adapted(begun, aims, coarse, felt, readings, too_far)
     elif given is not None:
-        order, step = scheme_of(settings).order, given
-        trajectory, check = run(step, "integrating"), run(2 * step, "checking with twice the step")
-        error = difference(tip(check), tip(trajectory), 2) / (2**order - 1) if check.whole else math.nan
+        made, errors = check(run, given, scheme_of(settings).order)
     else:
-        trajectory, step, error = refine(run, tip, moment, coarse, scheme_of(settings).order, aims)
+        made, errors = refine(run, coarse, scheme_of(settings).order, aims)
+    trajectory, step = made.trajectory, made.step
     down = None
     if after and trajectory.whole:
         at_end = round(settings.duration / kept)
         down = ramp(going_on(problem, trajectory), settings, kept, at_end, after, **how("spinning down"))
     # An automatic step is the coarse one halved: its stride brings every motion of a study back to the same times.
     stride = 1 if settings.step is not None or math.isnan(step) else round(coarse / step)
-    return _result(structure, motion, settings, problem, (up, trajectory, down), name, step, error, stride)
+    return _result(structure, motion, settings, problem, (up, trajectory, down), name, step, errors, stride)
 
 
 def _settings(options: dict[str, Any]) -> ResponseSettings:
@@ -169,7 +186,7 @@ def _traced(structure: Structure, motion: Motion, settings: ResponseSettings, na
     entire = integrated(problem, replace(settings, start=start, duration=(before + count + after) * step), step)
     up, trajectory, down = split(entire, before, count, after)
     assert trajectory is not None
-    return _result(structure, motion, settings, problem, (up, trajectory, down), name, step, math.nan, 1)
+    return _result(structure, motion, settings, problem, (up, trajectory, down), name, step, StepErrors(), 1)
 
 
 def _result(
@@ -180,7 +197,7 @@ def _result(
     runs: tuple[Trajectory | None, Trajectory, Trajectory | None],
     name: str,
     step: float,
-    error: float,
+    step_errors: StepErrors,
     stride: int,
 ) -> Response:
     """Sample spin-up, flight and spin-down on the coarse grid and describe them; peaks are of the flight's times."""
@@ -215,7 +232,8 @@ def _result(
             solution = Solution(time[flight], q[flight], qd[flight], qdd[flight])
             during = None if loads is None else loads.during(flight)
             settled, tip = up is not None or settings.begin.settled, np.asarray(displacement[flight, -1])
-            errors = response_errors(structure, motion, solution, tip, during, (error,) * 3, settled=settled)
+            steps = step_errors.displacement, step_errors.loads, step_errors.stress
+            errors = response_errors(structure, motion, solution, tip, during, steps, settled=settled)
             own += inaccuracies(structure, errors, settings)
         given = input_warnings(structure, motion, name=name, span=(time[0], time[-1]), base=base)
         warnings = given + settings.warnings + own + (() if axes is None else axes.warnings) + warnings

@@ -1,4 +1,4 @@
-"""Which scheme, and which step: halved until the error estimated from two runs is within the tolerance."""
+"""Which scheme, and which step: halved until the error estimated from runs of several is within the tolerance."""
 
 from __future__ import annotations
 
@@ -7,17 +7,18 @@ from collections.abc import Callable
 
 import numpy as np
 
-from gbeam.analysis.response.peaks import vector_peaks
 from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.step_errors import Estimate, Run, of_everything, ratio
 from gbeam.errors import InputError
-from gbeam.integrate.driver import Trajectory
 from gbeam.integrate.schemes import Scheme, gauss, generalized_alpha, hht, newmark
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
+from gbeam.results.errors import StepErrors
 from gbeam.results.result import Floats
 
 MAX_STEPS = 4_000_000
 ONE_CORNER = 1e-6  # of the duration: corners nearer to one another are one
+CONVERGED = 1e-2  # two runs that differ by more do not tell the order yet
 PEAKS = 10  # how many times more accurate than the histories the peaks are
 
 
@@ -46,66 +47,71 @@ def first_step(structure: Structure, motion: Motion, settings: ResponseSettings)
     them goes unseen.
     """
     largest = min(2 * math.pi / float(structure.rest[0][0]) / 20, settings.duration / 500)
-    inside = np.unique(np.clip(corners(structure, motion) - settings.start, 0.0, settings.duration))
-    gaps = np.diff(inside)
+    times = corners(structure, motion, largest) - settings.start
+    gaps = np.diff(np.unique(np.clip(times, 0.0, settings.duration)))
     largest = min(largest, gaps.min(where=gaps > ONE_CORNER * settings.duration, initial=largest))
     return settings.duration / (2 * math.ceil(settings.duration / largest / 2))
 
 
-def corners(structure: Structure, motion: Motion) -> Floats:
-    """Times at which the motion or the loads have a corner or jump, s."""
-    breaks = [] if structure.history is None else [structure.history.breaks]
-    return np.concatenate([np.asarray(motion.breaks), *breaks])
+def corners(structure: Structure, motion: Motion, step: float) -> Floats:
+    """Times at which the motion or the loads have a corner or jump, or what steps of a length could pass unseen, s."""
+    loads = [] if structure.history is None else [structure.history.corners(step)]
+    return np.concatenate([motion.corners(step), *loads])
 
 
-def difference(coarse: Floats, fine: Floats, ratio: int) -> float:
-    """Largest difference of two tip histories at the coarse one's times, over the largest displacement."""
-    n = min(len(coarse), (len(fine) - 1) // ratio + 1)
-    size = np.abs(fine).max()
-    return float(np.abs(coarse[:n] - fine[: (n - 1) * ratio + 1 : ratio]).max() / size) if size > 0 else 0.0
-
-
-def peak_difference(coarse: Floats, fine: Floats) -> float:
-    """Difference of the peaks of a vector's components and length in two runs, (4,), over the largest."""
-    return float(np.abs(coarse - fine).max() / fine.max()) if fine.max() > 0 else 0.0
+def check(run: Callable[[float, str], Run], step: float, order: int) -> tuple[Run, StepErrors]:
+    """Run with a given step, and with twice and four times that, from which the error is estimated."""
+    runs = [run(step, "integrating"), run(2 * step, "checking with twice the step")]
+    if not runs[1].whole:
+        return runs[0], StepErrors()
+    runs.append(run(4 * step, "checking with four times the step"))
+    return runs[0], of_everything(runs[::-1], order)
 
 
 def refine(
-    run: Callable[[float, str], Trajectory],
-    tip: Callable[[Trajectory], Floats],
-    moment: Callable[[Trajectory], Floats],
-    coarse: float,
-    order: int,
-    settings: ResponseSettings,
-) -> tuple[Trajectory, float, float]:
-    """Halve the step, from twice the results', until the error estimated from two runs is within the tolerance.
+    run: Callable[[float, str], Run], coarse: float, order: int, settings: ResponseSettings
+) -> tuple[Run, StepErrors]:
+    """Halve the step, from twice the results', until the error estimated from the runs is within the tolerance.
 
-    The estimate is Richardson's: with steps h and h/r the finer run's error is their difference over rᵖ − 1. Most of it
-    is a delay, and peaks are better: they are refined until those of the tip and of the root's moment, (t, 3) each, are
-    within a tenth of the tolerance.
+    Most of the error is a delay, and peaks are better: those of the tip and of the root's moment are refined until they
+    are within a tenth of the tolerance.
     """
 
-    def read(trajectory: Trajectory) -> tuple[Floats, list[Floats]]:
-        """Displacement of the tip over time; its peaks and those of the root's moment."""
-        moved = tip(trajectory)
-        return moved, [vector_peaks(trajectory.time, each)[0] for each in (moved, moment(trajectory))]
+    def refined(step: float) -> Run:
+        return run(step, f"refining the step to {1e3 * step:.3g} ms")
 
-    old, level, ratio = run(2 * coarse, "integrating"), -1, 2
-    before, peaks_before = read(old)
+    runs = [run(2 * coarse, "integrating"), refined(coarse)]
     while True:
-        step = coarse / 2**level / ratio
-        new = run(step, f"refining the step to {1e3 * step:.3g} ms")
-        moved, peaks = read(new)
-        share = ratio**order - 1
-        error = difference(before, moved, ratio) / share
-        of_peaks = max(peak_difference(*each) / share for each in zip(peaks_before, peaks, strict=True))
-        worst = max(error, PEAKS * of_peaks)
-        level += round(math.log2(ratio))
-        if (worst <= settings.tolerance and new.whole) or not (new.whole or old.whole):
-            return new, step, error
+        left, promised = _left(runs, order)
+        both = runs[-2].whole and runs[-1].whole
+        if both and promised <= settings.tolerance and (more := _check_needed(runs, left, settings.tolerance)):
+            runs = sorted([*runs[-2:], run(more, f"checking with {1e3 * more:.3g} ms")], key=lambda each: -each.step)
+            left, _ = _left(runs, order)
+        if both and left <= settings.tolerance:
+            break
         # Jump to the step that the order promises, at most 16 times finer.
-        halvings = math.ceil(math.log2(max(worst / settings.tolerance, 2.0)) / order) if math.isfinite(worst) else 1
-        ratio = 2 ** min(max(halvings, 1), 4)
-        if settings.duration / step * ratio > MAX_STEPS:
-            return new, step, error
-        old, before, peaks_before = new, moved, peaks
+        far = promised / settings.tolerance
+        halvings = math.ceil(math.log2(max(far, 2.0)) / order) if math.isfinite(far) else 1
+        finer = 2 ** min(max(halvings, 1), 4)
+        stuck = not (runs[-2].whole or runs[-1].whole)
+        if stuck or settings.duration / runs[-1].step * finer > MAX_STEPS:
+            break
+        runs = [*runs[-2:], refined(runs[-1].step / finer)]
+    return runs[-1], of_everything(runs, order)
+
+
+def _left(runs: list[Run], order: int) -> tuple[float, float]:
+    """What is to come within the tolerance, by the order observed and by the scheme's own."""
+    found = Estimate.of(runs, order)
+    return max(found.tip, PEAKS * found.peaks), max(found.promised_tip, PEAKS * found.promised_peaks)
+
+
+def _check_needed(runs: list[Run], left: float, tolerance: float) -> float | None:
+    """Step of a cheaper run that tells whether an error is what the order promises, s; None where that is known."""
+    jump, new = ratio(*runs[-2:]), runs[-1]
+    far = jump > 4 and Estimate.of(runs, 1).difference > CONVERGED
+    if left <= tolerance and not far:
+        return None
+    if jump > 2:
+        return (4 if jump > 4 else 2) * new.step
+    return 4 * new.step if len(runs) == 2 else None

@@ -16,14 +16,16 @@ import numpy as np
 
 from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.stepping import corners, difference, scheme_of
+from gbeam.analysis.response.step_errors import Readings, Run, of_two_tolerances
+from gbeam.analysis.response.stepping import scheme_of
 from gbeam.arrays.namespace import is_traced, namespace
 from gbeam.errors import InputError
 from gbeam.integrate.adaptive import integrate_adaptively
 from gbeam.integrate.driver import Trajectory, integrate
 from gbeam.integrate.schemes import gauss
-from gbeam.mechanics.structure import Structure
+from gbeam.integrate.steps import Corners
 from gbeam.motion.protocol import Motion
+from gbeam.results.errors import StepErrors
 from gbeam.results.result import Floats
 
 Array = Any
@@ -47,25 +49,25 @@ def integrated(problem: Problem, settings: ResponseSettings, step: float, **how:
 
 
 def adapted(
-    structure: Structure,
-    motion: Motion,
     problem: Problem,
     settings: ResponseSettings,
     coarse: float,
+    corners: Corners,
+    readings: Readings,
     stop: Callable[[Floats], int | None],
-    tip: Callable[[Trajectory], Floats],
-) -> tuple[Trajectory, float, float]:
+) -> tuple[Run, StepErrors]:
     """The same with error control, twice: the difference of two tolerances is the estimate."""
     count = round(settings.duration / coarse)
     times = np.asarray(settings.start + coarse * np.arange(count + 1), dtype=np.float64)
-    jumps = corners(structure, motion)
 
-    def adapt(tolerance: float) -> Trajectory:
-        state = problem.q, problem.qd
-        return integrate_adaptively(problem.equations, *state, times, tolerance=tolerance, jumps=jumps, stop=stop)
+    def adapt(tolerance: float) -> Run:
+        made = integrate_adaptively(
+            problem.equations, problem.q, problem.qd, times, tolerance=tolerance, jumps=corners.time, stop=stop
+        )
+        return Run(made, math.nan, readings)
 
-    loose, trajectory = adapt(settings.tolerance * 1e-2), adapt(settings.tolerance * 1e-3)
-    return trajectory, math.nan, difference(tip(loose), tip(trajectory), 1)
+    loose, tight = adapt(settings.tolerance * 1e-2), adapt(settings.tolerance * 1e-3)
+    return tight, of_two_tolerances(loose, tight)
 
 
 def ramp(problem: Problem, settings: ResponseSettings, step: float, first: int, count: int, **how: Any) -> Trajectory:

@@ -124,7 +124,6 @@ class LoadHistory:
         xp = namespace(*(part for pair in parts for part in pair))
         return xp.stack([xp.concatenate(pair, axis=-1) for pair in parts], axis=-2)
 
-    @property
-    def breaks(self) -> np.ndarray:
-        """Times at which an integrator should stop and start afresh, s."""
-        return np.sort(np.concatenate([np.asarray(p.breaks) for pair in self.profiles for p in pair]))
+    def corners(self, step: float) -> np.ndarray:
+        """Times that steps of a length should not pass unseen, s, ascending."""
+        return np.unique(np.concatenate([p.corners(step) for pair in self.profiles for p in pair]))

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Self
 
+import numpy as np
+from numpy.typing import NDArray
+
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import assign, record, static
 from gbeam.errors import InputError
 from gbeam.motion.bases.base import Base
-from gbeam.motion.profiles.combine import as_profile, merged_breaks, vector
+from gbeam.motion.profiles.combine import as_profile, vector
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.profiles.profile import Profile, smoothed
 
@@ -76,10 +79,10 @@ class Flight:
             return Base(a_WO_B, none, none)
         return Base(a_WO_B, *self.rates.derivatives(t))
 
-    @property
-    def breaks(self) -> Any:
-        """Times at which an integrator should stop and start afresh, s, shape (b,)."""
-        return self.acceleration.breaks if self.rates is None else merged_breaks(self.acceleration, self.rates)
+    def corners(self, step: float) -> NDArray[np.float64]:
+        """Times that steps of a length should not pass unseen, s, ascending."""
+        own = self.acceleration.corners(step)
+        return own if self.rates is None else np.union1d(own, self.rates.corners(step))
 
     def over(self, start: float, end: float) -> Self:
         """The flight itself, from `start` to `end` (s): it needs no preparation."""

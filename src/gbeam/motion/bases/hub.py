@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record, static
@@ -122,12 +123,11 @@ class Hub:
         last = xp.maximum(xp.searchsorted(xp.asarray(times), now, side="right") - 1, 0)
         return xp.asarray(angles)[last] + self._turned(xp.asarray(times)[last], now)
 
-    @property
-    def breaks(self) -> Any:
-        """Times at which an integrator should stop and start afresh, s, shape (b,)."""
+    def corners(self, step: float) -> NDArray[np.float64]:
+        """Times that steps of a length should not pass unseen, s, ascending."""
         driving = self.torque if self.rate is None else self.rate
         assert driving is not None
-        return driving.breaks
+        return driving.corners(step)
 
     def over(self, start: float, end: float) -> Self:
         """The hub itself, from `start` to `end` (s): it needs no preparation."""

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from gbeam.arrays.namespace import as_array, namespace
 from gbeam.arrays.tree import assign
 from gbeam.errors import InputError
@@ -54,10 +57,9 @@ class AxisMotion:
         """What makes axis motions of the target, likewise."""
         return self._ready().inverse
 
-    @property
-    def breaks(self) -> Any:
-        """Times at which an integrator should stop and start afresh, s, shape (b,)."""
-        return self.target.load.breaks
+    def corners(self, step: float) -> NDArray[np.float64]:
+        """Times that steps of a length should not pass unseen, s, ascending."""
+        return self.target.load.corners(step)
 
     def _prepared_for_a_span(self) -> Course:
         if self.course is None:

@@ -68,6 +68,11 @@ class Clamped(Profile):
         between = xp.clip(breaks, self.first, self.last)
         return xp.concatenate([self.first[None], between, self.last[None]])
 
+    def corners(self, step: float) -> NDArray[np.float64]:
+        """The two times and the corners between, s."""
+        first, last = float(self.first), float(self.last)
+        return np.concatenate([[first], np.clip(self.profile.corners(step), first, last), [last]])
+
     def knots(self, step: float) -> NDArray[np.float64]:
         """Knots between the two times, s."""
         return np.unique(np.clip(self.profile.knots(step), float(self.first), float(self.last)))

@@ -47,6 +47,10 @@ class Sum(Profile):
         """Times of the parts' jumps, s."""
         return merged_breaks(*self.parts)
 
+    def corners(self, step: float) -> NDArray[np.float64]:
+        """Union of the parts' corners, s."""
+        return np.unique(np.concatenate([part.corners(step) for part in self.parts]))
+
     def knots(self, step: float) -> NDArray[np.float64]:
         """Union of the parts' knots, s."""
         return np.unique(np.concatenate([part.knots(step) for part in self.parts]))
@@ -70,6 +74,10 @@ class Vector(Profile):
     def breaks(self) -> Any:
         """Times of the components' jumps, s."""
         return merged_breaks(*self.parts)
+
+    def corners(self, step: float) -> NDArray[np.float64]:
+        """Union of the components' corners, s."""
+        return np.unique(np.concatenate([part.corners(step) for part in self.parts]))
 
     def knots(self, step: float) -> NDArray[np.float64]:
         """Union of the components' knots, s."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gbeam.arrays.namespace import as_array, namespace
 from gbeam.arrays.tree import assign, record
 from gbeam.motion.profiles.hann import hann_orders
-from gbeam.motion.profiles.profile import Profile, sampled
+from gbeam.motion.profiles.profile import Profile, rounded_corners, sampled
 from gbeam.numerics.series import Series
 
 # On one panel the integrand is a smooth curve times one period of a cosine: 20 points leave only rounding.
@@ -60,6 +60,10 @@ class Convolved(Profile):
     def breaks(self) -> Any:
         """None: the third derivative is continuous."""
         return self.profile.breaks[:0]
+
+    def corners(self, step: float) -> NDArray[np.float64]:
+        """Those of the profile, s, where steps are long beside the width."""
+        return rounded_corners(self.profile.corners(step), self.width, step)
 
     def knots(self, step: float) -> NDArray[np.float64]:
         """Times, s, no further apart than `step` within half a width of the profile's knots."""

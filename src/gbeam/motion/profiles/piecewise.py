@@ -13,7 +13,7 @@ from gbeam.checks import finite, positive
 from gbeam.errors import InputError
 from gbeam.motion.profiles.convolution import Convolved, beside
 from gbeam.motion.profiles.hann import hann_orders
-from gbeam.motion.profiles.profile import Profile, sampled
+from gbeam.motion.profiles.profile import Profile, rounded_corners, sampled
 from gbeam.numerics.series import Series
 
 
@@ -63,6 +63,11 @@ class PiecewiseLinear(Profile):
     def breaks(self) -> Any:
         """Times of the knots, s, shape (k,)."""
         return self.times
+
+    def corners(self, step: float) -> NDArray[np.float64]:
+        """Times of the knots at which the slope changes, s."""
+        bent = (np.diff(np.asarray(self.slopes), axis=0) != 0).reshape(len(self.times), -1).any(axis=1)
+        return np.asarray(self.times)[bent]
 
     def knots(self, step: float) -> NDArray[np.float64]:
         """Times of the knots, s, whatever the `step`."""
@@ -146,6 +151,10 @@ class SmoothedPiecewiseLinear(Profile):
     def breaks(self) -> Any:
         """None: the third derivative is continuous."""
         return self.times[:0]
+
+    def corners(self, step: float) -> NDArray[np.float64]:
+        """Knots of the table, s, where steps are long beside the width."""
+        return rounded_corners(self.table.corners(step), self.width, step)
 
     def knots(self, step: float) -> NDArray[np.float64]:
         """Times, s, no further apart than `step` within half a width of the table's knots."""

@@ -12,6 +12,8 @@ from gbeam.checks import positive
 from gbeam.limits import KNOTS, refuse_more
 from gbeam.numerics.series import Series
 
+STEPS_PER_EVENT = 4  # a rounded corner or a pulse of so many steps is resolved
+
 
 class Profile(ABC):
     """A scalar or vector given over time, with its time derivatives in closed form.
@@ -39,6 +41,10 @@ class Profile(ABC):
     @abstractmethod
     def breaks(self) -> Any:
         """Times (s, ascending) at which a derivative jumps, shape (b,); empty if the third is continuous."""
+
+    def corners(self, step: float) -> NDArray[np.float64]:
+        """Times (s, ascending) that steps of a length should not pass unseen; breaks are among them."""
+        return np.asarray(self.breaks, dtype=np.float64)
 
     @abstractmethod
     def knots(self, step: float) -> NDArray[np.float64]:
@@ -69,6 +75,14 @@ def smoothed(profile: Profile, width: Any) -> Profile:
         If the width is not positive and finite.
     """
     return profile.smoothed(positive("smoothing", width, "s"))
+
+
+def rounded_corners(corners: Any, width: float, step: float) -> NDArray[np.float64]:
+    """Corners that a kernel rounds: none where steps resolve its `width`, else no nearer than they then would be."""
+    apart, times = float(width) / STEPS_PER_EVENT, np.asarray(corners, dtype=np.float64)
+    if apart >= step or not times.size:
+        return times[:0]
+    return np.asarray(times[0] + apart * np.unique(np.round((times - times[0]) / apart)))
 
 
 def sampled(start: float, end: float, step: float) -> NDArray[np.float64]:

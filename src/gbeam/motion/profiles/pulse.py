@@ -12,7 +12,7 @@ from gbeam.arrays.tree import assign, record
 from gbeam.checks import finite, positive
 from gbeam.motion.profiles.convolution import Convolved
 from gbeam.motion.profiles.hann import TURN, hann_orders
-from gbeam.motion.profiles.profile import Profile, sampled
+from gbeam.motion.profiles.profile import STEPS_PER_EVENT, Profile, sampled
 from gbeam.numerics.series import Series
 
 
@@ -58,6 +58,11 @@ class SmoothStep(Profile):
     def breaks(self) -> Any:
         """Start and end, s, shape (2,): the third derivative jumps there."""
         return self.start + self.duration * np.arange(2.0)
+
+    def corners(self, step: float) -> NDArray[np.float64]:
+        """Start and end, s, and the quarters between where these are of few steps."""
+        short = float(self.duration) < 2 * STEPS_PER_EVENT * step
+        return np.asarray(self.start + self.duration * np.linspace(0, 1, 1 + (STEPS_PER_EVENT if short else 1)))
 
     def knots(self, step: float) -> NDArray[np.float64]:
         """Times over the slew, s, no further apart than `step`."""
@@ -112,6 +117,11 @@ class Sine(Profile):
     def breaks(self) -> Any:
         """Start and end, s, shape (2,): corners."""
         return self.start + self.duration * np.arange(2.0)
+
+    def corners(self, step: float) -> NDArray[np.float64]:
+        """Start and end, s, and the quarters between where these are of few steps."""
+        short = float(self.duration) < 2 * STEPS_PER_EVENT * step
+        return np.asarray(self.start + self.duration * np.linspace(0, 1, 1 + (STEPS_PER_EVENT if short else 1)))
 
     def knots(self, step: float) -> NDArray[np.float64]:
         """Times over the pulse, s, no further apart than `step`."""

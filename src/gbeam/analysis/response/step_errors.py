@@ -1,0 +1,187 @@
+"""The error of the time steps, observed from runs with different ones.
+
+Where the error goes as C hᵖ, runs with three steps give p and C. An order that has not been observed is taken as one.
+None of a history is believed above two: the first mode shows the order of Gauss's method at steps at which higher modes
+do not yet, and their error would be underestimated fivefold.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from gbeam.analysis.response.peaks import peaks_of_coordinates
+from gbeam.integrate.driver import Trajectory
+from gbeam.results.errors import StepErrors
+from gbeam.results.result import Floats
+
+# Believed of a history; runs that hardly converge differ by less than their error.
+LOWEST_ORDER, HIGHEST_ORDER = 0.5, 2.0
+_SAMPLES = 2000  # times at most at which the loads of two runs are compared
+
+
+@dataclass(frozen=True)
+class Readings:
+    """What is read from a trajectory.
+
+    Parameters
+    ----------
+    tip, moment : callable
+        Coordinates (..., n) -> displacement of the tip, and root moment by the elastic forces, (..., 3).
+    loads : callable
+        Trajectory and a stride -> histories (t, ..., k) of the root's force and moment and of the sections' stress, or
+        none where there are no sections.
+    """
+
+    tip: Callable[[Floats], Floats]
+    moment: Callable[[Floats], Floats]
+    loads: Callable[[Trajectory, int], Sequence[Floats]]
+
+
+@dataclass(frozen=True)
+class Run:
+    """A trajectory with the length of its steps, s, and what is read from it."""
+
+    trajectory: Trajectory
+    step: float
+    readings: Readings
+
+    @property
+    def whole(self) -> bool:
+        """Whether it came to its end."""
+        return self.trajectory.whole
+
+    @cached_property
+    def tip(self) -> Floats:
+        """Displacement of the tip, (t, 3) m."""
+        return self.readings.tip(self.trajectory.q)
+
+    @cached_property
+    def peaks(self) -> list[Floats]:
+        """Peaks of the tip's displacement and of the root's moment, (4,) each."""
+        read = self.readings
+        histories = (self.tip, read.tip), (read.moment(self.trajectory.q), read.moment)
+        return [peaks_of_coordinates(self.trajectory, values, of) for values, of in histories]
+
+
+def difference(coarse: Floats, fine: Floats, ratio: int) -> float:
+    """Largest length of the difference of two histories of vectors (t, ..., c), over the largest length.
+
+    They begin together, and `ratio` steps of the fine one make one of the other.
+    """
+    n = min(len(coarse), (len(fine) - 1) // ratio + 1)
+    size = np.linalg.norm(fine, axis=-1).max()
+    apart = np.linalg.norm(coarse[:n] - fine[: (n - 1) * ratio + 1 : ratio], axis=-1).max()
+    return float(apart / size) if size > 0 else 0.0
+
+
+def observed_order(before: float, now: float, ratios: tuple[int, int], highest: float) -> float:
+    """Order p at which the differences of three runs shrink, whose steps are as 1, 1/r₁ and 1/(r₁ r₂).
+
+    With an error C hᵖ the first difference is (r₁ᵖ − 1)/(1 − r₂⁻ᵖ) times the second, which grows with p.
+    """
+    first, second = ratios
+
+    def lack(p: float) -> float:
+        return before - now * (first**p - 1) / (1 - second**-p)
+
+    if not (math.isfinite(before) and math.isfinite(now)) or lack(LOWEST_ORDER) <= 0:
+        return LOWEST_ORDER
+    if lack(highest) >= 0:
+        return highest
+    low, high = LOWEST_ORDER, highest
+    for _ in range(30):
+        middle = (low + high) / 2
+        low, high = (middle, high) if lack(middle) > 0 else (low, middle)
+    return low
+
+
+def ratio(coarse: Run, fine: Run) -> int:
+    """How many steps of one run make one of the other."""
+    return round(coarse.step / fine.step)
+
+
+def share(runs: Sequence[Run], differences: Sequence[float], highest: float) -> float:
+    """Error of the last of two or three runs as a share of its difference from the one before, an order at most."""
+    order = 1.0
+    if len(runs) > 2 and runs[-3].whole:
+        ratios = ratio(runs[-3], runs[-2]), ratio(runs[-2], runs[-1])
+        order = observed_order(differences[-2], differences[-1], ratios, highest)
+    return 1 / (ratio(runs[-2], runs[-1]) ** order - 1)
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Estimated errors of the last of two or three runs, the coarsest first, of a scheme of some order.
+
+    Parameters
+    ----------
+    difference : float
+        Of its tip's history from that of the run before.
+    tip, peaks : float
+        Of the tip's history, and of the peaks of tip and root moment, the larger of both.
+    promised_tip, promised_peaks : float
+        The same, were the order the scheme's.
+    """
+
+    difference: float
+    tip: float
+    peaks: float
+    promised_tip: float
+    promised_peaks: float
+
+    @staticmethod
+    def of(runs: Sequence[Run], order: int) -> Estimate:
+        """Compare the runs."""
+        apart = [difference(a.tip, b.tip, ratio(a, b)) for a, b in pairwise(runs)]
+        peaks = max(_apart(a, b) for a, b in zip(runs[-2].peaks, runs[-1].peaks, strict=True))
+        jump, highest = ratio(*runs[-2:]), min(order, HIGHEST_ORDER)
+        return Estimate(
+            apart[-1],
+            apart[-1] * share(runs, apart, highest),
+            peaks * share(runs, apart, order),
+            apart[-1] / (jump**highest - 1),
+            peaks / (jump**order - 1),
+        )
+
+
+def _apart(coarse: Floats, fine: Floats) -> float:
+    return float(np.abs(coarse - fine).max() / fine.max()) if fine.max() > 0 else 0.0
+
+
+def of_everything(runs: Sequence[Run], order: int) -> StepErrors:
+    """Errors of the last run: of the tip's displacement, of the root's loads and of the stress."""
+    displacement = Estimate.of(runs, order).tip
+    if not all(run.whole for run in runs[-2:]):
+        return StepErrors(displacement)
+    runs = runs if runs[0].whole else runs[-2:]
+    return StepErrors(
+        displacement, *_of_loads(runs, lambda differences: share(runs, differences, min(order, HIGHEST_ORDER)))
+    )
+
+
+def of_two_tolerances(loose: Run, tight: Run) -> StepErrors:
+    """Their differences, which are the errors of the looser run: an adaptive step has no order to count on."""
+    displacement = difference(loose.tip, tight.tip, 1)
+    if not (loose.whole and tight.whole):
+        return StepErrors(displacement)
+    return StepErrors(displacement, *_of_loads([loose, tight], lambda _: 1.0))
+
+
+def _of_loads(runs: Sequence[Run], left: Callable[[Sequence[float]], float]) -> tuple[float, float]:
+    """Errors of the last run's loads at the root and of the stress: a share `left` of the last of the differences."""
+    differences = []
+    for coarse, fine in pairwise(runs):
+        stride = max(1, (len(coarse.trajectory.time) - 1) // _SAMPLES)
+        read = (
+            run.readings.loads(run.trajectory, stride * many)
+            for run, many in ((coarse, 1), (fine, 1 if math.isnan(fine.step) else ratio(coarse, fine)))
+        )
+        differences.append([difference(a, b, 1) for a, b in zip(*read, strict=True)])
+    errors = [left(each) * each[-1] for each in zip(*differences, strict=True)]
+    return (max(errors[:2]), errors[2]) if errors else (math.nan, math.nan)

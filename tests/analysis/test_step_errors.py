@@ -1,0 +1,149 @@
+"""The estimated error of the time steps against an explicit method of eighth order that starts anew at every corner.
+
+Each load has what once made the estimate wrong: jumps of the acceleration between steps, corners at odd times, pulses
+shorter than a step, rounded or not.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from gbeam import Flight, Hub, Response, Sine, SmoothStep, Structure, simulate, smoothed, tabulated, trapezoid
+from gbeam.analysis.response.problem import problem_of
+from gbeam.analysis.response.step_errors import observed_order
+from gbeam.mechanics.section_forces import section_forces
+from gbeam.results.response import BaseMotion
+
+from .helpers import strip
+
+BOUND = 3.0  # times the estimate bound the error
+SOFT, STIFF = strip("FOAM", (0, 2, 0), 0.01), strip("FOAM", (0, 0, 2), 0.01)
+RECORD = np.cumsum(np.random.default_rng(3).normal(size=13)) * 3
+# Structure, motion, duration, corners that the reference starts anew at.
+CASES: dict[str, tuple[Structure, Any, float, list[float]]] = {
+    "sine of a hub's rate": (SOFT, Hub(radius=0.1, rate=Sine(3.0, 0.0751)), 0.12, [0.0751]),
+    "trapezoid of a hub's rate": (
+        SOFT,
+        Hub(radius=0.1, rate=trapezoid(1.0, jerk=37.0, start=0.0111, hold=0.03)),
+        0.12,
+        [0.0111, 0.0111 + 1 / 37, 0.0411 + 1 / 37, 0.0411 + 2 / 37],
+    ),
+    "kick": (STIFF, Flight(z=tabulated([0.0, 0.002, 1.0], [0.0, 50.0, 50.0])), 0.15, [0.002]),
+    "record": (
+        STIFF,
+        Flight(z=tabulated(np.arange(13) / 30, RECORD - RECORD[0])),
+        0.39,
+        list(np.arange(1, 12) / 30),
+    ),
+    "rounded pulse": (
+        STIFF,
+        Flight(z=smoothed(tabulated([0, 0.5, 0.5003, 0.5006, 2], [0, 0, 400, 0, 0]), 0.0004)),
+        0.55,
+        [0.4998, 0.5, 0.5003, 0.5006, 0.5008],
+    ),
+    "short slew": (SOFT, Hub(radius=0.1, rate=SmoothStep(2.0, 0.001, 0.1)), 0.12, [0.1, 0.101]),
+}
+INTEGRATORS = ["newmark", "generalized-alpha", "gauss"]
+
+
+@cache
+def states(name: str) -> list[tuple[float, Any]]:
+    """Ends of the stretches between corners, and the solution (q, q̇) on each as a function of time."""
+    structure, motion, duration, corners = CASES[name]
+    problem = problem_of(structure, motion, 0.0)
+    equations: Any = problem.equations
+    state, stretches, n = np.concatenate([problem.q, problem.qd]), [], len(problem.q)
+    for begin, end in pairwise([0.0, *corners, duration]):
+        inside = 1e-9 * (end - begin)
+
+        def rates(t: float, y: np.ndarray, low: float = begin + inside, high: float = end - inside) -> np.ndarray:
+            c, k, f = (x[0] for x in equations.matrices(equations.drive(np.clip([t], low, high))))
+            return np.concatenate([y[n:], np.linalg.solve(equations.mass, f - k @ y[:n] - c @ y[n:])])
+
+        found = solve_ivp(rates, (begin, end), state, method="DOP853", rtol=1e-9, atol=1e-14, dense_output=True)
+        state = found.y[:, -1]
+        stretches.append((end, found.sol))
+    return stretches
+
+
+def truth(name: str, time: np.ndarray) -> tuple[np.ndarray, Any]:
+    """The tip's displacement and the loads at times."""
+    structure, motion, _, _ = CASES[name]
+    stretches = states(name)
+    which = np.searchsorted([end for end, _ in stretches[:-1]], time)
+    q, qd = np.split(np.array([stretches[i][1](t) for i, t in zip(which, time, strict=True)]), 2, axis=1)
+    equations: Any = problem_of(structure, motion, 0.0).equations
+    c, k, f = equations.matrices(equations.drive(time))
+    force = f - (k @ q[..., None] + c @ qd[..., None])[..., 0]
+    qdd, base = np.linalg.solve(equations.mass, force.T).T, motion.base(time)
+    history = BaseMotion(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
+    loads = section_forces(structure, history, q, qd, qdd, time, motion=motion)
+    return np.asarray(structure.displacement(q)[:, -1]), loads
+
+
+def apart(found: np.ndarray, reference: np.ndarray) -> float:
+    """Largest length of the difference of two vectors' histories, over the largest length."""
+    return float(np.linalg.norm(found - reference, axis=-1).max() / np.linalg.norm(reference, axis=-1).max())
+
+
+def judge(found: Response, name: str) -> None:
+    tip, loads = truth(name, found.time)
+    assert found.loads is not None
+    error, estimate = apart(found.tip, tip), found.errors.displacement.step
+    assert error <= BOUND * estimate
+    force, moment = (
+        apart(mine[:, 0], reference[:, 0])
+        for mine, reference in (
+            (found.loads.section_force, loads.section_force),
+            (found.loads.section_moment, loads.section_moment),
+        )
+    )
+    assert max(force, moment) <= BOUND * found.errors.loads.step
+    stress = apart(found.loads.stress[..., None], loads.stress[..., None])
+    assert stress <= BOUND * found.errors.stress.step
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("name", CASES)
+def test_an_automatic_step_keeps_its_tolerance(name: str, integrator: str) -> None:
+    structure, motion, duration, _ = CASES[name]
+    found = simulate(structure, motion, duration=duration, integrator=integrator, tolerance=1e-3)
+    judge(found, name)
+    assert found.errors.displacement.step <= 1e-4
+    assert apart(found.tip, truth(name, found.time)[0]) <= 2e-4
+    assert found.steps < 200_000
+
+
+@pytest.mark.parametrize("integrator", ["newmark", "gauss"])
+@pytest.mark.parametrize("name", ["sine of a hub's rate", "kick", "record"])
+def test_a_given_step_has_an_honest_error(name: str, integrator: str) -> None:
+    """However coarse: the order is observed, not taken on trust."""
+    structure, motion, duration, _ = CASES[name]
+    for share in (400, 1600):
+        judge(simulate(structure, motion, duration=duration, integrator=integrator, step=duration / share), name)
+
+
+@pytest.mark.parametrize("name", ["sine of a hub's rate", "kick"])
+def test_steps_that_end_at_corners_keep_the_order_of_gauss(name: str) -> None:
+    structure, motion, duration, _ = CASES[name]
+    errors = []
+    for count in (1600, 3200):
+        found = simulate(structure, motion, duration=duration, integrator="gauss", step=duration / count)
+        errors.append(apart(found.tip, truth(name, found.time)[0]))
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.2)
+
+
+@pytest.mark.parametrize(("ratios", "order"), [((2, 2), 2.0), ((2, 16), 1.3), ((4, 4), 4.0), ((2, 8), 1.0)])
+def test_observed_order_is_that_of_the_differences(ratios: tuple[int, int], order: float) -> None:
+    h = np.array([1.0, 1 / ratios[0], 1 / (ratios[0] * ratios[1])])
+    before, now = -np.diff(h**order)
+    assert observed_order(before, now, ratios, 4.0) == pytest.approx(order, rel=1e-6)
+    assert observed_order(before, now, ratios, 1.0) == pytest.approx(1.0)
+    assert observed_order(before, 10 * before, ratios, 4.0) == observed_order(0.0, now, ratios, 4.0) == 0.5
+    assert observed_order(before, 0.0, ratios, 4.0) == 4.0
