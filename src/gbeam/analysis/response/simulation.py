@@ -29,8 +29,8 @@ from gbeam.analysis.response.trajectories import (
 from gbeam.arrays.namespace import holds_jax, is_jax
 from gbeam.errors import InputError
 from gbeam.integrate.driver import Trajectory
-from gbeam.limits import HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.steps import Corners
+from gbeam.limits import HISTORY_BYTES, STEPS, refuse_more
 from gbeam.mechanics.influence import influence
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import section_forces
