@@ -29,7 +29,7 @@ class Motion(Protocol):
         ...
 
     def corners(self, step: float) -> NDArray[np.float64]:
-        """Times that steps of a length should not pass unseen, s, ascending."""
+        """Times that steps of length `step` (s) should not pass unseen, s, ascending."""
         ...
 
     def over(self, start: float, end: float) -> Self:

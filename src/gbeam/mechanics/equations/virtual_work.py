@@ -125,5 +125,5 @@ class LoadHistory:
         return xp.stack([xp.concatenate(pair, axis=-1) for pair in parts], axis=-2)
 
     def corners(self, step: float) -> np.ndarray:
-        """Times that steps of a length should not pass unseen, s, ascending."""
+        """Times that steps of length `step` (s) should not pass unseen, s, ascending."""
         return np.unique(np.concatenate([p.corners(step) for pair in self.profiles for p in pair]))

@@ -80,7 +80,7 @@ class Flight:
         return Base(a_WO_B, *self.rates.derivatives(t))
 
     def corners(self, step: float) -> NDArray[np.float64]:
-        """Times that steps of a length should not pass unseen, s, ascending."""
+        """Times that steps of length `step` (s) should not pass unseen, s, ascending."""
         own = self.acceleration.corners(step)
         return own if self.rates is None else np.union1d(own, self.rates.corners(step))
 

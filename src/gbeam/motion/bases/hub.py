@@ -124,7 +124,7 @@ class Hub:
         return xp.asarray(angles)[last] + self._turned(xp.asarray(times)[last], now)
 
     def corners(self, step: float) -> NDArray[np.float64]:
-        """Times that steps of a length should not pass unseen, s, ascending."""
+        """Times that steps of length `step` (s) should not pass unseen, s, ascending."""
         driving = self.torque if self.rate is None else self.rate
         assert driving is not None
         return driving.corners(step)

@@ -58,7 +58,7 @@ class AxisMotion:
         return self._ready().inverse
 
     def corners(self, step: float) -> NDArray[np.float64]:
-        """Times that steps of a length should not pass unseen, s, ascending."""
+        """Times that steps of length `step` (s) should not pass unseen, s, ascending."""
         return self.target.load.corners(step)
 
     def _prepared_for_a_span(self) -> Course:

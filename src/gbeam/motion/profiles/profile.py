@@ -43,7 +43,7 @@ class Profile(ABC):
         """Times (s, ascending) at which a derivative jumps, shape (b,); empty if the third is continuous."""
 
     def corners(self, step: float) -> NDArray[np.float64]:
-        """Times (s, ascending) that steps of a length should not pass unseen; breaks are among them."""
+        """Times (s, ascending) that steps of length `step` (s) should not pass unseen; breaks are among them."""
         return np.asarray(self.breaks, dtype=np.float64)
 
     @abstractmethod
