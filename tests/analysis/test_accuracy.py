@@ -142,3 +142,15 @@ def test_shapes_are_added_until_they_are_enough() -> None:
     assert any("raise model.modes" in warning for warning in few.warnings)
     assert enough.q.shape[1] > 7 and enough.errors.displacement.shapes < 1e-3 and not enough.warnings
     assert gb.assemble(beam, "FOAM").counts == (1, 3, 3) and gb.assemble(beam, "SFOAM").counts == (0, 3, 3)
+
+
+def test_a_critical_speed_states_its_error() -> None:
+    """2009's third column: 1.93645 rad/s by the transcendental equation."""
+    mast = gb.Beam(
+        8.0,
+        gb.Section.general(7.2968e-5, 8.2189e-9, 8.2189e-9),
+        gb.Material(2766.7, 6.8952e10),
+        [gb.PointMass(8.0, 0.5)],
+    )
+    found = gb.critical_speed(gb.assemble(mast, "TLAM", axial=1, y=2), gb.Hub(radius=0.5))
+    assert found.error_estimate == pytest.approx(found.value / 1.93645 - 1, rel=0.02)

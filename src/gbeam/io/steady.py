@@ -109,6 +109,8 @@ def critical_group(critical: Critical) -> Group:
         "value": variable((), value, critical.unit, f"critical {critical.quantity}; missing where it is not reached"),
         "searched_to": variable((), critical.searched_to, critical.unit, "end of the search"),
     }
+    if np.isfinite(critical.error_estimate):
+        data["error_estimate"] = variable((), critical.error_estimate, "1", "error from too few shapes, a fraction")
     return Group(data, {}, _critical(critical))
 
 

@@ -18,7 +18,7 @@ _ROW = {
     "phase": ("rad", "phase of the vibration left, ahead of the reference's"),
     "difference": ("1", "largest distance of the histories over the reference's peak"),
     "hub_angle": ("rad", "angle of a free hub at the end"),
-    "error_estimate": ("1", "error of the steps over the largest displacement"),
+    "error_estimate": ("1", "total estimated error over the largest displacement"),
     "steps": ("1", "number of steps"),
     "seconds": ("s", "time to compute it"),
 }

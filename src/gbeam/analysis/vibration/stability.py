@@ -9,6 +9,7 @@ eigenvalues decide. There damping matters: the least of it lowers the flutter lo
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -19,6 +20,7 @@ from gbeam.analysis.vibration.loss import first_loss_along
 from gbeam.checks import positive
 from gbeam.errors import InputError
 from gbeam.mechanics.assembly import assemble
+from gbeam.mechanics.enrichment import Enrichment
 from gbeam.mechanics.models import Model
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
@@ -30,6 +32,7 @@ from gbeam.structure.beam import Beam
 from gbeam.structure.bodies import PointMass
 
 SEARCH_FACTOR = 10.0  # of the lowest natural frequency: how far a search goes by default
+BEYOND = 1.01  # times a critical speed: how far it is searched with more shapes
 NOTHING = 1e-12  # of the beam's stiffness: loads that bring less are rounding about none
 
 
@@ -76,7 +79,13 @@ def critical_speed(structure: Structure, motion: Motion, *, upper: float | None 
     instead = "ask `gbeam modes` for its frequencies at a time, or `gbeam static` for its shape"
     hub = hub_of(motion, "a critical speed", instead, name)
     limit = SEARCH_FACTOR * lowest_frequency(structure) if upper is None else positive("to", upper, "rad/s")
-    return first_loss_along(lambda rate: (structure, steady_base(hub, rate)), limit, "hub rate", "rad/s")
+    found = first_loss_along(lambda rate: (structure, steady_base(hub, rate)), limit, "hub rate", "rad/s")
+    if not found.value or structure.source is None or not structure.linear:
+        return found
+    # With more shapes it is lost earlier.
+    rich, _ = Enrichment(structure, steady_base(hub, found.value)).model(structure.kind)
+    least = first_loss_along(lambda rate: (rich, steady_base(hub, rate)), BEYOND * found.value, "hub rate", "rad/s")
+    return replace(found, error_estimate=math.nan if not least.value else abs(found.value / least.value - 1))
 
 
 def critical_speed_map(

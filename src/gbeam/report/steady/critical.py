@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 
-from gbeam.report.words import warning_lines
+from gbeam.report.words import percent, warning_lines
 from gbeam.results.steady.stability import Critical, CriticalMap
 
 KEYS = {"rate": "critical_speed", "loads": "critical_load_factor", "acceleration": "critical_acceleration"}
@@ -34,13 +35,16 @@ def to_json(critical: Critical, motion: str, varied: str = "rate") -> dict[str, 
         "direction": critical.direction,
         "reason": critical.reason,
         "model": critical.model,
+        "error_estimate": critical.error_estimate,
         "warnings": list(critical.warnings),
     }
 
 
 def text(critical: Critical, motion: str) -> str:
     """The answer as one sentence."""
-    return "\n".join([f"{motion}: {critical.reason}", *warning_lines(critical)])
+    known = math.isfinite(critical.error_estimate)
+    error = f"; estimated error from too few shapes {percent(critical.error_estimate)}" if known else ""
+    return "\n".join([f"{motion}: {critical.reason}{error}", *warning_lines(critical)])
 
 
 def map_json(critical: CriticalMap) -> dict[str, Any]:

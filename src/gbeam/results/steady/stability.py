@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from gbeam.results.result import Figured, Floats, Result, brief
@@ -26,6 +27,8 @@ class Critical(Result):
     reason : str
         The answer as a sentence.
     model : str
+    error_estimate : float
+        Error of the value from too few shapes, a fraction; NaN where there is no estimate.
     """
 
     quantity: str
@@ -36,6 +39,7 @@ class Critical(Result):
     direction: str
     reason: str
     model: str
+    error_estimate: float = math.nan
 
     def __repr__(self) -> str:
         value = f"none up to {self.searched_to:.6g}" if self.value is None else f"{self.value:.6g}"
