@@ -139,3 +139,8 @@ def test_refusals(build: object, where: str) -> None:
     with pytest.raises(InputError) as caught:
         build()  # type: ignore[operator]
     assert caught.value.where == where
+
+
+def test_times_so_near_that_the_slope_is_not_finite() -> None:
+    with pytest.raises(InputError, match=r"times\[1\] is 4.94066e-324 s, so near 0 s that the slope is not finite"):
+        tabulated([0.0, 5e-324, 1.0], [0.0, 1.0, 0.0])

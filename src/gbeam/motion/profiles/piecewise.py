@@ -50,7 +50,10 @@ class PiecewiseLinear(Profile):
             _refuse_unordered(np.asarray(t))
         xp = namespace(t, v)
         level = xp.zeros((1, *v.shape[1:]))
-        rise = xp.diff(v, axis=0) / beside(xp.diff(t), v.ndim - 1)
+        with np.errstate(over="ignore"):
+            rise = xp.diff(v, axis=0) / beside(xp.diff(t), v.ndim - 1)
+        if not is_traced(t, v):
+            _refuse_steep(np.asarray(t), np.asarray(rise))
         assign(self, times=t, values=v, slopes=xp.concatenate([level, rise, level]))
 
     def series(self, t: Any, order: int) -> Series:
@@ -92,6 +95,14 @@ def _refuse_unordered(times: NDArray[np.float64]) -> None:
         i = int(back[0])
         problem = f"is {times[i + 1]:g} s, after {times[i]:g} s"
         raise InputError(f"times[{i + 1}]", problem, "list times in strictly increasing order")
+
+
+def _refuse_steep(times: NDArray[np.float64], rise: NDArray[np.float64]) -> None:
+    steep = np.argwhere(~np.isfinite(rise))
+    if steep.size:
+        i = int(steep[0, 0])
+        problem = f"is {times[i + 1]:g} s, so near {times[i]:g} s that the slope is not finite"
+        raise InputError(f"times[{i + 1}]", problem, "list times farther apart")
 
 
 def _line(table: PiecewiseLinear, t: Any, segment: Any, order: int) -> Series:
