@@ -87,10 +87,9 @@ class FromRest:
         a = np.stack([-self.arm * al - w**2 * x, o, self.arm * w**2 - al * x], axis=-1)
         return Base(a, np.stack([o, w, o], axis=-1), np.stack([o, al, o], axis=-1))
 
-    @property
-    def breaks(self) -> Floats:
-        """None: the rate is smooth."""
-        return np.asarray(self.rate.breaks)
+    def corners(self, step: float) -> Floats:
+        """Those of the rate that steps of a length should not pass unseen."""
+        return np.asarray(self.rate.corners(step))
 
     def over(self, start: float, end: float) -> Self:
         """Itself."""

@@ -88,7 +88,10 @@ def test_particles_of_a_beam_respond_as_the_beam_does(by_stress: bool) -> None:
     ours, theirs = (simulate(s, SLEW, duration=4.0, step=0.02) for s in (particles(by_stress=by_stress), beam()))
     np.testing.assert_allclose(ours.q, theirs.q, atol=SAME * np.abs(theirs.q).max())
     np.testing.assert_allclose(ours.tip[:, 1:], theirs.tip[:, 1:], atol=SAME * np.abs(theirs.tip).max())
-    assert ours.outcome == "done" and ours.error_estimate == pytest.approx(theirs.error_estimate, rel=1e-5)
+    steps = [each.errors.displacement.step for each in (ours, theirs)]
+    # Without second derivatives of the places the tip has no displacement of second order, along x, and its error none.
+    assert ours.outcome == "done" and steps[0] == pytest.approx(steps[1], rel=0.1 if by_stress else 1e-5)
+    assert ours.error_estimate == steps[0] and "not judged" in ours.errors.note  # shapes and model
     assert ours.loads is None and theirs.loads is not None
 
 
