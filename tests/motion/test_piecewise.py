@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
+import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.errors import InputError
 from gbeam.motion import PiecewiseLinear, Profile, constant, smoothed, tabulated, trapezoid
 

@@ -137,7 +137,7 @@ def test_a_direction_that_hardly_moves_is_named(study: Study) -> None:
     still = replace(flight, displacement=wave, peaks=replace(flight.peaks, max_abs=np.abs(wave[:, 0]).max(axis=0)))
     figure = plot_tip(Study("", {"flight": still}, ()))
     assert [panel.get_ylabel() for panel in figure.axes] == ["z, mm", "y, mm"]
-    assert figure.get_suptitle().endswith("(not drawn: x by 5 µm at most)")
+    assert figure.get_suptitle().endswith("(not drawn: x by 5 µm at most)\nestimated error: 0.001 %")
 
 
 def test_flight_is_seen_below_what_imitates_it(study: Study) -> None:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from gbeam.plots.drawing.lines import components, line
 from gbeam.plots.drawing.stretches import shade, stretches
-from gbeam.plots.drawing.style import colour, heading, limits, named, panels, show_zero, styled
+from gbeam.plots.drawing.style import colour, heading, judged, limits, named, panels, show_zero, styled
 from gbeam.plots.drawing.units import unit_for
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
@@ -62,7 +62,8 @@ def plot_loads(response: Response, loads: Loads, title: str = "") -> Figure:
     """
     torque, known = loads.beam_torque, bool(np.isfinite(loads.stress).all())
     subject = named(response.name, "loads in the root's section, and stress anywhere along the beam")
-    figure, drawn = panels(heading(title, subject, [response]), 2 + known + (torque is not None))
+    errors = {"loads": response.errors.loads.total, "stress": response.errors.stress.total if known else math.nan}
+    figure, drawn = panels(heading(title, judged(subject, errors), [response]), 2 + known + (torque is not None))
     shade(drawn, stretches(response.axes, response.time))
     stress = (loads.stress_tension.max(axis=1), loads.stress_compression.min(axis=1)) if known else None
     _carried(drawn, response.time, loads.section_force[:, 0], loads.section_moment[:, 0], stress, loads)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -9,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gbeam.plots.drawing.lines import FLIGHT, machine
-from gbeam.plots.drawing.style import REFERENCE, colour, heading, moving, named, panels, show_zero, styled
+from gbeam.plots.drawing.style import REFERENCE, colour, heading, judged, moving, named, panels, show_zero, styled
 from gbeam.plots.drawing.units import Unit, not_drawn, unit_for
 from gbeam.results.result import Floats
 from gbeam.results.steady.equilibrium import Deflection
@@ -78,6 +79,7 @@ def plot_modes(modes: Modes, title: str = "") -> Figure:
         Real and, where Coriolis coupling turns the phase, imaginary part (dotted).
     """
     subject = named(modes.motion, f"modes about the equilibrium at {modes.time:.4g} s, {modes.model}")
+    subject = judged(subject, {"": math.nan if modes.errors is None else modes.errors.largest})
     figure, (panel,) = panels(heading(title, subject, []), 1, heights=[2.0])
     at = _position(panel, modes.stations)
     panel.set_ylabel("displacement,\nlargest 1")
@@ -117,6 +119,7 @@ def plot_campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = 
     subject = named(diagram.motion, f"frequencies about the equilibrium, {diagram.model}")
     if left:
         subject += f"; {left} higher mode{'s' if left > 1 else ''} not drawn"
+    subject = judged(subject, {"": math.nan if diagram.errors is None else diagram.errors.largest})
     figure, (panel,) = panels(heading(title, subject, []), 1, heights=[2.4])
     factor, name = unit
     panel.set_xlabel(f"hub rate, {name}")

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from gbeam.plots.drawing.lines import FLIGHT, line, machine
 from gbeam.plots.drawing.stretches import Stretch, shade, stretches
-from gbeam.plots.drawing.style import colour, heading, moving, panels, scale_to, show_zero, styled, subtitle
+from gbeam.plots.drawing.style import colour, heading, judged, moving, panels, scale_to, show_zero, styled, subtitle
 from gbeam.plots.drawing.units import largest, not_drawn, unit_for
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.response import Response
@@ -34,7 +34,9 @@ def plot_tip(study: Study) -> Figure:
     heights = [each for _ in shown for each in (1.6 if len(shown) == 1 else 1.2, *[0.9] * len(compared))]
     heights = heights if len(heights) > 1 else [2.0]
     subject = f"tip displacement relative to the base{not_drawn(shown, *sizes)}"
-    figure, drawn = panels(heading(study.title, subject, responses.values()), len(heights), heights=heights)
+    errors = {name if len(responses) > 1 else "": each.error_estimate for name, each in responses.items()}
+    title = heading(study.title, judged(subject, errors), responses.values())
+    figure, drawn = panels(title, len(heights), heights=heights)
     marked = [_stretches(responses, each) for each in compared]
     alone = [] if compared else [each for r in responses.values() for each in stretches(r.axes, r.time)]
     rows = len(compared) + 1

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from gbeam.results.result import Floats, Part
 
 
@@ -71,6 +73,12 @@ class FrequencyErrors(Part):
     shapes: Floats
     model: Floats
     total: Floats
+
+    @property
+    def largest(self) -> float:
+        """Largest of the totals that are known; NaN where none is."""
+        known = self.total[np.isfinite(self.total)]
+        return float(known.max()) if known.size else math.nan
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,8 @@ Figures are made without pyplot, which keeps every figure of a process in one gl
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+import math
+from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
 from typing import Any, ParamSpec
 
@@ -143,6 +144,12 @@ def heading(title: str, subject: str, responses: Iterable[PlotHeading]) -> str:
     parts = [part for part in (title, subject) if part]
     failed = sorted({response.outcome.upper() for response in responses if response.outcome != "done"})
     return "\n".join([" – ".join(failed + parts[:1]), *parts[1:]])
+
+
+def judged(subject: str, errors: Mapping[str, float]) -> str:
+    """What is shown, and on a line of its own the estimated errors, as fractions by name, of those that are known."""
+    known = [f"{name} {100 * error:.2g} %".strip() for name, error in errors.items() if math.isfinite(error)]
+    return f"{subject}\nestimated error: {', '.join(known)}" if known else subject
 
 
 def legend(panel: Axes) -> None:
