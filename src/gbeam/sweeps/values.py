@@ -15,9 +15,9 @@ from gbeam.errors import InputError
 from gbeam.results.sweep import Parameter
 from gbeam.scenario.text.paths import parse_path
 from gbeam.scenario.text.suggest import advise
+from gbeam.scenario.text.units import NUMBER
 
 OPTION = "--over"
-_NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*", re.DOTALL)
 _CALL = re.compile(r"\s*([a-z]+)\s*\((.*)\)\s*", re.DOTALL)
 MAX_VALUES = 10_000_000  # of one parameter: 80 MB
 
@@ -167,7 +167,7 @@ def _range(path: str, text: str, *, logarithmic: bool) -> Variation:
         count = int(parts[2])
     except ValueError:
         # The unit may stand at the very end: 4:10:7 g/s.
-        match = _NUMBER.fullmatch(parts[2])
+        match = NUMBER.fullmatch(parts[2])
         if match is None or not match[1].isdigit() or unit:
             raise InputError(OPTION, f"{path} has the count {parts[2].strip()!r}", "give a whole number") from None
         count, unit = int(match[1]), match[2]
@@ -192,7 +192,7 @@ def _list(path: str, text: str) -> Variation:
     if len(set(parts)) < len(parts):
         twice = next(part for part in parts if parts.count(part) > 1)
         raise InputError(OPTION, f"{path} has {twice!r} twice", "give each value once")
-    if all(_NUMBER.fullmatch(part) for part in parts):
+    if all(NUMBER.fullmatch(part) for part in parts):
         values, unit = _quantities(path, parts)
         return Variation(path, tuple(written(value, unit) for value in values), np.array(values), unit)
     return Variation(path, tuple(parts), np.array(parts, dtype=object))
@@ -225,7 +225,7 @@ def _quantities(path: str, parts: list[str]) -> tuple[list[float], str]:
     """Numbers and their one unit; where some have none they have the others'."""
     values, units = [], []
     for part in parts:
-        match = _NUMBER.fullmatch(part)
+        match = NUMBER.fullmatch(part)
         if match is None or not math.isfinite(float(match[1])):
             raise InputError(OPTION, f"{path} has {part.strip()!r}, which is no number", 'write it such as "4 g/s"')
         values.append(float(match[1]))

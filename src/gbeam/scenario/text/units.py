@@ -57,7 +57,8 @@ m mm cm km µm um g kg mg s ms us min h rad mrad deg rev rpm Hz kHz g0 N kN MN W
 psi % watt meter metre millimeter gram kilogram second millisecond minute hour radian degree revolution hertz
 newton pascal inch foot pound percent
 """
-_NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*", re.DOTALL)
+# A number and what follows it: its unit, or nothing.
+NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*", re.DOTALL)
 # pint's tokenizer drops what it does not know ("5 m$", "5 m # note"), so the letters are checked first.
 _UNIT = re.compile(r"[\w°%()*/^+\-·.⁻⁰¹²³⁴-⁹ ]+")
 
@@ -117,7 +118,7 @@ def quantity(value: object, kind: str) -> float:
         shown = f'"{shortened(value)}"'
         if len(value) > QUANTITY:
             raise UnitError(f"{shown} has {len(value)} characters", f"expected {such_as}")
-        match = _NUMBER.fullmatch(value)
+        match = NUMBER.fullmatch(value)
         if match is None:
             raise UnitError(f"{shown} is not a number with a unit", f"expected {such_as}")
         number, unit = float(match[1]), match[2]
@@ -148,7 +149,7 @@ def argument(text: str, kind: str) -> float:
     UnitError
         As for :func:`quantity`.
     """
-    match = _NUMBER.fullmatch(text) if len(text) <= QUANTITY else None
+    match = NUMBER.fullmatch(text) if len(text) <= QUANTITY else None
     return quantity(float(text) if match and not match[2] else text, kind)
 
 
@@ -162,7 +163,7 @@ def unit_of(text: str, kind: str) -> tuple[str, float]:
     kind : str
         As for :func:`quantity`.
     """
-    match = _NUMBER.fullmatch(text)
+    match = NUMBER.fullmatch(text)
     unit = (match[2] if match else "") or KINDS[kind].unit
     return unit, _factor(unit, kind)
 
