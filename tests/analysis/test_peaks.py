@@ -60,8 +60,7 @@ def test_peaks_are_those_of_a_quarter_of_the_step(name: str) -> None:
     assert one.time_of_max_size == pytest.approx(two.time_of_max_size, abs=found.time[1] - found.time[0])
     assert one.loads is not None and two.loads is not None
     moment = every(two.loads.moment, 0)
-    # Steps are refined for the peak that the coordinates give; that of the loads is found from seven steps besides.
-    np.testing.assert_allclose(every(one.loads.moment, 0), moment, atol=0.2 * TOLERANCE * moment.max())
+    np.testing.assert_allclose(every(one.loads.moment, 0), moment, atol=0.1 * TOLERANCE * moment.max())
     stress = [each.loads.stress.value[0] for each in (one, two) if each.loads is not None]
     assert stress[0] == pytest.approx(stress[1], rel=0.1 * TOLERANCE, nan_ok=True)  # a hub-beam has no fibres
 

@@ -161,7 +161,7 @@ def simulate(
     if after and trajectory.whole:
         at_end = round(settings.duration / kept)
         down = ramp(going_on(problem, trajectory), settings, kept, at_end, after, **how("spinning down"))
-    # An automatic step is the coarse one halved: its stride brings every motion of a study back to the same times.
+    # An automatic step divides the coarse one: its stride brings every motion of a study back to the same times.
     stride = 1 if settings.step is not None or math.isnan(step) else round(coarse / step)
     return _result(structure, motion, settings, problem, (up, trajectory, down), name, step, errors, stride)
 

@@ -121,15 +121,12 @@ class Estimate:
 
     Parameters
     ----------
-    difference : float
-        Of its tip's history from that of the run before.
     tip, peaks : float
         Of the tip's history, and of the peaks of tip and root moment, the larger of both.
     promised_tip, promised_peaks : float
         The same, were the order the scheme's.
     """
 
-    difference: float
     tip: float
     peaks: float
     promised_tip: float
@@ -142,7 +139,6 @@ class Estimate:
         peaks = max(_apart(a, b) for a, b in zip(runs[-2].peaks, runs[-1].peaks, strict=True))
         jump, highest = ratio(*runs[-2:]), min(order, HIGHEST_ORDER)
         return Estimate(
-            apart[-1],
             apart[-1] * share(runs, apart, highest),
             peaks * share(runs, apart, order),
             apart[-1] / (jump**highest - 1),

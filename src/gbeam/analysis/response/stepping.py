@@ -1,4 +1,4 @@
-"""Which scheme, and which step: halved until the error estimated from runs of several is within the tolerance."""
+"""Which scheme, and which step: divided until the error estimated from runs of several is within the tolerance."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ from gbeam.results.result import Floats
 
 MAX_STEPS = 4_000_000
 ONE_CORNER = 1e-6  # of the duration: corners nearer to one another are one
-CONVERGED = 1e-2  # two runs that differ by more do not tell the order yet
+JUMPS = 2, 3, 4, 6, 8, 12, 16  # into how many a step is divided; a check takes four, three or two of the new ones
+SPARE = 1.05  # how much finer a step is than the order promises to be enough
 PEAKS = 10  # how many times more accurate than the histories the peaks are
 
 
@@ -71,7 +72,7 @@ def check(run: Callable[[float, str], Run], step: float, order: int) -> tuple[Ru
 def refine(
     run: Callable[[float, str], Run], coarse: float, order: int, settings: ResponseSettings
 ) -> tuple[Run, StepErrors]:
-    """Halve the step, from twice the results', until the error estimated from the runs is within the tolerance.
+    """Divide the step, from twice the results', until the error estimated from the runs is within the tolerance.
 
     Most of the error is a delay, and peaks are better: those of the tip and of the root's moment are refined until they
     are within a tenth of the tolerance.
@@ -89,15 +90,18 @@ def refine(
             left, _ = _left(runs, order)
         if both and left <= settings.tolerance:
             break
-        # Jump to the step that the order promises, at most 16 times finer.
-        far = promised / settings.tolerance
-        halvings = math.ceil(math.log2(max(far, 2.0)) / order) if math.isfinite(far) else 1
-        finer = 2 ** min(max(halvings, 1), 4)
+        finer = _finer(promised / settings.tolerance, order)
         stuck = not (runs[-2].whole or runs[-1].whole)
         if stuck or settings.duration / runs[-1].step * finer > MAX_STEPS:
             break
         runs = [*runs[-2:], refined(runs[-1].step / finer)]
     return runs[-1], of_everything(runs, order)
+
+
+def _finer(far: float, order: int) -> int:
+    """Into how many steps to divide one whose error the order promises to be so many times too large."""
+    times = SPARE * max(far, 1.0) ** (1 / order) if math.isfinite(far) else 2.0
+    return next((jump for jump in JUMPS if jump >= times), JUMPS[-1])
 
 
 def _left(runs: list[Run], order: int) -> tuple[float, float]:
@@ -107,11 +111,14 @@ def _left(runs: list[Run], order: int) -> tuple[float, float]:
 
 
 def _check_needed(runs: list[Run], left: float, tolerance: float) -> float | None:
-    """Step of a cheaper run that tells whether an error is what the order promises, s; None where that is known."""
+    """Step of a cheaper run that tells whether an error is what the order promises, s; None where that is known.
+
+    After a jump it is not: of modes that the coarse steps do not resolve the difference is what they have at all, which is
+    less than their error would be, and the peaks on a free hub were promised seven times too well.
+    """
     jump, new = ratio(*runs[-2:]), runs[-1]
-    far = jump > 4 and Estimate.of(runs, 1).difference > CONVERGED
-    if left <= tolerance and not far:
+    if left <= tolerance and jump <= 4:
         return None
-    if jump > 2:
-        return (4 if jump > 4 else 2) * new.step
+    if jump > 3:
+        return (4 if jump > 6 else jump // 2) * new.step
     return 4 * new.step if len(runs) == 2 else None
