@@ -113,8 +113,8 @@ def _left(runs: list[Run], order: int) -> tuple[float, float]:
 def _check_needed(runs: list[Run], left: float, tolerance: float) -> float | None:
     """Step of a cheaper run that tells whether an error is what the order promises, s; None where that is known.
 
-    After a jump it is not: of modes that the coarse steps do not resolve the difference is what they have at all, which is
-    less than their error would be, and the peaks on a free hub were promised seven times too well.
+    After a jump it is not: of modes that the coarse steps do not resolve the difference is what they have at all, less
+    than the order makes of it, and the peaks on a free hub were promised seven times too well.
     """
     jump, new = ratio(*runs[-2:]), runs[-1]
     if left <= tolerance and jump <= 4:
