@@ -61,6 +61,31 @@ def test_the_verdict_is_a_measure(fast: Path) -> None:
     assert found.units == {"verdict.tip": "", "flight.tip.z.max_abs": "m"}
 
 
+def test_the_best_control_point_is_the_same_share_of_every_length(fast: Path) -> None:
+    over = {"beam.length": ["250 mm", "300 mm"]}
+    names = ["control_point", "mismatch.best.tip"]
+    # A ramp: a load that stands still has no mismatch along the beam.
+    ramp = LEVEL.removesuffix(".level") + '={ profile = "table", times = [0, 0.5], values = ["4 g", "6 g"] }'
+    found = gb.sweep(fast, over, names, verb="place", overrides=[ramp, "model.modes.z=4"])
+    # The lever of a linear load on the static tip: docs/theory.md, 9.
+    assert found.measures["control_point"] == pytest.approx(0.7333 * np.array([0.25, 0.3]), rel=1e-3)
+    assert found.units == {"control_point": "m", "mismatch.best.tip": ""}
+
+
+def test_every_case_is_computed_once(fast: Path) -> None:
+    lengths: list[float] = []
+
+    def length(case: gb.Case) -> float:
+        lengths.append(case.beam.length)
+        return case.beam.length
+
+    over = {"beam.length": "0.2 m:0.3 m:24"}
+    gb.sweep(fast, over, {"length": length}, store="there")
+    assert sorted(lengths) == pytest.approx(np.linspace(0.2, 0.3, 24))
+    found = gb.sweep(fast, over, {"length": length}, store="there", resume=True)
+    assert len(lengths) == 24 and found.counts == {"done": 24} and found.parameters[0].unit == "m"
+
+
 def test_a_function_of_the_case_is_a_measure(fast: Path) -> None:
     found = gb.sweep(fast, {"beam.length": ["250 mm", "300 mm"]}, {"length": attrgetter("beam.length")})
     assert found.measures["length"] == pytest.approx([0.25, 0.3])

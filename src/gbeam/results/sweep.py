@@ -55,7 +55,7 @@ class Sweep(Figured):
     title : str
         Of the scenario.
     verb : str
-        Whose figures they are: run, static, modes, critical-speed, plan.
+        Whose figures they are: run, static, modes, critical-speed, plan, place.
     parameters : tuple of Parameter
         Those of a grid span one dimension each, in order; all that are drawn share the last, ``sample``.
     measures : mapping of str to (...) array

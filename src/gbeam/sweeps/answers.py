@@ -68,12 +68,31 @@ def _plan(case: Case, motion: str | None, at: float | None) -> Facts:
     return report.to_json(case.title, plans, [])
 
 
+def _place(case: Case, motion: str | None, at: float | None) -> Facts:
+    from gbeam.analysis.imitation.choice import choice_of
+    from gbeam.analysis.imitation.place import place
+    from gbeam.motion import Centrifuge
+    from gbeam.report.machine import placement
+
+    name = _only(case, motion, "centrifuge")
+    current = _prepared(case, name)
+    if not isinstance(current, Centrifuge):
+        raise InputError(f"motion.{name}", "is no centrifuge to put a specimen on", "add one that tracks the flight")
+    names = case.tracks[name], name
+    # Without the check by simulation, which would cost more than the answer: `run` at the placement is that.
+    found = place(
+        case.assemble(), current.flight, choice_of(current), case.response, {"tip": 1.0}, current=current, names=names
+    )
+    return placement.to_json(found)
+
+
 VERBS: Mapping[str, Callable[[Case, str | None, float | None], Facts]] = {
     "run": _run,
     "static": _static,
     "modes": _modes,
     "critical-speed": _critical_speed,
     "plan": _plan,
+    "place": _place,
 }
 
 

@@ -17,6 +17,7 @@ from gbeam.sweeps.answers import VERBS, Facts
 from gbeam.sweeps.measures import Keys, value_at
 
 Function = Callable[[Case], float]
+NO_FACTS: Facts = {"outcome": "done"}  # where functions measure the case, no verb answers
 
 
 @dataclass(frozen=True)
@@ -79,21 +80,35 @@ class Question:
 
     def row(self, number: int, overrides: Sequence[str]) -> Row:
         """Compute one case. What goes wrong in it is part of the row: the other cases go on."""
-        nothing = (math.nan,) * self.width
         try:
             case = self.case(overrides)
-        except GbeamError as error:
-            return Row(number, nothing, "refused", _line(error))
+            facts = self.facts(case) if self.keys else NO_FACTS
+        except Exception as error:
+            return without_figures(number, self.width, error)
+        return self.measured(number, case, facts)
+
+    def measured(self, number: int, case: Case, facts: Facts) -> Row:
+        """The row of a case that is built, from what the verb answers to it."""
         try:
-            facts: Facts = self.facts(case) if self.keys else {"outcome": "done"}
             values = [value_at(facts, keys) for keys in self.keys] + [float(each(case)) for each in self.functions]
-        except ComputationError as error:
-            return Row(number, nothing, error.outcome, _line(error))
-        except GbeamError as error:
-            return Row(number, nothing, "refused", _line(error))
-        except Exception as error:  # a defect, or a measure's own: named in the result
-            return Row(number, nothing, "failed", f"{type(error).__name__}: {_line(error)}")
-        return Row(number, tuple(values), str(facts["outcome"]), str(facts.get("message") or ""))
+        except Exception as error:
+            return without_figures(number, self.width, error)
+        return Row(number, tuple(values), *ended(facts))
+
+
+def ended(facts: Facts) -> tuple[str, str]:
+    """Outcome of a case and its message."""
+    return str(facts["outcome"]), str(facts.get("message") or "")
+
+
+def without_figures(number: int, width: int, error: Exception) -> Row:
+    """Row of a case that came to nothing, with the reason."""
+    nothing = (math.nan,) * width
+    if isinstance(error, ComputationError):
+        return Row(number, nothing, error.outcome, _line(error))
+    if isinstance(error, GbeamError):
+        return Row(number, nothing, "refused", _line(error))
+    return Row(number, nothing, "failed", f"{type(error).__name__}: {_line(error)}")  # a defect, or a measure's own
 
 
 def rows(question: Question, tasks: Sequence[tuple[int, tuple[str, ...]]]) -> list[Row]:

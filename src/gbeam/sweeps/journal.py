@@ -38,6 +38,7 @@ class Journal:
     def __init__(self, folder: Path, sweep: Mapping[str, Any]) -> None:
         self._file, self._lock = folder / NAME, folder / LOCK
         self._sweep: dict[str, Any] = json.loads(json.dumps(sweep))
+        self.figures: Sequence[Any] = ()  # keys and unit of each, as the cases done have them
         self._out: TextIO | None = None
 
     @property
@@ -79,6 +80,7 @@ class Journal:
                 f"{'differ' if len(differing) > 1 else 'differs'}",
                 "name another folder",
             )
+        self.figures = list(first.get("figures", []))
         # What follows the last line's end was cut off.
         return [_row(json.loads(line)) for line in lines[1:-1] if line]
 
@@ -97,7 +99,8 @@ class Journal:
         self._take()
         try:
             if new:
-                self._file.write_text(json.dumps(self._sweep) + "\n", encoding="utf-8")
+                first = json.dumps({**self._sweep, "figures": list(self.figures)})
+                self._file.write_text(first + "\n", encoding="utf-8")
             else:
                 whole = self._file.read_bytes()
                 self._file.write_bytes(whole[: whole.rfind(b"\n") + 1])

@@ -20,6 +20,7 @@ _MANY = 12  # figures that a message lists
 _UNITS = [
     (re.compile(pattern), unit)
     for pattern, unit in [
+        (r"^mismatch\.", ""),  # of a placement: fractions of the flight's peaks
         (r"(^|\.)time(_\w+)?$|\.(start|end|step|smoothing)$|^step$", "s"),
         (r"(^|\.)(angle_end|angle)$", "rad"),
         (r"verdict\.|error|_share$|ratio$|margin|used$|^steps$|\.steps$|share$|relative|spread", ""),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
@@ -11,24 +10,22 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.errors import GbeamError, InputError
+from gbeam.errors import InputError
 from gbeam.results.sweep import Sweep
 from gbeam.scenario.load import load
 from gbeam.scenario.origin import provenance
-from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.text.suggest import advise
-from gbeam.sweeps.answers import VERBS, Facts
-from gbeam.sweeps.cases import Cases, read_cases
+from gbeam.sweeps.answers import VERBS
+from gbeam.sweeps.cases import read_cases
 from gbeam.sweeps.evaluate import Function, Question, Row
 from gbeam.sweeps.journal import Journal, identity, opened
-from gbeam.sweeps.measures import find, unit_at
 from gbeam.sweeps.result import assembled
+from gbeam.sweeps.start import go_on, start
 from gbeam.sweeps.workers import Task, in_processes, on_scheduler, serially
 
 MANY = 100_000  # cases beyond which a sweep is begun only when that is confirmed
 _BATCH = 0.5  # s: what is lost at most when a process ends, and how often the store is synchronised
 _LONGEST = 256  # cases in a batch
-_TRIED = 20  # cases, all over the sweep, of which one must be possible
 Progress = Callable[[int, int, int], None]
 
 
@@ -65,7 +62,7 @@ def sweep(
         Figures of the verb's JSON by the end of their path, such as ``tip.z.max_abs`` or ``verdict.tip``; or functions
         of a :class:`gbeam.Case` that return a number, by name.
     verb : str
-        run (the default), static, modes, critical-speed or plan.
+        run (the default), static, modes, critical-speed, plan or place.
     motion : str, optional
         Which motion, for a verb that answers for one.
     at : float, optional
@@ -120,34 +117,36 @@ def sweep(
     if workers < 1:
         raise InputError("--workers", f"is {workers}", "give one or more")
     cases = read_cases(_texts(over), samples, sampler or "sobol", seed or 0)
-    question = Question(base.source, verb, motion, at)
+    functions = tuple(measure.values()) if isinstance(measure, Mapping) else ()
+    question = Question(base.source, verb, motion, at, functions=functions)
     journal, done = opened(store, resume, identity(question, cases, names))
-    example = _example(question, cases)
-    units = dict.fromkeys(names, "")
-    if isinstance(measure, Mapping):
-        question = replace(question, functions=tuple(measure.values()))
-    else:
-        facts = example.facts
-        keys = tuple(find(facts, name) for name in names)
-        question = replace(question, keys=keys)
-        units = {name: unit_at(facts, each) for name, each in zip(names, keys, strict=True)}
     known = {row.case for row in done}
-    left = len(cases) - len(known)
-    _confirm(left, example.seconds / workers, confirmed)
-    missing = (number for number in range(len(cases)) if number not in known)
-    size = int(min(_LONGEST, _BATCH / max(example.seconds, 1e-4), left / (4 * workers)))
-    batches = _batches(((number, cases.overrides(number)) for number in missing), max(1, size))
+    missing = [number for number in range(len(cases)) if number not in known] if known else range(len(cases))
+    if journal is not None and done:
+        begun = go_on(question, cases, missing, done, journal.figures)
+    else:
+        begun = start(question, cases, missing, names)
+    question = begun.question
+    _confirm(len(missing), begun.seconds / workers, confirmed)
+    tried = {row.case for row in begun.rows}
+    left = len(missing) - len(tried)
+    size = int(min(_LONGEST, _BATCH / max(begun.seconds, 1e-4), left / (4 * workers)))
+    tasks = ((number, cases.overrides(number)) for number in missing if number not in tried)
+    batches = _batches(tasks, max(1, size))
     if scheduler is not None:
         found = on_scheduler(question, batches, scheduler)
     else:
         found = serially(question, batches) if workers == 1 else in_processes(question, batches, workers)
-    rows = list(done)
+    rows = [*done, *begun.rows]
     if journal is None:
-        rows += _collected(found, len(cases), 0, progress)
+        rows += _collected(found, rows, len(cases), progress)
     else:
+        journal.figures = begun.figures
         with journal.writing(new=not done):
-            rows += _collected(found, len(cases), len(done), progress, journal)
-    made = assembled(base.title, verb, cases, example.scenario, units, rows)
+            journal.add(begun.rows)
+            rows += _collected(found, rows, len(cases), progress, journal)
+    units = dict(zip(names, begun.units, strict=True))
+    made = assembled(base.title, verb, cases, begun.example, units, rows)
     return replace(made, provenance=provenance(base))
 
 
@@ -160,30 +159,6 @@ def _texts(over: Mapping[str, Any] | Sequence[str]) -> list[str]:
 
 def _listed(values: Iterable[Any]) -> str:
     return ", ".join(value if isinstance(value, str) else repr(np.asarray(value).item()) for value in values)
-
-
-class _Example:
-    """A case that is possible: its scenario, its facts, and how long such a case takes, s."""
-
-    def __init__(self, scenario: Scenario, facts: Facts, seconds: float) -> None:
-        self.scenario, self.facts, self.seconds = scenario, facts, seconds
-
-
-def _example(question: Question, cases: Cases) -> _Example:
-    """The first possible one of some cases all over the sweep; where there is none, what the first of them raised."""
-    first: GbeamError | None = None
-    for number in np.unique(np.linspace(0, len(cases) - 1, _TRIED).astype(int)):
-        try:
-            overrides = cases.overrides(int(number))
-            facts = question.facts(question.case(overrides))  # and what is imported and compiled for the first time
-            begin = time.perf_counter()
-            if len(cases) > _TRIED:
-                question.facts(question.case(overrides))
-            return _Example(question.scenario(overrides), facts, time.perf_counter() - begin)
-        except GbeamError as error:
-            first = first or error
-    assert first is not None
-    raise first
 
 
 def _confirm(count: int, seconds: float, confirmed: bool) -> None:
@@ -209,15 +184,22 @@ def _batches(tasks: Iterator[Task], size: int) -> Iterator[list[Task]]:
 
 
 def _collected(
-    found: Iterator[list[Row]], count: int, before: int, progress: Progress | None, journal: Journal | None = None
+    found: Iterator[list[Row]],
+    before: Sequence[Row],
+    count: int,
+    progress: Progress | None,
+    journal: Journal | None = None,
 ) -> list[Row]:
+    """The rows found, each batch kept and reported before the next is awaited."""
     rows: list[Row] = []
-    failed = 0
+    failed = sum(row.outcome != "done" for row in before)
+    if progress is not None:
+        progress(len(before), failed, count)
     for some in found:
         if journal is not None:
             journal.add(some)
         rows += some
         failed += sum(row.outcome != "done" for row in some)
         if progress is not None:
-            progress(before + len(rows), failed, count)
+            progress(len(before) + len(rows), failed, count)
     return rows

@@ -17,7 +17,7 @@ from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile
 from gbeam.cli.outputs import list_files, show
 from gbeam.cli.publication import publish, refuse_unwritable
 
-Verb = Literal["run", "static", "modes", "critical-speed", "plan"]
+Verb = Literal["run", "static", "modes", "critical-speed", "plan", "place"]
 
 
 def sweep(

@@ -20,7 +20,7 @@ class Sweep(Table):
     measure: Annotated[tuple[str, ...], Field(min_length=1)] = Field(
         description="figures by the end of their path in the verb's JSON, such as tip.z.max_abs or verdict.tip"
     )
-    verb: Literal["run", "static", "modes", "critical-speed", "plan"] = Field(
+    verb: Literal["run", "static", "modes", "critical-speed", "plan", "place"] = Field(
         default="run", description="whose figures"
     )
     samples: int | None = Field(
