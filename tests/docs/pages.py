@@ -17,6 +17,8 @@ import io
 import json
 import re
 import shlex
+import subprocess
+import sys
 import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -56,6 +58,13 @@ class Reader:
     folder: Path
     answers: dict[str, tuple[int, str]] = field(default_factory=dict)
     status: int = 0
+    services: list[subprocess.Popen[bytes]] = field(default_factory=list)
+
+    def end(self) -> None:
+        """End what was started and stays."""
+        for service in self.services:
+            service.kill()
+            service.wait()
 
     def read(self, page: Path) -> None:
         """Run a page's blocks; an AssertionError names the line."""
@@ -80,6 +89,11 @@ class Reader:
             return
         assert self.status == 0, f"{where}: the command before {command!r} ended in exit status {self.status}"
         words = shlex.split(command, comments=True)
+        if words[0] == "dask":  # a scheduler or a worker, in a terminal of its own
+            code = f"from distributed.cli.dask_{words[1]} import main; main()"
+            quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+            self.services.append(subprocess.Popen([sys.executable, "-c", code, *words[2:]], cwd=self.folder, **quiet))
+            return
         if words[0] != "gbeam":
             _exists(words, where)
             return

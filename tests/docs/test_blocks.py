@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from .pages import NOT_CODE, PAGES, ROOT, RUN, Block, Reader, blocks, commands
 
-SLOW = {"docs/howto/flight_record.md", "docs/tutorials/flight_on_a_centrifuge.md"}  # plan and place the F-16's flight
+SLOW = {
+    "docs/howto/flight_record.md",  # plans and places the F-16's flight
+    "docs/tutorials/flight_on_a_centrifuge.md",
+    "docs/howto/many_machines.md",  # starts two clusters
+}
 RUNNABLE = [page for page in PAGES if any(block.language in RUN for block in blocks(page))]
 
 
 @pytest.fixture(scope="module")
-def reader(tmp_path_factory: pytest.TempPathFactory) -> Reader:
+def reader(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Reader]:
     """One reader of all pages, in a folder with the examples."""
     folder = tmp_path_factory.mktemp("reader")
     (folder / "examples").symlink_to(ROOT / "examples")
-    return Reader(folder)
+    reader = Reader(folder)
+    yield reader
+    reader.end()
 
 
 def named(page: Path) -> str:

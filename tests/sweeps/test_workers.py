@@ -35,6 +35,11 @@ def test_two_processes_give_the_same_bytes(fast: Path) -> None:
     assert one.measures["flight.tip.z"].tobytes() == two.measures["flight.tip.z"].tobytes()
 
 
+def test_a_function_that_no_other_process_knows_is_refused(fast: Path) -> None:
+    with pytest.raises(gb.InputError, match="cannot be sent to another process"):
+        gb.sweep(fast, OVER, {"length": lambda case: case.beam.length}, workers=2)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGKILL")
 def test_a_worker_that_is_killed_loses_no_case(fast: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     Path("deadly.py").write_text(MEASURES, encoding="utf-8")

@@ -17,11 +17,12 @@ from gbeam.scenario.origin import provenance
 from gbeam.scenario.text.suggest import advise
 from gbeam.sweeps.answers import VERBS
 from gbeam.sweeps.cases import read_cases
+from gbeam.sweeps.cluster import on_scheduler
 from gbeam.sweeps.evaluate import Function, Question, Row
 from gbeam.sweeps.journal import Journal, identity, opened
 from gbeam.sweeps.result import assembled
 from gbeam.sweeps.start import go_on, start
-from gbeam.sweeps.workers import Task, in_processes, on_scheduler, serially
+from gbeam.sweeps.workers import Task, in_processes, serially
 
 MANY = 100_000  # cases beyond which a sweep is begun only when that is confirmed
 _BATCH = 0.5  # s: what is lost at most when a process ends, and how often the store is synchronised

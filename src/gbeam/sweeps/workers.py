@@ -1,23 +1,23 @@
-"""Where cases are computed: in this process, in others on this machine, or on a Dask scheduler's workers.
+"""Where cases are computed on this machine: in this process, or in others.
 
-Each takes batches of cases and yields their rows in any order; the same cases give the same rows everywhere.
+Each takes batches of cases and yields their rows in any order; the same cases give the same rows everywhere, as they do
+on a cluster.
 """
 
 from __future__ import annotations
 
 import math
 import multiprocessing
+import pickle
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 
-import gbeam
-from gbeam.errors import ComputationError, InputError
+from gbeam.errors import InputError
 from gbeam.sweeps.evaluate import Question, Row, rows
 
 Task = tuple[int, tuple[str, ...]]  # number of the case, and its changes
 AHEAD = 3  # batches per worker that wait, so that none idles
-TRIES = 3  # that a batch may end its worker before its cases are taken one by one
 
 
 def serially(question: Question, batches: Iterable[Sequence[Task]]) -> Iterator[list[Row]]:
@@ -31,7 +31,17 @@ def in_processes(question: Question, batches: Iterable[Sequence[Task]], workers:
 
     A worker that dies takes its pool along: what was under way begins again in a new pool, with its cases one by one,
     and a case that ends its worker alone is recorded as failed.
+
+    Raises
+    ------
+    InputError
+        If a measure is a function that cannot be sent to another process.
     """
+    try:
+        pickle.dumps(question.functions)
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        problem = f"has a function that cannot be sent to another process ({error})"
+        raise InputError("measure", problem, "define it in a module, at the top level") from None
     left = iter(batches)
     while True:
         under_way: dict[Future[list[Row]], Sequence[Task]] = {}
@@ -65,63 +75,9 @@ def _alone(question: Question, task: Task) -> Row:
         try:
             return pool.submit(rows, question, [task]).result()[0]
         except BrokenProcessPool:
-            return Row(task[0], (math.nan,) * question.width, "failed", "the process that computed it died")
+            return died(question, task)
 
 
-def on_scheduler(question: Question, batches: Iterable[Sequence[Task]], address: str) -> Iterator[list[Row]]:
-    """Compute the batches on the workers of a Dask scheduler.
-
-    Raises
-    ------
-    InputError
-        If dask is not installed, there is no scheduler, or a worker has another version of gbeam.
-    ComputationError
-        If the scheduler is lost.
-    """
-    try:
-        from distributed import Client, as_completed
-    except ImportError:
-        raise InputError("--scheduler", "needs Dask", 'pip install "gbeam[cluster]"') from None
-    try:
-        client = Client(address, timeout="10s", set_as_default=False)
-    except (OSError, ValueError) as error:
-        raise InputError("--scheduler", f"{address}: {error}", "give the address that dask-scheduler prints") from None
-    with client:
-        _same_version(client)
-        shared = client.scatter(question, broadcast=True)
-        left = iter(batches)
-        first = [client.submit(rows, shared, batch, retries=TRIES, pure=False) for batch in _some(left, client)]
-        running = as_completed(first, raise_errors=False)
-        try:
-            for future in running:
-                if future.status == "lost" or future.cancelled():
-                    raise ComputationError("interrupted", "the scheduler is gone; --resume does what is missing")
-                yield future.result()
-                if (batch := next(left, None)) is not None:
-                    running.add(client.submit(rows, shared, batch, retries=TRIES, pure=False))
-        except (OSError, TimeoutError) as error:
-            message = f"the scheduler at {address} is lost ({error}); --resume does what is missing"
-            raise ComputationError("interrupted", message) from None
-
-
-def _some(batches: Iterator[Sequence[Task]], client: object) -> Iterator[Sequence[Task]]:
-    workers = len(client.scheduler_info()["workers"]) or 1  # type: ignore[attr-defined]
-    for _ in range(AHEAD * workers):
-        batch = next(batches, None)
-        if batch is None:
-            return
-        yield batch
-
-
-def _version() -> str:
-    return gbeam.__version__
-
-
-def _same_version(client: object) -> None:
-    found = client.run(_version)  # type: ignore[attr-defined]
-    if not found:
-        raise InputError("--scheduler", "has no workers", "start some with: dask worker ADDRESS")
-    for worker, version in found.items():
-        if version != gbeam.__version__:
-            problem = f"the worker {worker} has gbeam {version}, and this is {gbeam.__version__}"
-            raise InputError("--scheduler", problem, "install the same version everywhere")
+def died(question: Question, task: Task) -> Row:
+    """Row of a case whose process ends whenever it is computed."""
+    return Row(task[0], (math.nan,) * question.width, "failed", "the process that computed it died")
