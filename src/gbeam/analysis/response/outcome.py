@@ -78,6 +78,8 @@ def describe(
 
 def inaccuracies(structure: Structure, errors: Errors, settings: ResponseSettings) -> tuple[str, ...]:
     """What to say where the estimated errors are above the tolerance, or where there are none: causes and cures."""
+    if not settings.estimate:
+        return ()
     if math.isnan(errors.displacement.step):
         return ("no error could be estimated: the run with twice the step fails; give a smaller step",)
     quantities = {"tip's displacement": errors.displacement, "root's loads": errors.loads}

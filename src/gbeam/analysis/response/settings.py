@@ -7,10 +7,13 @@ from dataclasses import dataclass, field
 
 from gbeam.analysis.response.initial import Initial, begun
 from gbeam.checks import positive
+from gbeam.errors import InputError
 from gbeam.limits import STEPS, refuse_more
 from gbeam.plausibility import implausible, possible
 
 FINE = 1e-4
+NOT_ESTIMATED = "no error is estimated: the settings say estimate = false"
+NO_LOADS = "no loads are computed, nor whether the material yields: the settings say loads = false"
 
 
 @dataclass(frozen=True)
@@ -35,11 +38,16 @@ class ResponseSettings:
         Time from which the residual vibration is measured, s.
     initial : Initial
         State at the start: the relative equilibrium unless given; a name such as ``"undeformed"`` stands for its state.
+    estimate : bool
+        Whether the error is estimated. Without, a given step is run once, and an automatic one is still found from
+        several, by which its own error is known; shapes and model are not judged. The result says so.
+    loads : bool
+        Whether the loads along the beam are computed. The estimate is of them too.
 
     Raises
     ------
     InputError
-        If duration or step is impossible, or there are too many steps.
+        If duration or step is impossible, there are too many steps, or the estimate has no loads.
     """
 
     duration: float
@@ -50,10 +58,14 @@ class ResponseSettings:
     tolerance: float = 1e-2
     residual_from: float | None = None
     initial: Initial | str = field(default_factory=Initial)
+    estimate: bool = True
+    loads: bool = True
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "initial", self.begin)
         possible("duration", "duration", positive("duration", self.duration, "s"))
+        if self.estimate and not self.loads:
+            raise InputError("loads", "is false, and the error is estimated of them too", "give estimate = False as well")
         if self.step is not None:
             possible("step", "step", positive("step", self.step, "s"))
             fix = f"give {self.duration / STEPS:.2g} s or more"
@@ -66,9 +78,11 @@ class ResponseSettings:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is implausible."""
+        """What is implausible, and what is left out."""
         step = () if self.step is None else implausible("response.step", "step", self.step)
-        return (*implausible("response.duration", "duration", self.duration), *step)
+        parts = {NOT_ESTIMATED: self.estimate, NO_LOADS: self.loads}
+        left_out = tuple(words for words, made in parts.items() if not made)
+        return (*implausible("response.duration", "duration", self.duration), *step, *left_out)
 
     @property
     def aim(self) -> float:

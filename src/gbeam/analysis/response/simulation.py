@@ -14,7 +14,7 @@ from gbeam.analysis.accuracy.response_errors import Solution
 from gbeam.analysis.response.outcome import describe, inaccuracies
 from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
 from gbeam.analysis.response.problem import Problem, problem_of
-from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.settings import NOT_ESTIMATED, ResponseSettings
 from gbeam.analysis.response.step_errors import Readings, Run
 from gbeam.analysis.response.stepping import check, corners, first_step, refine, scheme_of
 from gbeam.analysis.response.trajectories import (
@@ -37,7 +37,7 @@ from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
-from gbeam.results.errors import Errors, StepErrors
+from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
 from gbeam.results.response import BaseMotion, HubResult, Response
 from gbeam.results.result import Floats
 from gbeam.results.section_forces import Loads
@@ -153,7 +153,10 @@ def simulate(
     if settings.integrator == "adaptive":
         made, errors = adapted(begun, aims, coarse, felt, readings, too_far)
     elif given is not None:
-        made, errors = check(run, given, scheme_of(settings).order)
+        alone = not settings.estimate
+        made, errors = (
+            (run(given, "integrating"), StepErrors()) if alone else check(run, given, scheme_of(settings).order)
+        )
     else:
         made, errors = refine(run, coarse, scheme_of(settings).order, aims)
     trajectory, step = made.trajectory, made.step
@@ -213,7 +216,9 @@ def _result(
         """Coordinates, base, hub and loads at some of the steps."""
         time, q, qd, qdd = (x[steps] for x in (of.time, of.q, of.qd, of.qdd))
         base, hub = _moving(motion, time, q, qd, qdd)
-        loads = section_forces(structure, base, q[:, beam], qd[:, beam], qdd[:, beam], time, motion=motion)
+        loads = None
+        if settings.loads:
+            loads = section_forces(structure, base, q[:, beam], qd[:, beam], qdd[:, beam], time, motion=motion)
         return (time, q, qd, qdd), base, hub, loads
 
     (time, q, qd, qdd), base, hub, loads = at(every, slice(None))
@@ -233,7 +238,10 @@ def _result(
             during = None if loads is None else loads.during(flight)
             settled, tip = up is not None or settings.begin.settled, np.asarray(displacement[flight, -1])
             steps = step_errors.displacement, step_errors.loads, step_errors.stress
-            errors = response_errors(structure, motion, solution, tip, during, steps, settled=settled)
+            if settings.estimate:
+                errors = response_errors(structure, motion, solution, tip, during, steps, settled=settled)
+            else:
+                errors = Errors(*(ErrorEstimate(step=step) for step in steps), note=NOT_ESTIMATED)
             own += inaccuracies(structure, errors, settings)
         given = input_warnings(structure, motion, name=name, span=(time[0], time[-1]), base=base)
         warnings = given + settings.warnings + own + (() if axes is None else axes.warnings) + warnings
