@@ -96,7 +96,9 @@ def motion_of(drive: Drive) -> gb.Hub:
 
 def tip_of(structure: gb.Structure, drive: Drive, integrator: str, step: float) -> tuple[np.ndarray, np.ndarray]:
     """Times, and the tip's displacement across the beam, m."""
-    response = gb.simulate(structure, motion_of(drive), duration=drive.end, integrator=integrator, step=step, estimate=False, loads=False)
+    response = gb.simulate(
+        structure, motion_of(drive), duration=drive.end, integrator=integrator, step=step, estimate=False, loads=False
+    )
     return np.asarray(response.time), np.asarray(response.tip[:, 1])
 
 

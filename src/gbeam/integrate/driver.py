@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,8 @@ from gbeam.integrate.equations import Drive, LinearEquations, NonlinearEquations
 from gbeam.integrate.schemes import Scheme
 from gbeam.integrate.steps import Corners, Floats, Steps, fitted
 
-CHUNK = 100  # steps per compiled call, and per look at whether to stop
+CHUNK = 200  # steps per compiled call at most, and per look at whether to stop
+_AT_ONCE = 20  # chunks whose inputs are computed at once
 _LINEAR_CHUNK = 500  # steps whose maps are found at once: as many as stay in a cache
 Piece = tuple[Any, ...]  # q, q̇, q̈ (k, n), and which of the steps were solved (k,)
 
@@ -138,41 +140,111 @@ def _nonlinear(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, s
 
     carry, corrections = begun(q, qd, qdd, steps.length[0]), newton.CORRECTIONS[scheme.order]
     sound = True
-    for index, last in _groups(steps, newton.PER_JACOBIAN[scheme.order], restart=scheme.ends):
-        inside = (np.arange(index.shape[1]) <= last[:, None]).ravel()  # the others fill their groups
-        chosen = steps[index.ravel()]
-        inputs = _stage_inputs(drive, scheme, chosen)
-        by_group = jax.tree.map(lambda leaf, shape=index.shape: leaf.reshape(*shape, *leaf.shape[1:]), inputs)
-        at_ends = None if scheme.ends else drive(chosen.end)
-        tableau = scheme.tableau(steps.length[index[:, 0]])
-        solved: Any = np.ones(len(inside), dtype=bool)
+    for chunk in _chunks(drive, scheme, steps, newton.PER_JACOBIAN[scheme.order]):
         if traced:
-            after, (*piece, left) = newton.steps(residual, tableau, carry, by_group, at_ends, last, corrections)
-            fine = xp.max(left[inside]) <= newton.ACCEPTED
-            piece = [xp.where(fine, values, xp.nan) for values in piece]
+            after, (*piece, left) = newton.steps(residual, *chunk.given(carry), corrections)
+            fine = xp.max(left[chunk.inside]) <= newton.ACCEPTED
+            piece, solved = [xp.where(fine, values, xp.nan) for values in piece], np.ones(len(chunk.inside), dtype=bool)
         else:
             for tries in (corrections, *newton.PATIENT):
-                after, (*piece, left) = newton.quick(residual, tableau, carry, by_group, at_ends, last, tries)
-                if np.all(np.asarray(left)[inside] <= newton.ACCEPTED):  # NaN is not
+                after, (*piece, left) = newton.quick(residual, *chunk.given(carry), tries, chunk.count)
+                if np.all(np.asarray(left)[chunk.inside] <= newton.ACCEPTED):  # NaN is not
+                    solved = np.ones(len(chunk.inside), dtype=bool)
                     break
             else:
-                each = scheme.tableau(chosen.length)
-                after, (*piece, solved) = newton.safe(residual, each, carry, inputs, at_ends, inside)
+                after, (*piece, solved) = newton.safe(residual, *chunk.one_by_one(scheme, carry), chunk.inside)
             piece = [np.asarray(values) for values in piece]
-        carry = after
-        end = steps[index[-1, last[-1]]]
+        carry, end = after, chunk.end
         if scheme.ends and end.anew and not traced:
-            q, qd = (values[inside][-1] for values in piece[:2])
+            q, qd = (values[chunk.inside][-1] for values in piece[:2])
             begin, there = (
                 np.asarray(newton.accelerations(residual, q[None], qd[None], drive(np.array([t]))))[0]
                 for t in (end.resume, end.end)
             )
             carry = begun(q, qd, begin, end.following)
-            piece[2] = np.where((np.arange(len(inside)) == np.flatnonzero(inside)[-1])[:, None], there, piece[2])
+            at_end = np.arange(len(chunk.inside)) == np.flatnonzero(chunk.inside)[-1]
+            piece[2] = np.where(at_end[:, None], there, piece[2])
         # A part of a step that has not been solved spoils what follows.
-        solved = np.logical_and.accumulate(np.append(sound, np.asarray(solved)[inside]))[1:]
-        sound, kept = bool(solved[-1]), inside & chosen.kept
-        yield *(values[kept] for values in piece), solved[chosen.kept[inside]]
+        solved = np.logical_and.accumulate(np.append(sound, np.asarray(solved)[chunk.inside]))[1:]
+        sound = bool(solved[-1])
+        yield *(values[chunk.kept] for values in piece), solved[chunk.steps.kept[chunk.inside]]
+
+
+@dataclass(frozen=True)
+class _Chunk:
+    """Steps of one compiled call, and what drives the equations in them.
+
+    Parameters
+    ----------
+    steps : Steps
+        With the fillings of the groups.
+    last : (groups,)
+        Index of the last step of each group, −1 of a group of fillings.
+    tableau : Tableau
+        Of the groups.
+    inputs : arrays (groups, steps, s, ...)
+        At the stages.
+    at_ends : arrays (groups, steps, ...) or None
+        At the ends of the steps, where the last stage is not there.
+    """
+
+    steps: Steps
+    last: Any
+    tableau: Any
+    inputs: Any
+    at_ends: Any
+
+    @cached_property
+    def inside(self) -> Any:
+        """Which steps are no fillings."""
+        return (np.arange(len(self.steps) // len(self.last)) <= self.last[:, None]).ravel()
+
+    @cached_property
+    def kept(self) -> Any:
+        """Which of them belong to the result."""
+        return self.inside & self.steps.kept
+
+    @property
+    def count(self) -> int:
+        """Groups that are not of fillings."""
+        return int(np.count_nonzero(self.last >= 0))
+
+    @property
+    def end(self) -> Steps:
+        """The last step that is no filling."""
+        return self.steps[np.flatnonzero(self.inside)[-1]]
+
+    def given(self, carry: Any) -> tuple[Any, Any, Any, Any, Any]:
+        """What :func:`newton.steps` takes of it."""
+        return self.tableau, carry, self.inputs, self.at_ends, self.last
+
+    def one_by_one(self, scheme: Scheme, carry: Any) -> tuple[Any, Any, Any, Any]:
+        """What :func:`newton.safe` takes."""
+        import jax
+
+        flat = [
+            jax.tree.map(lambda leaf: leaf.reshape(-1, *leaf.shape[2:]), part) for part in (self.inputs, self.at_ends)
+        ]
+        return scheme.tableau(self.steps.length), carry, flat[0], flat[1]
+
+
+def _chunks(drive: Drive, scheme: Scheme, steps: Steps, size: int) -> Iterator[_Chunk]:
+    """Groups of `size` steps, chunk by chunk; what drives many chunks is computed at once."""
+    import jax
+
+    made = list(_groups(steps, size, restart=scheme.ends))
+    for some in (made[k : k + _AT_ONCE] for k in range(0, len(made), _AT_ONCE)):
+        index = np.concatenate([each for each, _ in some])
+        chosen = steps[index.ravel()]
+        tableau = scheme.tableau(steps.length[index[:, 0]])
+        driven = _stage_inputs(drive, scheme, chosen), None if scheme.ends else drive(chosen.end)
+        inputs, at_ends = jax.tree.map(lambda leaf, shape=index.shape: leaf.reshape(*shape, *leaf.shape[1:]), driven)
+        first = 0
+        for each, last in some:
+            part = slice(first, first + len(each))
+            first = part.stop
+            own = jax.tree.map(lambda leaf, part=part: leaf[part], (tableau, inputs, at_ends))
+            yield _Chunk(steps[each.ravel()], last, *own)
 
 
 def _groups(steps: Steps, size: int, *, restart: bool) -> Iterator[tuple[Any, Any]]:

@@ -8,6 +8,7 @@ program, and where these do not suffice by Newton's method proper.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import jax
@@ -79,7 +80,16 @@ def _next(t: Tableau, carry: Carry, x: Array) -> tuple[Carry, Array, Array]:
     return Carry(t.g @ carry.z + t.d @ x, x, carry.x), q, qd
 
 
-def steps(residual: Any, tableau: Tableau, carry: Carry, inputs: Any, at_ends: Any, last: Any, corrections: Any) -> Any:
+def steps(
+    residual: Any,
+    tableau: Tableau,
+    carry: Carry,
+    inputs: Any,
+    at_ends: Any,
+    last: Any,
+    corrections: Any,
+    count: Any = None,
+) -> Any:
     """Steps with a given number of corrections each.
 
     Parameters
@@ -90,13 +100,16 @@ def steps(residual: Any, tableau: Tableau, carry: Carry, inputs: Any, at_ends: A
         Of the groups.
     inputs : arrays (groups, steps, s, ...)
         At the stages; one Jacobian for each group.
-    at_ends : arrays (groups · steps, ...) or None
+    at_ends : arrays (groups, steps, ...) or None
         Inputs at the ends of the steps; None where these are the last stages.
     last : (groups,)
         Index of the last step of each group that the next goes on from; the rest are fillings. A scheme that carries
         more than q and q̇ does not go on from a group with fillings.
     corrections : int
         A plain number where the run is to be differentiated backwards.
+    count : int, optional
+        Groups that are computed, the first ones; what is returned of the others is zero. All, where the run is to be
+        differentiated backwards.
 
     Returns
     -------
@@ -105,7 +118,7 @@ def steps(residual: Any, tableau: Tableau, carry: Carry, inputs: Any, at_ends: A
     stages, n = carry.x.shape
 
     def group(carry: Carry, of_group: Any) -> Any:
-        t, group_inputs, end = of_group
+        t, group_inputs, group_ends, end = of_group
         first = jax.tree.map(lambda leaf: leaf[0], group_inputs)
         inverse = _inverse_jacobian(residual, t, carry.z, first, 2 * carry.x - carry.before)
 
@@ -128,11 +141,29 @@ def steps(residual: Any, tableau: Tableau, carry: Carry, inputs: Any, at_ends: A
             guess = jnp.broadcast_to(qdd, (stages, n))
             other = Carry(jnp.stack([q, qd]), guess, guess)
             after = jax.tree.map(lambda a, b: jnp.where(filled, a, b), other, after)
-        return after, made
+        q, qd, qdd, left = made
+        return after, (q, qd, qdd if group_ends is None else accelerations(residual, q, qd, group_ends), left)
 
-    carry, by_group = jax.lax.scan(group, carry, (tableau, inputs, last))
-    q, qd, qdd, left = (x.reshape(-1, *x.shape[2:]) for x in by_group)
-    return carry, (q, qd, qdd if at_ends is None else accelerations(residual, q, qd, at_ends), left)
+    by_group = tableau, inputs, at_ends, last
+    carry, made = _first(group, carry, by_group, count, (*jax.tree.leaves(inputs)[0].shape[:2], n))
+    return carry, tuple(x.reshape(-1, *x.shape[2:]) for x in made)
+
+
+def _first(group: Any, carry: Carry, by_group: Any, count: Any, shape: tuple[int, ...]) -> Any:
+    """A scan over the first `count` of some groups, or all; its results are three arrays of a shape, and one less."""
+    if count is None:
+        return jax.lax.scan(group, carry, by_group)
+
+    def turn(k: Any, state: Any) -> Any:
+        carry, made = state
+        carry, new = group(
+            carry, jax.tree.map(lambda leaf: jax.lax.dynamic_index_in_dim(leaf, k, keepdims=False), by_group)
+        )
+        at = partial(jax.lax.dynamic_update_index_in_dim, index=k, axis=0)
+        return carry, tuple(at(whole, part) for whole, part in zip(made, new, strict=True))
+
+    made = (*[jnp.zeros(shape)] * 3, jnp.zeros(shape[:-1]))
+    return jax.lax.fori_loop(0, count, turn, (carry, made))
 
 
 quick = jax.jit(steps)

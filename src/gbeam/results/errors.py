@@ -9,6 +9,7 @@ import numpy as np
 
 from gbeam.results.result import Floats, Part
 
+
 @dataclass(frozen=True, repr=False, eq=False)
 class ErrorEstimate(Part):
     """Estimated errors of one quantity, as fractions of its largest size; NaN where there is no estimate.

@@ -223,5 +223,6 @@ def _response(
         integrator=table.integrator,
         parameters=table.parameters,
         tolerance=table.tolerance,
+        estimate=table.estimate,
         residual_from=table.residual_from,
     )

@@ -38,20 +38,13 @@ def _scale(c: Coefficients) -> Array:
 
 def _bound(c: Coefficients, base: BaseMotion) -> Array:
     """An upper bound of what the base's motion takes of the elastic stiffness, (t,)."""
-    scale = _scale(c)
-
-    def taken(k: Array) -> float:
-        """The largest share that a unit of the term can take, in either sense."""
-        return float(np.abs(np.linalg.eigvalsh(scale @ (k + k.T) @ scale.T / 2)).max())
-
-    w, a, alpha = base.w_WB_B, base.a_WO_B, base.alpha_WB_B
-    total = np.zeros(len(w))
-    for i in range(3):
-        total += np.abs(a[:, i]) * taken(c.k_a[i]) + np.abs(alpha[:, i]) * taken(c.k_al[i])
-        total += w[:, i] ** 2 * max(-float(np.linalg.eigvalsh(scale @ c.k_ww[i, i] @ scale.T)[0]), 0.0)
-        for j in range(i):
-            total += 2 * np.abs(w[:, i] * w[:, j]) * taken(c.k_ww[i, j])
-    return total
+    scale, (row, column) = _scale(c), np.tril_indices(3, -1)
+    terms = np.concatenate([c.k_a, c.k_al, c.k_ww[row, column], c.k_ww[range(3), range(3)]])
+    shares = np.linalg.eigvalsh(scale @ (terms + np.swapaxes(terms, 1, 2)) @ scale.T / 2)
+    either, softened = np.abs(shares[:9]).max(axis=1), np.maximum(-shares[9:, 0], 0.0)
+    w = base.w_WB_B
+    across = np.abs(np.concatenate([base.a_WO_B, base.alpha_WB_B, 2 * w[:, row] * w[:, column]], axis=1))
+    return np.asarray(across @ either + w**2 @ softened)
 
 
 def _symmetric(c: Coefficients, base: BaseMotion, times: Array) -> Array:

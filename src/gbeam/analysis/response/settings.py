@@ -65,7 +65,9 @@ class ResponseSettings:
         object.__setattr__(self, "initial", self.begin)
         possible("duration", "duration", positive("duration", self.duration, "s"))
         if self.estimate and not self.loads:
-            raise InputError("loads", "is false, and the error is estimated of them too", "give estimate = False as well")
+            raise InputError(
+                "loads", "is false, and the error is estimated of them too", "give estimate = False as well"
+            )
         if self.step is not None:
             possible("step", "step", positive("step", self.step, "s"))
             fix = f"give {self.duration / STEPS:.2g} s or more"

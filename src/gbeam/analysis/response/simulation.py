@@ -153,9 +153,9 @@ def simulate(
     if settings.integrator == "adaptive":
         made, errors = adapted(begun, aims, coarse, felt, readings, too_far)
     elif given is not None:
-        alone = not settings.estimate
+        once = not settings.estimate
         made, errors = (
-            (run(given, "integrating"), StepErrors()) if alone else check(run, given, scheme_of(settings).order)
+            (run(given, "integrating"), StepErrors()) if once else check(run, given, scheme_of(settings).order)
         )
     else:
         made, errors = refine(run, coarse, scheme_of(settings).order, aims)
@@ -241,7 +241,8 @@ def _result(
             if settings.estimate:
                 errors = response_errors(structure, motion, solution, tip, during, steps, settled=settled)
             else:
-                errors = Errors(*(ErrorEstimate(step=step) for step in steps), note=NOT_ESTIMATED)
+                alone = [ErrorEstimate(step=step) for step in steps]
+                errors = Errors(alone[0], alone[1], alone[2], NOT_ESTIMATED)
             own += inaccuracies(structure, errors, settings)
         given = input_warnings(structure, motion, name=name, span=(time[0], time[-1]), base=base)
         warnings = given + settings.warnings + own + (() if axes is None else axes.warnings) + warnings

@@ -9,7 +9,7 @@ from gbeam.analysis.imitation.comparison import compare
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.study.case import Case
-from gbeam.errors import ComputationError
+from gbeam.errors import ComputationError, InputError
 from gbeam.results.imitation.accounting import TOLERANCE
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.response import Response
@@ -39,6 +39,9 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
     ComputationError
         If no motion has a relative equilibrium to start from; the message names each.
     """
+    if case.model.automatic and not case.response.estimate:
+        fix = "give it, or leave response.estimate out"
+        raise InputError("model.modes", "is left out, and estimate = false leaves nothing to choose it by", fix)
     responses, failures = _answers(case, progress)
     while case.model.automatic and _lacks_shapes(responses, case.response):
         richer = case.model.richer()

@@ -17,7 +17,8 @@ from gbeam.motion.profiles.combine import as_profile
 from gbeam.motion.profiles.profile import Profile
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
-_STRIDE = 0.01  # s, between the times at which the angle is stored: Gauss's rule is exact to rounding from there
+_STRIDE = 0.01  # s, between the times at which the angle is stored, where Gauss's rule cannot be tried
+_PIECES, _HALVINGS, _EXACT = 32, 20, 1e-14  # from one break to another at first; error of the whole angle, relative
 
 
 @record
@@ -145,9 +146,19 @@ class Hub:
     def _angles(self) -> tuple[Any, Any]:
         """Times and angles at them, from zero at time zero; fine enough for `_turned` between them."""
         rate = self._prescribed()
-        times = np.unique(np.append(rate.knots(_STRIDE), [0.0, *np.asarray(rate.breaks)]))
+        marks = np.append(np.asarray(rate.breaks), 0.0)
+        traced = is_traced(rate(marks))
+        times = np.unique(np.append(rate.knots(_STRIDE if traced else max(_STRIDE, np.ptp(marks) / _PIECES)), marks))
         steps = self._turned(times[:-1], times[1:])
         xp = namespace(steps)
+        for _ in range(0 if traced else _HALVINGS):
+            middle = (times[1:] + times[:-1]) / 2
+            error = np.abs(self._turned(times[:-1], middle) + self._turned(middle, times[1:]) - steps)
+            coarse = error > _EXACT * np.abs(steps).sum()
+            if not coarse.any():
+                break
+            times = np.sort(np.append(times, middle[coarse]))
+            steps = self._turned(times[:-1], times[1:])
         sums = xp.concatenate([xp.zeros(1), xp.cumsum(steps)])
         return times, sums - sums[np.searchsorted(times, 0.0)]
 

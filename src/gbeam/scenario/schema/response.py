@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, StrictBool, model_validator
 from pydantic_core import PydanticCustomError
 
 from gbeam.limits import ENTRIES
@@ -97,6 +97,11 @@ class Response(Table):
         default=1e-2,
         description="largest total error (step, shapes and model) without a warning; an automatic step aims at a "
         "third of it, and at 1e-4 at most",
+    )
+    estimate: StrictBool = Field(
+        default=True,
+        description="whether the error is estimated; false: a given step is run once, and the result says that no error "
+        "is known",
     )
     initial: Initial = Field(
         default_factory=Initial, description="state at the start; the relative equilibrium if left out"
