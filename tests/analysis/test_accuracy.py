@@ -15,7 +15,7 @@ from gbeam.mechanics.equations.residuals import OnBase
 from gbeam.motion.bases.base import Base
 
 from ..literature.test_elastica import PLANAR
-from ..specimens import laden, states
+from ..specimens import appendage, laden, states
 
 EI, LENGTH = 1.0, 1.0  # N m², m; 1 kg/m
 PLAIN = gb.Section.general(1.0, 1e-8, 1e-8), gb.Material(1.0, 1e8), [gb.PointMass(LENGTH, 0.0)]
@@ -142,6 +142,26 @@ def test_shapes_are_added_until_they_are_enough() -> None:
     assert any("raise model.modes" in warning for warning in few.warnings)
     assert enough.q.shape[1] > 7 and enough.errors.displacement.shapes < 1e-3 and not enough.warnings
     assert gb.assemble(beam, "FOAM").counts == (1, 3, 3) and gb.assemble(beam, "SFOAM").counts == (0, 3, 3)
+
+
+def test_a_run_without_its_estimate_is_the_same_run_and_says_so() -> None:
+    structure = gb.assemble(appendage(damping_ratio=0.0), "FOAM", y=3)
+    hub = gb.Hub(radius=0.5, rate=gb.SmoothStep(3.0, 4.0))
+    judged, bare = (
+        gb.simulate(structure, hub, duration=6.0, integrator="gauss", step=0.02, **how)
+        for how in ({}, {"estimate": False, "loads": False})
+    )
+    assert judged.errors.displacement.total > 0 and judged.loads is not None
+    np.testing.assert_array_equal(bare.displacement, judged.displacement)
+    assert bare.peaks.max_size == judged.peaks.max_size and bare.loads is None
+    assert np.isnan(bare.error_estimate) and "estimate = false" in bare.errors.note
+    assert sum("no error is estimated" in each or "no loads" in each for each in bare.warnings) == 2
+    with pytest.raises(gb.InputError, match="estimate = False as well"):
+        gb.simulate(structure, hub, duration=6.0, loads=False)
+    settings = gb.ResponseSettings(6.0, estimate=False)
+    case = gb.Case("", appendage(damping_ratio=0.0), gb.Model.of("FOAM"), {"slew": hub}, settings)
+    with pytest.raises(gb.InputError, match=r"model\.modes"):
+        gb.study(case)
 
 
 def test_a_critical_speed_states_its_error() -> None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.mechanics.assembly import assembled
-from gbeam.mechanics.fields.adapted import adapted_shapes
+from gbeam.mechanics.fields.adapted import adapted_shapes, space
 from gbeam.mechanics.fields.basis import (
     Array,
     Families,
@@ -19,13 +20,29 @@ from gbeam.mechanics.fields.basis import (
     polynomials,
     quadrature,
 )
-from gbeam.mechanics.fields.enriched import axial_force, enriched_shapes
+from gbeam.mechanics.fields.enriched import axial_force, bends, enriched_shapes
 from gbeam.mechanics.models import KINDS
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.structure.beam import Beam
 
 NODES, PER_PANEL = 14, 8  # of the quadrature: over the beam with one shape, and in a panel at least
+
+
+def enrichment(structure: Structure, base: Base | None = None) -> Enrichment:
+    """A structure's own shapes and those that it lacks; what depends on the structure alone is kept for the next call.
+
+    Parameters
+    ----------
+    structure : Structure
+        With a source.
+    base : Base, optional
+        Motion of the base, at one time or many: what it pulls along the beam changes the shapes that are lacking.
+    """
+    alone: Enrichment = structure.kept.get("enrichment") or Enrichment(structure)
+    structure.kept["enrichment"] = alone
+    force = None if base is None else alone.bent_by(base)
+    return alone if force is None else Enrichment(structure, force)
 
 
 class Enrichment:
@@ -35,11 +52,11 @@ class Enrichment:
     ----------
     structure : Structure
         With a source.
-    base : Base, optional
-        Motion of the base, at one time or many: what it pulls along the beam changes the shapes that are lacking.
+    force : (g,), optional
+        Axial force at the nodes that changes the shapes that are lacking, N.
     """
 
-    def __init__(self, structure: Structure, base: Base | None = None) -> None:
+    def __init__(self, structure: Structure, force: Array | None = None) -> None:
         assert structure.source is not None
         self.structure, beam = structure, structure.source.beam
         own = structure.counts
@@ -47,12 +64,16 @@ class Enrichment:
         breaks = [*beam.section.stations, *marks]
         panels = len(quadrature(beam.length, 1, breaks).edges) - 1
         self.rule = quadrature(beam.length, max(PER_PANEL, -(-(NODES + 2 * max(own)) // panels)), breaks)
-        force = None
-        if base is not None:
-            along, spin = np.asarray(base.a_WO_B)[..., 0], (np.asarray(base.w_WB_B)[..., 1:] ** 2).sum(axis=-1)
-            force = axial_force(beam, self.rule, np.atleast_1d(along), np.atleast_1d(spin))
-        self.families, self.new = enriched_shapes(beam, self.rule, _own(structure, beam, self.rule), force)
+        self.spaces = space(beam, self.rule, 0), space(beam, self.rule, 1), space(beam, self.rule, 2)
+        self.families, self.new = enriched_shapes(beam, self.spaces, _own(structure, beam, self.rule), force)
         self.beam = beam
+        self._made: dict[Any, tuple[Structure, NDArray[np.int_]]] = {}
+
+    def bent_by(self, base: Base) -> Array | None:
+        """Axial force (g,) N that a motion of the base brings, where it is large enough to change the shapes."""
+        along, spin = np.asarray(base.a_WO_B)[..., 0], (np.asarray(base.w_WB_B)[..., 1:] ** 2).sum(axis=-1)
+        force = axial_force(self.beam, self.rule, np.atleast_1d(along), np.atleast_1d(spin))
+        return force if any(bends(each, force) for each in self.spaces) else None
 
     def model(
         self, kind: str, *, directions: tuple[bool, bool, bool] = (True, True, True)
@@ -65,6 +86,12 @@ class Enrichment:
         directions : tuple of bool
             Whether new shapes along x, y and z are in it.
         """
+        key = kind, directions
+        if key not in self._made:
+            self._made[key] = self._model(kind, directions)
+        return self._made[key]
+
+    def _model(self, kind: str, directions: tuple[bool, bool, bool]) -> tuple[Structure, NDArray[np.int_]]:
         own = self.structure.counts
         counts = [n + (more if wanted else 0) for n, more, wanted in zip(own, self.new, directions, strict=True)]
         if not KINDS[kind].axial:

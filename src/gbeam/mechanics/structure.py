@@ -287,6 +287,11 @@ class Structure:
         return self if self.history is None else replace(self, load_values=self.history(np.asarray(float(time))))
 
     @cached_property
+    def kept(self) -> dict[str, Any]:
+        """What analyses have made of this structure alone, for their next call."""
+        return {}
+
+    @cached_property
     def load_places(self) -> Places:
         """Places of the loaded points, to second order."""
         assert self.work is not None

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.correction import correction, operator
 from gbeam.analysis.accuracy.reference import Sampled, complete_residual, linear_residual
-from gbeam.mechanics.enrichment import Enrichment
+from gbeam.mechanics.enrichment import Enrichment, enrichment
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
@@ -78,7 +78,7 @@ def lacking(
     settled : bool
         Whether the first state is the relative equilibrium, which the truth has its own of; else it is given.
     """
-    more = Enrichment(structure, _base(motion, solution)[0])
+    more = enrichment(structure, _base(motion, solution)[0])
     exact, index = more.model("exact", directions=_driven(more, structure, motion, solution))
     at = _lifted(exact, index, motion, solution)
     of = operator(exact, at)

@@ -11,7 +11,7 @@ from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
 from gbeam.analysis.equilibrium.point import Linear, OperatingPoint, stepped
 from gbeam.analysis.vibration.eigenvalues import eigenvalues, mac
 from gbeam.errors import ComputationError
-from gbeam.mechanics.enrichment import Enrichment
+from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.equations.hub import free_hub
 from gbeam.mechanics.equations.residuals import OnHub
 from gbeam.mechanics.structure import Structure
@@ -48,7 +48,7 @@ class Richer:
     """
 
     def __init__(self, structure: Structure, base: Base) -> None:
-        more, (_, along_y, along_z) = Enrichment(structure, base), structure.counts
+        more, (_, along_y, along_z) = enrichment(structure, base), structure.counts
         directions = True, along_y > 0, along_z > 0
         self.exact = more.model("exact", directions=directions)
         self.same = self.exact if structure.kind == "exact" else more.model(structure.kind, directions=directions)

@@ -20,7 +20,7 @@ from gbeam.analysis.vibration.loss import first_loss_along
 from gbeam.checks import positive
 from gbeam.errors import InputError
 from gbeam.mechanics.assembly import assemble
-from gbeam.mechanics.enrichment import Enrichment
+from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.models import Model
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
@@ -83,7 +83,7 @@ def critical_speed(structure: Structure, motion: Motion, *, upper: float | None 
     if not found.value or structure.source is None or not structure.linear:
         return found
     # With more shapes it is lost earlier.
-    rich, _ = Enrichment(structure, steady_base(hub, found.value)).model(structure.kind)
+    rich, _ = enrichment(structure, steady_base(hub, found.value)).model(structure.kind)
     least = first_loss_along(lambda rate: (rich, steady_base(hub, rate)), BEYOND * found.value, "hub rate", "rad/s")
     return replace(found, error_estimate=math.nan if not least.value else abs(found.value / least.value - 1))
 

@@ -9,16 +9,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.mechanics.fields.adapted import Space, space
+from gbeam.mechanics.fields.adapted import Space
 from gbeam.mechanics.fields.basis import Families, Family, Quadrature, Shapes
 from gbeam.structure.beam import Beam
 
 Array = NDArray[np.float64]
 LEVELS = (2, 3, 3)  # of the sequence, along x, y, z
 NEW = 1e-6  # of a vector's length: less of it is nothing that the others have not
-
-
 TENSION = 1.0  # N L²/EI: from there on the axial force bends the shapes
+Spaces = tuple[Space, Space, Space]
 
 
 def axial_force(beam: Beam, rule: Quadrature, along: Array, spin: Array) -> Array:
@@ -44,14 +43,15 @@ def axial_force(beam: Beam, rule: Quadrature, along: Array, spin: Array) -> Arra
 
 
 def enriched_shapes(
-    beam: Beam, rule: Quadrature, own: Families, force: Array | None = None
+    beam: Beam, spaces: Spaces, own: Families, force: Array | None = None
 ) -> tuple[Families, tuple[int, int, int]]:
     """The given shapes first, then those that they lack, direction by direction.
 
     Parameters
     ----------
     beam : Beam
-    rule : quadrature with panels that end at the section's corners, at the bodies and at the loads
+    spaces : spaces of the three directions
+        Their quadrature has panels that end at the section's corners, at the bodies and at the loads.
     own : the given shapes
     force : (g,), optional
         Axial force at the nodes, N: where it stiffens or softens the beam, the answers under it are added.
@@ -60,7 +60,7 @@ def enriched_shapes(
     -------
     families, and how many shapes are new in each
     """
-    made = [_enriched(beam, space(beam, rule, along), own[along], along, force) for along in range(3)]
+    made = [_enriched(beam, spaces[along], own[along], along, force) for along in range(3)]
     (s, a), (v, b), (w, c) = made
     return (s, v, w), (a, b, c)
 
@@ -99,16 +99,20 @@ def _enriched(beam: Beam, of: Space, own: Family, along: int, force: Array | Non
 
 def _flexibilities(of: Space, force: Array | None) -> list[Array]:
     """The inverse of the stiffness, and of that with what an axial force adds where that matters."""
-    elastic = np.diag(of.stiffness)
     alone = np.diag(1 / of.stiffness)
-    if force is None or of.axial:
+    if force is None or not bends(of, force):
         return [alone]
     _, slope = of.sensitivity(of.rule.node)
-    size = np.abs(force).max() * of.length**2 / np.min(of.stiffness[: len(force)] / of.rule.weight)
-    stiffness = elastic + slope.T @ ((of.rule.weight * force)[:, None] * slope)
-    if size < TENSION or np.linalg.eigvalsh(stiffness / np.sqrt(np.outer(of.stiffness, of.stiffness)))[0] <= 0:
+    stiffness = np.diag(of.stiffness) + slope.T @ ((of.rule.weight * force)[:, None] * slope)
+    if np.linalg.eigvalsh(stiffness / np.sqrt(np.outer(of.stiffness, of.stiffness)))[0] <= 0:
         return [alone]
     return [alone, np.asarray(np.linalg.inv(stiffness))]
+
+
+def bends(of: Space, force: Array) -> bool:
+    """Whether an axial force (g,) is large enough beside the stiffness to change the shapes."""
+    size = np.abs(force).max() * of.length**2 / np.min(of.stiffness[: len(force)] / of.rule.weight)
+    return not of.axial and bool(size >= TENSION)
 
 
 def _loads(beam: Beam, of: Space, along: int) -> Array:

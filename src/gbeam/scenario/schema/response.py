@@ -100,8 +100,8 @@ class Response(Table):
     )
     estimate: StrictBool = Field(
         default=True,
-        description="whether the error is estimated; false: a given step is run once, and the result says that no error "
-        "is known",
+        description="whether the error is estimated; false: a given step is run once, and the result says that no "
+        "error is known",
     )
     initial: Initial = Field(
         default_factory=Initial, description="state at the start; the relative equilibrium if left out"
