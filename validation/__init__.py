@@ -20,4 +20,5 @@ MODULES: tuple[str, ...] = (
     "published.others",
     "published.closed_forms",
     "accuracy.random_scenarios",
+    "accuracy.integrators",
 )

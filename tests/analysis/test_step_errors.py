@@ -19,6 +19,7 @@ from gbeam.analysis.response.problem import problem_of
 from gbeam.analysis.response.step_errors import observed_order
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.results.response import BaseMotion
+from validation.accuracy import integrators
 
 from .helpers import strip
 
@@ -137,6 +138,33 @@ def test_steps_that_end_at_corners_keep_the_order_of_gauss(name: str) -> None:
         found = simulate(structure, motion, duration=duration, integrator="gauss", step=duration / count)
         errors.append(apart(found.tip, truth(name, found.time)[0]))
     assert np.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.2)
+
+
+def test_loads_that_a_jump_excites_are_followed_or_the_run_says_what_follows_them() -> None:
+    """The axial mode is nothing in the tip's displacement, and a quarter of the root's force."""
+    structure, motion = integrators.strip("FOAM", 0.0), integrators.JERK
+    found, rough = (
+        simulate(structure, motion, duration=0.12, integrator=integrator) for integrator in ("gauss", "newmark")
+    )
+    truth = simulate(structure, motion, duration=0.12, integrator="gauss", step=found.step / 2)
+    assert found.loads is not None and truth.loads is not None
+    stride = round(found.time[1] / truth.step)
+    error = apart(found.loads.root_force, truth.loads.root_force[::stride])
+    assert error <= BOUND * found.errors.loads.step <= BOUND * 1e-2 / 3
+    assert not any("integrator" in each for each in found.warnings)
+    assert rough.errors.loads.step > 1e-2 / 3
+    assert any('integrator = "gauss" follows it in fewer' in each for each in rough.warnings)
+
+
+def test_a_run_of_very_many_steps_says_why_and_what_needs_fewer() -> None:
+    """An undamped vibration goes on for 22 cycles after a jump: a scheme of second order delays it."""
+    structure, motion = strip("FOAM", (0, 2, 0)), CASES["sine of a hub's rate"][1]
+    many, few = (
+        simulate(structure, motion, duration=0.12, integrator=integrator) for integrator in ("newmark", "gauss")
+    )
+    assert many.steps > 10 * few.steps and max(each.errors.displacement.step for each in (many, few)) <= 1e-4
+    assert any(f"took {many.steps} steps" in each and "gauss" in each for each in many.warnings)
+    assert not any("steps" in each for each in few.warnings)
 
 
 @pytest.mark.parametrize(("ratios", "order"), [((2, 2), 2.0), ((2, 16), 1.3), ((4, 4), 4.0), ((2, 8), 1.0)])

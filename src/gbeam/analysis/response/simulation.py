@@ -11,7 +11,7 @@ import numpy as np
 
 from gbeam.analysis.accuracy.estimate import response_errors
 from gbeam.analysis.accuracy.response_errors import Solution
-from gbeam.analysis.response.outcome import describe, inaccuracies
+from gbeam.analysis.response.outcome import describe, effort, inaccuracies
 from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
 from gbeam.analysis.response.problem import Problem, problem_of
 from gbeam.analysis.response.settings import NOT_ESTIMATED, ResponseSettings
@@ -126,7 +126,9 @@ def simulate(
         return np.asarray(y[..., problem.first :] @ (c.f_al @ np.linalg.solve(c.mass, c.stiffness)).T)
 
     def loads(trajectory: Trajectory, stride: int) -> list[Floats]:
-        """Force and moment at the root, and both sides' stress at every section."""
+        """Force and moment at the root, and both sides' stress at every section; none where the settings have none."""
+        if not settings.loads:
+            return []
         some = slice(None, None, stride)
         time, q, qd, qdd = (x[some] for x in (trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd))
         base, _ = _moving(motion, time, q, qd, qdd)
@@ -149,16 +151,15 @@ def simulate(
     def run(step: float, what: str) -> Run:
         return Run(integrated(begun, settings, step, corners=felt, **how(what)), step, readings)
 
-    aims = replace(settings, tolerance=settings.aim)
     if settings.integrator == "adaptive":
-        made, errors = adapted(begun, aims, coarse, felt, readings, too_far)
+        made, errors = adapted(begun, replace(settings, tolerance=settings.aim), coarse, felt, readings, too_far)
     elif given is not None:
         once = not settings.estimate
         made, errors = (
             (run(given, "integrating"), StepErrors()) if once else check(run, given, scheme_of(settings).order)
         )
     else:
-        made, errors = refine(run, coarse, scheme_of(settings).order, aims)
+        made, errors = refine(run, coarse, scheme_of(settings).order, settings)
     trajectory, step = made.trajectory, made.step
     down = None
     if after and trajectory.whole:
@@ -243,7 +244,7 @@ def _result(
             else:
                 alone = [ErrorEstimate(step=step) for step in steps]
                 errors = Errors(alone[0], alone[1], alone[2], NOT_ESTIMATED)
-            own += inaccuracies(structure, errors, settings)
+            own += inaccuracies(structure, errors, settings) + effort(settings, len(trajectory.time) - 1, stride)
         given = input_warnings(structure, motion, name=name, span=(time[0], time[-1]), base=base)
         warnings = given + settings.warnings + own + (() if axes is None else axes.warnings) + warnings
     return Response(

@@ -17,6 +17,7 @@ from gbeam.results.errors import StepErrors
 from gbeam.results.result import Floats
 
 MAX_STEPS = 4_000_000
+LOADS_STEPS = 50_000  # at most, where it is the loads that need them
 ONE_CORNER = 1e-6  # of the duration: corners nearer to one another are one
 JUMPS = 2, 3, 4, 6, 8, 12, 16  # into how many a step is divided; a check takes four, three or two of the new ones
 SPARE = 1.05  # how much finer a step is than the order promises to be enough
@@ -72,11 +73,13 @@ def check(run: Callable[[float, str], Run], step: float, order: int) -> tuple[Ru
 def refine(
     run: Callable[[float, str], Run], coarse: float, order: int, settings: ResponseSettings
 ) -> tuple[Run, StepErrors]:
-    """Divide the step, from twice the results', until the error estimated from the runs is within the tolerance.
+    """Divide the step, from twice the results', until the errors estimated from the runs are what they aim at.
 
-    Most of the error is a delay, and peaks are better: those of the tip and of the root's moment are refined until they
-    are within a tenth of the tolerance.
+    Most of the error of the tip's history is a delay, and peaks are better: those of the tip and of the root's moment
+    are refined until they are within a tenth of its aim. The histories of the root's loads, in which high modes that a
+    jump excites may be large, are to be within a third of the tolerance, as far as LOADS_STEPS bring them there.
     """
+    aim = settings.aim
 
     def refined(step: float) -> Run:
         return run(step, f"refining the step to {1e3 * step:.3g} ms")
@@ -85,14 +88,18 @@ def refine(
     while True:
         left, promised = _left(runs, order)
         both = runs[-2].whole and runs[-1].whole
-        if both and promised <= settings.tolerance and (more := _check_needed(runs, left, settings.tolerance)):
+        if both and promised <= aim and (more := _check_needed(runs, left, aim)):
             runs = sorted([*runs[-2:], run(more, f"checking with {1e3 * more:.3g} ms")], key=lambda each: -each.step)
             left, _ = _left(runs, order)
-        if both and left <= settings.tolerance:
-            break
-        finer = _finer(promised / settings.tolerance, order)
+        far, most = promised / aim, MAX_STEPS
+        if both and left <= aim:
+            errors = of_everything(runs, order)
+            far, most = 3 * errors.loads / settings.tolerance, LOADS_STEPS
+            if not far > 1:  # as NaN is not
+                return runs[-1], errors
+        finer = _finer(far, order)
         stuck = not (runs[-2].whole or runs[-1].whole)
-        if stuck or settings.duration / runs[-1].step * finer > MAX_STEPS:
+        if stuck or settings.duration / runs[-1].step * finer > most:
             break
         runs = [*runs[-2:], refined(runs[-1].step / finer)]
     return runs[-1], of_everything(runs, order)
