@@ -63,6 +63,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.motion.profiles.pulse import SmoothStep as SmoothStep
     from gbeam.results.imitation.comparison import Comparison as Comparison
     from gbeam.results.response import Response as Response
+    from gbeam.results.sensitivity import Sensitivity as Sensitivity
     from gbeam.results.steady.state_space import Gauge as Gauge
     from gbeam.results.steady.state_space import StateSpace as StateSpace
     from gbeam.results.study import Study as Study
@@ -75,6 +76,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.structure.material import Material as Material
     from gbeam.structure.section import Section as Section
     from gbeam.structure.support import Root as Root
+    from gbeam.studies.sensitivity import sensitivity as sensitivity
     from gbeam.sweeps.sweep import sweep as sweep
 
 __version__ = "0.2.0"
@@ -103,6 +105,7 @@ _HOME = {
     "ResponseSettings": "analysis.response.settings",
     "Root": "structure.support",
     "Section": "structure.section",
+    "Sensitivity": "results.sensitivity",
     "Sine": "motion.profiles.pulse",
     "SmoothStep": "motion.profiles.pulse",
     "StateSpace": "results.steady.state_space",
@@ -134,6 +137,7 @@ _HOME = {
     "read_record": "motion.bases.records.record",
     "read_scenario": "scenario.build",
     "rerun": "scenario.rerun",
+    "sensitivity": "studies.sensitivity",
     "simulate": "analysis.response.simulation",
     "smoothed": "motion.profiles.profile",
     "solve_equilibrium": "analysis.equilibrium.equilibrium",

@@ -162,3 +162,8 @@ def numbers(option: str, text: str, kind: str) -> list[float]:
     if min(values) < 0:
         raise InputError(option, f"has {min(values):g}", "give none that is negative")
     return values
+
+
+def names(texts: Sequence[str]) -> list[str]:
+    """Names given to an option that may be repeated, separated by commas in each."""
+    return [name.strip() for text in texts for name in text.split(",") if name.strip()]

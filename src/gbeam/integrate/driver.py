@@ -88,8 +88,23 @@ def integrate(
         Of count + 1 times; fewer where a step failed, a value was not finite, or `stop` said so. Traced equations are
         run to the end without a look at their values: a step that fails leaves NaN.
     """
-    run = _linear if isinstance(equations, LinearEquations) else _nonlinear
     steps = fitted(start, step, count, None if corners is None else corners.felt_by(scheme))
+    return through(equations, scheme, q, qd, steps, stop=stop, progress=progress)
+
+
+def through(
+    equations: LinearEquations | NonlinearEquations,
+    scheme: Scheme,
+    q: Any,
+    qd: Any,
+    steps: Steps,
+    *,
+    stop: Callable[[Floats], int | None] | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Trajectory:
+    """The same by steps that are given; the result has the ends of those that are kept."""
+    run = _linear if isinstance(equations, LinearEquations) else _nonlinear
+    time = np.append(steps.begin[:1], steps.end[steps.kept])
     pieces: list[tuple[Any, ...]] = []
     converged, stopped, done = True, False, 0
     for *piece, solved in run(equations, scheme, q, qd, steps):  # type: ignore[arg-type]
@@ -105,12 +120,11 @@ def integrate(
         pieces.append(tuple(piece))
         done += len(piece[0]) if len(pieces) > 1 else 0
         if progress is not None:
-            progress(done / count)
+            progress(done / (len(time) - 1))
         if stopped or not converged:
             break
     q, qd, qdd = (namespace(part[0]).concatenate(part) for part in zip(*pieces, strict=True))
-    time = np.asarray(start + step * np.arange(len(q)), dtype=np.float64)
-    return Trajectory(time, q, qd, qdd, converged, stopped)
+    return Trajectory(time[: len(q)], q, qd, qdd, converged, stopped)
 
 
 def _linear(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:

@@ -40,7 +40,7 @@ class Corners:
             return Corners(time, np.zeros(0, dtype=bool))
         beside = _BESIDE * (end - start) + _ULPS * np.spacing(max(abs(start), abs(end)))
         jump = np.zeros(len(time), dtype=bool)
-        for before, after in zip(_leaves(drive(time - beside)), _leaves(drive(time + beside)), strict=True):
+        for before, after in zip(leaves(drive(time - beside)), leaves(drive(time + beside)), strict=True):
             values = [np.asarray(side).reshape(len(time), -1) for side in (before, after)]
             change = np.abs(values[1] - values[0]).max(axis=1, initial=0.0)
             jump |= change > _JUMP * np.abs(values).max(initial=0.0)
@@ -51,13 +51,13 @@ class Corners:
         return self if scheme.order > 2 else Corners(self.time[self.jump], self.jump[self.jump])
 
 
-def _leaves(inputs: Any) -> Iterator[Any]:
+def leaves(inputs: Any) -> Iterator[Any]:
     """Arrays of what a drive returns: records, tuples, arrays and None."""
     if dataclasses.is_dataclass(inputs):
         inputs = [getattr(inputs, field.name) for field in dataclasses.fields(inputs)]
     if isinstance(inputs, list | tuple):
         for part in inputs:
-            yield from _leaves(part)
+            yield from leaves(part)
     elif inputs is not None:
         yield inputs
 

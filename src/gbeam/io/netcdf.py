@@ -20,6 +20,7 @@ from gbeam.io.hdf5 import write_groups
 from gbeam.io.machine import plan_group
 from gbeam.io.provenance import provenance_attrs, provenance_variables
 from gbeam.io.responses import response_group
+from gbeam.io.sensitivities import sensitivity_group
 from gbeam.io.steady import campbell_group, critical_group, critical_map_group, deflection_group, modes_group
 from gbeam.io.sweeps import sweep_group
 from gbeam.io.tables import models_group, placement_group, state_space_group
@@ -29,6 +30,7 @@ from gbeam.results.machine import MachinePlan
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
+from gbeam.results.sensitivity import Sensitivity
 from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.steady.modal import Campbell, Modes
 from gbeam.results.steady.stability import Critical, CriticalMap
@@ -50,6 +52,7 @@ _GROUPS: dict[type, Callable[[Any], Group]] = {
     MachinePlan: plan_group,
     ModelStudy: models_group,
     Placement: placement_group,
+    Sensitivity: sensitivity_group,
     StateSpace: state_space_group,
     Sweep: sweep_group,
 }

@@ -15,12 +15,14 @@ from gbeam.plots.drawing.files import save
 from gbeam.plots.environment import plot_base, plot_hub
 from gbeam.plots.loads import plot_loads, plot_loads_along
 from gbeam.plots.machine import plot_axes, plot_tracking
+from gbeam.plots.sensitivity import plot_sensitivity
 from gbeam.plots.steady import plot_campbell, plot_critical_map, plot_modes, plot_static
 from gbeam.plots.sweep import plot_sweep
 from gbeam.plots.tip import plot_tip
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.machine import AxesResult, MachinePlan
 from gbeam.results.response import Response
+from gbeam.results.sensitivity import Sensitivity
 from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.steady.modal import Campbell, Modes
 from gbeam.results.steady.stability import CriticalMap
@@ -49,7 +51,7 @@ def figures(result: Any, title: str = "") -> dict[str, Draw]:
 
     Parameters
     ----------
-    result : Response, Study, Comparison, Modes, Campbell, Deflection, CriticalMap, MachinePlan or Sweep
+    result : Response, Study, Comparison, Modes, Campbell, Deflection, CriticalMap, MachinePlan, Sweep or Sensitivity
     title : str
         First line above each; a study has its own.
     """
@@ -77,6 +79,8 @@ def figures(result: Any, title: str = "") -> dict[str, Draw]:
             return {"critical": partial(plot_critical_map, result, title)}
         case Sweep():
             return {name: partial(plot_sweep, result, name, title) for name in result.measures}
+        case Sensitivity():
+            return {name: partial(plot_sensitivity, result, name, title) for name in result.measures}
     raise TypeError(f"{type(result).__name__} has no figures")
 
 

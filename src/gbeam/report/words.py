@@ -33,6 +33,16 @@ def _plain(value: Any) -> Any:
     return value
 
 
+def columns(heads: list[str], rows: list[list[str]]) -> list[str]:
+    """Lines of a table, flush right but for its first column."""
+    widths = [max(len(row[k]) for row in [heads, *rows]) for k in range(len(heads))]
+    cells = [
+        [row[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(row[1:], widths[1:], strict=True))]
+        for row in [heads, *rows]
+    ]
+    return ["  ".join(row).rstrip() for row in cells]
+
+
 def xyz(values: Iterable[float]) -> dict[str, float]:
     """The components of a vector by their axes."""
     return {axis: float(value) for axis, value in zip("xyz", values, strict=True)}

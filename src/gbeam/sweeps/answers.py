@@ -10,15 +10,21 @@ from gbeam.errors import InputError
 if TYPE_CHECKING:
     from gbeam.analysis.study.case import Case
     from gbeam.motion.protocol import Motion
+    from gbeam.results.study import Study
 
 Facts = Mapping[str, Any]
 
 
 def _run(case: Case, motion: str | None, at: float | None) -> Facts:
     from gbeam.analysis.study.study import study
+
+    return study_facts(study(case))
+
+
+def study_facts(answer: Study) -> Facts:
+    """What ``run`` answers, with the comparisons by the centrifuge's name, and the figures of each verdict."""
     from gbeam.report.study.summary_json import to_json
 
-    answer = study(case)
     facts = to_json(answer)
     # By name, not by number; and what may be accepted stands under the verdict whether or not a limit is given.
     facts["comparisons"] = {

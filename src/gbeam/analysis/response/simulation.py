@@ -38,6 +38,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
 from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
+from gbeam.results.machine import AxesResult
 from gbeam.results.response import BaseMotion, HubResult, Response
 from gbeam.results.result import Floats
 from gbeam.results.section_forces import Loads
@@ -141,7 +142,7 @@ def simulate(
 
     up = ramp(problem, settings, kept, -before, before, **how("spinning up")) if before else None
     if up is not None and not up.whole:
-        return _result(structure, motion, settings, problem, (None, up, None), name, kept, StepErrors(), 1)
+        return response_of(structure, motion, settings, problem, (None, up, None), name, kept, StepErrors(), 1)
     begun = problem if up is None else going_on(problem, up)
 
     times, end = corners(structure, motion, coarse), settings.start + settings.duration
@@ -167,7 +168,7 @@ def simulate(
         down = ramp(going_on(problem, trajectory), settings, kept, at_end, after, **how("spinning down"))
     # An automatic step divides the coarse one: its stride brings every motion of a study back to the same times.
     stride = 1 if settings.step is not None or math.isnan(step) else round(coarse / step)
-    return _result(structure, motion, settings, problem, (up, trajectory, down), name, step, errors, stride)
+    return response_of(structure, motion, settings, problem, (up, trajectory, down), name, step, errors, stride)
 
 
 def _settings(options: dict[str, Any]) -> ResponseSettings:
@@ -190,10 +191,10 @@ def _traced(structure: Structure, motion: Motion, settings: ResponseSettings, na
     entire = integrated(problem, replace(settings, start=start, duration=(before + count + after) * step), step)
     up, trajectory, down = split(entire, before, count, after)
     assert trajectory is not None
-    return _result(structure, motion, settings, problem, (up, trajectory, down), name, step, StepErrors(), 1)
+    return response_of(structure, motion, settings, problem, (up, trajectory, down), name, step, StepErrors(), 1)
 
 
-def _result(
+def response_of(
     structure: Structure,
     motion: Motion,
     settings: ResponseSettings,
@@ -203,6 +204,8 @@ def _result(
     step: float,
     step_errors: StepErrors,
     stride: int,
+    *,
+    axes_of: Callable[[Any, Floats], AxesResult | None] = axes_result,
 ) -> Response:
     """Sample spin-up, flight and spin-down on the coarse grid and describe them; peaks are of the flight's times."""
     up, trajectory, down = runs
@@ -228,7 +231,7 @@ def _result(
         peaks = replace(peaks, loads=of_flight)
     if hub is not None and not motion.free and loads is not None and loads.drive_torque is not None:
         hub = replace(hub, drive_torque=loads.drive_torque)
-    axes = None if traced or motion.kind != "centrifuge" else axes_result(motion, time)  # type: ignore[arg-type]
+    axes = None if traced or motion.kind != "centrifuge" else axes_of(motion, time)
     outcome, message, warnings = "done", "", tuple(f"record: {note}" for note in getattr(motion, "notes", ()))
     displacement = fine[::stride] if up is None and down is None else structure.displacement(q[:, beam])
     errors = Errors()

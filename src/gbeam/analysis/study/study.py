@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 
 from gbeam.analysis.imitation.comparison import compare
 from gbeam.analysis.response.settings import ResponseSettings
@@ -54,12 +55,19 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
         raise ComputationError(
             first.outcome, "; ".join(f"motion.{n}: {failure.message}" for n, failure in failures.items())
         )
+    return study_of(case, responses, failures)
+
+
+def study_of(
+    case: Case, responses: Mapping[str, Response], failures: Mapping[str, Failure] = MappingProxyType({})
+) -> Study:
+    """The study of responses that are computed: those of a centrifuge and its flight are compared."""
     comparisons = tuple(
         replace(_compared(responses[flight], responses[name], case.accept.get(name, {})), provenance=case.provenance)
         for name, flight in case.tracks.items()
         if {flight, name} <= responses.keys() and responses[flight].outcome == responses[name].outcome == "done"
     )
-    return Study(case.title, responses, comparisons, failures, provenance=case.provenance)
+    return Study(case.title, dict(responses), comparisons, dict(failures), provenance=case.provenance)
 
 
 def _answers(

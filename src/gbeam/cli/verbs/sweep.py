@@ -11,7 +11,7 @@ from cyclopts import Parameter
 
 from gbeam.cli.console import Watch
 from gbeam.cli.failures import FAILED, complain
-from gbeam.cli.inputs import number, signed
+from gbeam.cli.inputs import names, number, signed
 from gbeam.cli.invocation import command
 from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile
 from gbeam.cli.outputs import list_files, show
@@ -76,7 +76,6 @@ def sweep(
     """
     folder = out if out is not None else Path("out") / f"{scenario.stem}-sweep"
     refuse_unwritable(folder)
-    names = [name.strip() for text in measure for name in text.split(",") if name.strip()]
 
     from gbeam.sweeps.sweep import sweep as compute
 
@@ -88,7 +87,7 @@ def sweep(
         answer = compute(
             scenario,
             over,
-            names,
+            names(measure),
             verb=verb,
             motion=motion,
             at=None if at is None else number("--at", at, "time"),

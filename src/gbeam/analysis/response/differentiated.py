@@ -1,0 +1,196 @@
+"""Responses with a little less and a little more of a parameter, by the derivative of one run.
+
+The derivative of every step is exact. A response of the pair is made of q ± ½ w ∂q/∂p by the lines that make any
+response, so that the difference of any two figures over the width w is the derivative of that figure, but for terms of
+second order in w: a peak needs no rule of its own, since to first order it does not matter when it occurs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from gbeam.analysis.response.linearised import Pair, Posed, linearised
+from gbeam.analysis.response.problem import problem_of
+from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.simulation import response_of
+from gbeam.analysis.response.stepping import corners, first_step, scheme_of
+from gbeam.analysis.response.trajectories import steps_beyond
+from gbeam.integrate.driver import Trajectory, through
+from gbeam.integrate.steps import Corners, Steps, fitted, leaves
+from gbeam.integrate.tangent import tangent
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.centrifuge.history import axes_result
+from gbeam.motion.protocol import Motion
+from gbeam.results.errors import StepErrors
+from gbeam.results.machine import AxesResult
+from gbeam.results.response import Response
+from gbeam.results.result import Floats
+
+Variant = tuple[Structure | None, Motion | None]  # None where it is the run's own
+_BYTES = 256 * 2**20  # of derivatives at once
+_SAME_TIME = 1e-9  # of the duration
+_JUMP = 1e-6  # of the largest value: more than what a smooth motion changes by in the same time
+
+
+class Differentiated:
+    """A run that is done, about which responses with other values of parameters are made.
+
+    Parameters
+    ----------
+    structure, motion, settings
+        As for :func:`gbeam.simulate`; the integrator is not adaptive.
+    done : Response
+        Its answer, whose steps are taken again.
+    loads, axes : bool
+        Whether the responses have loads, and say what a machine's axes do: either takes as long as the rest.
+    """
+
+    def __init__(
+        self,
+        structure: Structure,
+        motion: Motion,
+        settings: ResponseSettings,
+        done: Response,
+        *,
+        loads: bool = True,
+        axes: bool = True,
+    ) -> None:
+        self.done, self.axes = done, axes
+        self.settings = replace(settings, estimate=False, loads=loads)
+        start, duration = settings.start, settings.duration
+        motion = motion.over(start, start + duration)
+        self.coarse, self.scheme = first_step(structure, motion, settings), scheme_of(settings)
+        self.stride = 1 if settings.step is not None else round(self.coarse / done.step)
+        kept = self.stride * done.step
+        before, after = steps_beyond(motion, settings, kept)
+        self.begin = start - before * kept
+        self.sampled = np.linspace(start, start + duration, 257)
+        self.nominal = self._posed((structure, motion))
+        self.jumps = self._jumps(self.nominal)
+        count = round(duration / done.step)
+        up, down = fitted(self.begin, kept, before), fitted(start + kept * (count // self.stride), kept, after)
+        felt = self._corners(self.nominal).felt_by(self.scheme)
+        self.parts = up, fitted(start, done.step, count, felt), down
+        # The run once more, with the ends of the parts of split steps.
+        problem = self.nominal.problem
+        q, qd = problem.q, problem.qd
+        self.runs: list[Trajectory | None] = []
+        for part in self.parts:
+            run = None
+            if len(part):
+                run = through(problem.equations, self.scheme, q, qd, replace(part, kept=np.ones(len(part), dtype=bool)))
+                q, qd = run.q[-1], run.qd[-1]
+            self.runs.append(run)
+
+    def pair(self, less: Variant, more: Variant) -> Pair:
+        """The problems with a little less and a little more of a parameter."""
+        return self._posed(less), self._posed(more)
+
+    def jumps_move(self, pair: Pair) -> bool:
+        """Whether something jumps at another time where a parameter is another: steps that stand still miss that."""
+        for posed in pair:
+            jumps = self._jumps(posed)
+            if len(jumps) != len(self.jumps):
+                return True
+            if len(jumps) and np.abs(jumps - self.jumps).max() > _SAME_TIME * self.settings.duration:
+                return True
+        return False
+
+    def own(self) -> Response:
+        """The response of the run itself, made as those of the pairs are."""
+        return self._response(self.nominal, [None] * 3)
+
+    def responses(self, pairs: Sequence[Pair], width: Floats) -> Iterator[tuple[Response, Response]]:
+        """Responses with less and with more of each parameter.
+
+        Parameters
+        ----------
+        pairs : sequence of Pair
+            One for each parameter.
+        width : (p,)
+            By how much the parameter differs between the two of a pair.
+        """
+        each = 24 * self.nominal.problem.q.size * sum(len(part) + 1 for part in self.parts)
+        some = max(1, _BYTES // each)
+        for first in range(0, len(pairs), some):
+            chosen, by = pairs[first : first + some], width[first : first + some]
+            slopes = self._slopes(chosen, by)
+            for k, (pair, w) in enumerate(zip(chosen, by, strict=True)):
+                moved = [None if part is None else tuple(x[..., k] * w / 2 for x in part) for part in slopes]
+                back = [None if part is None else tuple(-x for x in part) for part in moved]
+                yield self._response(pair[0], back), self._response(pair[1], moved)
+
+    def _slopes(self, pairs: Sequence[Pair], width: Floats) -> list[tuple[Floats, ...] | None]:
+        """Derivatives of q, q̇, q̈ (t, n, p) at the ends of the kept steps of each part."""
+        system = linearised(self.nominal, pairs, width)
+        less, more = zip(*pairs, strict=True)
+        q, qd = (
+            np.stack([getattr(b.problem, x) - getattr(a.problem, x) for a, b in zip(less, more, strict=True)], 1)
+            / width
+            for x in ("q", "qd")
+        )
+        slopes: list[tuple[Floats, ...] | None] = []
+        for steps, run in zip(self.parts, self.runs, strict=True):
+            if run is None:
+                slopes.append(None)
+                continue
+            made = tangent(system, self.scheme, steps, run, q, qd)
+            q, qd = made[0][-1], made[1][-1]
+            kept = np.append(True, steps.kept)
+            slopes.append(tuple(x[kept] for x in made))
+        return slopes
+
+    def _response(self, posed: Posed, moves: Sequence[tuple[Floats, ...] | None]) -> Response:
+        runs: Any = tuple(
+            None if run is None else _moved(run, steps, by)
+            for run, steps, by in zip(self.runs, self.parts, moves, strict=True)
+        )
+        return response_of(
+            posed.structure, posed.motion, self.settings, posed.problem, runs, self.done.name, self.done.step,
+            StepErrors(), self.stride, axes_of=self._axes,
+        )  # fmt: skip
+
+    def _axes(self, motion: Any, time: Floats) -> AxesResult | None:
+        if not self.axes:
+            return None
+        return self.done.axes if motion is self.nominal.motion else axes_result(motion, time)
+
+    def _posed(self, variant: Variant) -> Posed:
+        structure, motion = variant
+        structure = structure or self.nominal.structure
+        if motion is None:
+            motion = self.nominal.motion
+        else:
+            motion = motion.over(self.settings.start, self.settings.start + self.settings.duration)
+        return Posed(structure, motion, problem_of(structure, motion, self.begin, self.settings.begin))
+
+    def _corners(self, posed: Posed) -> Corners:
+        times = corners(posed.structure, posed.motion, self.coarse)
+        start = self.settings.start
+        return Corners.of(times, posed.problem.equations.drive, start, start + self.settings.duration)
+
+    def _jumps(self, posed: Posed) -> Floats:
+        """Times at which something jumps, by more than the rounding of what is zero on both sides."""
+        found, drive = self._corners(posed), posed.problem.equations.drive
+        time = found.time[found.jump]
+        if not len(time):
+            return time
+        beside = _SAME_TIME * self.settings.duration
+        jumps = np.zeros(len(time), dtype=bool)
+        for each in zip(*(leaves(drive(t)) for t in (time - beside, time + beside, self.sampled)), strict=True):
+            before, after, all_over = (np.asarray(values).reshape(len(values), -1) for values in each)
+            jumps |= np.abs(after - before).max(axis=1, initial=0.0) > _JUMP * np.abs(all_over).max(initial=0.0)
+        return time[jumps]
+
+
+def _moved(run: Trajectory, steps: Steps, by: tuple[Floats, ...] | None) -> Trajectory:
+    """A run at the ends of the kept steps, its histories moved."""
+    kept = np.append(True, steps.kept)
+    histories = [x[kept] for x in (run.q, run.qd, run.qdd)]
+    if by is not None:
+        histories = [x + dx for x, dx in zip(histories, by, strict=True)]
+    return Trajectory(run.time[kept], *histories)

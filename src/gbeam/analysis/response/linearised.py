@@ -1,0 +1,103 @@
+"""The equations of motion linearised about a run, with their derivatives with respect to parameters.
+
+A parameter enters by pairs of problems, a little less and a little more of it. Of a linear model the coefficients' and
+the motions' differences are multiplied out once for all parameters; of a nonlinear one the residual is evaluated at
+the run's states for either of a pair, and its Jacobians are JAX's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gbeam.analysis.response.problem import Problem
+from gbeam.integrate.equations import LinearEquations
+from gbeam.integrate.tangent import System
+from gbeam.mechanics.equations.terms import coefficient_matrix, terms
+from gbeam.mechanics.structure import Structure
+from gbeam.results.result import Floats
+
+
+@dataclass(frozen=True)
+class Posed:
+    """A structure in an environment, and the problem that they pose."""
+
+    structure: Structure
+    motion: Any
+    problem: Problem
+
+
+Pair = tuple[Posed, Posed]  # of less and of more of a parameter
+
+
+def linearised(nominal: Posed, pairs: Sequence[Pair], width: Floats) -> System:
+    """Return the equations linearised about states of the nominal problem.
+
+    Parameters
+    ----------
+    nominal : Posed
+    pairs : sequence of Pair
+        One for each parameter.
+    width : (p,)
+        By how much the parameter differs between the two of a pair.
+    """
+    if isinstance(nominal.problem.equations, LinearEquations):
+        return _linear(nominal, pairs, width)
+    return _nonlinear(nominal, pairs, width)
+
+
+def _linear(nominal: Posed, pairs: Sequence[Pair], width: Floats) -> System:
+    equations: Any = nominal.problem.equations
+    loaded = nominal.structure.history is not None
+    n = nominal.structure.size
+
+    def matrix(posed: Posed) -> Floats:
+        return coefficient_matrix(posed.structure.coefficients, loaded=loaded)
+
+    own = matrix(nominal)
+    by_beam = np.stack([(matrix(more) - matrix(less)) / w for (less, more), w in zip(pairs, width, strict=True)], 1)
+    flat = by_beam.reshape(len(own), -1)
+    # A parameter of the beam alone leaves the motion as it is.
+    moving = [k for k, pair in enumerate(pairs) if _moves(nominal, pair)]
+
+    def system(time: Floats, q: Floats, qd: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        inputs = equations.drive(time)
+        c, k, f = equations.matrices(inputs)
+        qdd = np.linalg.solve(equations.mass, (f - (k @ q[..., None] + c @ qd[..., None])[..., 0]).T).T
+        forces = -(terms(q, qd, qdd, *inputs) @ flat).reshape(len(time), -1, n)
+        for j in moving:
+            less, more = (terms(q, qd, qdd, *posed.problem.equations.drive(time)) for posed in pairs[j])
+            forces[:, j] -= (more - less) / width[j] @ own
+        return np.broadcast_to(equations.mass, k.shape), c, k, np.swapaxes(forces, 1, 2)
+
+    return system
+
+
+def _moves(nominal: Posed, pair: Pair) -> bool:
+    return any(posed.motion is not nominal.motion or posed.structure.history is not None for posed in pair)
+
+
+def _equations(posed: Posed) -> Any:
+    return posed.problem.equations
+
+
+def _nonlinear(nominal: Posed, pairs: Sequence[Pair], width: Floats) -> System:
+    from gbeam.analysis.response import compiled
+
+    equations: Any = nominal.problem.equations
+
+    def system(time: Floats, q: Floats, qd: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        mass, c, k, qdd = compiled.about(equations.residual, q, qd, equations.drive(time))
+        forces = np.empty((*q.shape, len(pairs)))
+        for j, pair in enumerate(pairs):
+            less, more = (
+                compiled.residuals(each.residual, q, qd, qdd, each.drive(time))
+                for each in (_equations(posed) for posed in pair)
+            )
+            forces[..., j] = -(more - less) / width[j]
+        return mass, c, k, forces
+
+    return system

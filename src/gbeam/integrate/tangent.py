@@ -1,0 +1,129 @@
+"""The derivative of a run: the equations linearised about it, taken through time by the steps of the run itself.
+
+Every step of a run solves r(q, q̇, q̈, t; p) = 0 at its stages. Differentiated with respect to p it is the same step of
+
+    M δq̈ + C δq̇ + K δq = −∂r/∂p,
+
+with M, C and K at the states of the run: the derivative of the discrete solution, not of the continuous one. The
+parameters are right-hand sides of one system, so many cost little more than one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.integrate.driver import Trajectory
+from gbeam.integrate.schemes import Scheme, Tableau
+from gbeam.integrate.steps import Steps
+
+Floats = NDArray[np.float64]
+# Times, q and q̇ (k, n) there -> M, C, K (k, n, n) and −∂r/∂p (k, n, p).
+System = Callable[[Floats, Floats, Floats], tuple[Floats, Floats, Floats, Floats]]
+_CHUNK = 256  # steps whose systems are solved at once
+
+
+def tangent(
+    system: System, scheme: Scheme, steps: Steps, run: Trajectory, q: Floats, qd: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Derivatives of a run with respect to p parameters.
+
+    Parameters
+    ----------
+    system : callable
+        The equations linearised about the states that it is given.
+    scheme : Scheme
+    steps : Steps
+        Of the run, (t,).
+    run : Trajectory
+        At the start and at the ends of all steps, split ones too, (t + 1,).
+    q, qd : (n, p)
+        Derivatives of the initial state.
+
+    Returns
+    -------
+    q, qd, qdd : (t + 1, n, p)
+        At the run's times.
+    """
+    shape = (len(steps) + 1, *q.shape)
+    made = np.empty(shape), np.empty(shape), np.empty(shape)
+    made[0][0], made[1][0] = q, qd
+    made[2][0] = _accelerations(system, steps.first[:1], run, [0], q[None], qd[None])[0]
+    z = np.einsum("ij,jnp->inp", scheme.tableau(steps.length[0]).first, np.stack([history[0] for history in made]))
+    # A chunk ends where the scheme starts anew.
+    ends = np.append(np.flatnonzero(steps.anew[:-1]) + 1, len(steps)) if scheme.ends else [len(steps)]
+    begin = 0
+    for end in ends:
+        for first in range(begin, end, _CHUNK):
+            part = slice(first, min(first + _CHUNK, end))
+            z, piece = _chunk(system, scheme, z, steps[part], _part(run, part))
+            for history, values in zip(made, piece, strict=True):
+                history[part.start + 1 : part.stop + 1] = values
+        if end < len(steps):
+            q, qd = made[0][end], made[1][end]
+            qdd = _accelerations(system, steps.resume[[end - 1]], run, [end], q[None], qd[None])[0]
+            z = np.einsum("ij,jnp->inp", scheme.tableau(steps.length[end]).first, np.stack([q, qd, qdd]))
+        begin = end
+    return made
+
+
+def _part(run: Trajectory, steps: slice) -> Trajectory:
+    at = slice(steps.start, steps.stop + 1)
+    return Trajectory(run.time[at], run.q[at], run.qd[at], run.qdd[at])
+
+
+def _accelerations(system: System, time: Floats, run: Trajectory, at: Any, q: Floats, qd: Floats) -> Floats:
+    """δq̈ (k, n, p) that the linearised equations demand at times, where the run's states have the indices `at`."""
+    mass, c, k, f = system(time, run.q[at], run.qd[at])
+    return np.asarray(np.linalg.solve(mass, f - c @ qd - k @ q), dtype=np.float64)
+
+
+def _chunk(
+    system: System, scheme: Scheme, z: Floats, steps: Steps, run: Trajectory
+) -> tuple[Floats, tuple[Floats, Floats, Floats]]:
+    """Take steps from z (m, n, p): the next z, and δq, δq̇, δq̈ at their ends."""
+    t = scheme.tableau(steps.length)
+    stages, (m, n, p) = len(scheme.offsets), z.shape
+    states = _states(run, scheme, t)
+    at = [system(steps.times(offset), *state) for offset, state in zip(scheme.offsets, states, strict=True)]
+    c_v, c_q, w_v, w_q = (weights[..., None, None] for weights in (t.c_v, t.c_q, t.w_v, t.w_q))
+    rows, sides = [], []
+    for i, (mass, c, k, f) in enumerate(at):
+        blocks = [c_v[:, i, j] * c + c_q[:, i, j] * k + (mass if i == j else 0) for j in range(stages)]
+        rows.append(np.concatenate(blocks, axis=-1))
+        sides.append(np.concatenate([*(-(w_v[:, i, a] * c + w_q[:, i, a] * k) for a in range(m)), f], axis=-1))
+    # x = onto z + own at all stages.
+    x = np.linalg.solve(np.concatenate(rows, axis=-2), np.concatenate(sides, axis=-2))
+    onto, own = x[..., : m * n], x[..., m * n :]
+    by_stage = x.reshape(len(steps), stages, n, m * n + p)
+    unit = np.eye(m * n, m * n + p).reshape(m, n, m * n + p)
+    maps = np.einsum("tij,jnk->tink", t.g, unit) + np.einsum("tis,tsnk->tink", t.d, by_stage)
+    maps = maps.reshape(len(steps), m * n, m * n + p)
+    before = np.empty((len(steps), m * n, p))
+    state = z.reshape(m * n, p)
+    for index, one in enumerate(maps):
+        before[index] = state
+        state = one[:, : m * n] @ state + one[:, m * n :]
+    x = (onto @ before + own).reshape(len(steps), stages, n, p)
+    ends = np.einsum("tij,tjnp->tinp", t.end_z, before.reshape(len(steps), m, n, p))
+    ends += np.einsum("tis,tsnp->tinp", t.end_x, x)
+    q, qd, qdd = ends[:, 0], ends[:, 1], x[:, -1]
+    # The last stage's is that at the end, unless the stage lies before it, or just before a jump.
+    again = np.flatnonzero(steps.jump) if scheme.ends else np.arange(len(steps))
+    if again.size:
+        qdd[again] = _accelerations(system, steps.end[again], run, again + 1, q[again], qd[again])
+    return state.reshape(m, n, p), (q, qd, qdd)
+
+
+def _states(run: Trajectory, scheme: Scheme, t: Tableau) -> list[tuple[Floats, Floats]]:
+    """q and q̇ of the run at the stages of its steps."""
+    if scheme.ends:
+        return [(run.q[1:], run.qd[1:])]
+    # z is q and q̇: what a step adds to it says what its stages' accelerations were.
+    z = np.stack([run.q, run.qd], axis=1)
+    x = np.linalg.solve(t.d, z[1:] - t.g @ z[:-1])
+    q, qd = t.w_q @ z[:-1] + t.c_q @ x, t.w_v @ z[:-1] + t.c_v @ x
+    return [(q[:, i], qd[:, i]) for i in range(len(scheme.offsets))]

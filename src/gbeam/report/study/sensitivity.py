@@ -1,0 +1,80 @@
+"""Sensitivities in words, and as one JSON object."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gbeam.report.words import columns, number, percent, warning_lines
+from gbeam.results.sensitivity import Sensitivity
+
+
+def to_json(sensitivity: Sensitivity, files: Iterable[Path] = ()) -> dict[str, Any]:
+    """Sensitivities as JSON: of each measure the parameters, those that matter most first."""
+    s = sensitivity
+    return {
+        "title": s.title,
+        "outcome": "done",
+        "verb": s.verb,
+        "measures": {
+            name: {
+                "value": float(s.figures[k]),
+                "unit": s.units[k],
+                "parameters": [
+                    {
+                        "path": s.parameters[j],
+                        "value": float(s.values[j]),
+                        "unit": s.parameter_units[j],
+                        "derivative": float(s.derivatives[k, j]),
+                        "relative": float(s.relative[k, j]),
+                        "method": s.methods[j],
+                        "error": float(s.errors[k, j]),
+                        "kink": bool(s.kinks[k, j]),
+                    }
+                    for j in s.ranked(name)
+                ],
+            }
+            for k, name in enumerate(s.measures)
+        },
+        "not_varied": list(s.not_varied),
+        "warnings": list(s.warnings),
+        "files": [str(file) for file in files],
+    }
+
+
+def text(sensitivity: Sensitivity) -> str:
+    """A table for each measure, those parameters first by which it changes most."""
+    s = sensitivity
+    lines: list[str] = []
+    for k, name in enumerate(s.measures):
+        lines += [f"{name} = {number(float(s.figures[k]))} {s.units[k]}".rstrip()]
+        rows = [_row(s, k, int(j)) for j in s.ranked(name)]
+        lines += [
+            "  " + line for line in columns(["of", "value", "+1 % changes it by", "derivative, SI", ""], rows)
+        ] + [""]
+    exact = s.methods.count("exact")
+    if exact:
+        lines.append(
+            f"{exact} of {len(s.methods)} parameters by the exact derivative of the run, its steps held fixed."
+        )
+    if exact < len(s.methods):
+        lines.append("± is how far the differences of second and fourth order are apart.")
+    lines += [f"not varied: {each}" for each in s.not_varied]
+    return "\n".join([*lines, *warning_lines(s)])
+
+
+def _row(s: Sensitivity, k: int, j: int) -> list[str]:
+    derivative, change = float(s.derivatives[k, j]), 0.01 * float(s.derivatives[k, j] * s.values[j])
+    share = f"{percent(change / float(s.figures[k]))}" if s.figures[k] else f"{number(change)} {s.units[k]}".rstrip()
+    error = "" if np.isnan(s.errors[k, j]) else f"± {number(float(s.errors[k, j]), 1)}"
+    value = f"{number(float(s.values[j]), 6)} {s.parameter_units[j]}".rstrip()
+    return [
+        s.parameters[j],
+        value,
+        share,
+        number(derivative),
+        " ".join([error, "kink" if s.kinks[k, j] else ""]).strip(),
+    ]

@@ -1,0 +1,253 @@
+"""Derivatives of whatever is read from an answer, with respect to physical values of the scenario.
+
+Of responses over time they come from the derivative of the run (`gbeam.analysis.response.differentiated`); where a jump
+moves with the value, whose steps that stand still miss, and of the other verbs' answers, which are cheap and smooth,
+from central differences of fourth order, which say how far they differ from those of second order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from gbeam.analysis.response.differentiated import Differentiated, Variant
+from gbeam.analysis.response.simulation import simulate
+from gbeam.analysis.study.case import Case
+from gbeam.analysis.study.study import study, study_of
+from gbeam.errors import ComputationError, GbeamError, InputError
+from gbeam.motion.protocol import Motion
+from gbeam.results.response import Response
+from gbeam.results.result import Floats
+from gbeam.results.study import Study
+from gbeam.studies.parameters import PhysicalValue
+from gbeam.sweeps.evaluate import Question
+
+Read = Callable[[Any], Floats]  # of an answer, a Study of run or another verb's facts: what is differentiated, (m,)
+Progress = Callable[[str, float], None]
+_NEAR = 1e-5  # of the value: on either side, about a run whose own derivative is exact
+_RUNS, _FACTS = 1e-4, 1e-3  # the same, of differences of whole runs and of other answers
+_AT_ZERO = 1e-6  # in SI units, in place of a share of what is zero
+EXACT, DIFFERENCE = "exact", "difference"
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """What was read from an answer, and its derivatives.
+
+    Parameters
+    ----------
+    values : (m,)
+    slopes, errors : (m, p)
+        Errors are those of differences; NaN where the derivative is exact.
+    methods : tuple of str
+        ``exact`` or ``difference``, of each parameter.
+    bends : (m, p)
+        By how much the changes on either side differ, over the step: of the order of the step where it is smooth.
+    """
+
+    values: Floats
+    slopes: Floats
+    errors: Floats
+    methods: tuple[str, ...]
+    bends: Floats
+
+
+class Neighbourhood:
+    """A case that is answered, and those with a little less and a little more of each value.
+
+    Parameters
+    ----------
+    question : Question
+        Whose verb answers.
+    parameters : sequence of PhysicalValue
+    values : sequence of float, optional
+        Of the parameters; the scenario's by default.
+    progress : callable, optional
+        Called with what is being done and the fraction of it done.
+
+    Raises
+    ------
+    InputError
+        If steps are chosen by error control, or a value may not be a little more or less.
+    ComputationError
+        If a run is not done.
+    """
+
+    def __init__(
+        self,
+        question: Question,
+        parameters: Sequence[PhysicalValue],
+        values: Sequence[float] | None = None,
+        progress: Progress | None = None,
+    ) -> None:
+        self.question, self.parameters, self.progress = question, parameters, progress or (lambda *_: None)
+        self.values = [each.value for each in parameters] if values is None else [float(value) for value in values]
+        self.case = question.case(self._changes(None, 0.0))
+        self.answer: Any
+        if question.verb == "run":
+            if self.case.response.integrator == "adaptive":
+                fix = "choose another, such as --set response.integrator=newmark"
+                raise InputError("response.integrator", "is adaptive, whose steps have no derivative", fix)
+            self.answer = study(self.case, self.progress)
+            self._enrich()
+        else:
+            self.answer = question.facts(self.case)
+
+    def slopes(self, read: Read, motions: Sequence[str] = (), **parts: bool) -> Slopes:
+        """Derivatives of what is read.
+
+        Parameters
+        ----------
+        read : callable
+        motions : sequence of str
+            Those whose responses it reads; the others are not differentiated.
+        **parts
+            ``loads`` and ``axes``: false where it reads no loads, or nothing of a machine's axes and no comparison.
+        """
+        if self.question.verb == "run":
+            return self._of_runs(read, motions or list(self.case.motions), parts)
+        values = read(self.answer)
+        rows = []
+        for k, each in enumerate(self.parameters):
+            self.progress(each.path, k / len(self.parameters))
+            step = self._step(k, _FACTS)
+
+            def at(steps: float, k: int = k, step: float = step) -> Floats:
+                return read(self.question.facts(self._case(k, steps * step)))
+
+            rows.append(_differences(at, values, step))
+        return _gathered(values, rows, [DIFFERENCE] * len(rows))
+
+    def _of_runs(self, read: Read, motions: Sequence[str], parts: Mapping[str, bool]) -> Slopes:
+        for name in motions:
+            if name in self.answer.failures:
+                raise ComputationError(self.answer.failures[name].outcome, self.answer.failures[name].message)
+            done = self.answer.responses[name]
+            if done.outcome != "done":
+                raise ComputationError(done.outcome, f"motion.{name}: {done.message}")
+        structure, settings, done = self.case.assemble(), self.case.response, self.answer.responses
+        about = {
+            name: Differentiated(structure, self.case.motions[name], settings, done[name], **parts)
+            for name in motions
+        }
+        own = {name: each.own() for name, each in about.items()}
+        values = read(study_of(self.case, own))
+        steps = np.array([self._step(k, _NEAR) for k in range(len(self.parameters))])
+        # Of each motion the pairs of the parameters that it feels; a parameter by which something jumps is left.
+        pairs: dict[str, dict[int, Any]] = {name: {} for name in motions}
+        jumping = set()
+        for k, step in enumerate(steps):
+            less, more = (self._case(k, sign * step) for sign in (-1, 1))
+            for name in motions:
+                if not self._felt(k, name):
+                    continue
+                pair = about[name].pair(self._variant(less, k, name), self._variant(more, k, name))
+                if about[name].jumps_move(pair):
+                    jumping.add(k)
+                pairs[name][k] = pair
+        responses = {
+            name: _only(about[name], [(k, pair) for k, pair in each.items() if k not in jumping], 2 * steps)
+            for name, each in pairs.items()
+        }
+        rows = []
+        for k, each in enumerate(self.parameters):
+            self.progress(each.path, k / len(self.parameters))
+            if k in jumping:
+                step = self._step(k, _RUNS)
+
+                def at(steps: float, k: int = k, step: float = step) -> Floats:
+                    return read(self._run(k, steps * step, motions))
+
+                rows.append(_differences(at, values, step))
+                continue
+            sides: tuple[dict[str, Response], dict[str, Response]] = (dict(own), dict(own))
+            for name in motions:
+                if k in pairs[name]:
+                    sides[0][name], sides[1][name] = next(responses[name])
+            ends = [read(study_of(self.case, side)) for side in sides]
+            rows.append((*_slope(ends[0], values, ends[1], steps[k]), np.full(len(values), np.nan)))
+        return _gathered(values, rows, [DIFFERENCE if k in jumping else EXACT for k in range(len(rows))])
+
+    def _run(self, k: int, step: float, motions: Sequence[str]) -> Study:
+        """The responses in some environments with another value of a parameter, by the steps of the nominal run."""
+        case = self._case(k, step)
+        structure = case.assemble()
+        responses = {}
+        for name in motions:
+            settings = replace(case.response, step=self.answer.responses[name].step, estimate=False)
+            responses[name] = simulate(structure, case.motions[name], settings, name=name)
+        return study_of(case, responses)
+
+    def _case(self, k: int, step: float) -> Case:
+        each = self.parameters[k]
+        try:
+            case = self.question.case(self._changes(k, step))
+        except GbeamError as error:
+            value, word = self.values[k], "less" if step < 0 else "more"
+            problem = f"{each.path} = {value:.6g} {each.unit}".rstrip() + f" may not be a little {word}"
+            raise InputError(
+                "--with", f"{problem} ({str(error).splitlines()[0]})", "leave it out, or move it off its bound"
+            ) from None
+        return replace(case, model=self.case.model)
+
+    def _changes(self, k: int | None, step: float) -> tuple[str, ...]:
+        values = [value + (step if i == k else 0.0) for i, value in enumerate(self.values)]
+        return tuple(
+            change
+            for each, value in zip(self.parameters, values, strict=True)
+            if value != each.value
+            for change in each.overrides(value)
+        )
+
+    def _step(self, k: int, share: float) -> float:
+        return share * abs(self.values[k]) or _AT_ZERO
+
+    def _felt(self, k: int, name: str) -> bool:
+        """Whether a parameter has anything to do with a motion."""
+        of = self.parameters[k].of_motion
+        return not of or of == name or self.case.tracks.get(name) == of
+
+    def _variant(self, case: Case, k: int, name: str) -> Variant:
+        if self.parameters[k].path.startswith("beam."):
+            return case.assemble(), None
+        return None, _motion(case, name)
+
+    def _enrich(self) -> None:
+        """The model with as many shapes as the study found it needs."""
+        sizes = {response.q.shape[1] for response in self.answer.responses.values()}
+        while self.case.model.automatic and self.case.assemble().size < max(sizes):
+            richer = self.case.model.richer()
+            if richer is None:
+                break
+            self.case = replace(self.case, model=richer)
+
+
+def _motion(case: Case, name: str) -> Motion:
+    return case.motions[name]
+
+
+def _only(
+    about: Differentiated, chosen: Sequence[tuple[int, Any]], widths: Floats
+) -> Iterator[tuple[Response, Response]]:
+    return about.responses([pair for _, pair in chosen], widths[[k for k, _ in chosen]])
+
+
+def _slope(less: Floats, middle: Floats, more: Floats, step: float) -> tuple[Floats, Floats]:
+    """The central difference, and by how much the slopes on either side differ."""
+    return (more - less) / (2 * step), np.abs(more - 2 * middle + less) / step
+
+
+def _differences(at: Callable[[float], Floats], middle: Floats, step: float) -> tuple[Floats, Floats, Floats]:
+    """Central differences of fourth order, the bend, and how far those of second order are away."""
+    inner, outer = ((at(n), at(-n)) for n in (1.0, 2.0))
+    slope, bend = _slope(inner[1], middle, inner[0], step)
+    fourth = (8 * (inner[0] - inner[1]) - (outer[0] - outer[1])) / (12 * step)
+    return fourth, bend, np.abs(fourth - slope)
+
+
+def _gathered(values: Floats, rows: Sequence[tuple[Floats, Floats, Floats]], methods: Sequence[str]) -> Slopes:
+    slopes, bends, errors = (np.stack(each, axis=1) for each in zip(*rows, strict=True))
+    return Slopes(values, slopes, errors, tuple(methods), bends)

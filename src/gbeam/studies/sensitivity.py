@@ -1,0 +1,192 @@
+"""Which value matters, and how much: derivatives of figures with respect to physical values."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from gbeam.errors import GbeamError, InputError
+from gbeam.results.result import Flags, Floats
+from gbeam.results.sensitivity import Sensitivity
+from gbeam.results.study import Study
+from gbeam.scenario.load import load
+from gbeam.scenario.origin import provenance
+from gbeam.scenario.text.paths import path_text
+from gbeam.scenario.text.suggest import advise
+from gbeam.studies.derivatives import Neighbourhood, Progress, Slopes
+from gbeam.studies.parameters import PhysicalValue, physical_values
+from gbeam.sweeps.answers import VERBS, Facts, study_facts
+from gbeam.sweeps.evaluate import Question
+from gbeam.sweeps.measures import Keys, find, unit_at, value_at
+
+OPTION = "--of"
+_SHARE = 0.05  # by which the slopes on either side may differ
+_SMOOTH = 1e-3  # of the figure over the value: what is less is rounding, or the bend of a high power
+# Figures that are no function of the physics: counts, steps, estimates, flags.
+_NOT_PHYSICAL = re.compile(r"(^|\.)(steps|step|errors|error_estimate|accepted|passed|yielded|margin_estimate)(\.|\[|$)")
+
+
+def sensitivity(
+    scenario: str | os.PathLike[str],
+    of: Sequence[str],
+    parameters: Sequence[str] = (),
+    *,
+    verb: str = "run",
+    motion: str | None = None,
+    at: float | None = None,
+    overrides: Sequence[str] = (),
+    progress: Progress | None = None,
+) -> Sensitivity:
+    """Differentiate figures of a scenario with respect to physical values in it.
+
+    Derivatives of responses over time are those of the discrete solution, with its steps and shapes held fixed: all
+    parameters are right-hand sides of the equations linearised about one run. Where a jump of a motion or load moves
+    with a value, and for the other verbs, they are central differences, which come with an error.
+
+    Parameters
+    ----------
+    scenario : path
+        Of the scenario file.
+    of : sequence of str
+        Figures of the verb's JSON by the end of their path, such as ``tip.z.max_abs`` or ``verdict.tip``.
+    parameters : sequence of str
+        Paths of values, such as ``beam.length``; by default every physical value that is not zero, but for lists over
+        positions and times and a machine's limits. What sits at the tip moves with the beam's length.
+    verb : str
+        run (the default), static, modes, critical-speed or plan.
+    motion : str, optional
+        Which motion, for a verb that answers for one.
+    at : float, optional
+        Time at which that motion is frozen, s; the start of the response by default.
+    overrides : sequence of str
+        Changes of the scenario, such as ``beam.length=250 mm``.
+    progress : callable, optional
+        Called with what is being done and the fraction of it done.
+
+    Returns
+    -------
+    Sensitivity
+
+    Raises
+    ------
+    InputError, ScenarioError
+        If the scenario, a figure or a value is wrong; or a value that is named may not be a little more or less.
+    ComputationError
+        If a run that is asked about is not done.
+    """
+    base = load(scenario, overrides)
+    assert base.source is not None  # it was read from a file
+    if verb not in VERBS:
+        raise InputError("--verb", f"is {verb!r}", advise(verb, VERBS))
+    if isinstance(of, str) or not of:
+        raise InputError(OPTION, "is missing", 'name figures: --of "tip.z.max_abs, verdict.tip"')
+    question = Question(base.source, verb, motion, at)
+    chosen, refused = _possible(question, physical_values(base, parameters), strict=bool(parameters))
+    if not chosen:
+        raise InputError("--with", "has no value that may be a little more and a little less", "name some")
+    about = Neighbourhood(question, chosen, progress=progress)
+    facts = _facts(about.answer)
+    keys = tuple(figure(facts, name) for name in of)
+    motions, parts = needed(keys, about.case.tracks)
+    slopes = about.slopes(lambda answer: _values(_facts(answer), keys), motions, **parts)
+    kinks = _kinks(slopes, [each.value for each in chosen])
+    kinked = [
+        f"{name} has a kink in {chosen[j].path}: its derivative is the mean of those on either side"
+        for k, name in enumerate(of)
+        for j in np.flatnonzero(kinks[k])
+    ]
+    return Sensitivity(
+        title=base.title,
+        verb=verb,
+        measures=tuple(of),
+        units=tuple(unit_at(facts, each) for each in keys),
+        figures=slopes.values,
+        parameters=tuple(each.path for each in chosen),
+        parameter_units=tuple(each.unit for each in chosen),
+        values=np.array([each.value for each in chosen]),
+        derivatives=slopes.slopes,
+        errors=slopes.errors,
+        methods=slopes.methods,
+        kinks=kinks,
+        not_varied=tuple(refused),
+        warnings=tuple(kinked),
+        provenance=provenance(base),
+    )
+
+
+def _kinks(slopes: Slopes, values: Sequence[float]) -> Flags:
+    """Where the slopes on either side differ by a share of them, and by more than rounding and a smooth bend make."""
+    size = np.maximum(np.abs(slopes.values), 1e-3)[:, None] / np.maximum(np.abs(values), 1e-6)
+    return np.asarray(slopes.bends > _SHARE * np.abs(slopes.slopes) + _SMOOTH * size)
+
+
+def figure(facts: Facts, name: str, option: str = OPTION) -> Keys:
+    """Keys of a figure that has a derivative.
+
+    Raises
+    ------
+    InputError
+        If there is no such figure, or it is a count, a flag or an estimate of an error.
+    """
+    try:
+        keys = find(facts, name)
+    except InputError as error:
+        raise InputError(option, error.problem, error.fix) from None
+    path = path_text(keys)
+    node: Any = facts
+    for key in keys:
+        node = node[key]
+    if isinstance(node, (bool, int)) or _NOT_PHYSICAL.search(path):
+        raise InputError(option, f"{name!r} is a count, a flag or an estimate, without a derivative", "name a figure")
+    if not math.isfinite(value_at(facts, keys)):
+        raise InputError(option, f"{name!r} has no value in this scenario", "name a figure that has one")
+    return keys
+
+
+def needed(keys: Sequence[Keys], tracks: Mapping[str, str]) -> tuple[list[str], dict[str, bool]]:
+    """Motions whose responses figures of ``run`` come from, and which parts of these."""
+    found: dict[str, None] = {}
+    loads = axes = False
+    for first, *rest in keys:
+        if first == "comparisons":
+            found |= dict.fromkeys((tracks[str(rest[0])], str(rest[0])))
+            loads = axes = True
+        elif first == "motions":
+            found[str(rest[0])] = None
+            # The torque of a hub's drive is among its loads.
+            loads |= rest[1] not in ("tip", "stations")
+            axes |= rest[1] not in ("tip", "stations", "loads", "hub")
+    return list(found), {"loads": loads, "axes": axes}
+
+
+def _facts(answer: Any) -> Facts:
+    return study_facts(answer) if isinstance(answer, Study) else answer
+
+
+def _values(facts: Facts, keys: Sequence[Keys]) -> Floats:
+    return np.array([value_at(facts, each) for each in keys])
+
+
+def _possible(
+    question: Question, values: Sequence[PhysicalValue], *, strict: bool
+) -> tuple[list[PhysicalValue], list[str]]:
+    """Values that may be a little more and a little less; those that may not, with the reason, unless named."""
+    kept, refused = [], []
+    for each in values:
+        try:
+            for share in (-1e-3, 1e-3):
+                question.case(each.overrides(each.value * (1 + share) if each.value else share * 1e-3))
+        except GbeamError as error:
+            reason = re.sub(r"^--set [^:]*: ", "", str(error).splitlines()[0])
+            if strict:
+                problem = f"names {each.path}, which may not be a little less and a little more ({reason})"
+                raise InputError("--with", problem, "leave it out: it has no derivative there") from None
+            refused.append(f"{each.path}: {reason}")
+            continue
+        kept.append(each)
+    return kept, refused

@@ -1,0 +1,21 @@
+"""A flight and a centrifuge that are computed in a moment, and the command line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from ..calling import gbeam
+from ..scenarios import FAST
+
+__all__ = ["gbeam"]
+
+
+@pytest.fixture
+def fast(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The scenario, in the current folder."""
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "fast.toml"
+    file.write_text(FAST, encoding="utf-8")
+    return file

@@ -1,0 +1,167 @@
+"""Sensitivities against closed forms and finite differences, and what they refuse."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+from gbeam.studies.derivatives import Neighbourhood
+
+from ..scenarios import FREE_HUB, SLEWING
+
+Call = Callable[..., Any]
+E, DENSITY, LENGTH = "beam.material.youngs_modulus", "beam.material.density", "beam.length"
+LEVEL, ARM = "motion.flight.acceleration.z.level", "motion.spin.arm"
+AGREES = 1e-5
+
+
+def relative(found: gb.Sensitivity, measure: str) -> dict[str, float]:
+    """p/f ∂f/∂p by parameter."""
+    return dict(zip(found.parameters, found.relative[found.measures.index(measure)], strict=True))
+
+
+def test_powers_of_a_static_deflection_and_of_a_frequency(fast: Path) -> None:
+    parameters = [E, DENSITY, LENGTH, "beam.section.thickness", "beam.section.width", LEVEL]
+    tip = gb.sensitivity(fast, ["flight.tip.z"], parameters, verb="static")
+    # w = ρ A a L⁴ / 8 E I, I = b h³ / 12: the shapes scale with the length, so that few of them change no power.
+    assert list(relative(tip, "flight.tip.z").values()) == pytest.approx([-1, 1, 4, -2, 0, 1], abs=1e-9)
+    assert set(tip.methods) == {"difference"} and (tip.errors < 1e-4 * np.abs(tip.derivatives) + 1e-12).all()
+    modes = gb.sensitivity(fast, ["modes[0].frequency"], parameters[:4], verb="modes", motion="flight")
+    assert list(relative(modes, "modes[0].frequency").values()) == pytest.approx([0.5, -0.5, -2, 1], abs=1e-9)
+    assert "youngs_modulus" not in repr(modes).split("by")[1].split(",")[0]  # the length matters most
+
+
+def test_exact_derivatives_are_those_of_runs_by_the_same_steps(fast: Path) -> None:
+    measures = ["flight.tip.z.max_abs", "spin.tip.z.max_abs", "spin.loads.root_moment.y.max_abs", "verdict.tip"]
+    parameters = [E, LENGTH, "beam.damping_ratio", LEVEL, ARM, "motion.spin.control_point"]
+    ends = ["response.initial.state=undeformed"]
+    found = gb.sensitivity(fast, measures, parameters, overrides=ends)
+    assert set(found.methods) == {"exact"} and not found.kinks.any() and np.isnan(found.errors).all()
+    case = gb.read_scenario(fast, ends)
+    step = {name: response.step for name, response in gb.study(case).responses.items()}
+    for j, path in enumerate(parameters):
+        h = 1e-5 * found.values[j]
+        figures = np.array(
+            [_figures(fast, [*ends, f"{path}={float(found.values[j] + s * h)!r}"], step) for s in (1, -1)]
+        )
+        difference = (figures[0] - figures[1]) / (2 * h)
+        scale = [*np.abs(found.figures[:3]), 1.0]  # a verdict is a ratio less one
+        error = np.abs(found.derivatives[:, j] - difference) * found.values[j] / scale
+        assert (error <= AGREES * np.maximum(1e-2, np.abs(difference * found.values[j] / scale))).all(), path
+
+
+def _figures(file: Path, overrides: list[str], step: dict[str, float]) -> list[float]:
+    case = gb.read_scenario(file, overrides)
+    structure = case.assemble()
+    flight, spin = (
+        gb.simulate(structure, case.motions[name], replace(case.response, step=step[name]), name=name)
+        for name in ("flight", "spin")
+    )
+    loads = spin.peaks.loads
+    assert loads is not None
+    moment = float(loads.moment.components.value[0, 1])
+    return [flight.peaks.max_abs[2], spin.peaks.max_abs[2], moment, gb.compare(flight, spin).peaks["tip"].ratio - 1]
+
+
+def test_what_tracks_another_motion_feels_its_values_and_only_that(fast: Path) -> None:
+    found = gb.sensitivity(fast, ["flight.tip.z.max_abs", "spin.tip.z.max_abs"], [LEVEL, ARM])
+    assert found.derivatives[0, 1] == 0 and (found.derivatives[[0, 1, 1], [0, 0, 1]] != 0).all()
+
+
+def test_a_free_hub_is_differentiated_through_its_nonlinear_equations(tmp_path: Path) -> None:
+    file = tmp_path / "hub.toml"
+    file.write_text(FREE_HUB, encoding="utf-8")
+    step = ["response.step=20 ms"]
+    found = gb.sensitivity(
+        file, ["hub.angle_end"], ["motion.slew.inertia", "motion.slew.torque.amplitude"], overrides=step
+    )
+    assert set(found.methods) == {"exact"}
+    for j, path in enumerate(found.parameters):
+        h = 1e-4 * found.values[j]
+        cases = [gb.read_scenario(file, [*step, f"{path}={float(found.values[j] + s * h)!r}"]) for s in (1, -1)]
+        angles = []
+        for case in cases:
+            hub = gb.simulate(case.assemble(), case.motions["slew"], case.response).hub
+            assert hub is not None
+            angles.append(float(hub.angle[-1]))
+        assert found.derivatives[0, j] == pytest.approx((angles[0] - angles[1]) / (2 * h), rel=AGREES)
+
+
+def test_where_a_jump_moves_the_derivative_is_a_difference(tmp_path: Path) -> None:
+    file = tmp_path / "slewing.toml"
+    trapezoid = '"trapezoid", level = "1 rad/s", jerk = "0.5 rad/s^2", start = "2.03 s", hold = "1 s"'
+    file.write_text(
+        SLEWING.replace('"smooth-step", level = "2 rad/s", duration = "30 s"', trapezoid).replace("35 s", "5 s"),
+        encoding="utf-8",
+    )
+    start, radius = "motion.slew.rate.start", "motion.slew.radius"
+    found = gb.sensitivity(file, ["tip.y.time_of_max", "tip.y.max_abs"], [start, radius])
+    assert found.methods == ("difference", "exact")
+    # A hub that stands still until it starts moves the whole response with its start.
+    assert found.derivatives[0, 0] == pytest.approx(1, abs=1e-3)
+    assert abs(found.derivatives[1, 0]) < 1e-4 * found.figures[1]
+
+
+def test_positions_at_the_tip_move_with_the_length(fast: Path) -> None:
+    massive = ['beam.masses=[{ at = "300 mm", mass = "0.1 kg" }]', f"{DENSITY}=1e-6"]
+    found = gb.sensitivity(fast, ["flight.tip.z"], [LENGTH, E], verb="static", overrides=[*massive, "model.modes.z=6"])
+    # m a L³ / 3 E I, of a beam that weighs nothing.
+    assert list(relative(found, "flight.tip.z").values()) == pytest.approx([3, -1], abs=1e-6)
+    with pytest.raises(gb.InputError, match=r"may not be a little less and a little more .*beyond the tip"):
+        gb.sensitivity(fast, ["flight.tip.z"], ["beam.masses[0].at"], verb="static", overrides=massive)
+    every = gb.sensitivity(fast, ["flight.tip.z"], verb="static", overrides=massive)
+    assert "beam.masses[0].at" not in every.parameters and "beyond the tip" in every.not_varied[0]
+
+
+@pytest.mark.parametrize(
+    ("of", "by", "more", "words"),
+    [
+        ("flight.steps", E, [], "--of 'flight.steps' is a count, a flag or an estimate"),
+        ("flight.error_estimate", E, [], "is a count, a flag or an estimate"),
+        ("flight.tip.z.max", E, [], "did you mean"),
+        ("flight.tip.z.max_abs", "beam.lenght", [], "did you mean 'beam.length'"),
+        ("flight.tip.z.max_abs", "model.modes.z", [], "is no physical value"),
+        ("flight.tip.z.max_abs", "response.duration", [], "a setting of the computation"),
+        ("flight.tip.z.max_abs", E, ["response.integrator=adaptive"], "adaptive, whose steps have no derivative"),
+    ],
+)
+def test_what_has_no_derivative_is_refused_by_name(fast: Path, of: str, by: str, more: list[str], words: str) -> None:
+    with pytest.raises(gb.InputError, match=words):
+        gb.sensitivity(fast, [of], [by], overrides=more)
+
+
+def test_a_run_that_is_not_done_has_no_derivative(fast: Path) -> None:
+    with pytest.raises(gb.ComputationError, match=r"motion.flight: the displacement exceeded the beam's length"):
+        gb.sensitivity(fast, ["flight.tip.z.max_abs"], [E], overrides=[f"{E}=1e6"])
+
+
+def test_the_command_prints_a_table_and_writes_a_file_and_plots(fast: Path, gbeam: Call) -> None:
+    words = ("sensitivity", fast, "--verb", "static", "--of", "flight.tip.z", "--with", f"{E}, {LENGTH}")
+    done = gbeam(*words, "--out", "found")
+    assert done.status == 0 and done.out.index(LENGTH) < done.out.index(E)  # the more important first
+    assert sorted(path.name for path in Path("found").iterdir()) == [
+        "flight.tip.z.png", "flight.tip.z.svg", "sensitivity.nc",
+    ]  # fmt: skip
+    facts = json.loads(gbeam(*words, "--json").out)["measures"]["flight.tip.z"]
+    assert [each["path"] for each in facts["parameters"]] == [LENGTH, E]
+    assert facts["parameters"][0]["relative"] == pytest.approx(4)
+    assert facts["unit"] == "m" and facts["parameters"][1]["unit"] == "Pa"
+
+
+def test_values_may_be_others_than_the_scenarios(fast: Path) -> None:
+    from gbeam.scenario.load import load
+    from gbeam.studies.parameters import physical_values
+    from gbeam.sweeps.evaluate import Question
+
+    base = load(fast)
+    assert base.source is not None
+    about = Neighbourhood(Question(base.source, "static", "flight"), physical_values(base, [LENGTH]), [0.2])
+    found = about.slopes(lambda facts: np.array([facts["motions"]["flight"]["tip"]["z"]]))
+    assert found.slopes[0, 0] * 0.2 / found.values[0] == pytest.approx(4, abs=1e-9)
