@@ -43,14 +43,15 @@ def plot_sensitivity(sensitivity: Sensitivity, measure: str = "", title: str = "
         heading(title or s.title, subject, []), 1, heights=[max(1.0, _HEIGHT * len(chosen) + 0.3)]
     )
     change = 0.01 * s.derivatives[k, chosen] * s.values[chosen]
-    if size:
+    share = bool(s.units[k]) and size != 0  # a figure without a unit is a ratio, and its change one too
+    if share:
         change = 100 * change / abs(size)
     at = -np.arange(len(chosen))
     for sign, label in ((1, "value + 1 %"), (-1, "value \N{MINUS SIGN} 1 %")):
         panel.barh(at, sign * change, height=0.6, color=colour(0 if sign > 0 else 1), label=label)
     panel.axvline(0, color=REFERENCE, lw=0.8)
     panel.set_yticks(at, [_named(s, int(j)) for j in chosen])
-    panel.set_xlabel(f"change of {name}, {'%' if size else s.units[k]}".rstrip(", "))
+    panel.set_xlabel(f"change of {name}, {'%' if share else s.units[k]}".rstrip(", "))
     return figure
 
 

@@ -65,7 +65,7 @@ class Sensitivity(Figured):
         return self.derivatives * self.values / size[:, None]
 
     def ranked(self, measure: str = "") -> NDArray[np.intp]:
-        """Indices of the parameters by how much one percent of each changes a figure, the first by default."""
+        """Indices of the parameters by how much one percent of each changes a `measure`, the first by default."""
         k = self.measures.index(measure) if measure else 0
         return np.argsort(-np.abs(self.derivatives[k] * self.values), kind="stable")
 

@@ -130,8 +130,7 @@ class Neighbourhood:
                 raise ComputationError(done.outcome, f"motion.{name}: {done.message}")
         structure, settings, done = self.case.assemble(), self.case.response, self.answer.responses
         about = {
-            name: Differentiated(structure, self.case.motions[name], settings, done[name], **parts)
-            for name in motions
+            name: Differentiated(structure, self.case.motions[name], settings, done[name], **parts) for name in motions
         }
         own = {name: each.own() for name, each in about.items()}
         values = read(study_of(self.case, own))

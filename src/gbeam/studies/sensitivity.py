@@ -94,7 +94,8 @@ def sensitivity(
     keys = tuple(figure(facts, name) for name in of)
     motions, parts = needed(keys, about.case.tracks)
     slopes = about.slopes(lambda answer: _values(_facts(answer), keys), motions, **parts)
-    kinks = _kinks(slopes, [each.value for each in chosen])
+    units = tuple(unit_at(facts, each) for each in keys)
+    kinks = _kinks(slopes, [each.value for each in chosen], units)
     kinked = [
         f"{name} has a kink in {chosen[j].path}: its derivative is the mean of those on either side"
         for k, name in enumerate(of)
@@ -104,7 +105,7 @@ def sensitivity(
         title=base.title,
         verb=verb,
         measures=tuple(of),
-        units=tuple(unit_at(facts, each) for each in keys),
+        units=units,
         figures=slopes.values,
         parameters=tuple(each.path for each in chosen),
         parameter_units=tuple(each.unit for each in chosen),
@@ -119,9 +120,11 @@ def sensitivity(
     )
 
 
-def _kinks(slopes: Slopes, values: Sequence[float]) -> Flags:
+def _kinks(slopes: Slopes, values: Sequence[float], units: Sequence[str]) -> Flags:
     """Where the slopes on either side differ by a share of them, and by more than rounding and a smooth bend make."""
-    size = np.maximum(np.abs(slopes.values), 1e-3)[:, None] / np.maximum(np.abs(values), 1e-6)
+    # What has no unit is a ratio, or one less one, which may be small.
+    sizes = np.maximum(np.abs(slopes.values), [0.0 if unit else 1.0 for unit in units])
+    size = sizes[:, None] / np.maximum(np.abs(values), 1e-6)
     return np.asarray(slopes.bends > _SHARE * np.abs(slopes.slopes) + _SMOOTH * size)
 
 

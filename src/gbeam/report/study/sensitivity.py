@@ -68,9 +68,11 @@ def text(sensitivity: Sensitivity) -> str:
 
 def _row(s: Sensitivity, k: int, j: int) -> list[str]:
     derivative, change = float(s.derivatives[k, j]), 0.01 * float(s.derivatives[k, j] * s.values[j])
-    share = f"{percent(change / float(s.figures[k]))}" if s.figures[k] else f"{number(change)} {s.units[k]}".rstrip()
+    # A figure without a unit is a ratio, and its change one too.
+    relative = s.units[k] and s.figures[k]
+    share = percent(change / float(s.figures[k])) if relative else f"{number(change)} {s.units[k]}".rstrip()
     error = "" if np.isnan(s.errors[k, j]) else f"± {number(float(s.errors[k, j]), 1)}"
-    value = f"{number(float(s.values[j]), 6)} {s.parameter_units[j]}".rstrip()
+    value = f"{float(s.values[j]):.6g} {s.parameter_units[j]}".rstrip()
     return [
         s.parameters[j],
         value,
