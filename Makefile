@@ -2,6 +2,8 @@
 # make validate: compare with other codes and write docs/validation.md (minutes; what is not installed is left out);
 # make fuzz: 10,000 malformed inputs, then runs that are interrupted, killed and out of disk (half an hour);
 # make docs: the documentation site, in out/docs;
+# make web: the viewer of reports and notebooks, from web/ into the package (needs Node; users of the package do not);
+# make web-check: its tests, and whether the built viewer in the package is that of web/;
 # make mutants: whether the tests catch deliberate errors in the physics (minutes);
 # make dist: sdist and wheel into dist/; make wheels: the wheel in empty environments on every Python that is there;
 # make benchmark: how long commands take, and a comparison with Exudyn (minutes; nothing else should run).
@@ -14,13 +16,28 @@ CACHE := $(CURDIR)/.cache/jax
 # Folders that ruff reads.
 CODE := src tests validation fuzz mutants benchmarks examples docs .ci
 
-.PHONY: demo test check validate fuzz docs benchmark mutants dist wheels lock clean
+.PHONY: demo test web web-check check validate fuzz docs benchmark mutants dist wheels lock clean
 
 demo: .venv/installed
 	$(BIN)/gbeam run $(EXAMPLE) --out out/f16_8g_turn
 
+# The browser tests take the Chromium that is there, or one from npm; where neither can be had they are skipped.
 test: .venv/dev-installed
+	$(BIN)/python .ci/browser.py
 	JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/pytest -n 2 --dist loadfile
+
+web: web/node_modules/.installed
+	cd web && npm run --silent build && npm test --silent
+
+web-check: web/node_modules/.installed
+	rm -rf out/web
+	cd web && npm test --silent && GBEAM_WEB_OUT=../out/web npm run --silent build -- --logLevel warn
+	diff -r out/web src/gbeam/report/page/assets || { echo "the built viewer is not that of web/: run make web"; exit 1; }
+
+web/node_modules/.installed: web/package-lock.json
+	@command -v npm > /dev/null || { echo "the viewer is built by Node 20.19 or later with npm, which is not here"; exit 1; }
+	cd web && npm ci --silent
+	@touch $@
 
 check: .venv/dev-installed
 	$(BIN)/ruff check $(CODE)
@@ -79,4 +96,4 @@ lock: .venv/uv-installed
 		pyproject.toml --group dev -o requirements-dev.lock
 
 clean:
-	rm -rf .venv .cache out dist
+	rm -rf .venv .cache out dist web/node_modules

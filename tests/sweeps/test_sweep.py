@@ -120,7 +120,7 @@ def test_files_and_words(fast: Path, gbeam: Call) -> None:
     answer = gbeam("sweep", fast, *arguments, "--out", "there")
     assert answer.status == 0 and "4 cases: 4 done" in answer.out and "flight.tip.z, m" in answer.out
     names = {file.name for file in Path("there").iterdir()}
-    assert names == {"cases.jsonl", "flight.tip.z.png", "flight.tip.z.svg", "sweep.nc", "sweep.zarr"}
+    assert names == {"cases.jsonl", "flight.tip.z.png", "flight.tip.z.svg", "sweep.json", "sweep.nc", "sweep.zarr"}
     with xr.open_zarr("there/sweep.zarr") as zarr, xr.open_dataset("there/sweep.nc") as netcdf:
         assert zarr["flight.tip.z"].attrs["units"] == "m" and set(zarr["outcome"].values.tolist()) == {"done"}
         assert np.array_equal(zarr["flight.tip.z"], netcdf["flight.tip.z"])

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from gbeam.results.provenance import Provenance
     from gbeam.results.reproduction import Reproduction
 
-_ABOUT = ("provenance", "files", "seconds", "written")  # of the computation, not of its result
+_ABOUT = ("provenance", "files", "seconds", "written", "lines")  # of the computation, or the figures in words
 
 
 def answer_again(file: Path) -> Reproduction:

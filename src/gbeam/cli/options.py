@@ -25,6 +25,16 @@ Out = Annotated[
 Json = Annotated[
     bool, Parameter(name="--json", negative="", show_default=False, help="Print one JSON object and nothing else.")
 ]
+Report = Annotated[
+    bool,
+    Parameter(
+        name="--report",
+        negative="",
+        show_default=False,
+        help="Also write the result as one page of HTML that opens without a network, with plots that zoom and the "
+        "beam in motion; without --out into out/NAME.",
+    ),
+]
 MotionName = Annotated[
     str | None, Parameter(name="--motion", help="Which [motion.NAME]; may be left out where only one can answer.")
 ]

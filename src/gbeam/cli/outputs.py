@@ -42,15 +42,29 @@ def list_files(folder: Path | None, files: Sequence[Path]) -> None:
         print(printable(f"\n{len(files)} files in {folder}: {', '.join(names)}"))
 
 
+def folder_of(out: Path | None, scenario: Path, *, default: bool) -> Path | None:
+    """The folder of --out; without it out/ and the scenario's name where there is a default, else none."""
+    return out if out is not None or not default else Path("out") / scenario.stem
+
+
 def write(
-    folder: Path | None, name: str, facts: Mapping[str, Any], figures: Callable[[], Mapping[str, Figure]] | None = None
+    folder: Path | None,
+    name: str,
+    facts: Mapping[str, Any],
+    figures: Callable[[], Mapping[str, Figure]] | None = None,
+    *,
+    report: bool = False,
 ) -> list[Path]:
-    """Write NAME.json and the figures, which are drawn only then, into a folder, if there is one; return the files."""
+    """Write NAME.json, the figures and NAME.html, made only then, into a folder, if there is one; return the files."""
     if folder is None:
         return []
 
     def make(hidden: Path) -> None:
         write_json(hidden / f"{name}.json", facts)
+        if report:
+            from gbeam.report.page.document import html
+
+            (hidden / f"{name}.html").write_text(html(facts, {}), encoding="utf-8")
         if figures is not None:
             from gbeam.plots import save
 

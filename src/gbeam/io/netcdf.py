@@ -13,9 +13,11 @@ from collections.abc import Callable
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from gbeam.errors import InputError
 from gbeam.io.comparisons import comparison_group
-from gbeam.io.groups import Group
+from gbeam.io.groups import Group, Variable
 from gbeam.io.hdf5 import write_groups
 from gbeam.io.machine import plan_group
 from gbeam.io.provenance import provenance_attrs, provenance_variables
@@ -41,6 +43,7 @@ from gbeam.results.sweep import Sweep
 if TYPE_CHECKING:
     import xarray as xr
 
+FACTS = "facts"  # the variable of the root with the figures as JSON
 _GROUPS: dict[type, Callable[[Any], Group]] = {
     Response: response_group,
     Comparison: comparison_group,
@@ -58,15 +61,27 @@ _GROUPS: dict[type, Callable[[Any], Group]] = {
 }
 
 
-def save(result: Any, path: str | os.PathLike[str]) -> None:
+def save(result: Any, path: str | os.PathLike[str], facts: str = "") -> None:
     """Write any result to a netCDF file, whole or not at all.
+
+    Parameters
+    ----------
+    result : Result
+    path : path
+    facts : str
+        Its figures as JSON, from which `gbeam report` makes a page; none where it has no report.
 
     Raises
     ------
     OSError
         If it cannot be written.
     """
-    write_groups(groups_of(result), path)
+    groups = groups_of(result)
+    if facts:
+        root = groups[""]
+        text = Variable((), np.array(facts, dtype=object), {"long_name": "figures, as --json prints them"})
+        groups[""] = Group({FACTS: text} | root.variables, root.coordinates, root.attrs)
+    write_groups(groups, path)
 
 
 def groups_of(result: Result) -> dict[str, Group]:

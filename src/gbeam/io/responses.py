@@ -8,6 +8,7 @@ import numpy as np
 
 from gbeam.io.groups import AXIS, Group, Variable, coordinate, known, known_attrs, variable
 from gbeam.io.machine import MACHINE_AXIS, machine_variables
+from gbeam.io.outline import outline_coordinates, outline_variables
 from gbeam.results.peaks import LoadPeaks
 from gbeam.results.response import HubResult, Response
 from gbeam.results.section_forces import Loads
@@ -66,6 +67,9 @@ def response_group(response: Response) -> Group:
     if response.axes is not None:
         data |= machine_variables(response.axes)
         coordinates |= MACHINE_AXIS
+    if response.outline is not None:
+        data |= outline_variables(response.outline)
+        coordinates |= outline_coordinates(response.outline)
     attrs = {name: getattr(response, name) for name in ("environment", "model", "outcome", "message", "initial")}
     attrs["warnings"] = "\n".join(response.warnings)
     attrs |= {name: getattr(response, name) for name in ("integrator", "step", "steps", "error_estimate")}

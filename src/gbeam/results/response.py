@@ -11,6 +11,7 @@ import numpy as np
 from gbeam.arrays.namespace import is_traced
 from gbeam.results.errors import Errors
 from gbeam.results.machine import AxesResult
+from gbeam.results.outline import Outline
 from gbeam.results.peaks import Peaks
 from gbeam.results.result import Figured, Floats, Part, brief
 from gbeam.results.section_forces import Influence, Loads
@@ -115,6 +116,8 @@ class Response(Figured):
         Modal, of the modes of the beam on a base at rest.
     initial : str
         How it begins, in words.
+    outline : Outline or None
+        The beam's shape at some of the times, and what carries it; None where there is no beam.
     """
 
     name: str
@@ -143,6 +146,7 @@ class Response(Figured):
     errors: Errors = field(default_factory=Errors)
     damping_ratio: float | tuple[float, ...] = math.nan
     initial: str = ""
+    outline: Outline | None = None
 
     @property
     def tip(self) -> Floats:

@@ -1,7 +1,7 @@
-"""What all results share: short words on the screen, and the doors to xarray, to a file and to a figure.
+"""What all results share: short words on the screen, and the doors to xarray, to a file, a figure and a report.
 
-The doors lead to the leaves `gbeam.io` and `gbeam.plots`, which are imported when one is opened: a record needs
-neither, and importing a record loads neither.
+The doors lead to the leaves `gbeam.io`, `gbeam.plots` and `gbeam.report`, which are imported when one is opened: a
+record needs none, and importing a record loads none.
 """
 
 from __future__ import annotations
@@ -99,8 +99,29 @@ class Result:
             If it cannot be written.
         """
         from gbeam.io.netcdf import save
+        from gbeam.report.facts import facts_text
 
-        save(self, path)
+        save(self, path, facts_text(self))
+
+    def report(self, path: str | os.PathLike[str]) -> None:
+        """Write the result as one page of HTML that opens without a network: tables, plots, and the beam in motion.
+
+        Parameters
+        ----------
+        path : path
+            Replaced if it exists.
+
+        Raises
+        ------
+        InputError
+            If a result of this kind has no report; those of a study, modes, a Campbell diagram, a placement and a sweep
+            have.
+        OSError
+            If it cannot be written.
+        """
+        from gbeam.report.page.result import write_report
+
+        write_report(self, path)
 
 
 class Figured(Result):

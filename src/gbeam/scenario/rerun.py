@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gbeam.errors import InputError
+from gbeam.io.netcdf import FACTS
 from gbeam.io.provenance import RECORD
 from gbeam.results.provenance import Provenance, present
 from gbeam.results.reproduction import Difference, Reproduction
@@ -121,9 +122,10 @@ def records(origin: Provenance, folder: Path) -> Iterator[str]:
 
 def _facts(of: Stored) -> dict[str, Any]:
     """Variables and attributes by their names, but those that say of the computation and not of its result."""
-    made = {name: each for name, each in of.variables.items() if name != "scenario" and not name.startswith(RECORD)}
+    apart = ("scenario", FACTS)  # the facts are the other variables once more
+    made = {name: each for name, each in of.variables.items() if name not in apart and not name.startswith(RECORD)}
     for place, attrs in of.attrs.items():
-        if place != "scenario" and not place.startswith(RECORD):
+        if place not in apart and not place.startswith(RECORD):
             made |= {f"{place}@{name}": each for name, each in attrs.items() if place or name not in _ABOUT}
     return made
 

@@ -12,6 +12,7 @@ import numpy as np
 from gbeam.analysis.accuracy.estimate import response_errors
 from gbeam.analysis.accuracy.response_errors import Solution
 from gbeam.analysis.response.outcome import describe, effort, inaccuracies
+from gbeam.analysis.response.outline import outline_of
 from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
 from gbeam.analysis.response.problem import Problem, problem_of
 from gbeam.analysis.response.settings import NOT_ESTIMATED, ResponseSettings
@@ -278,6 +279,7 @@ def response_of(
         influence=influence(structure) if motion.kind == "centrifuge" and not traced else None,
         damping_ratio=structure.damping_ratio,
         initial=str(settings.begin),
+        outline=None if traced else outline_of(structure, motion, time, q[:, beam]),
     )
 
 

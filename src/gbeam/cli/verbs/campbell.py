@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 from gbeam.cli.console import Watch
 from gbeam.cli.inputs import number, read
-from gbeam.cli.options import Json, MotionName, Out, Overrides, ScenarioFile, Speed
-from gbeam.cli.outputs import list_files, show, write
+from gbeam.cli.options import Json, MotionName, Out, Overrides, Report, ScenarioFile, Speed
+from gbeam.cli.outputs import folder_of, list_files, show, write
 from gbeam.errors import InputError
 
 if TYPE_CHECKING:
@@ -29,13 +28,15 @@ def campbell(
     overrides: Overrides = (),
     out: Out = None,
     json: Json = False,
+    report: Report = False,
 ) -> int:
     """Frequencies against the speed of a hub, in the unit of --to or --from, and where its multiples meet them.
 
-    Writes campbell.json and the diagram into --out, by default out/ and the scenario's name; with --json only if --out
-    is given. Exit status: 0 done, 1 there is no equilibrium, 2 the input is wrong, such as a motion without a hub.
+    Writes campbell.json, the diagram and with --report campbell.html into --out, by default out/ and the scenario's
+    name; with --json only if --out or --report is given. Exit status: 0 done, 1 there is no equilibrium, 2 the input is
+    wrong, such as a motion without a hub.
     """
-    folder = out if out is not None or json else Path("out") / scenario.stem
+    folder = folder_of(out, scenario, default=report or not json)
     given = read("campbell", scenario, overrides, folder)
     name, chosen = given.motion(motion, kind="hub")
     low = 0.0 if start is None else number("--from", start, "angular rate")
@@ -47,13 +48,13 @@ def campbell(
         raise InputError("--to", "is missing: the hub is driven by a torque", fix)
 
     from gbeam.analysis.vibration import campbell as analysis
-    from gbeam.report.steady import campbell as report
+    from gbeam.report.steady import campbell as words
 
     with Watch(), given.placing(to="--to", modes="--modes"):
         diagram = analysis.campbell(
             given.case.assemble(), chosen, start=low, end=high, modes=modes, orders=range(1, orders + 1), name=name
         )
-    facts = given.signed(report.to_json(diagram))
+    facts = given.signed(words.to_json(diagram))
 
     from gbeam.scenario.text.units import unit_of
 
@@ -65,8 +66,8 @@ def campbell(
 
         return {"campbell": plot_campbell(diagram, given.case.title, (1 / size, unit))}
 
-    files = write(folder, "campbell", facts, figures)
-    show(report.text(diagram, unit, size), facts, json)
+    files = write(folder, "campbell", facts, figures, report=report)
+    show(words.text(diagram, unit, size), facts, json)
     if not json:
         list_files(folder, files)
     return 0

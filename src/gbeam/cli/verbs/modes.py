@@ -8,8 +8,8 @@ from cyclopts import Parameter
 
 from gbeam.cli.console import Watch
 from gbeam.cli.inputs import read
-from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile
-from gbeam.cli.outputs import show, write
+from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile
+from gbeam.cli.outputs import folder_of, show, write
 
 
 def modes(
@@ -22,23 +22,25 @@ def modes(
     overrides: Overrides = (),
     out: Out = None,
     json: Json = False,
+    report: Report = False,
 ) -> int:
     """Frequencies, damping and shapes about the equilibrium at one time of a motion.
 
-    With --out also writes modes.json and a plot of the shapes. Exit status: 0 done, 1 there is no equilibrium, 2 the
-    input is wrong.
+    With --out also writes modes.json and a plot of the shapes, with --report modes.html. Exit status: 0
+    done, 1 there is no equilibrium, 2 the input is wrong.
     """
-    given = read("modes", scenario, overrides, out)
+    folder = folder_of(out, scenario, default=report)
+    given = read("modes", scenario, overrides, folder)
     name, chosen = given.motion(motion)
     time = given.time(at)
 
     from gbeam.analysis.vibration import modal
-    from gbeam.report.steady import modes as report
+    from gbeam.report.steady import modes as words
 
     with Watch(), given.placing():
         modes = modal.modes(given.structure(), chosen, time, gyroscopic=gyroscopic, name=name)
-    facts = given.signed(report.to_json(modes))
+    facts = given.signed(words.to_json(modes))
 
-    write(out, "modes", facts, lambda: {"modes": modes.plot(title=given.case.title)})
-    show(report.text(modes), facts, json)
+    write(folder, "modes", facts, lambda: {"modes": modes.plot(title=given.case.title)}, report=report)
+    show(words.text(modes), facts, json)
     return 0

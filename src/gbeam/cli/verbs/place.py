@@ -17,10 +17,11 @@ from gbeam.cli.options import (
     Measure,
     Out,
     Overrides,
+    Report,
     ScenarioFile,
     Widths,
 )
-from gbeam.cli.outputs import show, write
+from gbeam.cli.outputs import folder_of, show, write
 from gbeam.cli.publication import publish
 from gbeam.errors import InputError
 
@@ -37,6 +38,7 @@ def place(
     out: Out = None,
     json: Json = False,
     ignore_limits: IgnoreLimits = False,
+    report: Report = False,
     write_back: Annotated[
         bool,
         Parameter(name="--write", negative="", show_default=False, help="Write the answer into the scenario file."),
@@ -46,18 +48,19 @@ def place(
 
     Prints the --set options that apply the answer; --write writes it, and no change made by --set, into the scenario
     file, whose comments stay. Options that exceed the machine's limits are listed but not chosen, unless
-    --ignore-limits is given. With --out also writes place.json. Exit status: 0 done, 1 every option exceeds the limits,
-    2 the input is wrong.
+    --ignore-limits is given. With --out also writes place.json, with --report place.html. Exit status: 0 done, 1 every
+    option exceeds the limits, 2 the input is wrong.
     """
     weights = parse(measure)
     widths = [number("--smoothing", text, "time") for text in smoothing]
-    given = read("place", scenario, overrides, out)
+    folder = folder_of(out, scenario, default=report)
+    given = read("place", scenario, overrides, folder)
     name, current = given.motion(motion, kind="centrifuge")
 
     from gbeam.analysis.imitation import place as analysis
     from gbeam.analysis.imitation.choice import choice_of
     from gbeam.motion import Centrifuge
-    from gbeam.report.machine import placement as report
+    from gbeam.report.machine import placement as words
 
     if not isinstance(current, Centrifuge):
         fix = "add one that tracks the flight; `gbeam new` shows how"
@@ -77,9 +80,9 @@ def place(
             check=check,
         )
     written = _apply(given, scenario, name, placement.changes) if write_back and placement.changes else None
-    facts = given.signed(report.to_json(placement, written))
-    write(out, "place", facts)
-    show(report.text(placement, written), facts, json)
+    facts = given.signed(words.to_json(placement, written))
+    write(folder, "place", facts, report=report)
+    show(words.text(placement, written), facts, json)
     if placement.outcome != "done":
         complain(f"{placement.outcome}: motion.{name}: {placement.message}")
         return FAILED

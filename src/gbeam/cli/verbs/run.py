@@ -9,8 +9,8 @@ from threading import Thread
 from gbeam.cli.console import Watch
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import read
-from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, ScenarioFile
-from gbeam.cli.outputs import list_files, show, show_table
+from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, Report, ScenarioFile
+from gbeam.cli.outputs import folder_of, list_files, show, show_table
 from gbeam.cli.publication import publish
 
 
@@ -22,14 +22,15 @@ def run(
     out: Out = None,
     json: Json = False,
     ignore_limits: IgnoreLimits = False,
+    report: Report = False,
 ) -> int:
     """Compute the response in every environment of a scenario, and compare them.
 
-    Writes result.nc and plots into --out, by default out/ and the scenario's name; with --json only if --out is
-    given. Exit status: 0 done, 1 the computation failed, a machine's limit is exceeded or a [motion.NAME.accept] is not
-    met, 2 the input is wrong.
+    Writes result.nc, plots and with --report report.html into --out, by default out/ and the scenario's name; with
+    --json only if --out or --report is given. Exit status: 0 done, 1 the computation failed, a machine's limit is
+    exceeded or a [motion.NAME.accept] is not met, 2 the input is wrong.
     """
-    folder = out if out is not None or json else Path("out") / scenario.stem
+    folder = folder_of(out, scenario, default=report or not json)
     given = read("run", scenario, overrides, folder)
     if folder is not None:
         # A second of imports, beside the computation, which leaves a core idle.
@@ -41,10 +42,11 @@ def run(
         answer = study(given.case, watch)
 
     def make(hidden: Path) -> None:
-        from gbeam.io import netcdf
         from gbeam.plots import write_plots
 
-        netcdf.save(answer, hidden / "result.nc")
+        answer.save(hidden / "result.nc")
+        if report:
+            answer.report(hidden / "report.html")
         write_plots(answer, hidden, "gbeam run")
 
     if not json:

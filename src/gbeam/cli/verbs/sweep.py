@@ -13,8 +13,8 @@ from gbeam.cli.console import Watch
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import names, number, signed
 from gbeam.cli.invocation import command
-from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile
-from gbeam.cli.outputs import list_files, show
+from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile
+from gbeam.cli.outputs import list_files, show, write_json
 from gbeam.cli.publication import publish, refuse_unwritable
 
 Verb = Literal["run", "static", "modes", "critical-speed", "plan", "place"]
@@ -65,14 +65,16 @@ def sweep(
     overrides: Overrides = (),
     out: Out = None,
     json: Json = False,
+    report: Report = False,
 ) -> int:
     """Compute figures of many cases of one scenario: every combination of the values given, or samples of them.
 
     What the command line does not say is what the scenario's [sweep] says.
 
     Every case is kept in --out (by default out/ and the scenario's name and -sweep) as soon as it is done: after an
-    interruption --resume does what is missing. Writes sweep.zarr, which xarray opens, and a plot of each measure. A
-    case that fails is recorded as such. Exit status: 0 all cases done, 1 some are not, 2 the input is wrong.
+    interruption --resume does what is missing. Writes sweep.zarr, which xarray opens, sweep.json, a plot of each
+    measure, and with --report report.html. A case that fails is recorded as such. Exit status: 0 all cases done, 1 some
+    are not, 2 the input is wrong.
     """
     folder = out if out is not None else Path("out") / f"{scenario.stem}-sweep"
     refuse_unwritable(folder)
@@ -106,22 +108,26 @@ def sweep(
     assert answer.provenance is not None  # it is of a scenario
     answer = replace(answer, provenance=replace(answer.provenance, command=command()))
 
+    from gbeam.report.study import sweep as words
+
     def make(hidden: Path) -> None:
         from gbeam.plots import figures, save
 
         if len(answer.dimensions) <= 2:
             for name, draw in figures(answer).items():
                 save(draw(), hidden, re.sub(r"[^\w.-]+", "", name), "gbeam sweep")
+        write_json(hidden / "sweep.json", signed(words.to_json(answer), answer.provenance))
         if netcdf:
             answer.save(hidden / "sweep.nc")
+        if report:
+            answer.report(hidden / "report.html")
 
     from gbeam.io.sweeps import write_zarr
-    from gbeam.report.study import sweep as report
 
     files = publish(folder, make)
     write_zarr(answer, folder / "sweep.zarr")
     files = sorted([*files, folder / "sweep.zarr"])
-    show(report.text(answer), signed(report.to_json(answer, files), answer.provenance), json)
+    show(words.text(answer), signed(words.to_json(answer, files), answer.provenance), json)
     if not json:
         list_files(folder, files)
     lost = answer.outcome.size - answer.counts.get("done", 0)

@@ -39,6 +39,7 @@ def to_json(comparison: Comparison) -> dict[str, Any]:
         "peak_flight": xyz(comparison.peak_flight),
         "peak_centrifuge": xyz(comparison.peak_centrifuge),
         "relative": xyz(comparison.relative),
+        "lines": list(lines(comparison)),
     }
     if comparison.stations is not None:
         values["cutoff"] = comparison.stations.cutoff

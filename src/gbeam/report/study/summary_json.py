@@ -11,7 +11,7 @@ import numpy as np
 
 from gbeam.report.machine import limits
 from gbeam.report.machine.tracking import ends, peak, tracking
-from gbeam.report.study import comparison
+from gbeam.report.study import comparison, sentences
 from gbeam.results.machine import AxesResult
 from gbeam.results.peaks import Extremes, LoadPeaks, VectorPeaks
 from gbeam.results.response import HubResult, Response
@@ -63,6 +63,7 @@ def _response(response: Response) -> dict[str, Any]:
         "damping_ratio": response.damping_ratio,
         "initial": response.initial,
         "warnings": list(response.warnings),
+        "lines": [*sentences.of_beam(response), *sentences.of_machine(response)],
     }
     if peaks.displacement is not None:
         values["stations"] = [

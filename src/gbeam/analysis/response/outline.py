@@ -1,0 +1,63 @@
+"""The beam's axis over some of the times of a response, and what carries it, for pictures."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.protocol import Motion
+from gbeam.results.outline import Outline
+from gbeam.results.result import Floats
+
+POINTS = 16  # along the beam, at most
+TIMES = 1500
+
+
+def outline_of(structure: Structure, motion: Motion, time: Floats, q: Floats) -> Outline | None:
+    """Return the outline of a response at times `time` (t,) s with coordinates `q` (t, n); None without a beam."""
+    if structure.field is None or structure.source is None:
+        return None
+    beam = structure.source.beam
+    places = np.asarray(structure.field.places().r0)[:, 0]
+    x, index = np.unique(np.round(places / beam.length, 9), return_index=True)
+    spread = np.unique(np.linspace(0, len(x) - 1, POINTS - 1).round().astype(int))
+    chosen = index[spread]
+    some = np.unique(np.linspace(0, len(time) - 1, TIMES).round().astype(int))
+    rest = places[chosen]
+    moved = np.asarray(structure.field.sampled(chosen).position(q[some]))
+    moved = moved - np.asarray(structure.field.places().r0)[chosen]
+    # The field has no point at the root: the nodes next to it lie within a hundredth of the length.
+    root = moved[:, 0] - (moved[:, 1] - moved[:, 0]) * (rest[0] / (rest[1] - rest[0]))
+    if not structure.source.beam.root.springs:
+        root = np.zeros_like(root)
+    points = np.concatenate([[0.0], rest])
+    width, thickness, is_round = _size(beam.section.at(points))
+    return Outline(
+        points=points,
+        width=width,
+        thickness=thickness,
+        round=is_round,
+        bodies=np.array([(body.at, body.mass) for body in beam.masses], dtype=float).reshape(-1, 2),
+        time=time[some],
+        displacement=np.concatenate([root[:, None], moved], axis=1),
+        **_carrier(motion),
+    )
+
+
+def _size(section: Any) -> tuple[Floats, Floats, bool]:
+    """Extents along y and z; of a section given by its moments those of the rectangle with the same."""
+    rectangle = [np.sqrt(12 * np.asarray(each) / section.area) for each in (section.inertia_z, section.inertia_y)]
+    fibres = [2 * np.asarray(each) for each in (section.extreme_fibre_y, section.extreme_fibre_z)]
+    width, thickness = (np.where(np.isfinite(a), a, b) for a, b in zip(fibres, rectangle, strict=True))
+    return width, thickness, section.round
+
+
+def _carrier(motion: Any) -> dict[str, Any]:
+    if motion.kind == "centrifuge":
+        return {"arm": float(motion.geometry.arm)}
+    if motion.kind == "hub":
+        return {"radius": float(motion.mount.radius), "R_HB": np.asarray(motion.mount.R_HB)}
+    return {"arm": math.nan}

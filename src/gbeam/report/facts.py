@@ -1,0 +1,36 @@
+"""The figures of any result that has a report, as its verb prints them with ``--json``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from gbeam.report.machine import placement
+from gbeam.report.steady import campbell, modes
+from gbeam.report.study import summary_json, sweep
+from gbeam.report.words import as_json
+from gbeam.results.imitation.placement import Placement
+from gbeam.results.result import Result
+from gbeam.results.steady.modal import Campbell, Modes
+from gbeam.results.study import Study
+from gbeam.results.sweep import Sweep
+
+_JSON: dict[type, Callable[[Any], dict[str, Any]]] = {
+    Study: summary_json.to_json,
+    Modes: modes.to_json,
+    Campbell: campbell.to_json,
+    Placement: placement.to_json,
+    Sweep: sweep.to_json,
+}
+
+
+def facts(result: Result) -> dict[str, Any] | None:
+    """Return the figures of a result; None where it is of a kind without a report."""
+    made = _JSON.get(type(result))
+    return None if made is None else made(result)
+
+
+def facts_text(result: Result) -> str:
+    """Return the same as JSON; empty where there is none."""
+    found = facts(result)
+    return "" if found is None else as_json(found)

@@ -1,0 +1,166 @@
+"""The pages of a placement and of a sweep."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from gbeam.report.page.parts import Cell, Value, heading, listed, paragraph, plot_place, table, verbatim
+from gbeam.report.page.series import Numbers, Plots
+from gbeam.report.words import number
+
+Facts = Mapping[str, Any]
+_PLACES = {"current": "now", "best": "placed", "middle": "at mid-span"}
+_CASES = 400  # listed
+
+
+def placement_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plots, header: dict[str, Any]) -> str:
+    """Where to put the specimen, what that changes, and the other options."""
+    best = f"{1e3 * facts['control_point']:.2f} mm from the root, {facts['fraction_of_length']:.4f} of the length"
+    now = f"{1e3 * facts['current_control_point']:.2f} mm"
+    rows = [
+        ("control point", f"{best} (now {now})"),
+        ("mounting", facts["mounting"]),
+        ("smoothing", f"{number(1e3 * facts['smoothing'])} ms"),
+    ]
+    parts = [heading("Placement"), table(("", ""), rows, words=(0, 1))]
+    if facts["message"]:
+        parts.append(paragraph(facts["message"], "" if facts["outcome"] == "done" else "bad"))
+    if facts["set"]:
+        flags = " ".join(f'--set "{each}"' for each in facts["set"])
+        parts += [paragraph("to apply it, add to the command line:"), verbatim(flags)]
+    for title, key in (("Mismatch field alone", "mismatch"), ("With smoothing and tracking", "total_error")):
+        if facts[key]:
+            names = list(facts[key]["best"])
+            shares = [[name, *(_percent(facts[key][place].get(name)) for place in _PLACES)] for name in names]
+            parts.append(table(("of flight's peak", *_PLACES.values()), shares, title))
+    if facts["verifications"]:
+        checks = [
+            [word, *(facts["verifications"][place][key] * scale for key, scale in _CHECKS.values())]
+            for place, word in _PLACES.items()
+            if place in facts["verifications"]
+        ]
+        parts.append(table(("", *_CHECKS), checks, "By simulation, largest difference from flight"))
+    return "".join([*parts, heading("Options"), _options(facts["options"]), listed(facts["refused"])])
+
+
+_CHECKS = {
+    "tip, mm": ("tip_difference", 1e3),
+    "vibration, mm": ("vibration", 1e3),
+    "root shear, N": ("force_difference", 1.0),
+    "root moment, N m": ("moment_difference", 1.0),
+}
+
+
+def _options(options: list[Facts]) -> str:
+    def row(each: Facts) -> list[Value]:
+        words = "; ".join(map(_use, each["exceeded"]))
+        share = f"{each['share']:.0%} of a limit" if each["share"] else ""
+        limits = Cell(f"exceeds {words}", "bad") if words else share
+        point = 1e3 * each["control_point"]
+        return [each["mounting"], 1e3 * each["smoothing"], point, _percent(each["total_error"]), limits]
+
+    head = ("mounting", "smoothing, ms", "control point, mm", "error", "limits")
+    return table(head, map(row, options), "Best first; those that break limits last", words=(0, 4))
+
+
+def _use(use: Facts) -> str:
+    return f"{use['axis']} {use['quantity']} {number(use['used'])} of {number(use['allowed'])} {use['unit']}"
+
+
+def sweep_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plots, header: dict[str, Any]) -> str:
+    """How many cases ended how, a plot or a map of each measure, and every case."""
+    counts = ", ".join(f"{count} {name}" for name, count in facts["counts"].items())
+    outcomes = np.array(facts["outcomes"], dtype=object)
+    parts = [paragraph(f"figures of gbeam {facts['verb']}: {outcomes.size} cases: {counts}"), _varied(facts)]
+    values = {name: np.array(each["values"], dtype=float) for name, each in facts["measures"].items()}
+    drawn = any(each["distribution"] for each in facts["parameters"])
+    for name, each in values.items():
+        label = _labelled(name, facts["measures"][name]["unit"])
+        if each.ndim == 2 and not drawn:
+            parts.append(heading(name, 3) + _map(facts, name, each, outcomes, numbers, header))
+        elif (each.ndim == 1 and _numeric(facts["parameters"][0])) or drawn:
+            parts.append(_scatter(facts, name, label, each, plots))
+    return "".join([*parts, heading("Cases"), _cases(facts, values, outcomes), _failures(facts, outcomes)])
+
+
+def _varied(facts: Facts) -> str:
+    rows = [
+        [each["path"], each["unit"], each["distribution"] or f"{len(each['values'])} values, {_ends(each['values'])}"]
+        for each in facts["parameters"]
+    ]
+    return table(("varies", "unit", "values"), rows, words=(0, 1, 2))
+
+
+def _map(facts: Facts, name: str, values: Any, outcomes: Any, numbers: Numbers, header: dict[str, Any]) -> str:
+    place = f"map-{len(header['maps'])}"
+    axes = [
+        {"label": _labelled(each["path"], each["unit"]), "ticks": [_tick(value) for value in each["values"]]}
+        for each in facts["parameters"]
+    ]
+    unit = facts["measures"][name]["unit"]
+    header["maps"].append(
+        {"id": place, "title": name, "x": axes[0], "y": axes[1], "unit": unit, "values": numbers.add(values),
+         "outcomes": outcomes.ravel().tolist()}
+    )  # fmt: skip
+    return f'<div id="{place}"></div>'
+
+
+def _scatter(facts: Facts, name: str, label: str, values: Any, plots: Plots) -> str:
+    """Over the one parameter of a grid a line; over each parameter that is drawn, points."""
+    parts = []
+    for parameter in facts["parameters"]:
+        if not _numeric(parameter) or values.ndim > 1:
+            continue
+        x = np.array(parameter["values"], dtype=float)
+        order = np.argsort(x)
+        line = {"label": name, "x": x[order], "y": values[order], "colour": 0}
+        line |= {"points": True} if parameter["distribution"] else {}
+        place = plots.add(name, label, [line], x=_labelled(parameter["path"], parameter["unit"]))
+        parts.append(plot_place(place, name))
+    return f'<div class="gbeam-plots">{"".join(parts)}</div>' if parts else ""
+
+
+def _cases(facts: Facts, values: Mapping[str, Any], outcomes: Any) -> str:
+    parameters, dimensions = facts["parameters"], facts["dimensions"]
+    rows: list[list[Value]] = []
+    for at in np.ndindex(outcomes.shape):
+        place = dict(zip(dimensions, at, strict=True))
+        own = [each["values"][place["sample" if each["distribution"] else each["path"]]] for each in parameters]
+        done = outcomes[at] == "done"
+        figures = [float(each[at]) for each in values.values()]
+        rows.append([*map(_tick, own), *figures, Cell(str(outcomes[at]), "" if done else "bad")])
+        if len(rows) == _CASES:
+            break
+    head = [_labelled(each["path"], each["unit"]) for each in parameters]
+    head += [_labelled(name, facts["measures"][name]["unit"]) for name in values]
+    more = f"the first {_CASES} of {outcomes.size}" if outcomes.size > _CASES else ""
+    return table([*head, "outcome"], rows, more, words=(len(head),))
+
+
+def _failures(facts: Facts, outcomes: Any) -> str:
+    messages = np.array(facts["messages"], dtype=object).ravel()
+    lost = {f"{outcome}: {said}": None for outcome, said in zip(outcomes.ravel(), messages, strict=True) if said}
+    return listed(list(lost)[:10], "bad")
+
+
+def _labelled(name: str, unit: str) -> str:
+    return f"{name}, {unit}" if unit else name
+
+
+def _numeric(parameter: Facts) -> bool:
+    return all(isinstance(value, (int, float)) for value in parameter["values"])
+
+
+def _tick(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, (int, float)) else str(value)
+
+
+def _ends(values: list[Any]) -> str:
+    return f"{_tick(values[0])} to {_tick(values[-1])}" if len(values) > 3 else ", ".join(map(_tick, values))
+
+
+def _percent(share: float | None) -> str:
+    return "–" if share is None else f"{100 * share:.3g} %" if share > 1e-8 else "0 %"

@@ -1,0 +1,132 @@
+"""A page of HTML from the facts of a result and the variables of its file: nothing in it comes from a network."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import tomllib
+from collections.abc import Mapping
+from importlib.resources import files
+from typing import Any
+
+from gbeam.errors import InputError
+from gbeam.printable import json_printable
+from gbeam.report.page import cases, steady, study
+from gbeam.report.page.parts import badge, escaped, folded, heading, listed, paragraph, table, verbatim
+from gbeam.report.page.series import Numbers, Plots
+from gbeam.report.words import as_json
+
+KINDS = {
+    "run": (("motions", "comparisons"), study.body),
+    "modes": (("modes", "instabilities"), steady.modes_body),
+    "campbell": (("tracks", "crossings"), steady.campbell_body),
+    "place": (("fraction_of_length", "options"), cases.placement_body),
+    "sweep": (("parameters", "measures"), cases.sweep_body),
+}
+
+
+def html(facts: Mapping[str, Any], variables: Mapping[str, Any], origin: Mapping[str, Any] | None = None) -> str:
+    """Return a whole page.
+
+    Parameters
+    ----------
+    facts : mapping
+        As the result's verb prints them with ``--json``.
+    variables : mapping of str to array
+        Of the result's file, by path; empty where there is none, and the page then has no histories.
+    origin : mapping, optional
+        The provenance as JSON, where it is not among the facts.
+
+    Raises
+    ------
+    InputError
+        If these are no facts of a result that has a report.
+    """
+    facts = json.loads(as_json(facts))  # what is not finite is null, as in a file
+    kind = next((name for name, (keys, _) in KINDS.items() if all(key in facts for key in keys)), None)
+    if kind is None:
+        fix = f"give the result of {', '.join(f'gbeam {name}' for name in KINDS)}"
+        raise InputError("result", "is of a kind that has no report", fix)
+    origin = facts.get("provenance") or origin or {}
+    numbers = Numbers()
+    plots = Plots(numbers)
+    header: dict[str, Any] = {"maps": []}
+    body = KINDS[kind][1](facts, variables, numbers, plots, header)
+    header["plots"] = plots.specs
+    title = facts.get("title") or _title(origin) or f"gbeam {kind}"
+    state = study.state(facts) if kind == "run" else (facts["outcome"], facts["outcome"] == "done")
+    warnings = study.warnings(facts) if kind == "run" else facts.get("warnings", [])
+    if warnings:
+        body = heading("Warnings") + listed(warnings, "warning") + body
+    return _page(title, badge(*state), _subject(kind, origin), body + _origin(origin), header, numbers)
+
+
+def _subject(kind: str, origin: Mapping[str, Any]) -> str:
+    version = f", gbeam {origin['gbeam']}" if "gbeam" in origin else ""
+    return f"gbeam {kind}{version}"
+
+
+def _title(origin: Mapping[str, Any]) -> str:
+    """The scenario's title; empty where there is none."""
+    text = origin.get("scenario", "")
+    try:
+        scenario = tomllib.loads(text)
+    except tomllib.TOMLDecodeError:  # JSON, or damaged
+        try:
+            scenario = json.loads(text)
+        except json.JSONDecodeError:
+            return ""
+    return str(scenario.get("title", "")) if isinstance(scenario, dict) else ""
+
+
+def _origin(origin: Mapping[str, Any]) -> str:
+    if not origin:
+        return ""
+    changes = paragraph("changed by --set: " + ", ".join(origin["overrides"])) if origin["overrides"] else ""
+    rows = [
+        ("command", origin["command"]),
+        *((f"record of {each['motion']}", f"{each['file']}, SHA-256 {each['sha256']}") for each in origin["records"]),
+        ("SHA-256 of what it says", origin["scenario_sha256"]),
+        ("gbeam", origin["gbeam"]),
+        ("Python", origin["python"]),
+        ("platform", origin["platform"]),
+        ("packages", ", ".join(f"{name} {version}" for name, version in origin["dependencies"].items())),
+    ]
+    facts = table(("", ""), [row for row in rows if row[1]], words=(0, 1))
+    scenario = folded("Scenario file", verbatim(origin["scenario"])) if origin["scenario"] else ""
+    return heading("Scenario and provenance") + changes + scenario + facts
+
+
+def _page(title: str, state: str, subject: str, body: str, header: Mapping[str, Any], numbers: Numbers) -> str:
+    assets = files("gbeam.report.page") / "assets"
+    script, style = ((assets / name).read_text(encoding="utf-8") for name in ("gbeam.js", "gbeam.css"))
+    data = json_printable(json.dumps(header, ensure_ascii=False, allow_nan=False)).replace("<", "\\u003c")
+    policy = (
+        f"default-src 'none'; script-src '{_hash(script)}'; style-src '{_hash(style)}'; img-src data: blob:; "
+        "base-uri 'none'; form-action 'none'"
+    )
+    return f"""<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{escaped(title)}</title>
+<style>{style}</style>
+</head>
+<body class="gbeam-report">
+<header><h1>{escaped(title)}</h1>{state}<p class="origin">{escaped(subject)}</p></header>
+<main>{body}</main>
+<footer><p id="gbeam-theme"></p></footer>
+<noscript><p>Plots and the viewer need JavaScript; words and tables do not.</p></noscript>
+<script type="application/json" id="gbeam-header">{data}</script>
+<script type="text/plain" id="gbeam-numbers">{numbers.encoded()}</script>
+<script type="module">{script}</script>
+</body>
+</html>
+"""
+
+
+def _hash(text: str) -> str:
+    return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")

@@ -1,0 +1,86 @@
+"""The page of a result, of one in memory or of a file that a verb wrote."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+from gbeam.errors import InputError
+from gbeam.io.netcdf import FACTS, groups_of
+from gbeam.io.stored import read_stored
+from gbeam.limits import BINARY_BYTES, refuse_large_file
+from gbeam.report.facts import facts
+from gbeam.report.page.document import html
+from gbeam.report.provenance import to_json as origin_json
+from gbeam.results.provenance import Provenance
+from gbeam.results.result import Result
+
+_FIX = "give the result.nc of `gbeam run`, its folder, or the JSON of another verb"
+
+
+def report_of(result: Result) -> str:
+    """Return the page of a result.
+
+    Raises
+    ------
+    InputError
+        If a result of this kind has no report.
+    """
+    found = facts(result)
+    if found is None:
+        raise InputError("result", f"{type(result).__name__} has no report", "print it, or plot it")
+    groups = groups_of(result)
+    variables = {
+        f"{path}/{name}" if path else name: each.values
+        for path, group in groups.items()
+        for name, each in (group.variables | group.coordinates).items()
+    }
+    return html(found, variables, origin_json(result.provenance or Provenance()))
+
+
+def write_report(result: Result, path: str | os.PathLike[str]) -> None:
+    """Write the page of a result into a file."""
+    page = report_of(result)  # first: what fails leaves the file as it is
+    Path(path).write_text(page, encoding="utf-8")
+
+
+def report_of_file(path: Path) -> str:
+    """Return the page of a result that a verb wrote: a netCDF file, JSON, or a folder with one of them.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or holds no figures of a result that has a report.
+    """
+    file = file_in(path) if path.is_dir() else path
+    if file.suffix == ".json":
+        return html(_read_json(file), {})
+    stored = read_stored(file)
+    text = stored.variables.get(FACTS)
+    if not isinstance(text, str):
+        raise InputError(str(file), "holds no figures of a result that has a report", _FIX)
+    return html(json.loads(text), stored.variables, origin_json(stored.provenance))
+
+
+def file_in(folder: Path) -> Path:
+    """The one result of a folder."""
+    found = [folder / "result.nc"] if (folder / "result.nc").is_file() else sorted(folder.glob("*.json"))
+    if len(found) != 1:
+        named = ", ".join(each.name for each in found[:4])
+        raise InputError(str(folder), f"holds several results, {named}" if found else "holds no result", _FIX)
+    return found[0]
+
+
+def _read_json(file: Path) -> dict[str, Any]:
+    try:
+        refuse_large_file("", file, BINARY_BYTES, _FIX)
+        facts = json.loads(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(str(file), f"cannot be read ({error.strerror})", _FIX) from None
+    except ValueError:
+        raise InputError(str(file), "is no JSON", _FIX) from None
+    if not isinstance(facts, dict):
+        raise InputError(str(file), "is not the JSON of a result", _FIX)
+    return facts

@@ -1,0 +1,87 @@
+"""What the viewer shows, from the variables of a result's file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from gbeam.report.page.series import Numbers
+from gbeam.results.result import Floats
+
+Variables = Mapping[str, Any]
+
+
+def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) -> dict[str, Any] | None:
+    """Return the motions that have an outline, and the time to begin at; None where none has.
+
+    Parameters
+    ----------
+    motions : mapping of str to str
+        Environment of each motion by its name.
+    variables : mapping of str to array
+        By path, ``motions/NAME/outline``.
+    numbers : Numbers
+        Where the arrays go.
+    """
+    shown = [
+        motion(name, environment, variables, numbers)
+        for name, environment in motions.items()
+        if f"motions/{name}/outline" in variables
+    ]
+    if not shown:
+        return None
+    spans = [each["span"][0] for each in shown if "span" in each]
+    start = spans[0] if spans else float(variables[f"motions/{shown[0]['name']}/outline_time"][0])
+    return {"motions": shown, "start": start}
+
+
+def motion(name: str, environment: str, variables: Variables, numbers: Numbers) -> dict[str, Any]:
+    """One motion: the beam's outline, stress, load, and the turning of what carries it."""
+
+    def of(key: str) -> Any:
+        return variables.get(f"motions/{name}/{key}")
+
+    time, some = of("time"), of("outline_time")
+    index = np.searchsorted(time, some - 1e-12).clip(max=len(time) - 1)  # of the response's own times
+    outline = of("outline")
+    made: dict[str, Any] = {
+        "name": name,
+        "environment": environment,
+        **shape(of("point"), of("outline_width"), of("outline_thickness"), of("outline_round")),
+        "bodies": [] if of("body_mass") is None else np.stack([of("body_position"), of("body_mass")], axis=1).tolist(),
+        "time": numbers.add(some),
+        "displacement": numbers.add(outline),
+        "largest": _largest(outline),
+    }
+    stress = of("stress")
+    if stress is not None and np.isfinite(stress).all():
+        largest = float(np.max(stress))
+        made["stress"] = {"at": of("section").tolist(), "values": numbers.add(stress[index]), "largest": largest}
+    actual = of("load_actual")
+    load = of("root_acceleration") if actual is None else actual
+    made["load"], made["largestLoad"] = numbers.add(load[index]), _largest(load)
+    if actual is not None:
+        made["reference"] = numbers.add(of("load_reference")[index])
+        made["controlPoint"] = float(of("control_point"))
+        made["axes"], made["arm"] = numbers.add(of("axis_angle")[index]), float(of("arm"))
+        made["span"] = [max(float(of("flight_from")), float(time[0])), min(float(of("flight_to")), float(time[-1]))]
+    if of("hub_radius") is not None:
+        made["radius"], made["mounting"] = float(of("hub_radius")), np.ravel(of("hub_mounting")).tolist()
+        made["angle"] = numbers.add(of("hub_angle")[index])
+    return made
+
+
+def shape(points: Floats, width: Floats, thickness: Floats, is_round: Any) -> dict[str, Any]:
+    """The straight beam."""
+    return {
+        "points": np.asarray(points).tolist(),
+        "width": np.asarray(width).tolist(),
+        "thickness": np.asarray(thickness).tolist(),
+        "round": bool(is_round),
+    }
+
+
+def _largest(vectors: Floats) -> float:
+    return float(np.sqrt((vectors**2).sum(axis=-1).max()))

@@ -1,0 +1,121 @@
+"""The pages of modes and of a Campbell diagram."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from gbeam.report.page.parts import Cell, heading, listed, paragraph, plot_place, table
+from gbeam.report.page.scene import shape
+from gbeam.report.page.series import Numbers, Plots
+from gbeam.report.words import number, percent
+
+Facts = Mapping[str, Any]
+
+SHOWN = 33  # points of a mode shape in the viewer
+_SIZES = 0.03, 0.012  # of the length: width and thickness of a beam whose section a result does not hold
+
+
+def modes_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plots, header: dict[str, Any]) -> str:
+    """Frequencies, damping and errors, and the shapes as they move."""
+    base = facts["base"]
+    rate = float(np.linalg.norm(list(base["angular_velocity"].values())))
+    coupling = "in" if facts["gyroscopic"] else "left out"
+    where = f"{facts['motion']} at {number(facts['time'])} s: {facts['model']}"
+    parts = [paragraph(f"{where}, base turning at {number(rate)} rad/s, Coriolis coupling {coupling}")]
+    rows = [
+        [str(i), each["frequency"], percent(each["damping_ratio"] or 0.0), each["direction"],
+         percent(float("nan") if each["error_estimate"] is None else each["error_estimate"])]
+        for i, each in enumerate(facts["modes"], 1)
+    ]  # fmt: skip
+    head = ("mode", "frequency, Hz", "damping ratio", "along", "estimated error")
+    growing = [
+        f"{each['kind']} along {each['direction']}: grows by {number(each['growth_rate'])} per second"
+        for each in facts["instabilities"]
+    ]
+    parts += [listed(growing, "bad"), heading("Modes"), table(head, rows, words=(3,))]
+    if not facts["damping_given"]:
+        parts.append(paragraph("undamped: beam.damping_ratio is not given", "faint"))
+    if facts["modes"]:
+        header["modes"] = _shapes(facts, numbers)
+        parts += [heading("Shapes"), '<div id="gbeam-viewer"></div>']
+        parts.append(paragraph("largest displacement 15 % of the length; the section is not drawn to scale", "faint"))
+        x = np.array(facts["stations"])
+        lines = [
+            {"label": f"mode {i}, {number(each['frequency'])} Hz", "x": x, "y": _main(each), "colour": i - 1}
+            for i, each in enumerate(facts["modes"][:6], 1)
+        ]
+        name = plots.add("Shapes", "displacement, largest component 1", lines, x="position along the beam, m")
+        parts.append(f'<div class="gbeam-plots">{plot_place(name, "Shapes along their main direction")}</div>')
+    return "".join(parts)
+
+
+def campbell_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plots, header: dict[str, Any]) -> str:
+    """Frequencies against speed, the multiples of the speed, and where they meet."""
+    speed = np.array(facts["speed"])
+    lines = [
+        {"label": f"mode {i}, along {each['direction']}", "x": speed, "y": _numbers(each["frequency"]), "colour": i - 1}
+        for i, each in enumerate(facts["tracks"], 1)
+    ]
+    top = max((np.nanmax(line["y"]) for line in lines if np.isfinite(line["y"]).any()), default=np.inf)
+    for order in facts["orders"]:
+        multiple = order * speed / (2 * np.pi)
+        seen = np.where(multiple <= 1.05 * top, multiple, np.nan)
+        lines.append({"label": f"{order} × speed", "x": speed, "y": seen, "colour": 6, "dash": True})
+    if facts["crossings"]:
+        at = [np.array([each[key] for each in facts["crossings"]]) for key in ("speed", "frequency")]
+        order = np.argsort(at[0])
+        lines.append({"label": "crossings", "x": at[0][order], "y": at[1][order], "colour": 1, "points": True})
+    name = plots.add("Campbell diagram", "frequency, Hz", lines, x="speed, rad/s")
+    parts = [heading("Campbell diagram"), plot_place(name, f"{facts['motion']}: {facts['model']}")]
+    if facts["critical_speed"] is not None:
+        parts.append(paragraph(f"the equilibrium is lost at {number(facts['critical_speed'])} rad/s", "bad"))
+    rows = [
+        [str(i), each["direction"], _first(each, 0), _first(each, -1),
+         percent(float("nan") if each["error_estimate"] is None else each["error_estimate"])]
+        for i, each in enumerate(facts["tracks"], 1)
+    ]  # fmt: skip
+    head = ("mode", "along", f"Hz at {number(speed[0])} rad/s", f"Hz at {number(speed[-1])} rad/s", "estimated error")
+    crossings = [
+        [str(each["track"] + 1), Cell(f"{each['order']} ×"), each["speed"], 60 * each["speed"] / (2 * np.pi),
+         each["frequency"]]
+        for each in facts["crossings"]
+    ]  # fmt: skip
+    parts += [heading("Modes"), table(head, rows, words=(1,)), heading("Crossings")]
+    names = ("mode", "multiple", "speed, rad/s", "speed, rpm", "frequency, Hz")
+    return "".join([*parts, table(names, crossings) or paragraph("none in this range", "faint")])
+
+
+def _shapes(facts: Facts, numbers: Numbers) -> dict[str, Any]:
+    """Shapes of every mode at some of the stations."""
+    x = np.array(facts["stations"])
+    some = np.unique(np.linspace(0, len(x) - 1, SHOWN).round().astype(int))
+    size = np.ones(len(some)) * x[-1]
+    parts = [
+        np.array([[each[key][axis] for axis in "xyz"] for each in facts["modes"]])[:, :, some].transpose(0, 2, 1)
+        for key in ("shape", "shape_imaginary")
+    ]
+    return {
+        **shape(x[some], _SIZES[0] * size, _SIZES[1] * size, is_round=False),
+        "labels": [
+            f"{i}: {number(each['frequency'])} Hz, {each['direction']}" for i, each in enumerate(facts["modes"], 1)
+        ],
+        "real": numbers.add(parts[0]),
+        "imaginary": numbers.add(parts[1]),
+    }
+
+
+def _main(mode: Facts) -> Any:
+    parts = [np.array(mode["shape"][axis]) for axis in "xyz"]
+    return max(parts, key=lambda part: np.abs(part).max())
+
+
+def _numbers(values: list[float | None]) -> Any:
+    return np.array([np.nan if each is None else each for each in values])
+
+
+def _first(track: Facts, at: int) -> float | None:
+    value: float | None = track["frequency"][at]
+    return value

@@ -1,0 +1,204 @@
+"""The page of a run: verdict and accounting, response, machine, accuracy; every part from the facts of ``--json``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from gbeam.constants import STANDARD_GRAVITY
+from gbeam.report import words
+from gbeam.report.page import curves
+from gbeam.report.page.parts import Cell, Value, folded, heading, listed, paragraph, plot_place, table
+from gbeam.report.page.scene import scene
+from gbeam.report.page.series import Numbers, Plots
+from gbeam.results.imitation.verdict import change, percent
+
+Facts = Mapping[str, Any]
+
+_QUANTITIES = {
+    "tip": ("tip displacement, mm", 1e3),
+    "root_force": ("root force, N", 1.0),
+    "root_moment": ("root moment, N m", 1.0),
+    "stress": ("stress, MPa", 1e-6),
+}
+
+
+def body(facts: Facts, variables: Mapping[str, Any], numbers: Numbers, plots: Plots, header: dict[str, Any]) -> str:
+    """The page's inside; what the viewer shows goes into `header`."""
+    motions = {name: each for name, each in facts["motions"].items() if "environment" in each}
+    shown = scene({name: each["environment"] for name, each in motions.items()}, variables, numbers)
+    if shown is not None:
+        header["scene"] = shown
+    parts = [_verdict(facts)]
+    if shown is not None:
+        parts += [heading("Motion"), '<div id="gbeam-viewer"></div>']
+    drawn = curves.of_run(facts, motions, variables, plots)
+    if drawn:
+        places = "".join(plot_place(name, title) for name, title in drawn)
+        parts += [heading("Histories"), _HINT, f'<div class="gbeam-plots">{places}</div>']
+    parts += [heading("Response"), _tips(motions), _loads(motions)]
+    parts += [_machine(name, each) for name, each in motions.items() if "limits" in each]
+    parts += [heading("Accuracy"), _errors(motions)]
+    parts += [folded(f"{name}: in words", listed(each["lines"])) for name, each in motions.items()]
+    return "".join(parts)
+
+
+_HINT = (
+    '<p class="faint">Drag across a plot to zoom all of them, double-click to see all again, click to take the viewer '
+    "to that time. Grey: the target is not the flight’s load.</p>"
+)
+
+
+def state(facts: Facts) -> tuple[str, bool]:
+    """What the page says at its head, and whether that is good."""
+    broken = [each for each in facts["motions"].values() if any(use["exceeded"] for use in each.get("limits", ()))]
+    judged = [each["accepted"] for each in facts["comparisons"] if each["accepted"] is not None]
+    if facts["outcome"] != "done":
+        return str(facts["outcome"]), False
+    if judged and not all(judged):
+        return "not accepted", False
+    if broken:
+        return "machine limits exceeded", False
+    return ("accepted", True) if judged else ("done", True)
+
+
+def warnings(facts: Facts) -> list[str]:
+    """Warnings of all motions, each once."""
+    every = {warning: name for name, each in reversed(facts["motions"].items()) for warning in each.get("warnings", ())}
+    several = len(facts["motions"]) > 1
+    return [f"{name}: {warning}" if several else warning for warning, name in reversed(every.items())]
+
+
+def _verdict(facts: Facts) -> str:
+    parts = []
+    for name, each in facts["motions"].items():
+        if each["outcome"] != "done":
+            parts.append(paragraph(f"{name} {each['outcome']}: {each['message']}", "bad"))
+    for compared in facts["comparisons"]:
+        parts.append(paragraph(compared["verdict"], "verdict"))
+        tables = _criteria(compared), _peaks(compared), _load_peaks(compared), _not_followed(compared)
+        parts.append(f'<div class="gbeam-tables">{"".join(tables)}</div>')
+        parts.append(folded("In words", listed(compared["lines"])))
+    return "".join([heading("Verdict"), *parts]) if parts else ""
+
+
+def _criteria(compared: Facts) -> str:
+    def row(each: Facts) -> list[Value]:
+        passed = each["passed"]
+        cell = Cell("kept" if passed else "not kept", "good" if passed else "bad")
+        return [each["name"].replace("_", " "), _percent(each["value"]), _percent(each["limit"]), cell]
+
+    head = ("limit on", "value", "limit", "")
+    return table(head, map(row, compared["criteria"]), "Accepted if every limit is kept", words=(0, 3))
+
+
+def _peaks(compared: Facts) -> str:
+    """Largest sizes over the whole flight."""
+    rows = []
+    for key, pair in compared["peaks"].items():
+        label, scale = _QUANTITIES[key]
+        flight, machine, ratio = (_known(pair[name]) for name in ("flight", "machine", "ratio"))
+        if math.isfinite(flight):
+            rows.append([label, scale * flight, scale * machine, _change(ratio), pair["time_flight"]])
+    head = ("largest", compared["flight"], compared["centrifuge"], "change", "in flight at, s")
+    return table(head, rows, "Largest over the whole flight")
+
+
+def _load_peaks(compared: Facts) -> str:
+    def row(peak: Facts) -> list[Value]:
+        failed = peak["reason"]
+        return [
+            peak["time"],
+            peak["load"] / STANDARD_GRAVITY,
+            peak["reproduced"] / STANDARD_GRAVITY,
+            _change(peak["ratio"]),
+            _percent(peak["error"]),
+            Cell(f"not reproduced: {failed}", "bad") if failed else "",
+        ]
+
+    head = ("at, s", "flight, g", "machine, g", "change", "as a vector", "")
+    return table(head, map(row, compared["accounting"]["peaks"]), "Peaks of the load at the control point", words=(5,))
+
+
+def _not_followed(compared: Facts) -> str:
+    rows = [
+        [f"{each['start']:.3f}", f"{each['end']:.3f}", each["flight_peak"] / STANDARD_GRAVITY, each["reason"]]
+        for each in compared["accounting"]["not_followed"]
+    ]
+    share = _percent(compared["accounting"]["followed_share"])
+    head = ("from, s", "to, s", "flight up to, g", "why")
+    shown = table(head, rows, f"Not followed; {share} of the flight's time is", words=(3,))
+    return shown if len(rows) <= 12 else folded(f"{len(rows)} stretches that are not followed", shown)
+
+
+def _tips(motions: Facts) -> str:
+    rows = []
+    for name, each in motions.items():
+        for axis, peak in each["tip"].items():
+            size, left = (_known(peak.get(key)) for key in ("max_abs", "residual_amplitude"))
+            if size > 1e-9 * max(_known(other["max_abs"]) for other in each["tip"].values()):
+                rows.append([name, axis, 1e3 * size, peak["time_of_max"], 1e3 * left])
+    head = ["motion", "tip along", "largest, mm", "at, s", "residual amplitude, mm"]
+    if all(math.isnan(float(row[-1])) for row in rows):
+        head, rows = head[:-1], [row[:-1] for row in rows]
+    return table(head, rows, "Displacement of the tip relative to the base axes", words=(0, 1))
+
+
+def _loads(motions: Facts) -> str:
+    rows = []
+    for name, each in motions.items():
+        if "loads" in each:
+            loads = each["loads"]
+            force, moment = loads["root_force"]["size"], loads["root_moment"]["size"]
+            stress = loads.get("stress", {})
+            largest, margin = _known(stress.get("max")), loads.get("margin", {}).get("min")
+            row = [name, force["max_abs"], force["time_of_max"], moment["max_abs"], moment["time_of_max"]]
+            rows.append([*row, 1e-6 * largest, stress.get("time_of_max"), margin])
+    head = ["motion", "root force, N", "at, s", "root moment, N m", "at, s", "stress, MPa", "at, s", "margin on yield"]
+    if all(row[-1] is None for row in rows):
+        head, rows = head[:-1], [row[:-1] for row in rows]
+    return table(head, rows, "Largest loads of the root, and stress anywhere")
+
+
+def _machine(name: str, motion: Facts) -> str:
+    def row(use: Facts) -> list[Value]:
+        limited = use["allowed"] is not None and math.isfinite(use["allowed"])
+        kind = "bad" if use["exceeded"] else ""
+        share = Cell(f"{use['share']:.0%}", kind, use["share"]) if limited else "no limit"
+        what = f"{use['axis']} {use['quantity']}"
+        return [what, use["used"], use["allowed"], use["unit"], share, f"{use['time']:.3f}" if use["used"] else "–"]
+
+    error = motion["tracking_error"]
+    largest, when = words.number(_known(error["max"]), 3), words.number(_known(error["time_of_max"]))
+    followed = f"load followed within {largest} m/s², at {when} s"
+    head = ("", "used", "allowed", "unit", "share", "at, s")
+    rows = map(row, motion["limits"])
+    return heading(f"Machine: {name}") + table(head, rows, "Limits used", words=(0, 3)) + paragraph(followed)
+
+
+def _errors(motions: Facts) -> str:
+    rows = []
+    for name, motion in motions.items():
+        for quantity in ("displacement", "loads", "stress"):
+            parts = [_known(motion["errors"][quantity][key]) for key in ("total", "model", "shapes", "step")]
+            if any(map(math.isfinite, parts)):
+                rows.append([name, quantity, *(words.percent(part) for part in parts)])
+    head = ("motion", "of", "total", "of the model", "of too few shapes", "of the time step")
+    caption = "Estimated errors, of the largest size"
+    return table(head, rows, caption, words=(0, 1)) or paragraph("no error estimate", "faint")
+
+
+def _change(ratio: float | None) -> str:
+    known = _known(ratio)
+    return change(known) if math.isfinite(known) else "–"
+
+
+def _percent(share: float | None) -> str:
+    known = _known(share)
+    return percent(known if abs(known) > 5e-5 else 0.0) if math.isfinite(known) else "–"
+
+
+def _known(value: float | None) -> float:
+    """What JSON has no word for is null there."""
+    return math.nan if value is None else float(value)

@@ -1,0 +1,48 @@
+"""Where the browser tests find a Chromium."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+
+# What .ci/browser.py installs where there is none.
+INSTALLED = Path(__file__).parents[2] / ".cache" / "chromium" / "chromium"
+NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+PLACES = ("/usr/bin/chromium", "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome")
+QUIET = (
+    "--no-sandbox",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--disable-quic",
+    "--disable-dev-shm-usage",
+    # WebGL without a graphics card.
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--ignore-gpu-blocklist",
+)
+
+
+def find() -> Path | None:
+    """The program of GBEAM_CHROMIUM, of the system, or installed from npm; None where there is none."""
+    named = os.environ.get("GBEAM_CHROMIUM")
+    if named:
+        return Path(named)
+    on_path = (shutil.which(name) for name in NAMES)
+    every = [Path(each) for each in (*on_path, *PLACES) if each]
+    return next((each for each in (*every, INSTALLED) if each.is_file()), None)
+
+
+def arguments(program: Path) -> list[str]:
+    """Of the command line; the one from npm starts its processes without a zygote."""
+    return [*QUIET, "--no-zygote"] if program == INSTALLED else [*QUIET]
+
+
+def environment(program: Path) -> dict[str, str]:
+    """With the libraries and fonts that come with the one from npm."""
+    here = program.parent
+    own = {"LD_LIBRARY_PATH": str(here / "lib"), "FONTCONFIG_PATH": str(here)} if program == INSTALLED else {}
+    return {**os.environ, **own}

@@ -1,0 +1,74 @@
+"""A headless Chromium, and pages in it that record what a page must not do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from gbeam.cli import main
+
+from ..scenarios import FAST
+from .chromium import arguments, environment, find
+
+
+@dataclass
+class Opened:
+    """A page, and what it complained of or requested."""
+
+    page: Any
+    faults: list[str] = field(default_factory=list)
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    """Chromium; the tests are skipped where there is none."""
+    playwright = pytest.importorskip("playwright.sync_api")
+    program = find()
+    if program is None:
+        pytest.skip("no Chromium: `make test` installs one from npm where there is npm, Linux and x86-64")
+    with playwright.sync_playwright() as started:
+        launched = started.chromium.launch(
+            executable_path=str(program), args=arguments(program), env=environment(program)
+        )
+        yield launched
+        launched.close()
+
+
+@pytest.fixture(scope="session")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The report of a run of half a second, made by the command line."""
+    folder = tmp_path_factory.mktemp("report")
+    (folder / "fast.toml").write_text(FAST)
+    assert main(["run", str(folder / "fast.toml"), "--out", str(folder), "--report"]) == 0
+    return folder / "report.html"
+
+
+@pytest.fixture
+def opened(browser: Any) -> Iterator[Any]:
+    """Open a file in a page of some size and theme; at the end nothing may have been complained of."""
+    contexts, every = [], []
+
+    def of(file: Path, width: int = 1200, height: int = 900, before: str = "", **options: Any) -> Any:
+        context = browser.new_context(viewport={"width": width, "height": height}, **options)
+        contexts.append(context)
+        page = context.new_page()
+        seen = Opened(page)
+        every.append(seen)
+        # Reading pixels from software's WebGL is slow, and Chromium says so.
+        page.on("console", lambda m: seen.faults.append(m.text) if "GPU stall" not in m.text else None)
+        page.on("pageerror", lambda error: seen.faults.append(str(error)))
+        page.on("request", lambda r: seen.faults.append(r.url) if not r.url.startswith(("file:", "data:")) else None)
+        if before:
+            page.add_init_script(before)
+        page.goto(file.as_uri())
+        page.wait_for_selector("html[data-gbeam]")
+        return page
+
+    yield of
+    for context in contexts:
+        context.close()
+    assert [seen.faults for seen in every if seen.faults] == []

@@ -1,0 +1,83 @@
+"""The report as a reader sees it, in headless Chromium: pixels, zoom, keys, paper, small windows."""
+
+from __future__ import annotations
+
+import re
+import zlib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+CANVAS = ".gbeam-canvas"
+TIME = "window.gbeam.viewer.clock.time"
+
+
+def _seek(page: Any, time: float) -> bytes:
+    """Take the clock to a time, and return the picture of the viewer there."""
+    page.evaluate(f"window.gbeam.viewer.clock.seek({time})")
+    page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    picture: bytes = page.locator(CANVAS).screenshot()
+    return picture
+
+
+def test_viewer_shows_the_beam_move(opened: Any, report: Path) -> None:
+    page = opened(report)
+    first, second = _seek(page, 0.0), _seek(page, 0.4)
+    assert first != second and _seek(page, 0.0) == first
+    page.locator(CANVAS).focus()
+    page.keyboard.press("ArrowLeft")
+    assert _seek(page, 0.0) != first
+    page.keyboard.press("End")
+    assert page.evaluate(TIME) == page.evaluate("window.gbeam.viewer.clock.end")
+    page.keyboard.press("Home")
+    page.keyboard.press("Space")
+    page.wait_for_function(f"() => {TIME} > window.gbeam.viewer.clock.start")
+    page.keyboard.press("Space")
+    assert page.get_by_role("button", name="Play").is_visible()
+    labels = page.locator(".gbeam-label strong").all_inner_texts()
+    assert labels == ["flight, base axes", "spin (centrifuge), base axes", "spin (centrifuge), machine"]
+
+
+def test_plots_zoom_together_and_lead_the_viewer(opened: Any, report: Path) -> None:
+    page = opened(report)
+    plots = page.locator(".uplot .u-over")
+    assert plots.count() >= 6
+    box = plots.nth(0).bounding_box()
+    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 50)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 60, steps=4)
+    page.mouse.up()
+    _seek(page, 0.0)
+    other = plots.nth(1).bounding_box()
+    page.mouse.click(other["x"] + 0.5 * other["width"], other["y"] + 40)
+    start, end = page.evaluate("[window.gbeam.viewer.clock.start, window.gbeam.viewer.clock.end]")
+    # The middle of what both plots show now: 0.3 to 0.6 of the whole.
+    assert page.evaluate(TIME) == pytest.approx(start + 0.45 * (end - start), abs=0.02 * (end - start))
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_small_windows_hold_the_page(opened: Any, report: Path, scheme: str) -> None:
+    page = opened(report, width=360, height=740, color_scheme=scheme, has_touch=True)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 360
+    ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
+    assert (max(map(int, re.findall(r"\d+", ground))) < 60) == (scheme == "dark")
+
+
+def test_page_without_webgl_says_so(opened: Any, report: Path) -> None:
+    none = "HTMLCanvasElement.prototype.getContext = (get => function (kind, ...more) {"
+    none += " return kind.startsWith('webgl') ? null : get.call(this, kind, ...more); })"
+    none += "(HTMLCanvasElement.prototype.getContext);"
+    page = opened(report, before=none)
+    assert "shows no WebGL" in page.locator("#gbeam-viewer").inner_text()
+    assert page.locator(".uplot").count() >= 6
+
+
+def test_report_prints(opened: Any, report: Path) -> None:
+    page = opened(report, color_scheme="dark")
+    pdf = page.pdf(format="A4", margin={side: "15 mm".replace(" ", "") for side in ("top", "bottom", "left", "right")})
+    assert pdf.startswith(b"%PDF")
+    assert 2 <= len(re.findall(rb"/Type\s*/Page\b", pdf)) <= 12
+    streams = re.findall(rb"stream\r?\n(.*?)endstream", pdf, re.DOTALL)
+    drawn = b"".join(zlib.decompressobj().decompress(each) for each in streams if each[:1] == b"x")
+    assert drawn.count(b" Do") >= 7  # the viewer's picture and those of the plots

@@ -1,0 +1,137 @@
+"""The page of a result: what it says, that nothing from outside is obeyed, and that it needs nothing else."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import html
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import gbeam as gb
+from gbeam.errors import InputError
+from gbeam.report.facts import facts
+from gbeam.report.page import series
+from gbeam.report.page.document import html as page_of
+from gbeam.report.page.result import report_of, report_of_file
+from gbeam.report.words import as_json
+from gbeam.results.outline import Outline
+from gbeam.results.study import Study
+
+NASTY = "</script><script>alert(1)</script> <b>&\" '\u202e\x1b[31m"
+
+
+def header_of(page: str) -> dict[str, object]:
+    found = re.search(r'<script type="application/json" id="gbeam-header">(.*?)</script>', page, re.DOTALL)
+    assert found is not None
+    made: dict[str, object] = json.loads(found[1])
+    return made
+
+
+def test_page_says_what_the_run_says(study: Study) -> None:
+    page = html.unescape(report_of(study))
+    verdict = study.comparisons[0].verdict
+    assert verdict[1:] in page and '<span class="badge good">done</span>' in page
+    assert "axis 1 acceleration" in page and "89%" in page
+    assert "Load followed within 0.600 m/s²" in page
+
+
+def test_nothing_from_outside_is_obeyed(study: Study) -> None:
+    response = replace(study.responses["flight"], warnings=(NASTY,), message=NASTY, outcome="diverged")
+    page = report_of(replace(study, title=NASTY, responses={NASTY: response}, comparisons=()))
+    assert "<script>alert" not in page and "<b>" not in page
+    assert "\x1b" not in page and "\u202e" not in page
+    assert page.count("<script") == 3
+    assert NASTY[:9] in html.unescape(page)
+
+
+def test_page_allows_its_own_script_only_and_needs_no_network(study: Study) -> None:
+    page = report_of(study)
+    policy = re.search(r'http-equiv="Content-Security-Policy" content="([^"]+)"', page)
+    assert policy is not None and policy[1].startswith("default-src 'none'")
+    for tag in ('<script type="module">', "<style>"):
+        inside = page.split(tag)[1].split("</s")[0]
+        digest = base64.b64encode(hashlib.sha256(inside.encode()).digest()).decode()
+        assert f"'sha256-{digest}'" in policy[1]
+    assert "unsafe" not in policy[1]
+    assert not re.search(r'(?:src|href)="', page)
+    assert set(re.findall(r"https?://[\w.]+", page)) <= {"http://www.w3.org"}  # a namespace
+
+
+def test_page_of_a_file_is_that_of_the_result(study: Study, tmp_path: Path) -> None:
+    study.save(tmp_path / "result.nc")
+    assert report_of_file(tmp_path) == report_of(study)
+
+
+def test_page_of_json_is_that_of_the_result(tmp_path: Path) -> None:
+    beam = gb.Beam(0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9), damping_ratio=0.01)
+    modes = gb.modes(gb.assemble(beam, "FOAM", z=3))
+    found = facts(modes)
+    assert found is not None
+    (tmp_path / "modes.json").write_text(as_json(found))
+    page = report_of_file(tmp_path / "modes.json")
+    assert all(f"{frequency:#.4g}" in page for frequency in modes.frequency)
+    header = header_of(page)
+    assert header["modes"]["labels"][0].startswith("1: 36.5")  # type: ignore[index]
+
+
+def test_no_report_without_a_result(tmp_path: Path) -> None:
+    for name, text in (("a.json", "{"), ("b.json", "[]"), ("c.json", '{"outcome": "done"}'), ("d.nc", "x")):
+        (tmp_path / name).write_text(text)
+        with pytest.raises(InputError):
+            report_of_file(tmp_path / name)
+    with pytest.raises(InputError, match="holds several results"):
+        report_of_file(tmp_path)
+    with pytest.raises(InputError, match="no file"):
+        report_of_file(tmp_path / "none.nc")
+    with pytest.raises(InputError, match="no report"):
+        report_of(gb.static(gb.assemble(gb.Beam(0.3, gb.Section.circle(0.01), gb.Material(2700, 7e10)), "FOAM", z=1)))
+
+
+def test_scene_has_the_motions_with_an_outline(study: Study) -> None:
+    flight = study.responses["flight"]
+    outline = Outline(
+        np.array([0.0, 0.3]), np.full(2, 0.02), np.full(2, 0.004), False, np.empty((0, 2)), flight.time[::50],
+        np.zeros((5, 2, 3)),
+    )  # fmt: skip
+    shown = replace(study, responses={**study.responses, "flight": replace(flight, outline=outline)})
+    scene = header_of(report_of(shown))["scene"]
+    (motion,) = scene["motions"]  # type: ignore[index]
+    assert motion["name"] == "flight" and motion["points"] == [0, 0.3] and motion["time"]["shape"] == [5]
+    assert "scene" not in header_of(report_of(study))
+
+
+def test_shown_numbers_are_those_of_the_result(study: Study) -> None:
+    found = facts(study)
+    assert found is not None
+    page = page_of(found, {})
+    assert header_of(page)["plots"] == []  # no variables, no histories
+    text = re.sub(r"<[^>]+>", " ", page)
+    for pair in study.comparisons[0].peaks.values():
+        assert f"{1e3 * pair.flight:#.4g}" in text and f"{1e3 * pair.machine:#.4g}" in text
+
+
+@given(st.integers(1, 9000), st.integers(0, 3))
+def test_thinned_keeps_the_least_and_the_largest(count: int, seed: int) -> None:
+    time = np.linspace(-1, 2, count)
+    values = np.random.default_rng(seed).normal(size=(count, 2))
+    t, kept = series.thinned(time, values)
+    assert len(t) == len(kept) <= max(2 * series.INTERVALS, 2)
+    np.testing.assert_array_equal([kept.min(axis=0), kept.max(axis=0)], [values.min(axis=0), values.max(axis=0)])
+    assert (np.diff(t) >= 0).all() and t[0] >= -1 and t[-1] <= 2
+
+
+def test_numbers_come_back_and_stand_once() -> None:
+    numbers = series.Numbers()
+    first, second = np.arange(6.0).reshape(2, 3), np.array([7.0])
+    assert numbers.add(first) == {"at": 0, "shape": [2, 3]} == numbers.add(first)
+    assert numbers.add(second) == {"at": 6, "shape": [1]}
+    back = np.frombuffer(base64.b64decode(numbers.encoded()), dtype="<f4")
+    assert back.tolist() == [0, 1, 2, 3, 4, 5, 7]

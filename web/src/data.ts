@@ -1,0 +1,149 @@
+// What Python hands over: a header in JSON, and all numbers in one Float32Array that the header points into.
+
+/** Where an array lies among the numbers: first element, and shape. */
+export interface Ref {
+  at: number;
+  shape: number[];
+}
+
+export interface Stress {
+  at: number[];
+  values: Ref;
+  largest: number;
+}
+
+/** A beam in motion in one environment, or a mode's shape; SI, base axes B. */
+export interface Motion {
+  name: string;
+  environment: string;
+  points: number[];
+  width: number[];
+  thickness: number[];
+  round: boolean;
+  bodies: [number, number][];
+  time: Ref;
+  displacement: Ref;
+  largest: number;
+  /** Whether it is a mode's shape, whose size means nothing. */
+  relative?: boolean;
+  stress?: Stress;
+  controlPoint?: number;
+  load?: Ref;
+  reference?: Ref;
+  largestLoad?: number;
+  span?: [number, number];
+  arm?: number;
+  axes?: Ref;
+  radius?: number;
+  mounting?: number[];
+  angle?: Ref;
+}
+
+/** Complex mode shapes of one beam. */
+export interface Modes {
+  points: number[];
+  width: number[];
+  thickness: number[];
+  round: boolean;
+  labels: string[];
+  real: Ref;
+  imaginary: Ref;
+}
+
+export interface Series {
+  label: string;
+  x: Ref;
+  y: Ref;
+  colour: number;
+  dash?: boolean;
+  points?: boolean;
+}
+
+export interface Level {
+  label: string;
+  value: number;
+}
+
+export interface Plot {
+  id: string;
+  title: string;
+  x: string;
+  y: string;
+  time: boolean;
+  logX?: boolean;
+  logY?: boolean;
+  series: Series[];
+  bands?: [number, number][];
+  levels?: Level[];
+}
+
+export interface HeatMap {
+  id: string;
+  title: string;
+  x: { label: string; ticks: string[] };
+  y: { label: string; ticks: string[] };
+  unit: string;
+  values: Ref;
+  outcomes: string[];
+}
+
+export interface Header {
+  scene?: { motions: Motion[]; start: number };
+  modes?: Modes;
+  plots: Plot[];
+  maps: HeatMap[];
+}
+
+export interface Data {
+  header: Header;
+  numbers: Float32Array;
+}
+
+/** The elements of an array, without a copy. */
+export function view(numbers: Float32Array, ref: Ref): Float32Array {
+  return numbers.subarray(ref.at, ref.at + ref.shape.reduce((a, b) => a * b, 1));
+}
+
+/** Base64 of little-endian 32-bit floats. */
+export function decode(text: string): Float32Array {
+  const bytes = atob(text.trim());
+  const packed = new Uint8Array(bytes.length);
+  for (let i = 0; i < bytes.length; i++) packed[i] = bytes.charCodeAt(i);
+  return new Float32Array(packed.buffer);
+}
+
+/** The interval that holds a time, and the fraction of it; the ends beyond them. */
+export function locate(time: ArrayLike<number>, t: number): [number, number] {
+  const last = time.length - 1;
+  if (last < 1 || t <= time[0]!) return [0, 0];
+  if (t >= time[last]!) return [last - 1, 1];
+  let low = 0;
+  let high = last;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (time[middle]! <= t) low = middle;
+    else high = middle;
+  }
+  return [low, (t - time[low]!) / (time[low + 1]! - time[low]!)];
+}
+
+/** Row `t` of values (rows, width) by linear interpolation between `[row, fraction]`, into `out`. */
+export function interpolate(
+  values: Float32Array,
+  width: number,
+  [row, fraction]: [number, number],
+  out: Float32Array,
+): Float32Array {
+  const a = row * width;
+  const b = Math.min(a + width, values.length - width);
+  for (let i = 0; i < width; i++) out[i] = values[a + i]! + fraction * (values[b + i]! - values[a + i]!);
+  return out;
+}
+
+/** A number with four significant digits; a dash where there is none. */
+export function format(value: number | null | undefined): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return "–";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  return size >= 1e5 || size < 1e-4 ? value.toExponential(3) : value.toPrecision(4);
+}

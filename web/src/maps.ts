@@ -1,0 +1,41 @@
+// A sweep over two parameters: a table whose cells have the colour of their value.
+
+import { css, GRADIENT, shade } from "./colours";
+import { element } from "./controls";
+import { type Data, format, type HeatMap, view } from "./data";
+
+export function heatMap(root: HTMLElement, data: Data, spec: HeatMap): void {
+  const values = view(data.numbers, spec.values);
+  const known = [...values].filter(Number.isFinite);
+  const [low, high] = [Math.min(...known), Math.max(...known)];
+  const table = element("table", "gbeam-map");
+  const head = element("tr");
+  head.append(element("th", "", `${spec.y.label} \\ ${spec.x.label}`));
+  for (const tick of spec.x.ticks) head.append(element("th", "", tick));
+  table.append(head);
+  spec.y.ticks.forEach((tick, row) => {
+    const line = element("tr");
+    line.append(element("th", "", tick));
+    spec.x.ticks.forEach((_, column) => {
+      const i = column * spec.y.ticks.length + row;
+      const value = values[i]!;
+      const cell = element("td", "", Number.isFinite(value) ? format(value) : spec.outcomes[i]!);
+      if (Number.isFinite(value)) {
+        const share = high > low ? (value - low) / (high - low) : 0.5;
+        cell.style.background = css(shade(share));
+        cell.style.color = share > 0.55 ? "#000" : "#fff";
+      }
+      line.append(cell);
+    });
+    table.append(line);
+  });
+  const box = element("div", "gbeam-wide");
+  box.append(table);
+  root.append(box);
+  if (!known.length) return;
+  const legend = element("div", "gbeam-legend");
+  const bar = element("span", "gbeam-bar");
+  bar.style.background = GRADIENT;
+  legend.append(element("span", "", format(low)), bar, element("span", "", `${format(high)} ${spec.unit}`));
+  root.append(legend);
+}

@@ -1,0 +1,196 @@
+// One view of one motion: the beam in its base axes, or on the machine that carries it.
+
+import {
+  AmbientLight,
+  ArrowHelper,
+  Color,
+  CylinderGeometry,
+  DirectionalLight,
+  type Material,
+  Mesh,
+  PerspectiveCamera,
+  Scene,
+  Vector3,
+  type WebGLRenderer,
+} from "three";
+import { BeamMesh } from "./beam";
+import { axesOnly, type Carrier, centrifuge, hub } from "./carriers";
+import { interpolate, locate, type Motion, view } from "./data";
+import { lineColour } from "./colours";
+import type { Orbit } from "./orbit";
+
+export type Colouring = "deflection" | "stress" | "none";
+
+export interface Settings {
+  factor: number;
+  ghost: boolean;
+  loads: boolean;
+  colouring: Colouring;
+  /** What the darkest and the brightest colour stand for: 0 and this. */
+  largestDeflection: number;
+  largestStress: number;
+  largestLoad: number;
+}
+
+/** Values at positions `at`, ascending, taken linearly to `points`. */
+export function along(at: number[], values: ArrayLike<number>, points: number[], out: Float32Array): void {
+  points.forEach((x, k) => {
+    const [i, f] = locate(at, x);
+    const [a, b] = [values[i]!, values[Math.min(i + 1, at.length - 1)]!];
+    out[k] = a + f * (b - a);
+  });
+}
+
+export class Panel {
+  private readonly scene = new Scene();
+  private readonly camera = new PerspectiveCamera(32, 1, 0.001, 1e4);
+  private readonly beam: BeamMesh;
+  private readonly ghost: BeamMesh;
+  private readonly arrows: { made: ArrowHelper; wanted: ArrowHelper | null } | null = null;
+  private readonly carrier: Carrier;
+  private readonly length: number;
+  private readonly now: Float32Array;
+  private readonly shares: Float32Array;
+
+  constructor(
+    readonly motion: Motion,
+    private readonly numbers: Float32Array,
+    readonly whole: boolean,
+  ) {
+    this.length = motion.points.at(-1)!;
+    this.carrier = this.carrying();
+    this.beam = new BeamMesh(motion, false);
+    this.ghost = new BeamMesh(motion, true);
+    this.carrier.base.add(this.beam.group, this.ghost.group);
+    if (motion.load) {
+      const at = new Vector3(motion.controlPoint ?? 0, 0, 0);
+      const made = arrow(at, this.length);
+      // A thick shaft, so that the thin arrow of the target is seen inside where the two agree.
+      const shaft = new CylinderGeometry(0.006 * this.length, 0.006 * this.length, 0.9, 12).translate(0, 0.45, 0);
+      made.line.add(new Mesh(shaft, made.cone.material));
+      const wanted = motion.reference ? arrow(at, this.length) : null;
+      if (wanted) {
+        for (const part of [wanted.line, wanted.cone]) {
+          (part.material as Material).depthTest = false;
+          part.renderOrder = 1;
+        }
+      }
+      this.arrows = { made, wanted };
+      this.carrier.base.add(made);
+      if (wanted) this.carrier.base.add(wanted);
+    }
+    const key = new DirectionalLight(0xffffff, 2.6);
+    key.position.set(2, -3, 5);
+    this.scene.add(new AmbientLight(0xffffff, 1.5), key, this.carrier.world);
+    this.camera.up.set(0, 0, 1);
+    this.now = new Float32Array(3 * motion.points.length);
+    this.shares = new Float32Array(motion.points.length);
+  }
+
+  get title(): string {
+    const of = this.motion.name === this.motion.environment ? "" : ` (${this.motion.environment})`;
+    if (!this.whole) return `${this.motion.name}${of}, base axes`;
+    return `${this.motion.name}${of}, ${this.motion.environment === "hub" ? "hub" : "machine"}`;
+  }
+
+  get note(): string {
+    return this.carrier.note;
+  }
+
+  /** What there is at a time, in words: before, during or after the flight. */
+  state(t: number): string {
+    const times = view(this.numbers, this.motion.time);
+    const slack = 1e-6 * Math.max(1, Math.abs(t));
+    if (t < times[0]! - slack) return "not begun";
+    if (t > times[times.length - 1]! + slack) return "over";
+    const span = this.motion.span;
+    if (span && t < span[0]) return "spin-up";
+    if (span && t > span[1]) return "spin-down";
+    return "";
+  }
+
+  /** Everything as it is at a time, s. */
+  update(t: number, settings: Settings, dark: boolean): void {
+    const { motion, numbers } = this;
+    const place = locate(view(numbers, motion.time), t);
+    interpolate(view(numbers, motion.displacement), this.now.length, place, this.now);
+    const coloured = this.colour(settings, place);
+    this.beam.move(this.now, settings.factor, coloured ? this.shares : null, dark ? 0.75 : 0.55);
+    this.ghost.group.visible = settings.ghost;
+    const angles = motion.axes ?? motion.angle;
+    if (this.whole && angles) {
+      const width = motion.axes ? 3 : 1;
+      this.carrier.turn(interpolate(view(numbers, angles), width, place, new Float32Array(width)));
+    }
+    this.point(settings, place, dark);
+    this.scene.background = new Color(dark ? 0x14171c : 0xf4f5f7);
+  }
+
+  /** Draw into a part of the canvas: left, bottom, width and height in pixels. */
+  draw(renderer: WebGLRenderer, orbit: Orbit, box: [number, number, number, number]): void {
+    const [left, bottom, width, height] = box;
+    if (width < 2 || height < 2) return;
+    const aspect = width / height;
+    const half = Math.tan((this.camera.fov * Math.PI) / 360);
+    const away = (this.carrier.size / (half * Math.min(1, aspect))) * orbit.distance;
+    const [x, y, z] = this.carrier.middle;
+    const [a, b, c] = orbit.direction;
+    this.camera.aspect = aspect;
+    this.camera.near = away / 100;
+    this.camera.far = away * 10;
+    this.camera.position.set(x + away * a, y + away * b, z + away * c);
+    this.camera.lookAt(x, y, z);
+    this.camera.updateProjectionMatrix();
+    renderer.setViewport(left, bottom, width, height);
+    renderer.setScissor(left, bottom, width, height);
+    renderer.render(this.scene, this.camera);
+  }
+
+  private carrying(): Carrier {
+    const { motion, length } = this;
+    if (this.whole && motion.axes && motion.arm) return centrifuge(motion.arm, length, motion.controlPoint ?? 0);
+    if (this.whole && motion.angle && motion.radius !== undefined) {
+      return hub(motion.radius, length, motion.mounting ?? [1, 0, 0, 0, 1, 0, 0, 0, 1]);
+    }
+    return axesOnly(length);
+  }
+
+  private colour(settings: Settings, place: [number, number]): boolean {
+    const { stress, points } = this.motion;
+    if (settings.colouring === "stress" && stress) {
+      const width = stress.at.length;
+      const values = interpolate(view(this.numbers, stress.values), width, place, new Float32Array(width));
+      along(stress.at, values, points, this.shares);
+      for (let k = 0; k < points.length; k++) this.shares[k]! /= settings.largestStress || 1;
+      return true;
+    }
+    if (settings.colouring !== "deflection") return false;
+    for (let k = 0; k < points.length; k++) {
+      const size = Math.hypot(this.now[3 * k]!, this.now[3 * k + 1]!, this.now[3 * k + 2]!);
+      this.shares[k] = size / (settings.largestDeflection || 1);
+    }
+    return true;
+  }
+
+  private point(settings: Settings, place: [number, number], dark: boolean): void {
+    if (!this.arrows) return;
+    const { motion, numbers } = this;
+    const set = (which: ArrowHelper | null, values: typeof motion.load, colour: string): void => {
+      if (!which || !values) return;
+      const load = new Vector3(...interpolate(view(numbers, values), 3, place, new Float32Array(3)));
+      const size = (0.5 * this.length * load.length()) / (settings.largestLoad || 1);
+      which.visible = settings.loads && size > 0.004 * this.length;
+      if (!which.visible) return;
+      which.setDirection(load.normalize());
+      which.setLength(size, Math.min(0.05 * this.length, 0.5 * size), 0.025 * this.length);
+      which.setColor(colour);
+    };
+    set(this.arrows.wanted, motion.reference, lineColour(6, dark));
+    set(this.arrows.made, motion.load, lineColour(1, dark));
+  }
+}
+
+function arrow(at: Vector3, length: number): ArrowHelper {
+  return new ArrowHelper(new Vector3(0, 0, 1), at, length);
+}
+

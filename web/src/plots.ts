@@ -1,0 +1,213 @@
+// Plots that zoom: all over time share their range and the viewer's clock.
+
+import uPlot from "uplot";
+import type { Clock } from "./clock";
+import { lineColour, prefersDark } from "./colours";
+import { element } from "./controls";
+import { type Data, format, type Plot, view } from "./data";
+
+type Range = [number, number] | null;
+
+/** What all plots over time show at once. */
+class Common {
+  range: Range = null;
+  readonly plots: uPlot[] = [];
+  private busy = false;
+
+  zoom(from: uPlot, range: Range): void {
+    if (this.busy) return;
+    this.busy = true;
+    this.range = range;
+    for (const plot of this.plots) {
+      if (plot === from) continue;
+      const x = plot.data[0];
+      plot.setScale("x", range ? { min: range[0], max: range[1] } : { min: x[0]!, max: x[x.length - 1]! });
+    }
+    this.busy = false;
+  }
+}
+
+export class Plots {
+  private readonly common = new Common();
+  private made: { plot: uPlot; spec: Plot; root: HTMLElement }[] = [];
+
+  constructor(
+    private readonly data: Data,
+    private readonly clock: Clock | null,
+  ) {
+    clock?.onChange(() => {
+      for (const { plot, spec } of this.made) if (spec.time) plot.redraw(false, false);
+    });
+    const redo = (): void => this.again();
+    window.addEventListener("gbeam-theme", redo);
+    window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redo);
+    new ResizeObserver(() => {
+      for (const { plot, root } of this.made) plot.setSize(size(root));
+    }).observe(document.body);
+  }
+
+  /** Draw one plot into an element. */
+  add(root: HTMLElement, spec: Plot): void {
+    const plot = new uPlot(this.options(root, spec), table(this.data, spec), root);
+    plot.root.setAttribute("role", "img");
+    plot.root.setAttribute("aria-label", `${spec.title}: ${spec.y} over ${spec.x}`);
+    if (spec.time) this.common.plots.push(plot);
+    this.made.push({ plot, spec, root });
+  }
+
+  /** All of them once more, in the colours of the present theme. */
+  private again(): void {
+    const before = this.made;
+    this.made = [];
+    this.common.plots.length = 0;
+    for (const { plot, spec, root } of before) {
+      plot.destroy();
+      this.add(root, spec);
+    }
+  }
+
+  private options(root: HTMLElement, spec: Plot): uPlot.Options {
+    const dark = prefersDark();
+    const ink = dark ? "#d7dbe2" : "#2c3138";
+    const grid = { stroke: dark ? "#333a44" : "#e3e5e9", width: 1 };
+    const axis: uPlot.Axis = { stroke: ink, grid, ticks: grid, font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif" };
+    const clock = spec.time ? this.clock : null;
+    return {
+      ...size(root),
+      scales: {
+        x: { time: false, distr: spec.logX ? 3 : 1 },
+        y: { distr: spec.logY ? 3 : 1, range: (_, low, high) => range(low, high, spec) },
+      },
+      axes: [
+        { ...axis, label: spec.x, labelSize: 20, size: 34, ...(spec.logX ? { values: sparse } : {}) },
+        { ...axis, label: spec.y, labelSize: 20, size: 62, ...(spec.logY ? { values: sparse } : {}) },
+      ],
+      cursor: {
+        ...(spec.time ? { sync: { key: "gbeam-time" } } : {}),
+        drag: spec.time ? { x: true, y: false } : { x: true, y: true, uni: 30 },
+        points: { size: 6 },
+      },
+      legend: { live: true },
+      series: [
+        { label: spec.x, value: (_, x) => format(x) },
+        ...spec.series.map((each) => ({
+          label: each.label,
+          stroke: lineColour(each.colour, dark),
+          width: each.points ? 0 : 1.4,
+          ...(each.dash ? { dash: [6, 4] } : {}),
+          points: { show: each.points === true, size: 5, fill: lineColour(each.colour, dark) },
+          spanGaps: true,
+          value: (_: uPlot, y: number | null) => format(y),
+        })),
+      ],
+      hooks: {
+        drawClear: [(plot) => bands(plot, spec, dark)],
+        draw: [(plot) => levels(plot, spec, ink), (plot) => clock && now(plot, clock, dark)],
+        setScale: [
+          (plot, key) => {
+            if (key !== "x" || !spec.time) return;
+            const { min, max } = plot.scales["x"]!;
+            const x = plot.data[0];
+            const whole = min === x[0] && max === x[x.length - 1];
+            if (min !== undefined && max !== undefined) this.common.zoom(plot, whole ? null : [min, max]);
+          },
+        ],
+        ready: [
+          (plot) => {
+            if (!clock) return;
+            // A click without a drag takes the clock there.
+            let from = 0;
+            plot.over.addEventListener("mousedown", (e) => (from = e.clientX));
+            plot.over.addEventListener("click", (e) => {
+              if (Math.abs(e.clientX - from) < 3) clock.seek(plot.posToVal(e.offsetX, "x"));
+            });
+          },
+        ],
+      },
+    };
+  }
+}
+
+function size(root: HTMLElement): { width: number; height: number } {
+  return { width: Math.max(240, root.clientWidth), height: 230 };
+}
+
+/** Of logarithmic axes the powers of ten only, as plain numbers. */
+function sparse(_: uPlot, splits: (number | null)[]): string[] {
+  return splits.map((x) => (x !== null && x > 0 && Number.isInteger(+Math.log10(x).toFixed(6)) ? String(x) : ""));
+}
+
+/** From the least to the largest with some air, and with zero where that is near; levels are in it if they are near. */
+function range(low: number, high: number, spec: Plot): [number, number] {
+  if (low === null || high === null || !Number.isFinite(low) || !Number.isFinite(high)) return [0, 1];
+  if (spec.logY) return [low / 1.3, high * 1.3];
+  for (const { value } of spec.levels ?? []) if (value <= 3 * high || high <= 0) high = Math.max(high, value);
+  if (low > 0 && low < 0.5 * high) low = 0;
+  const air = 0.06 * (high - low) || 0.1 * Math.abs(high) || 1;
+  return [low === 0 ? 0 : low - air, high + air];
+}
+
+/** One table of all lines over one column of x, as uPlot needs it. */
+function table(data: Data, spec: Plot): uPlot.AlignedData {
+  const lines = spec.series.map((each) => {
+    const y = Array.from(view(data.numbers, each.y), (value) => (Number.isFinite(value) ? value : null));
+    return [Array.from(view(data.numbers, each.x)), y] as uPlot.AlignedData;
+  });
+  return lines.length > 1 ? uPlot.join(lines) : lines[0]!;
+}
+
+function bands(plot: uPlot, spec: Plot, dark: boolean): void {
+  const { left, top, width, height } = plot.bbox;
+  plot.ctx.save();
+  plot.ctx.fillStyle = dark ? "#2a2f38" : "#ececef";
+  for (const [start, end] of spec.bands ?? []) {
+    const [a, b] = [start, end].map((x) => Math.min(Math.max(plot.valToPos(x, "x", true), left), left + width));
+    plot.ctx.fillRect(a!, top, Math.max(b! - a!, 1), height);
+  }
+  plot.ctx.restore();
+}
+
+function levels(plot: uPlot, spec: Plot, ink: string): void {
+  const { left, top, width, height } = plot.bbox;
+  const { ctx } = plot;
+  ctx.save();
+  ctx.strokeStyle = ink;
+  ctx.fillStyle = ink;
+  ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
+  ctx.setLineDash([8, 4]);
+  for (const { label, value } of spec.levels ?? []) {
+    const y = plot.valToPos(value, "y", true);
+    if (y < top || y > top + height) continue;
+    ctx.beginPath();
+    ctx.moveTo(left, y);
+    ctx.lineTo(left + width, y);
+    ctx.stroke();
+    ctx.fillText(label, left + 4, y - 4 * devicePixelRatio);
+  }
+  ctx.restore();
+}
+
+function now(plot: uPlot, clock: Clock, dark: boolean): void {
+  const { left, top, width, height } = plot.bbox;
+  const x = plot.valToPos(clock.time, "x", true);
+  if (x < left || x > left + width) return;
+  plot.ctx.save();
+  plot.ctx.strokeStyle = dark ? "#f2f2f2" : "#000";
+  plot.ctx.lineWidth = devicePixelRatio;
+  plot.ctx.setLineDash([]);
+  plot.ctx.beginPath();
+  plot.ctx.moveTo(x, top);
+  plot.ctx.lineTo(x, top + height);
+  plot.ctx.stroke();
+  plot.ctx.restore();
+}
+
+/** A heading above a plot. */
+export function captioned(root: HTMLElement, title: string): HTMLElement {
+  const figure = element("figure", "gbeam-plot");
+  const caption = element("figcaption", "", title);
+  const place = element("div");
+  figure.append(caption, place);
+  root.append(figure);
+  return place;
+}

@@ -1,0 +1,91 @@
+// The page: fills the places that Python left for the viewer, the plots and the maps.
+
+import { button, choice, element } from "./controls";
+import { type Data, decode, type Header } from "./data";
+import { heatMap } from "./maps";
+import { shapes } from "./modes";
+import { Plots } from "./plots";
+import { Viewer } from "./viewer";
+
+declare global {
+  interface Window {
+    /** What is shown, for tests and for the browser's console. */
+    gbeam?: { viewer: Viewer | null };
+  }
+}
+
+/** The data of this page; null where it is no report. */
+export function readPage(): Data | null {
+  const [header, numbers] = ["gbeam-header", "gbeam-numbers"].map((id) => document.getElementById(id)?.textContent);
+  if (!header) return null;
+  return { header: JSON.parse(header) as Header, numbers: decode(numbers ?? "") };
+}
+
+export function showPage(data: Data): void {
+  const stage = document.getElementById("gbeam-viewer");
+  let viewer: Viewer | null = null;
+  if (stage && data.header.scene) viewer = Viewer.mount(stage, data);
+  if (stage && data.header.modes) viewer = showModesIn(stage, data).viewer();
+  const plots = new Plots(data, viewer && data.header.scene ? viewer.clock : null);
+  for (const spec of data.header.plots) {
+    const place = document.getElementById(spec.id);
+    if (place) plots.add(place, spec);
+  }
+  for (const spec of data.header.maps) {
+    const place = document.getElementById(spec.id);
+    if (place) heatMap(place, data, spec);
+  }
+  themeSwitch();
+  printing();
+  window.gbeam = { viewer };
+  document.documentElement.dataset["gbeam"] = "drawn";
+}
+
+/** The shapes of modes, one at a time. */
+export function showModesIn(stage: HTMLElement, data: Data): { viewer: () => Viewer | null; dispose: () => void } {
+  const modes = data.header.modes!;
+  const place = element("div");
+  let viewer: Viewer | null = null;
+  const show = (which: number): void => {
+    viewer?.dispose();
+    place.replaceChildren();
+    viewer = Viewer.mount(place, shapes(modes, which, data.numbers));
+    if (window.gbeam) window.gbeam.viewer = viewer;
+  };
+  const row = element("div", "gbeam-row");
+  const options = modes.labels.map((label, i) => [String(i), label] as const);
+  row.append(choice("Mode", options, "0", (value) => show(Number(value))));
+  stage.append(row, place);
+  show(0);
+  return { viewer: () => viewer, dispose: () => viewer?.dispose() };
+}
+
+/** Light or dark, whatever the system says. */
+function themeSwitch(): void {
+  const place = document.getElementById("gbeam-theme");
+  if (!place) return;
+  const themes = ["", "light", "dark"] as const;
+  let i = 0;
+  const act = button("Theme: system", () => {
+    i = (i + 1) % themes.length;
+    setTheme(themes[i]!);
+    act.textContent = `Theme: ${themes[i] || "system"}`;
+  });
+  place.append(act);
+}
+
+function setTheme(theme: string): void {
+  if (theme) document.documentElement.dataset["theme"] = theme;
+  else delete document.documentElement.dataset["theme"];
+  window.dispatchEvent(new Event("gbeam-theme"));
+}
+
+/** Paper is white: plots are drawn in light colours while the page is printed. */
+function printing(): void {
+  let before = "";
+  window.addEventListener("beforeprint", () => {
+    before = document.documentElement.dataset["theme"] ?? "";
+    setTheme("light");
+  });
+  window.addEventListener("afterprint", () => setTheme(before));
+}

@@ -1,0 +1,107 @@
+import { Vector3 } from "three";
+import { describe, expect, it } from "vitest";
+import { BeamMesh, corners, frame } from "../src/beam";
+import { centrifuge, hub } from "../src/carriers";
+import { shade } from "../src/colours";
+import { view } from "../src/data";
+import { shapes } from "../src/modes";
+import { along } from "../src/panel";
+import { visible } from "../src/viewer";
+
+describe("a centrifuge's pose", () => {
+  // The axes of gbeam.motion.centrifuge.machine.kinematics.forward.
+  const [arm, length, control] = [3.3, 2.4, 1.8]; // long enough to be drawn as large as it is
+  const [t1, t2, t3] = [0.7, -1.1, 0.4];
+  const machine = centrifuge(arm, length, control);
+  machine.turn([t1, t2, t3]);
+  machine.world.updateMatrixWorld(true);
+  const at = (x: number, y: number, z: number): Vector3 => machine.base.localToWorld(new Vector3(x, y, z));
+
+  it("holds the control point at the arm's end", () => {
+    const point = at(control, 0, 0);
+    expect(point.x).toBeCloseTo(arm * Math.cos(t1), 9);
+    expect(point.y).toBeCloseTo(arm * Math.sin(t1), 9);
+    expect(point.z).toBeCloseTo(0, 9);
+  });
+
+  it("turns the base axes by yaw and roll", () => {
+    const origin = at(0, 0, 0);
+    const [e1, e2, e3] = [at(1, 0, 0), at(0, 1, 0), at(0, 0, 1)].map((each) => each.sub(origin));
+    const yaw = t1 + t2;
+    const b2 = new Vector3(-Math.sin(yaw), Math.cos(yaw), 0);
+    expect(e1!.distanceTo(new Vector3(Math.cos(yaw), Math.sin(yaw), 0))).toBeLessThan(1e-9);
+    const expected = b2.clone().multiplyScalar(Math.cos(t3)).add(new Vector3(0, 0, Math.sin(t3)));
+    expect(e2!.distanceTo(expected)).toBeLessThan(1e-9);
+    expect(e3!.distanceTo(b2.multiplyScalar(-Math.sin(t3)).add(new Vector3(0, 0, Math.cos(t3))))).toBeLessThan(1e-9);
+  });
+});
+
+it("puts a beam that points inwards on the hub's rim", () => {
+  const carrier = hub(2, 5, [-1, 0, 0, 0, -1, 0, 0, 0, 1]);
+  carrier.turn([Math.PI / 2]);
+  carrier.world.updateMatrixWorld(true);
+  const tip = carrier.base.localToWorld(new Vector3(5, 0, 0));
+  expect(tip.distanceTo(new Vector3(0, -3, 0))).toBeLessThan(1e-9);
+});
+
+describe("the beam's mesh", () => {
+  const shape = { points: [0, 0.5, 1], width: [0.2, 0.2, 0.2], thickness: [0.1, 0.1, 0.1], round: false };
+
+  it("has sections of the beam's size", () => {
+    expect(corners(0.2, 0.1, false).map(([y, z]) => [Math.abs(y), Math.abs(z)])).toEqual(Array(4).fill([0.1, 0.05]));
+    for (const [y, z] of corners(0.2, 0.1, true)) expect(Math.hypot(y, z)).toBeCloseTo(0.1, 12);
+  });
+
+  it("follows the displacement times the factor", () => {
+    const beam = new BeamMesh(shape, false);
+    beam.move([0, 0, 0, 0, 0, 0.01, 0, 0, 0.02], 10, [0, 0.5, 1], 1);
+    const mesh = beam.group.children[0] as unknown as { geometry: { getAttribute(name: string): { array: Float32Array } } };
+    const places = mesh.geometry.getAttribute("position").array;
+    const tip = [0, 1, 2].map((i) => [0, 1, 2, 3].reduce((sum, k) => sum + places[3 * (8 + k) + i]! / 4, 0));
+    expect(tip[0]).toBeCloseTo(1, 5);
+    expect(tip[2]).toBeCloseTo(0.2, 5);
+  });
+
+  it("keeps sections at right angles to the axis", () => {
+    const t = [0.8, 0.3, -0.5] as [number, number, number];
+    const [y, z] = frame(t);
+    const dot = (a: number[], b: number[]): number => a.reduce((sum, each, i) => sum + each * b[i]!, 0);
+    for (const [a, b] of [[t, y], [t, z], [y, z]] as const) expect(dot(a, b)).toBeCloseTo(0, 12);
+    expect(dot(y, y)).toBeCloseTo(1, 12);
+    expect(dot(z, z)).toBeCloseTo(1, 12);
+  });
+});
+
+it("takes stress linearly from the sections to the points", () => {
+  const out = new Float32Array(4);
+  along([0, 1], [10, 20], [0, 0.25, 1, 1], out);
+  expect([...out]).toEqual([10, 12.5, 20, 20]);
+});
+
+it("moves a mode's shape by Re(shape e^iφ), the same after every period", () => {
+  const modes = {
+    points: [0, 2], width: [1, 1], thickness: [1, 1], round: false, labels: ["1"],
+    real: { at: 0, shape: [1, 2, 3] }, imaginary: { at: 6, shape: [1, 2, 3] },
+  };
+  const numbers = new Float32Array([0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0.5, 0]);
+  const { header, numbers: made } = shapes(modes, 0, numbers, 2);
+  const motion = header.scene!.motions[0]!;
+  const rows = view(made, motion.displacement);
+  expect([...rows.slice(0, 6)]).toEqual([0, 0, 0, 0, 0, expect.closeTo(0.3, 6)]);
+  expect(rows[12 * 6 + 4]).toBeCloseTo(-0.15, 6); // a quarter of a period later
+  expect(rows[48 * 6 + 5]).toBeCloseTo(0.3, 6);
+});
+
+it("has a colour for every share, and for none", () => {
+  expect(shade(0)).toEqual(shade(-3));
+  expect(shade(1)).toEqual(shade(7));
+  expect(shade(NaN)).toEqual(shade(0));
+  const light = (x: number): number => shade(x).reduce((a, b) => a + b);
+  for (let x = 0; x < 1; x += 0.05) expect(light(x + 0.05)).toBeGreaterThan(light(x));
+});
+
+it("chooses a factor that shows a small deflection, and none for a large one", () => {
+  expect(visible(0.0023, 0.3)).toBe(10);
+  expect(visible(0.1, 0.3)).toBe(1);
+  expect(visible(0, 0.3)).toBe(1);
+});

@@ -1,0 +1,15 @@
+import { defineConfig } from "vite";
+
+// One module and one style sheet, committed inside the Python package: its users need no Node.
+export default defineConfig({
+  build: {
+    lib: { entry: "src/index.ts", formats: ["es"], fileName: () => "gbeam.js", cssFileName: "gbeam" },
+    outDir: process.env.GBEAM_WEB_OUT ?? "../src/gbeam/report/page/assets",
+    emptyOutDir: true,
+    minify: true,
+    // Of a library module Vite leaves the white space; this one is not bundled again.
+    rolldownOptions: { output: { minify: true } },
+    target: "es2022",
+    chunkSizeWarningLimit: 800,
+  },
+});
