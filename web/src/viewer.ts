@@ -25,6 +25,7 @@ export class Viewer {
   private readonly panels: Panel[];
   private readonly labels: HTMLElement[] = [];
   private readonly canvas = element("canvas", "gbeam-canvas");
+  private readonly paper = element("img", "gbeam-paper");
   private readonly stage = element("div", "gbeam-stage");
   private readonly orbit: Orbit;
   private readonly settings: Settings;
@@ -59,7 +60,8 @@ export class Viewer {
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute("role", "img");
     this.canvas.setAttribute("aria-label", "The beam in motion. Space plays, arrow keys turn the view, Page Up and Down step.");
-    this.stage.append(this.canvas);
+    this.paper.alt = "The beam in motion, at the time that the viewer shows.";
+    this.stage.append(this.canvas, this.paper);
     this.renderer = renderer(this.canvas);
     this.renderer.setScissorTest(true);
     for (const panel of this.panels) this.stage.append(this.label(panel));
@@ -99,11 +101,16 @@ export class Viewer {
     const scheme = window.matchMedia("(prefers-color-scheme: dark)");
     const touch = (): void => this.touch();
     scheme.addEventListener("change", touch);
-    window.addEventListener("gbeam-theme", touch);
+    // At once, and as a picture too: before a page is printed there is no other frame.
+    const redraw = (): void => {
+      this.draw();
+      this.paper.src = this.canvas.toDataURL();
+    };
+    window.addEventListener("gbeam-theme", redraw);
     this.released.push(
       () => resized.disconnect(),
       () => scheme.removeEventListener("change", touch),
-      () => window.removeEventListener("gbeam-theme", touch),
+      () => window.removeEventListener("gbeam-theme", redraw),
       this.clock.onChange(touch),
     );
   }
@@ -141,9 +148,9 @@ export class Viewer {
       panel.update(this.clock.time, this.settings, dark);
       panel.draw(this.renderer, this.orbit, [left, height - top - high, wide, high]);
       const label = this.labels[i]!;
-      label.style.left = `${left}px`;
-      label.style.top = `${top}px`;
-      label.style.maxWidth = `${wide}px`;
+      label.style.left = `${(100 * left) / width}%`; // of the width and height: on paper they are others
+      label.style.top = `${(100 * top) / height}%`;
+      label.style.maxWidth = `${(100 * wide) / width}%`;
       const state = panel.state(this.clock.time);
       label.lastElementChild!.textContent = [panel.note, state].filter(Boolean).join("; ");
     });

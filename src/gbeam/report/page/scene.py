@@ -14,7 +14,7 @@ Variables = Mapping[str, Any]
 
 
 def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) -> dict[str, Any] | None:
-    """Return the motions that have an outline, and the time to begin at; None where none has.
+    """Return the motions that have an outline, and the time of the first one's largest deflection; None where none has.
 
     Parameters
     ----------
@@ -32,9 +32,9 @@ def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) ->
     ]
     if not shown:
         return None
-    spans = [each["span"][0] for each in shown if "span" in each]
-    start = spans[0] if spans else float(variables[f"motions/{shown[0]['name']}/outline_time"][0])
-    return {"motions": shown, "start": start}
+    first = f"motions/{shown[0]['name']}"
+    tip = (variables[f"{first}/outline"][:, -1] ** 2).sum(axis=-1)
+    return {"motions": shown, "start": float(variables[f"{first}/outline_time"][tip.argmax()])}
 
 
 def motion(name: str, environment: str, variables: Variables, numbers: Numbers) -> dict[str, Any]:

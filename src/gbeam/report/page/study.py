@@ -36,7 +36,8 @@ def body(facts: Facts, variables: Mapping[str, Any], numbers: Numbers, plots: Pl
     drawn = curves.of_run(facts, motions, variables, plots)
     if drawn:
         places = "".join(plot_place(name, title) for name, title in drawn)
-        parts += [heading("Histories"), _HINT, f'<div class="gbeam-plots">{places}</div>']
+        hint = _HINT + (_GREY if any(each["accounting"]["not_followed"] for each in facts["comparisons"]) else "")
+        parts += [heading("Histories"), paragraph(hint, "faint"), f'<div class="gbeam-plots">{places}</div>']
     parts += [heading("Response"), _tips(motions), _loads(motions)]
     parts += [_machine(name, each) for name, each in motions.items() if "limits" in each]
     parts += [heading("Accuracy"), _errors(motions)]
@@ -44,10 +45,8 @@ def body(facts: Facts, variables: Mapping[str, Any], numbers: Numbers, plots: Pl
     return "".join(parts)
 
 
-_HINT = (
-    '<p class="faint">Drag across a plot to zoom all of them, double-click to see all again, click to take the viewer '
-    "to that time. Grey: the target is not the flight’s load.</p>"
-)
+_HINT = "Drag across a plot to zoom all of them, double-click to see all again, click to take the viewer to that time."
+_GREY = " Grey: the machine does not follow the flight."
 
 
 def state(facts: Facts) -> tuple[str, bool]:
@@ -158,6 +157,8 @@ def _loads(motions: Facts) -> str:
     head = ["motion", "root force, N", "at, s", "root moment, N m", "at, s", "stress, MPa", "at, s", "margin on yield"]
     if all(row[-1] is None for row in rows):
         head, rows = head[:-1], [row[:-1] for row in rows]
+    if all(math.isnan(row[5]) for row in rows):  # without extreme fibres
+        head, rows = head[:5], [row[:5] for row in rows]
     return table(head, rows, "Largest loads of the root, and stress anywhere")
 
 
@@ -182,7 +183,7 @@ def _errors(motions: Facts) -> str:
     for name, motion in motions.items():
         for quantity in ("displacement", "loads", "stress"):
             parts = [_known(motion["errors"][quantity][key]) for key in ("total", "model", "shapes", "step")]
-            if any(map(math.isfinite, parts)):
+            if math.isfinite(parts[0]):
                 rows.append([name, quantity, *(words.percent(part) for part in parts)])
     head = ("motion", "of", "total", "of the model", "of too few shapes", "of the time step")
     caption = "Estimated errors, of the largest size"
