@@ -1,68 +1,100 @@
-"""Progress on stderr."""
+"""Progress on stderr: what is done, its share and the time left."""
 
 from __future__ import annotations
 
 import sys
-from threading import Timer
+from threading import Event, Thread
+from time import monotonic
 from types import TracebackType
 from typing import TYPE_CHECKING
 
 from gbeam.cli.interrupts import cleaned_up
+from gbeam.printable import on_one_line
 
 if TYPE_CHECKING:
     from rich.progress import Progress
 
 PATIENCE = 2.0  # s without a sign of life that need no explanation
+EVERY = 5.0  # s between lines where stderr is not a terminal
+_REDRAW = 0.1  # s
 
 
 class Watch:
-    """A progress bar on stderr that appears only on a terminal, and only when the computation takes long.
+    """Progress of a computation that takes long: a bar on a terminal, else a plain line every few seconds.
 
     Call it with what is being done and the fraction done; use it as a context.
     """
 
     def __init__(self) -> None:
+        self._now = ("compiling", 0.0)
+        self._since = monotonic()  # when that was begun
+        self._over = Event()
+        # A thread, not a look at the clock in __call__: the long silence is compilation, before the first call.
+        self._thread = Thread(target=self._show, daemon=True)
         self._bar: Progress | None = None
-        self._done = ("compiling", 0.0)
-        # A timer, not a look at the clock in __call__: the long silence is compilation, before the first call.
-        self._timer = Timer(PATIENCE, self._draw) if sys.stderr.isatty() else None
         self._cleaned_up = cleaned_up(self._stop)
 
     def __call__(self, what: str, share: float) -> None:
         """Show that `share` of `what` is done."""
-        self._done = what, share
-        if self._bar is not None:
-            self._bar.update(self._bar.task_ids[0], description=what, completed=share, total=1.0)
+        before, done = self._now
+        if what != before or share < done:
+            self._since = monotonic()
+        self._now = what, share
+
+    def line(self) -> str:
+        """What is done, its share and the time left, as far as they are known."""
+        what, share = self._now
+        if not share:
+            return on_one_line(what)
+        return f"{on_one_line(what)}: {share:.0%}{_left(monotonic() - self._since, share)}"
+
+    def _show(self) -> None:
+        if self._over.wait(PATIENCE):
+            return
+        if sys.stderr.isatty():
+            self._draw()
+            return
+        while True:
+            print(f"gbeam: {self.line()}", file=sys.stderr, flush=True)
+            if self._over.wait(EVERY):
+                return
 
     def _draw(self) -> None:
         from rich.console import Console
-        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+        from rich.progress import BarColumn, Progress, TextColumn
 
-        columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
-        bar = Progress(*columns, console=Console(stderr=True), transient=True)
-        what, share = self._done
-        task = bar.add_task(what, total=1.0 if share else None)
-        bar.update(task, completed=share)
-        bar.start()
-        self._bar = bar
+        text = TextColumn("{task.description}", markup=False)
+        self._bar = Progress(text, BarColumn(), console=Console(stderr=True), transient=True)
+        task = self._bar.add_task("", total=1.0)
+        self._bar.start()
+        while not self._over.wait(_REDRAW):
+            share = self._now[1]
+            self._bar.update(task, description=self.line(), completed=share, total=1.0 if share else None)
 
     def _stop(self) -> None:
-        if self._timer is not None:
-            self._timer.cancel()
+        self._over.set()
         if self._bar is not None:
             self._bar.stop()  # which shows the cursor again
 
     def __enter__(self) -> Watch:
         self._cleaned_up.__enter__()
-        if self._timer is not None:
-            self._timer.start()
+        if sys.stderr is not None:
+            self._thread.start()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self._timer is not None:
-            self._timer.cancel()
-            self._timer.join()  # it may be starting the bar at this moment
+        self._over.set()
+        if self._thread.is_alive():
+            self._thread.join()  # it may be starting the bar at this moment
         self._stop()
         self._cleaned_up.__exit__(kind, error, trace)
+
+
+def _left(passed: float, share: float) -> str:
+    """Time left in words, once enough is done to say."""
+    if share < 0.02 or passed < 1:
+        return ""
+    left = passed * (1 - share) / share
+    return f", {left:.0f} s left" if left < 100 else f", {left / 60:.0f} min left"

@@ -1,0 +1,71 @@
+"""Progress on stderr."""
+
+from __future__ import annotations
+
+import io
+import re
+import sys
+import time
+
+import pytest
+
+from gbeam.cli import console
+from gbeam.cli.console import Watch
+
+
+class _Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.fixture(autouse=True)
+def _impatient(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(console, "PATIENCE", 0.02)
+    monkeypatch.setattr(console, "EVERY", 0.02)
+
+
+def test_plain_lines_where_there_is_no_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stderr", io.StringIO())
+    with Watch() as watch:
+        time.sleep(0.05)
+        watch("flight: run\x1b[31m\n", 0.25)
+        time.sleep(0.06)
+    lines = sys.stderr.getvalue().splitlines()  # type: ignore[attr-defined]
+    assert lines[0] == "gbeam: compiling" and lines[-1] == "gbeam: flight: run\\x1b[31m\\n: 25%"
+    assert len(lines) >= 3
+
+
+def test_time_left_is_that_of_the_phase(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = [0.0]
+    monkeypatch.setattr(console, "monotonic", lambda: now[0])
+    watch = Watch()
+    watch("a", 0.5)
+    now[0] = 40.0
+    watch("b", 0.0)
+    now[0] = 50.0
+    watch("b", 0.25)
+    assert watch.line() == "b: 25%, 30 s left"
+    watch("b", 0.01)  # the same once more, with a smaller step
+    now[0] = 60.0
+    watch("b", 0.04)
+    assert watch.line() == "b: 4%, 4 min left"
+
+
+def test_bar_on_a_terminal_leaves_the_cursor(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stderr", _Terminal())
+    monkeypatch.setenv("TERM", "xterm")
+    with Watch() as watch:
+        watch("spin: run", 0.5)
+        time.sleep(0.3)
+    shown = sys.stderr.getvalue()  # type: ignore[attr-defined]
+    assert "spin: run: 50%" in re.sub(r"\x1b\[[\d;?]*[A-Za-z]", "", shown)
+    assert shown.rindex("\x1b[?25h") > shown.rindex("\x1b[?25l")
+
+
+def test_what_is_quick_shows_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(console, "PATIENCE", 60.0)
+    monkeypatch.setattr(sys, "stderr", io.StringIO())
+    begun = time.monotonic()
+    with Watch() as watch:
+        watch("flight: run", 0.5)
+    assert sys.stderr.getvalue() == "" and time.monotonic() - begun < 5  # type: ignore[attr-defined]
