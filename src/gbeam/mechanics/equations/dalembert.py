@@ -20,6 +20,7 @@ from gbeam.mechanics.equations.virtual_work import LoadWork
 from gbeam.motion.bases.base import Base
 
 Array = Any
+Components = tuple[Any, ...]  # three arrays, along x, y and z
 
 
 @record
@@ -76,16 +77,20 @@ class Complete:
 
     def inertia_forces(
         self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array
-    ) -> tuple[Array, Array, Any, Array]:
-        """The points (p, 3), the inertia forces on them (p, 3), their pull-back to q, and the resultant (3,) N."""
+    ) -> tuple[Components, Components, Any, Array]:
+        """The points, the inertia forces on them, their pull-back to q, and the resultant (3,) N.
+
+        Points and forces are three arrays (p,) of components: a last axis of three is slow in a compiled step.
+        """
         place = self.inertia.points
         r, pull_back = jax.vjp(place, q)
 
-        def moving(q: Array, qd: Array) -> Array:
+        def moving(q: Array, qd: Array) -> Components:
             return jax.jvp(place, (q,), (qd,))[1]
 
         rd, rdd = jax.jvp(moving, (q, qd), (qd, qdd))
-        relative = _cross(alpha, r) + _cross(w, _cross(w, r) + 2 * rd) + rdd
+        turning = tuple(turned + 2 * v for turned, v in zip(_cross(w, r), rd, strict=True))
+        relative = tuple(map(sum, zip(_cross(alpha, r), _cross(w, turning), rdd, strict=True)))
         return r, self.inertia.forces(relative, a), pull_back, self.inertia.total(relative, a)
 
     def inside(self, q: Array, qd: Array) -> Array:
@@ -100,10 +105,9 @@ class Complete:
         return self.work.generalised(q, load_values)
 
 
-def _cross(w: Array, r: Array) -> Array:
-    """w × r of one vector (3,) and many (k, 3)."""
-    x, y, z = r[:, 0], r[:, 1], r[:, 2]
-    return jnp.stack([w[1] * z - w[2] * y, w[2] * x - w[0] * z, w[0] * y - w[1] * x], axis=-1)
+def _cross(w: Any, r: Any) -> Components:
+    """w × r of two vectors or many, by components."""
+    return w[1] * r[2] - w[2] * r[1], w[2] * r[0] - w[0] * r[2], w[0] * r[1] - w[1] * r[0]
 
 
 @record
@@ -134,7 +138,8 @@ class CompleteHub:
         forces = self.system.generalised(q, load_values)
         axis, root = self.mount.R_HB[2], self.mount.radius * self.mount.R_HB[0]
         # Of the forces about the axis: about the root, and of their resultant there.
-        about = jnp.sum(_cross(axis, r) * force) + _cross(axis, root[None])[0] @ total
+        about = sum(e * jnp.sum(moment) for e, moment in zip(axis, _cross(r, force), strict=True))
+        about = about + jnp.stack(_cross(axis, root)) @ total
         turning = self.ground.torque(y[0], yd[0], ydd[0]) + about - torque - self._twist() @ forces[:6]
         return jnp.concatenate([turning[None], along + self.system.inside(q, qd) - forces[6:]])
 
@@ -146,7 +151,7 @@ class CompleteHub:
         """Angular momentum of hub and beam about the axis, N m s."""
         inertia = self.system.inertia.inertia
         r, rd = jax.jvp(inertia.positions, (y[1:],), (yd[1:],))
-        lever = _cross(self.mount.R_HB[2], r + self.mount.radius * self.mount.R_HB[0])
+        lever = jnp.cross(self.mount.R_HB[2], r + self.mount.radius * self.mount.R_HB[0])
         return self.ground.inertia * yd[0] + jnp.sum(inertia.mass[:, None] * lever * (lever * yd[0] + rd))
 
     def _twist(self) -> Array:

@@ -64,18 +64,22 @@ class Weighed:
     pairs: Array | None
     first: Array
 
-    def points(self, q: Array) -> Array:
-        """The points at coordinates (n,), (p, 3)."""
-        return self.inertia.positions(q) if self.pairs is None else self.inertia.field.vectors(q)
+    def points(self, q: Array) -> tuple[Array, Array, Array]:
+        """The points at coordinates (n,), by components (p,)."""
+        if self.pairs is not None:
+            return self.inertia.field.components(q)
+        r = self.inertia.positions(q)
+        return r[:, 0], r[:, 1], r[:, 2]
 
-    def forces(self, relative: Array, root: Array) -> Array:
-        """Inertia forces on the points, (p, 3), from accelerations relative to the root's, (p, 3), and that, (3,)."""
-        own = self.first[:, None] * relative if self.pairs is None else self.pairs @ relative
-        return own + self.first[:, None] * root
+    def forces(self, relative: Any, root: Array) -> tuple[Array, ...]:
+        """Inertia forces on the points by components (p,), of accelerations relative to the root's, and that, (3,)."""
+        own = (self.first * a if self.pairs is None else self.pairs @ a for a in relative)
+        return tuple(f + self.first * a for f, a in zip(own, root, strict=True))
 
-    def total(self, relative: Array, root: Array) -> Array:
+    def total(self, relative: Any, root: Array) -> Array:
         """Their resultant, (3,) N."""
-        return self.first @ relative + self.inertia.mass.sum() * root
+        xp = namespace(self.first, root)
+        return xp.stack([self.first @ a for a in relative]) + self.inertia.mass.sum() * root
 
 
 def weighed(inertia: Inertia) -> Weighed:

@@ -32,7 +32,8 @@ class ExactField:
     (κ_x = 0): the beam is stiff in torsion, which is out of scope. In one plane φ is the angle itself and has no limit;
     out of plane the rotation vector has its pole where the tangent points straight back, |φ| = π. Angles at the points
     are (points, n); `nodal`, (3, g, n), holds strain and angles at the quadrature nodes, `node_slopes`, (2, g, n), the
-    angles' slopes there: stacked, so that a program multiplies once.
+    angles' slopes there: stacked, so that a program multiplies once. `plane`, (2,), is (1, 0) for bending along y only,
+    (0, 1) for bending along z.
     """
 
     angle_y: Array
@@ -41,6 +42,7 @@ class ExactField:
     node_slopes: Array
     cumulative: Array
     node_cumulative: Array
+    plane: Array
     planar: bool = static()
 
     def position(self, q: Array) -> Array:
@@ -51,14 +53,22 @@ class ExactField:
         """Tangents (1 + ε) R e₁ at the quadrature nodes at coordinates (..., n), (..., g, 3)."""
         return self.tangents(*at_nodes(self.nodal, q))
 
+    def components(self, q: Array) -> tuple[Array, Array, Array]:
+        """The same by components, (..., g) each."""
+        return self._tangents(*at_nodes(self.nodal, q))
+
     def tangents(self, strain: Array, y: Array, z: Array) -> Array:
         """Tangents (..., 3) at strains and angles (...)."""
+        return namespace(self.cumulative, strain).stack(self._tangents(strain, y, z), axis=-1)
+
+    def _tangents(self, strain: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:
         xp = namespace(self.cumulative, strain)
         stretch = 1 + strain
-        if self.planar:  # one of the angles is zero
-            return xp.stack([stretch * xp.cos(y + z), stretch * xp.sin(z), -stretch * xp.sin(y)], axis=-1)
+        if self.planar:  # one of the angles is zero, and one sine is enough
+            across = stretch * xp.sin(y + z)
+            return stretch * xp.cos(y + z), self.plane[0] * across, -self.plane[1] * across
         sinc, _, cosine = exponential_of(y**2 + z**2)
-        return xp.stack([stretch * cosine, stretch * sinc * z, -stretch * sinc * y], axis=-1)
+        return stretch * cosine, stretch * sinc * z, -stretch * sinc * y
 
     def rotation(self, q: Array, at: Any = slice(None)) -> Array:
         """Rotations of the sections `at` some points at coordinates (..., n), (..., points, 3, 3)."""
@@ -173,5 +183,6 @@ def exact_field(
         node_slopes=np.stack([about_y[1][:nodes], about_z[1][:nodes]]),
         cumulative=cumulative,
         node_cumulative=cumulative[:nodes],
+        plane=np.array([along_z == 0, along_z > 0], dtype=float),
         planar=along_y == 0 or along_z == 0,
     )

@@ -45,7 +45,7 @@ class ProjectedField:
             along = along - 0.5 * square @ self.cumulative.T
         return xp.stack([along, v, w], axis=-1)
 
-    def vectors(self, q: Array) -> Array:
+    def components(self, q: Array) -> tuple[Array, Array, Array]:
         """None: see `cumulates`."""
         raise TypeError("the positions of this field are no plain sums of nodal vectors")
 

@@ -53,7 +53,7 @@ class RootedField:
             return r + moved + xp.cross(turned[..., None, :], straight)
         return r @ xp.swapaxes(rotation_matrix(turned), -1, -2) + moved
 
-    def vectors(self, q: Array) -> Array:
+    def components(self, q: Array) -> tuple[Array, Array, Array]:
         """None: see `cumulates`."""
         raise TypeError("the positions of this field are no plain sums of nodal vectors")
 

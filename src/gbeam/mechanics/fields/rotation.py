@@ -58,8 +58,8 @@ class Field(Protocol):
         """Whether the positions are ``cumulative @ vectors(q)``."""
         ...
 
-    def vectors(self, q: Array) -> Array:
-        """Nodal vectors (..., g, 3) at coordinates (..., n), where the field cumulates them."""
+    def components(self, q: Array) -> tuple[Array, Array, Array]:
+        """Nodal vectors at coordinates (..., n), where the field cumulates them, by components (..., g)."""
         ...
 
     def places(self) -> Places:
