@@ -15,8 +15,8 @@ import numpy as np
 
 from gbeam.analysis.response.linearised import Pair, Posed, linearised
 from gbeam.analysis.response.problem import problem_of
+from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.simulation import response_of
 from gbeam.analysis.response.stepping import corners, first_step, scheme_of
 from gbeam.analysis.response.trajectories import steps_beyond
 from gbeam.integrate.driver import Trajectory, through

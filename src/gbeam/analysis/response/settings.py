@@ -42,7 +42,7 @@ class ResponseSettings:
         Whether the error is estimated. Without, a given step is run once, and an automatic one is still found from
         several, by which its own error is known; shapes and model are not judged. The result says so.
     loads : bool
-        Whether the loads along the beam are computed. The estimate is of them too.
+        Whether what the sections carry, and the outline for pictures, are computed. The estimate is of loads too.
 
     Raises
     ------

@@ -9,40 +9,30 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import response_errors
-from gbeam.analysis.accuracy.response_errors import Solution
-from gbeam.analysis.response.outcome import describe, effort, inaccuracies
-from gbeam.analysis.response.outline import outline_of
-from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
-from gbeam.analysis.response.problem import Problem, problem_of
-from gbeam.analysis.response.settings import NOT_ESTIMATED, ResponseSettings
+from gbeam.analysis.response.problem import problem_of
+from gbeam.analysis.response.record import moving, response_of
+from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Readings, Run
 from gbeam.analysis.response.stepping import check, corners, first_step, refine, scheme_of
 from gbeam.analysis.response.trajectories import (
     adapted,
     going_on,
     integrated,
-    joined,
     ramp,
     split,
     steps_beyond,
 )
-from gbeam.arrays.namespace import holds_jax, is_jax
+from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
 from gbeam.integrate.driver import Trajectory
 from gbeam.integrate.steps import Corners
 from gbeam.limits import HISTORY_BYTES, STEPS, refuse_more
-from gbeam.mechanics.influence import influence
-from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
-from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
-from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
-from gbeam.results.machine import AxesResult
-from gbeam.results.response import BaseMotion, HubResult, Response
+from gbeam.results.errors import StepErrors
+from gbeam.results.response import Response
 from gbeam.results.result import Floats
-from gbeam.results.section_forces import Loads
 
 Array = Any
 
@@ -133,7 +123,7 @@ def simulate(
             return []
         some = slice(None, None, stride)
         time, q, qd, qdd = (x[some] for x in (trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd))
-        base, _ = _moving(motion, time, q, qd, qdd)
+        base, _ = moving(motion, time, q, qd, qdd)
         q, qd, qdd = (x[:, problem.first :] for x in (q, qd, qdd))
         made = section_forces(structure, base, q, qd, qdd, time, motion=motion)
         if made is None:
@@ -193,106 +183,3 @@ def _traced(structure: Structure, motion: Motion, settings: ResponseSettings, na
     up, trajectory, down = split(entire, before, count, after)
     assert trajectory is not None
     return response_of(structure, motion, settings, problem, (up, trajectory, down), name, step, StepErrors(), 1)
-
-
-def response_of(
-    structure: Structure,
-    motion: Motion,
-    settings: ResponseSettings,
-    problem: Problem,
-    runs: tuple[Trajectory | None, Trajectory, Trajectory | None],
-    name: str,
-    step: float,
-    step_errors: StepErrors,
-    stride: int,
-    *,
-    axes_of: Callable[[Any, Floats], AxesResult | None] = axes_result,
-) -> Response:
-    """Sample spin-up, flight and spin-down on the coarse grid and describe them; peaks are of the flight's times."""
-    up, trajectory, down = runs
-    every, flight = joined(up, trajectory, down, stride)
-    last = trajectory if down is None else down
-    traced = is_jax(trajectory.q)
-    beam = slice(problem.first, None)
-    fine = structure.displacement(trajectory.q[:, beam])
-    peaks = displacement_peaks(structure, trajectory, problem.first, fine, settings.residual_from)
-
-    def at(of: Trajectory, steps: Any) -> tuple[tuple[Any, ...], BaseMotion, HubResult | None, Loads | None]:
-        """Coordinates, base, hub and loads at some of the steps."""
-        time, q, qd, qdd = (x[steps] for x in (of.time, of.q, of.qd, of.qdd))
-        base, hub = _moving(motion, time, q, qd, qdd)
-        loads = None
-        if settings.loads:
-            loads = section_forces(structure, base, q[:, beam], qd[:, beam], qdd[:, beam], time, motion=motion)
-        return (time, q, qd, qdd), base, hub, loads
-
-    (time, q, qd, qdd), base, hub, loads = at(every, slice(None))
-    if loads is not None and not traced:
-        of_flight = load_peaks(loads.during(flight), lambda steps: at(trajectory, steps)[3], trajectory.time, stride)
-        peaks = replace(peaks, loads=of_flight)
-    if hub is not None and not motion.free and loads is not None and loads.drive_torque is not None:
-        hub = replace(hub, drive_torque=loads.drive_torque)
-    axes = None if traced or motion.kind != "centrifuge" else axes_of(motion, time)
-    outcome, message, warnings = "done", "", tuple(f"record: {note}" for note in getattr(motion, "notes", ()))
-    displacement = fine[::stride] if up is None and down is None else structure.displacement(q[:, beam])
-    errors = Errors()
-    if not traced:
-        outcome, message, own = describe(structure, problem, last, base, peaks, time, q[:, beam])
-        if outcome == "done":
-            solution = Solution(time[flight], q[flight], qd[flight], qdd[flight])
-            during = None if loads is None else loads.during(flight)
-            settled, tip = up is not None or settings.begin.settled, np.asarray(displacement[flight, -1])
-            steps = step_errors.displacement, step_errors.loads, step_errors.stress
-            if settings.estimate:
-                errors = response_errors(structure, motion, solution, tip, during, steps, settled=settled)
-            else:
-                alone = [ErrorEstimate(step=step) for step in steps]
-                errors = Errors(alone[0], alone[1], alone[2], NOT_ESTIMATED)
-            own += inaccuracies(structure, errors, settings) + effort(settings, len(trajectory.time) - 1, stride)
-        given = input_warnings(structure, motion, name=name, span=(time[0], time[-1]), base=base)
-        warnings = given + settings.warnings + own + (() if axes is None else axes.warnings) + warnings
-    return Response(
-        name=name,
-        environment=motion.kind,
-        model=structure.kind,
-        outcome=outcome,
-        message=message,
-        warnings=warnings,
-        time=time,
-        stations=np.asarray(structure.stations),
-        displacement=displacement,
-        q=q[:, beam],
-        qd=qd[:, beam],
-        base=base,
-        peaks=peaks,
-        integrator=settings.integrator,
-        step=step,
-        steps=sum(len(run.time) - 1 for run in runs if run is not None),
-        error_estimate=errors.displacement.total,
-        errors=errors,
-        residual_from=math.nan if settings.residual_from is None else settings.residual_from,
-        hub=hub,
-        axes=axes,
-        qdd=qdd[:, beam],
-        frequencies=structure.rest[0],
-        loads=loads,
-        influence=influence(structure) if motion.kind == "centrifuge" and not traced else None,
-        damping_ratio=structure.damping_ratio,
-        initial=str(settings.begin),
-        outline=None if traced else outline_of(structure, motion, time, q[:, beam]),
-    )
-
-
-def _moving(motion: Any, time: Floats, y: Array, yd: Array, ydd: Array) -> tuple[BaseMotion, HubResult | None]:
-    """Motion of the root over time, and of the hub if there is one."""
-    hub = None
-    if motion.free:
-        angle, rate, acceleration = y[:, 0], yd[:, 0], ydd[:, 0]
-        base = motion.mount.base(angle, rate, acceleration)
-        hub = HubResult(angle, rate, acceleration, motion.torque(time), free=True)
-    else:
-        base = motion.base(time)
-        if motion.kind == "hub":
-            axis = motion.mount.R_HB[2]
-            hub = HubResult(motion.angle(time), base.w_WB_B @ axis, base.alpha_WB_B @ axis)
-    return BaseMotion(base.a_WO_B, base.w_WB_B, base.alpha_WB_B), hub
