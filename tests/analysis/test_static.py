@@ -2,13 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_bvp
 
-from gbeam import Beam, ComputationError, Material, Model, Section, Structure, assemble, solve_equilibrium
+from gbeam import (
+    Beam,
+    ComputationError,
+    Load,
+    Material,
+    Model,
+    PointMass,
+    Section,
+    Structure,
+    assemble,
+    solve_equilibrium,
+    static,
+)
+from gbeam.analysis.equilibrium.point import on_base
+from gbeam.analysis.equilibrium.static import deflection_at
 from gbeam.motion import Base
 
 from .helpers import EA, EI, LENGTH, LINE, strip
@@ -95,3 +110,52 @@ def test_no_equilibrium_is_an_error_that_says_how_far_it_got(kind: str, says: st
     with pytest.raises(ComputationError, match=f"no relative equilibrium.*{says}") as caught:
         solve_equilibrium(strip(kind), translating(z=np.nan))
     assert caught.value.outcome == "not converged"
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_an_equilibrium_states_its_error(seed: int) -> None:
+    """Of the tip and of the root's moment, against the exact model with twelve shapes across, solved by NumPy."""
+    random = np.random.default_rng(seed)
+    kind = ("FOAM", "TLAM", "SFOAM")[seed % 3]
+    bodies = [PointMass(LENGTH * random.uniform(0.4, 1), random.choice([0.0, 0.05]))]
+    beam = Beam(LENGTH, Section.rectangle(0.02, 0.004), Material(2700.0, 7e10), bodies)
+    along_y, along_z = (int(n) for n in random.integers(1, 4, 2))
+    axial = 0 if kind == "SFOAM" else int(random.integers(1, 4))
+    size = 10 ** random.uniform(1, 3)
+    base = Base(size * random.normal(size=3), 10 * random.normal(size=3), 30 * random.normal(size=3))
+    few = assemble(beam, Model(kind, axial, along_y, along_z))
+    found = deflection_at(few, on_base(few, base), None, 0.0)
+    exact = replace(assemble(beam, Model("exact", 6, 12, 12)), compiled=False)
+    true = deflection_at(exact, on_base(exact, base), None, 0.0)
+    for name, ours, theirs in (
+        ("displacement", found.tip, true.tip),
+        ("loads", found.loads.root_moment[0], true.loads.root_moment[0]),
+    ):
+        error = np.linalg.norm(theirs - ours) / max(np.linalg.norm(theirs), np.linalg.norm(ours))
+        stated = getattr(found.errors, name).total
+        assert error <= 1.2 * stated + 1e-6 and stated >= (error if name == "displacement" else 0) / 1.2
+    assert bool([each for each in found.warnings if "wrong" in each]) == (
+        max(found.errors.displacement.total, found.errors.loads.total) > 0.01
+    )
+    assert f"estimated error {100 * found.errors.displacement.total:.2g} %" in repr(found)
+
+
+def test_an_equilibrium_that_the_exact_model_has_not_is_doubted(monkeypatch: pytest.MonkeyPatch) -> None:
+    def none(*_: object) -> None:
+        raise ComputationError("not converged", "no relative equilibrium")
+
+    monkeypatch.setattr("gbeam.analysis.equilibrium.errors.solve_equilibrium", none)
+    found = static(strip(), acceleration=(0, 0, 10.0))
+    assert np.isnan(found.errors.displacement.total)
+    assert any("has no equilibrium there" in each for each in found.warnings)
+
+
+def test_a_moment_that_twists_is_warned_of() -> None:
+    """Torsion is in no model: the moment about x moves nothing, and the load is named."""
+    loads = [Load(LENGTH, force=(0.0, 0.0, 1.0)), Load(LENGTH, moment=(0.4, 0.0, 0.1))]
+    beam = Beam(LENGTH, Section.rectangle(0.02, 0.004), Material(2700.0, 7e10), loads=loads)
+    found = static(assemble(beam, Model("FOAM", 1, 1, 1)))
+    (warning,) = (each for each in found.warnings if "twists" in each)
+    assert "beam.loads[1].moment" in warning and "0.4 N m" in warning
+    bent = replace(beam, loads=[loads[0], Load(LENGTH, moment=(0.0, 0.0, 0.1))])
+    assert not any("twists" in each for each in static(assemble(bent, Model("FOAM", 1, 1, 1))).warnings)

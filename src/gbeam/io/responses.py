@@ -9,6 +9,7 @@ import numpy as np
 from gbeam.io.groups import AXIS, Group, Variable, coordinate, known, known_attrs, variable
 from gbeam.io.machine import MACHINE_AXIS, machine_variables
 from gbeam.io.outline import outline_coordinates, outline_variables
+from gbeam.results.errors import Errors
 from gbeam.results.peaks import LoadPeaks
 from gbeam.results.response import HubResult, Response
 from gbeam.results.section_forces import Loads
@@ -73,11 +74,16 @@ def response_group(response: Response) -> Group:
     attrs = {name: getattr(response, name) for name in ("environment", "model", "outcome", "message", "initial")}
     attrs["warnings"] = "\n".join(response.warnings)
     attrs |= {name: getattr(response, name) for name in ("integrator", "step", "steps", "error_estimate")}
-    for name in ("displacement", "loads", "stress"):
-        attrs |= {f"error_{name}_{part}": value for part, value in asdict(getattr(response.errors, name)).items()}
-    attrs["error_note"] = response.errors.note
+    attrs |= error_attrs(response.errors)
     attrs |= {"damping_ratio": np.squeeze(response.damping_ratio)[()], "residual_from": response.residual_from}
     return Group(known(data), coordinates, known_attrs(attrs))
+
+
+def error_attrs(errors: Errors) -> dict[str, float | str]:
+    """Estimated errors, fractions."""
+    named = {name: asdict(getattr(errors, name)) for name in ("displacement", "loads", "stress")}
+    values = {f"error_{name}_{part}": value for name, parts in named.items() for part, value in parts.items()}
+    return {**values, "error_note": errors.note}
 
 
 def section_coordinate(loads: Loads) -> dict[str, Variable]:

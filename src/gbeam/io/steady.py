@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from gbeam.io.groups import AXIS, Group, Variable, coordinate, variable, words
-from gbeam.io.responses import load_variables, section_coordinate
+from gbeam.io.groups import AXIS, Group, Variable, coordinate, known_attrs, variable, words
+from gbeam.io.responses import error_attrs, load_variables, section_coordinate
 from gbeam.results.errors import FrequencyErrors
 from gbeam.results.response import BaseMotion
 from gbeam.results.steady.equilibrium import Deflection
@@ -34,7 +34,7 @@ def deflection_group(deflection: Deflection) -> Group:
             name: Variable(each.dims[1:], each.values[0], each.attrs) for name, each in load_variables(d.loads).items()
         }
         coordinates |= section_coordinate(d.loads)
-    return Group(data, coordinates, {**_where(d), "stable": int(d.stable)})
+    return Group(data, coordinates, known_attrs({**_where(d), "stable": int(d.stable), **error_attrs(d.errors)}))
 
 
 def modes_group(modes: Modes) -> Group:

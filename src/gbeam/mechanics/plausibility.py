@@ -49,7 +49,7 @@ def input_warnings(
             base = motion.base(times(motion, span))
         elif base is None and motion.free:
             base = motion.mount.base(*np.zeros((3, 1)))  # type: ignore[attr-defined]
-    return (*found, *_without_shapes(structure, base, where, span))
+    return (*found, *_without_shapes(structure, base, where, span), *_twisting(structure, span))
 
 
 def _frequency(structure: Structure) -> Iterator[str]:
@@ -71,17 +71,34 @@ def _without_shapes(structure: Structure, base: Any, where: str, span: tuple[flo
         for axis in still:
             if size[axis] > NOTICED * size.max():
                 yield _remark(f"{where} accelerates the root, or gravity does,", f"{size[axis]:.3g} m/s²", axis)
-    if structure.history is None:
-        return
-    inside = np.clip(structure.history.corners((span[1] - span[0]) / 200), *span)
-    when = np.union1d(np.linspace(*span, 201), inside)
-    values = np.abs(structure.history(when)).max(axis=0)
+    values = _largest_loads(structure, span)
     for axis in still:
         # A moment about z bends along y, one about y along z.
         for part, column, unit in (("force", axis, "N"), ("moment", 6 - axis, "N m")):
-            largest = values[:, 3 * (column // 3) : 3 * (column // 3) + 3].max()
+            largest = values[:, 3 * (column // 3) : 3 * (column // 3) + 3].max(initial=0.0)
             for i in np.flatnonzero(values[:, column] > NOTICED * largest):
                 yield _remark(f"beam.loads[{i}].{part} bends the beam", f"{values[i, column]:.3g} {unit}", axis)
+
+
+def _twisting(structure: Structure, span: tuple[float, float]) -> Iterator[str]:
+    """Moments about the beam's axis, which no model here turns by."""
+    if structure.field is None:
+        return
+    values = _largest_loads(structure, span)[:, 3:]
+    for i in np.flatnonzero(values[:, 0] > NOTICED * values.max(initial=0.0)):
+        yield (
+            f"beam.loads[{i}].moment twists the beam about x with up to {values[i, 0]:.3g} N m: no model here has "
+            "torsion, and none turns by it"
+        )
+
+
+def _largest_loads(structure: Structure, span: tuple[float, float]) -> Any:
+    """Largest sizes of the components of each load over a span of time, (loads, 6)."""
+    if structure.history is None:
+        return np.zeros((0, 6))
+    inside = np.clip(structure.history.corners((span[1] - span[0]) / 200), *span)
+    when = np.union1d(np.linspace(*span, 201), inside)
+    return np.abs(structure.history(when)).max(axis=0)
 
 
 def _remark(what: str, size: str, axis: int) -> str:

@@ -35,7 +35,8 @@ def plot_loads_along(deflection: Deflection, loads: Loads, title: str = "") -> F
     """
     subject = f"internal loads at rest, {deflection.model}, t = {deflection.time:.4g} s"
     at, known = unit_for("length", loads.stations), bool(np.isfinite(loads.stress).all())
-    figure, drawn = panels(heading(title, named(deflection.motion, subject), []), 2 + known)
+    errors = {"loads": deflection.errors.loads.total, "stress": deflection.errors.stress.total if known else math.nan}
+    figure, drawn = panels(heading(title, judged(named(deflection.motion, subject), errors), []), 2 + known)
     drawn[-1].set_xlabel(f"position from the root, {at.name}")
     where, stress = at.factor * loads.stations, (loads.stress_tension[0], loads.stress_compression[0])
     _carried(drawn, where, loads.section_force[0], loads.section_moment[0], stress if known else None, loads)

@@ -46,6 +46,8 @@ def plot_static(deflections: Sequence[Deflection], title: str = "") -> Figure:
     axes = moving(*moved)
     subject = f"displacement at rest relative to the base, {deflections[0].model}, t = {deflections[0].time:.4g} s"
     subject += not_drawn(axes, *moved)
+    totals = [each.errors.displacement.total for each in deflections]
+    subject = judged(subject, {"": max((each for each in totals if math.isfinite(each)), default=math.nan)})
     figure, drawn = panels(heading(title, subject, []), len(axes))
     at = _position(drawn[-1], *(each.stations for each in deflections))
     for panel, i in zip(drawn, axes, strict=True):

@@ -62,7 +62,9 @@ def number(value: float, digits: int = 4) -> str:
 
 def percent(share: float) -> str:
     """Write a share in percent; a dash where it is not known."""
-    return f"{number(100 * share, 2)} %" if math.isfinite(share) else "–"
+    if not math.isfinite(share):
+        return "–"
+    return f"{100 * share:.0f} %" if share >= 0.1 else f"{number(100 * share, 2)} %"
 
 
 def error_words(errors: ErrorEstimate) -> str:

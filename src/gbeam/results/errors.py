@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
@@ -33,10 +33,16 @@ class ErrorEstimate(Part):
     model: float = math.nan
     total: float = math.nan
 
+    def __repr__(self) -> str:
+        parts = {f.name: getattr(self, f.name) for f in fields(self)}
+        # A static deflection has no steps.
+        known = [f"{k} {100 * x:.2g} %" for k, x in parts.items() if math.isfinite(x) and (x or k != "step")]
+        return ", ".join(known) or "not known"
+
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Errors(Part):
-    """Estimated errors of a response.
+    """Estimated errors of a response, or of a static deflection, which takes no time steps.
 
     Parameters
     ----------
@@ -54,6 +60,11 @@ class Errors(Part):
     loads: ErrorEstimate = field(default_factory=ErrorEstimate)
     stress: ErrorEstimate = field(default_factory=ErrorEstimate)
     note: str = ""
+
+    def __repr__(self) -> str:
+        parts = {name: getattr(self, name) for name in ("displacement", "loads", "stress")}
+        lines = [f"{name}: {part}" for name, part in parts.items()]
+        return "\n  ".join(["Errors", *lines, *([self.note] if self.note else [])])
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -79,7 +80,9 @@ def lacking(
         Whether the first state is the relative equilibrium, which the truth has its own of; else it is given.
     """
     more = enrichment(structure, _base(motion, solution)[0])
-    exact, index = more.model("exact", directions=_driven(more, structure, motion, solution))
+    count = len(solution.time)
+    few = solution.some(np.linspace(0, count - 1, min(count, SCAN)).astype(int))
+    exact, index = more.model("exact", directions=driven(more, lambda rich, at: _lifted(rich, at, motion, few)))
     at = _lifted(exact, index, motion, solution)
     of = operator(exact, at)
     residual = complete_residual(exact, at)
@@ -102,7 +105,7 @@ def lacking(
 
 
 def quantities(structure: Structure, at: Sampled) -> Quantities:
-    """Tip, root loads and stress of a complete model at a solution."""
+    """Tip, root loads and stress at a solution, by NumPy for complete models too."""
     assert structure.sections is not None
     force, moment, section_force, section_moment, _ = sections(
         structure, structure.sections, at.base, at.p, at.pd, at.pdd, at.loads, compiled=False
@@ -112,15 +115,21 @@ def quantities(structure: Structure, at: Sampled) -> Quantities:
     return Quantities(tip, force[:, 0], moment[:, 0], np.maximum(pair[0], -pair[1]).max(axis=1))
 
 
-def _driven(more: Enrichment, structure: Structure, motion: Motion, solution: Solution) -> tuple[bool, bool, bool]:
-    """Whether new shapes along x, y and z would be moved."""
+def driven(more: Enrichment, lifted: Callable[[Structure, IntArray], Sampled]) -> tuple[bool, bool, bool]:
+    """Whether new shapes along x, y and z would be moved by a solution.
+
+    Parameters
+    ----------
+    more : Enrichment
+    lifted : callable
+        A structure with more shapes, and where its own are in it -> the solution in its coordinates.
+    """
+    structure = more.structure
     if all(structure.counts):
         return True, True, True
-    count = len(solution.time)
-    few = np.linspace(0, count - 1, min(count, SCAN)).astype(int)
     kind = structure.kind if structure.linear else "FOAM"
     rich, index = more.model(kind)
-    at = _lifted(rich, index, motion, solution.some(few))
+    at = lifted(rich, index)
     residual = linear_residual(rich, at)
     counts = np.cumsum([0, *rich.counts])
     largest = [np.abs(residual[:, a:b]).max(initial=0.0) for a, b in pairwise(counts)]

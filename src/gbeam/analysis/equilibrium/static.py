@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from gbeam.analysis.equilibrium.equilibrium import lowest_stiffness
+from gbeam.analysis.equilibrium.errors import doubtful, static_errors
 from gbeam.analysis.equilibrium.operating_point import operating_point
 from gbeam.analysis.equilibrium.point import OperatingPoint, beam_block, on_base
 from gbeam.errors import InputError
@@ -75,16 +76,21 @@ def deflection_at(
     base, q = point.frozen, np.asarray(point.q)
     over_time = BaseMotion(*(x[None] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
     still = np.zeros((1, structure.size))
+    displacement = np.asarray(structure.displacement(q))
+    loads = section_forces(structure, over_time, q[None], still, still, np.array([time]), motion=motion)
+    errors = static_errors(point, displacement, loads)
+    warnings = input_warnings(structure, motion, name=name, span=(time, time), base=base) + doubtful(errors)
     return Deflection(
         motion=name,
         model=structure.kind,
         time=time,
         base=base,
         stations=np.asarray(structure.stations),
-        displacement=np.asarray(structure.displacement(q)),
+        displacement=displacement,
         q=q,
         strain_energy=float(structure.strain_energy(q)),
         stable=lowest > 0,
-        warnings=input_warnings(structure, motion, name=name, span=(time, time), base=base),
-        loads=section_forces(structure, over_time, q[None], still, still, np.array([time]), motion=motion),
+        warnings=warnings,
+        loads=loads,
+        errors=errors,
     )

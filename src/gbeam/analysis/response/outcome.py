@@ -48,7 +48,8 @@ def describe(
     warnings = []
     end = trajectory.time[-1]
     if trajectory.stopped:
-        why = f"{lost}: the model is not valid beyond that speed; use FOAM or exact" if lost else "use exact"
+        better = "FOAM or exact" if structure.kind == "TLAM" else "exact"
+        why = f"{lost}: the model is not valid beyond that speed; use {better}" if lost else f"use {better}"
         return (
             "diverged",
             f"the displacement exceeded the beam's length, {structure.length:.4g} m, at t = {end:.4g} s; {why}",

@@ -146,11 +146,22 @@ def elastic_about(elasticity: Elasticity, q: Array, stiffness: Array) -> tuple[A
 
 def loads_about(work: LoadWork, q: Array, loads: int) -> tuple[Array, Array]:
     """Generalised forces of unit components at q, (loads, 6, 6 + n), and their derivatives (loads, 6, 6 + n, n)."""
-    unit = np.eye(6 * loads).reshape(-1, loads, 6)
+    unit, field = np.eye(6 * loads).reshape(-1, loads, 6), work.field
 
     def forces(q: Array) -> Array:
-        every = [load_forces(work, np.repeat(one[None], len(unit), axis=0), unit) for one in np.atleast_2d(q)]
-        return np.stack([np.concatenate([total, about, along], axis=1) for along, total, about in every])
+        q = np.atleast_2d(q)
+        r, rotation = field.position(q), field.rotation(q)
+        moved = q[:, None, :] + 1j * STEP * np.eye(q.shape[1])
+        slope, turn = (np.asarray(each(moved)).imag / STEP for each in (field.position, field.rotation))
+        slope, turn = (x.reshape(*x.shape[:2], -1) for x in (slope, turn))
+        every = []
+        for values in unit:
+            force, moment = work.forces(rotation, np.broadcast_to(values, (len(q), *values.shape)))
+            turning = 0.5 * np.cross(moment[..., :, None], rotation, axis=-2)
+            along = slope @ force.reshape(len(q), -1, 1) + turn @ turning.reshape(len(q), -1, 1)
+            about = (np.cross(r, force) + moment).sum(axis=1)
+            every.append(np.concatenate([force.sum(axis=1), about, along[..., 0]], axis=1))
+        return np.stack(every, axis=1)
 
     shape = (loads, 6, 6 + len(q))
     slope = _differences(forces, q, _steps(work.field, len(q)))

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
-from gbeam.report.words import stress_words, tidy, warning_lines, xyz, xyz_lists
+from gbeam.report.words import error_words, percent, stress_words, tidy, warning_lines, xyz, xyz_lists
+from gbeam.results.errors import Errors
 from gbeam.results.response import BaseMotion
 from gbeam.results.section_forces import Loads
 from gbeam.results.steady.equilibrium import Deflection
@@ -29,6 +32,7 @@ def _deflection(deflection: Deflection) -> dict[str, Any]:
         "displacement": xyz_lists(deflection.displacement),
         "strain_energy": deflection.strain_energy,
         "stable": deflection.stable,
+        "errors": asdict(deflection.errors),
         "warnings": list(deflection.warnings),
     }
     return values if deflection.loads is None else values | {"loads": loads_json(deflection.loads)}
@@ -71,7 +75,14 @@ def _lines(deflection: Deflection) -> str:
     tip = f"tip x {x:.6g} mm, y {y:.6g} mm, z {z:.6g} mm"
     first = f"{deflection.motion} at {deflection.time:.4g} s: {tip} ({deflection.model}){warning}"
     loads = [] if deflection.loads is None else [f"  {_loads(deflection.loads)}"]
-    return "\n".join([first, *loads, *warning_lines(deflection)])
+    return "\n".join([first, *loads, f"  {_errors(deflection.errors)}", *warning_lines(deflection)])
+
+
+def _errors(errors: Errors) -> str:
+    if not math.isfinite(errors.displacement.total):
+        return f"no error estimate: {errors.note}" if errors.note else "no error estimate"
+    tip, loads = error_words(errors.displacement), percent(errors.loads.total)
+    return f"estimated error {tip} of the tip's displacement, {loads} of the root loads"
 
 
 def _loads(loads: Loads) -> str:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 
+from gbeam.results.errors import Errors
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Figured, Floats
 from gbeam.results.section_forces import Loads
@@ -31,6 +33,8 @@ class Deflection(Figured):
         Whether the stiffness about the equilibrium is positive definite.
     loads : Loads or None
         What the sections carry, of one time.
+    errors : Errors
+        Of displacement, root loads and stress; there are no time steps.
     """
 
     motion: str
@@ -43,6 +47,7 @@ class Deflection(Figured):
     strain_energy: float
     stable: bool
     loads: Loads | None = None
+    errors: Errors = field(default_factory=Errors)
 
     @property
     def tip(self) -> Floats:
@@ -53,4 +58,6 @@ class Deflection(Figured):
         of = f" {self.motion!r}" if self.motion else ""
         tip = ", ".join(f"{1e3 * each:.4g}" for each in self.tip)
         rest = "stable" if self.stable else "NOT stable: the stiffness is not positive definite"
-        return self._with_warnings(f"Deflection{of} ({self.model}) at {self.time:.4g} s: tip ({tip}) mm; {rest}")
+        total = self.errors.displacement.total
+        error = f"; estimated error {100 * total:.2g} %" if math.isfinite(total) else ""
+        return self._with_warnings(f"Deflection{of} ({self.model}) at {self.time:.4g} s: tip ({tip}) mm{error}; {rest}")
