@@ -26,6 +26,12 @@ def beam(length: float = 0.3, section: gb.Section = STRIP, metal: gb.Material = 
     return gb.Beam(length, section, metal, damping_ratio=more.pop("damping_ratio", 0.01), **more)
 
 
+def doubts(result: gb.Deflection) -> list[str]:
+    """What it warns of its input; one shape is too few besides, and the exact beam may have no equilibrium."""
+    of_error = "estimated to be wrong", "shapes and model are not judged"
+    return [each for each in result.warnings if not each.startswith(of_error)]
+
+
 SLIPS = {
     "beam.length is 600 m": (beam(600.0), "did you mean 600 mm?"),
     "beam.material.youngs_modulus is 200 Pa": (beam(metal=gb.Material(2700.0, 200.0)), "did you mean 200 GPa?"),
@@ -68,7 +74,7 @@ SLIPS = {
 @pytest.mark.parametrize("slip", SLIPS)
 def test_a_slip_is_named(slip: str) -> None:
     made, advice = SLIPS[slip]
-    (warning,) = gb.static(gb.assemble(made, "FOAM", y=1, z=1), FLIGHT).warnings
+    (warning,) = doubts(gb.static(gb.assemble(made, "FOAM", y=1, z=1), FLIGHT))
     assert warning.startswith(slip) and advice in warning
 
 
@@ -83,7 +89,7 @@ MOTIONS = {
 @pytest.mark.parametrize("slip", MOTIONS)
 def test_a_slip_of_a_motion_is_named(slip: str) -> None:
     motion, advice = MOTIONS[slip]
-    (warning,) = gb.static(gb.assemble(beam(), "FOAM", y=1, z=1), motion).warnings
+    (warning,) = doubts(gb.static(gb.assemble(beam(), "FOAM", y=1, z=1), motion))
     assert warning.startswith(slip) and advice in warning
 
 
@@ -108,10 +114,10 @@ def test_a_direction_without_shapes_is_warned_of(words: str) -> None:
     laden, motion = ACROSS[words]
     name = "slew" if isinstance(motion, gb.Hub) else ""
     flat, full = (gb.assemble(laden, "FOAM", y=y, z=1) for y in (0, 1))
-    (warning,) = gb.static(flat, motion, name=name).warnings
+    (warning,) = doubts(gb.static(flat, motion, name=name))
     assert warning.startswith(words) and warning.endswith("give model.modes.y = 1 or more")
     assert gb.simulate(flat, motion, duration=0.05, step=1e-3, name=name).warnings[0] == warning
-    assert not gb.static(full, motion).warnings
+    assert not doubts(gb.static(full, motion))
 
 
 def test_results_print_their_warnings() -> None:
@@ -123,7 +129,7 @@ def test_results_print_their_warnings() -> None:
 
 def test_a_root_spring_is_a_shape() -> None:
     sprung = gb.assemble(beam(root=gb.Root(rotation_z=100.0)), "FOAM", z=1)
-    assert not gb.static(sprung, gb.Flight(y=1.0)).warnings
+    assert not doubts(gb.static(sprung, gb.Flight(y=1.0)))
 
 
 def test_every_verb_warns(gbeam: Callable[..., Answer], tmp_path: Path) -> None:
