@@ -10,6 +10,7 @@ from gbeam.report.steady import campbell, modes
 from gbeam.report.study import summary_json, sweep
 from gbeam.report.words import as_json
 from gbeam.results.imitation.placement import Placement
+from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.steady.modal import Campbell, Modes
 from gbeam.results.study import Study
@@ -24,8 +25,17 @@ _JSON: dict[type, Callable[[Any], dict[str, Any]]] = {
 }
 
 
+def whole(result: Result) -> Result:
+    """The same result, a response alone as a study of one."""
+    if not isinstance(result, Response):
+        return result
+    name = result.name or result.environment
+    return Study("", {name: result}, (), warnings=(), provenance=result.provenance)
+
+
 def facts(result: Result) -> dict[str, Any] | None:
     """Return the figures of a result; None where it is of a kind without a report."""
+    result = whole(result)
     made = _JSON.get(type(result))
     return None if made is None else made(result)
 

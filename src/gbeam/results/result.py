@@ -73,6 +73,12 @@ class Result:
         """Lines on the screen, with the warnings below."""
         return "\n  ".join([*lines, *(f"warning: {each}" for each in self.warnings)])
 
+    def _repr_html_(self) -> str:
+        """The verdict and a small table, in notebooks."""
+        from gbeam.report.page.brief import html_of
+
+        return html_of(self)
+
     def to_xarray(self) -> Any:
         """Return the result with named dimensions, units and frames.
 
@@ -114,8 +120,8 @@ class Result:
         Raises
         ------
         InputError
-            If a result of this kind has no report; those of a study, modes, a Campbell diagram, a placement and a sweep
-            have.
+            If a result of this kind has no report; those of a study, a response, modes, a Campbell diagram, a placement
+            and a sweep have.
         OSError
             If it cannot be written.
         """
@@ -126,6 +132,23 @@ class Result:
 
 class Figured(Result):
     """A result that has figures."""
+
+    def view(self) -> Any:
+        """Show the beam in motion in a notebook: a study, a response, or the shapes of modes.
+
+        Returns
+        -------
+        anywidget.AnyWidget
+            A notebook shows it; needs the extra ``notebook``.
+
+        Raises
+        ------
+        InputError
+            If there is no beam in motion to show, or the extra is not installed.
+        """
+        from gbeam.report.page.widget import widget
+
+        return widget(self)
 
     def plot(self, what: str = "", *, title: str = "") -> Figure:
         """Draw the result.

@@ -6,6 +6,7 @@ Figures are made without pyplot, which keeps every figure of a process in one gl
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
@@ -35,6 +36,7 @@ REFERENCE = "black"
 ENVELOPE = "fast vibration: envelope"  # in legends
 SMALL = 0.01  # of the largest: a smaller component is named and not drawn
 NEAR = 5.0  # times what is used: a limit beyond would press the lines to the ground, and is named only
+_SCREEN = 100  # dots per inch
 _ROW = 110  # letters in a row of a legend
 _MOVE_LINE = [int(Path.MOVETO), int(Path.LINETO)]
 STYLE: dict[Any, Any] = {
@@ -55,6 +57,15 @@ STYLE: dict[Any, Any] = {
     "svg.fonttype": "path",  # the same letters on every computer
     "path.simplify_threshold": 0.3,
 }
+
+
+class Shown(Figure):
+    """A figure that a notebook shows, which it does of pyplot's own only."""
+
+    def _repr_png_(self) -> bytes:
+        picture = io.BytesIO()
+        self.savefig(picture, format="png", dpi=_SCREEN)
+        return picture.getvalue()
 
 
 def styled(plot: Callable[P, Figure]) -> Callable[P, Figure]:
@@ -88,7 +99,7 @@ def panels(title: str, count: int, *, heights: Iterable[float] | None = None) ->
         Relative to the usual height.
     """
     ratios = [1.0] * count if heights is None else list(heights)
-    figure = Figure(figsize=(WIDTH, PANEL * sum(ratios)))
+    figure = Shown(figsize=(WIDTH, PANEL * sum(ratios)))
     FigureCanvasAgg(figure)
     grid = figure.subplots(count, 1, sharex=True, squeeze=False, height_ratios=ratios)
     axes: list[Axes] = list(grid[:, 0])

@@ -11,11 +11,16 @@ from gbeam.errors import InputError
 from gbeam.io.netcdf import FACTS, groups_of
 from gbeam.io.stored import read_stored
 from gbeam.limits import BINARY_BYTES, refuse_large_file
-from gbeam.report.facts import facts
+from gbeam.report.facts import facts, facts_text, whole
 from gbeam.report.page.document import html
+from gbeam.report.page.scene import scene
+from gbeam.report.page.series import Numbers
+from gbeam.report.page.steady import shapes
 from gbeam.report.provenance import to_json as origin_json
 from gbeam.results.provenance import Provenance
 from gbeam.results.result import Result
+from gbeam.results.steady.modal import Modes
+from gbeam.results.study import Study
 
 _FIX = "give the result.nc of `gbeam run`, its folder, or the JSON of another verb"
 
@@ -31,13 +36,38 @@ def report_of(result: Result) -> str:
     found = facts(result)
     if found is None:
         raise InputError("result", f"{type(result).__name__} has no report", "print it, or plot it")
-    groups = groups_of(result)
-    variables = {
+    return html(found, variables_of(result), origin_json(result.provenance or Provenance()))
+
+
+def variables_of(result: Result) -> dict[str, Any]:
+    """The arrays that the file of a result holds, by path."""
+    return {
         f"{path}/{name}" if path else name: each.values
-        for path, group in groups.items()
+        for path, group in groups_of(whole(result)).items()
         for name, each in (group.variables | group.coordinates).items()
     }
-    return html(found, variables, origin_json(result.provenance or Provenance()))
+
+
+def shown(result: Result) -> tuple[dict[str, Any], Numbers]:
+    """What the viewer shows of a result: its header, and the numbers.
+
+    Raises
+    ------
+    InputError
+        If there is nothing to show in motion.
+    """
+    numbers = Numbers()
+    header: dict[str, Any] = {"plots": [], "maps": []}
+    if isinstance(result, Modes):
+        header["modes"] = shapes(json.loads(facts_text(result)), numbers)
+        return header, numbers
+    of = whole(result)
+    if isinstance(of, Study):
+        environments = {name: each.environment for name, each in of.responses.items()}
+        header["scene"] = scene(environments, variables_of(of), numbers)
+    if header.get("scene") is None:
+        raise InputError("result", f"{type(result).__name__} has no beam in motion to show", "print it, or plot it")
+    return header, numbers
 
 
 def write_report(result: Result, path: str | os.PathLike[str]) -> None:

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.report.page.parts import Cell, heading, listed, paragraph, plot_place, table
+from gbeam.report.page.parts import heading, listed, paragraph, plot_place, table
 from gbeam.report.page.scene import shape
 from gbeam.report.page.series import Numbers, Plots
+from gbeam.report.steady.modes import ROUNDING
 from gbeam.report.words import number, percent
 
 Facts = Mapping[str, Any]
@@ -25,21 +26,15 @@ def modes_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plot
     coupling = "in" if facts["gyroscopic"] else "left out"
     where = f"{facts['motion']} at {number(facts['time'])} s: {facts['model']}"
     parts = [paragraph(f"{where}, base turning at {number(rate)} rad/s, Coriolis coupling {coupling}")]
-    rows = [
-        [str(i), each["frequency"], percent(each["damping_ratio"] or 0.0), each["direction"],
-         percent(float("nan") if each["error_estimate"] is None else each["error_estimate"])]
-        for i, each in enumerate(facts["modes"], 1)
-    ]  # fmt: skip
-    head = ("mode", "frequency, Hz", "damping ratio", "along", "estimated error")
     growing = [
         f"{each['kind']} along {each['direction']}: grows by {number(each['growth_rate'])} per second"
         for each in facts["instabilities"]
     ]
-    parts += [listed(growing, "bad"), heading("Modes"), table(head, rows, words=(3,))]
+    parts += [listed(growing, "bad"), heading("Modes"), modes_table(facts)]
     if not facts["damping_given"]:
         parts.append(paragraph("undamped: beam.damping_ratio is not given", "faint"))
     if facts["modes"]:
-        header["modes"] = _shapes(facts, numbers)
+        header["modes"] = shapes(facts, numbers)
         parts += [heading("Shapes"), '<div id="gbeam-viewer"></div>']
         parts.append(paragraph("largest displacement 15 % of the length; the section is not drawn to scale", "faint"))
         x = np.array(facts["stations"])
@@ -72,23 +67,55 @@ def campbell_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: P
     parts = [heading("Campbell diagram"), plot_place(name, f"{facts['motion']}: {facts['model']}")]
     if facts["critical_speed"] is not None:
         parts.append(paragraph(f"the equilibrium is lost at {number(facts['critical_speed'])} rad/s", "bad"))
+    parts += [heading("Modes"), tracks_table(facts), heading("Crossings")]
+    return "".join([*parts, crossings_table(facts) or paragraph("none in this range", "faint")])
+
+
+def modes_table(facts: Facts) -> str:
+    """Frequencies, damping ratios and errors."""
     rows = [
-        [str(i), each["direction"], _first(each, 0), _first(each, -1),
-         percent(float("nan") if each["error_estimate"] is None else each["error_estimate"])]
+        [
+            str(i),
+            each["frequency"],
+            percent(each["damping_ratio"] if abs(each["damping_ratio"]) > ROUNDING else 0.0),
+            each["direction"],
+            _error(each),
+        ]
+        for i, each in enumerate(facts["modes"], 1)
+    ]
+    return table(("mode", "frequency, Hz", "damping ratio", "along", "estimated error"), rows, words=(3,))
+
+
+def tracks_table(facts: Facts) -> str:
+    """First and last frequency of every mode of a Campbell diagram."""
+    low, high = (f"Hz at {number(facts['speed'][at])} rad/s" for at in (0, -1))
+    rows = [
+        [str(i), each["direction"], each["frequency"][0], each["frequency"][-1], _error(each)]
         for i, each in enumerate(facts["tracks"], 1)
-    ]  # fmt: skip
-    head = ("mode", "along", f"Hz at {number(speed[0])} rad/s", f"Hz at {number(speed[-1])} rad/s", "estimated error")
-    crossings = [
-        [str(each["track"] + 1), Cell(f"{each['order']} ×"), each["speed"], 60 * each["speed"] / (2 * np.pi),
-         each["frequency"]]
+    ]
+    return table(("mode", "along", low, high, "estimated error"), rows, words=(1,))
+
+
+def crossings_table(facts: Facts) -> str:
+    """Where multiples of the speed meet modes."""
+    rows = [
+        [
+            str(each["track"] + 1),
+            f"{each['order']} ×",
+            each["speed"],
+            60 * each["speed"] / (2 * np.pi),
+            each["frequency"],
+        ]
         for each in facts["crossings"]
-    ]  # fmt: skip
-    parts += [heading("Modes"), table(head, rows, words=(1,)), heading("Crossings")]
-    names = ("mode", "multiple", "speed, rad/s", "speed, rpm", "frequency, Hz")
-    return "".join([*parts, table(names, crossings) or paragraph("none in this range", "faint")])
+    ]
+    return table(("mode", "multiple", "speed, rad/s", "speed, rpm", "frequency, Hz"), rows)
 
 
-def _shapes(facts: Facts, numbers: Numbers) -> dict[str, Any]:
+def _error(mode: Facts) -> str:
+    return percent(np.nan if mode["error_estimate"] is None else mode["error_estimate"])
+
+
+def shapes(facts: Facts, numbers: Numbers) -> dict[str, Any]:
     """Shapes of every mode at some of the stations."""
     x = np.array(facts["stations"])
     some = np.unique(np.linspace(0, len(x) - 1, SHOWN).round().astype(int))
@@ -114,8 +141,3 @@ def _main(mode: Facts) -> Any:
 
 def _numbers(values: list[float | None]) -> Any:
     return np.array([np.nan if each is None else each for each in values])
-
-
-def _first(track: Facts, at: int) -> float | None:
-    value: float | None = track["frequency"][at]
-    return value

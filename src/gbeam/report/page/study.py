@@ -38,7 +38,7 @@ def body(facts: Facts, variables: Mapping[str, Any], numbers: Numbers, plots: Pl
         places = "".join(plot_place(name, title) for name, title in drawn)
         hint = _HINT + (_GREY if any(each["accounting"]["not_followed"] for each in facts["comparisons"]) else "")
         parts += [heading("Histories"), paragraph(hint, "faint"), f'<div class="gbeam-plots">{places}</div>']
-    parts += [heading("Response"), _tips(motions), _loads(motions)]
+    parts += [heading("Response"), tips_table(motions), loads_table(motions)]
     parts += [_machine(name, each) for name, each in motions.items() if "limits" in each]
     parts += [heading("Accuracy"), _errors(motions)]
     parts += [folded(f"{name}: in words", listed(each["lines"])) for name, each in motions.items()]
@@ -131,7 +131,8 @@ def _not_followed(compared: Facts) -> str:
     return shown if len(rows) <= 12 else folded(f"{len(rows)} stretches that are not followed", shown)
 
 
-def _tips(motions: Facts) -> str:
+def tips_table(motions: Facts) -> str:
+    """Largest displacements of the tip."""
     rows = []
     for name, each in motions.items():
         for axis, peak in each["tip"].items():
@@ -144,7 +145,8 @@ def _tips(motions: Facts) -> str:
     return table(head, rows, "Displacement of the tip relative to the base axes", words=(0, 1))
 
 
-def _loads(motions: Facts) -> str:
+def loads_table(motions: Facts) -> str:
+    """Largest loads of the root and stress."""
     rows = []
     for name, each in motions.items():
         if "loads" in each:
