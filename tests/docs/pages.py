@@ -109,7 +109,7 @@ class Reader:
         name = re.match(r"# (\w+\.toml)\n", text)
         if name:
             (self.folder / name[1]).write_text(text, encoding="utf-8")
-            loads(text, where, folder=self.folder)
+            loads(text, where, folder=self.folder, distributions=True)
         else:
             base = tomllib.loads((ROOT / "examples" / "f16_8g_turn.toml").read_text(encoding="utf-8"))
             loads(json.dumps(_merged(base, tomllib.loads(text))), where, folder=ROOT / "examples")
@@ -143,7 +143,9 @@ def _called(words: list[str]) -> tuple[int, str]:
     out = io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(out):
         status = main(words)
-    return status, out.getvalue()
+    # Progress, a line every five seconds, is there on slow machines only.
+    lines = [line for line in out.getvalue().splitlines() if not re.match(r"gbeam: .*: \d+%", line)]
+    return status, "\n".join(lines)
 
 
 def _exists(words: list[str], where: str) -> None:

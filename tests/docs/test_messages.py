@@ -16,7 +16,7 @@ MESSAGES = [message for row in ROWS for message in re.findall(r"`([^`]+)`", row.
 
 
 def test_there_are_tables() -> None:
-    assert len(TABLES) == 3 and len(MESSAGES) > 20
+    assert len(TABLES) == 4 and len(MESSAGES) > 20
 
 
 @pytest.mark.parametrize("message", MESSAGES)

@@ -120,7 +120,7 @@ def read(verb: str, file: Path, overrides: Sequence[str], out: Path | None = Non
         refuse_unwritable(out)
     from gbeam.scenario import build, load, provenance  # not needed, nor imported, for help
 
-    scenario = load(file, overrides)
+    scenario = load(file, overrides, distributions=verb == "check")
     case = build(scenario, ahead=verb in _MOVING)
     return Input(scenario, replace(case, provenance=provenance(scenario, command())))
 

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from gbeam.io.groups import Group, Variable, variable
+from gbeam.io.groups import Group, Variable, coordinate, labels, variable
 from gbeam.results.sweep import SAMPLE, Parameter, Sweep
+from gbeam.results.uncertainty import BOUNDS, ORDERS, PROBABILITY
 
 
 def sweep_group(sweep: Sweep) -> Group:
@@ -24,11 +25,46 @@ def sweep_group(sweep: Sweep) -> Group:
         "outcome": Variable(dims, sweep.outcome, {"long_name": "how the case ended"}),
         "message": Variable(dims, sweep.message, {"long_name": "why the case is not done"}),
     }
+    if sweep.histories:
+        along = (*dims, "time")
+        data |= {
+            f"{name} history": variable(along, values, sweep.units[name], f"{name} over time")
+            for name, values in sweep.histories.items()
+        }
+    data |= _statistics(sweep)
     coordinates = {each.path: _coordinate(each) for each in sweep.parameters}
     if SAMPLE in dims:
         count = sweep.outcome.shape[-1]
         coordinates[SAMPLE] = variable((SAMPLE,), np.arange(count), "1", "number of the sample")
+    if sweep.histories:
+        coordinates |= coordinate("time", sweep.time, "s", "time")
+    if sweep.statistics:
+        coordinates |= labels("bound", BOUNDS)
+    for each in sweep.statistics.values():
+        if PROBABILITY not in each.names:
+            coordinates |= labels("statistic", each.names)
+    for shares in sweep.indices.values():
+        coordinates |= labels("parameter", shares.parameters) | labels("order", ORDERS)
     return Group(data | outcome, coordinates, {"title": sweep.title, "verb": sweep.verb})
+
+
+def _statistics(sweep: Sweep) -> dict[str, Variable]:
+    """What samples say, at every point of the grid."""
+    grid = tuple(name for name in sweep.dimensions if name != SAMPLE)
+    found = {}
+    for name, each in sweep.statistics.items():
+        dims = (*grid, "time") if name in sweep.histories else grid
+        words = f"{name}: estimates with bounds of 95 % confidence"
+        if PROBABILITY in each.names:
+            found[f"{name} probability"] = variable((*dims, "bound"), each[PROBABILITY], "1", words)
+        else:
+            unit = sweep.units[name] or "1"
+            found[f"{name} statistics"] = variable((*dims, "statistic", "bound"), each.values, unit, words)
+        found[f"{name} count"] = variable(dims, each.count, "1", f"{name}: draws that the estimates come from")
+    for name, shares in sweep.indices.items():
+        dims = (*grid, "parameter", "order", "bound")
+        found[f"{name} indices"] = variable(dims, shares.values, "1", f"{name}: Sobol indices")
+    return found
 
 
 def write_zarr(sweep: Sweep, path: str | os.PathLike[str]) -> None:

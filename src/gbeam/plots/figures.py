@@ -19,6 +19,7 @@ from gbeam.plots.sensitivity import plot_sensitivity
 from gbeam.plots.steady import plot_campbell, plot_critical_map, plot_modes, plot_static
 from gbeam.plots.sweep import plot_sweep
 from gbeam.plots.tip import plot_tip
+from gbeam.plots.uncertainty import plot_history, plot_indices, plot_probability
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.machine import AxesResult, MachinePlan
 from gbeam.results.response import Response
@@ -28,6 +29,7 @@ from gbeam.results.steady.modal import Campbell, Modes
 from gbeam.results.steady.stability import CriticalMap
 from gbeam.results.study import Study
 from gbeam.results.sweep import Sweep
+from gbeam.results.uncertainty import PROBABILITY
 
 Draw = Callable[[], Figure]
 
@@ -78,10 +80,24 @@ def figures(result: Any, title: str = "") -> dict[str, Draw]:
         case CriticalMap():
             return {"critical": partial(plot_critical_map, result, title)}
         case Sweep():
-            return {name: partial(plot_sweep, result, name, title) for name in result.measures}
+            return _of_sweep(result, title)
         case Sensitivity():
             return {name: partial(plot_sensitivity, result, name, title) for name in result.measures}
     raise TypeError(f"{type(result).__name__} has no figures")
+
+
+def _of_sweep(result: Sweep, title: str) -> dict[str, Draw]:
+    """What can be drawn: measures over two dimensions at most, a probability over one parameter."""
+    every: dict[str, Draw] = {}
+    few = len(result.dimensions) <= 2
+    for name in result.measures:
+        likely = name in result.statistics and PROBABILITY in result.statistics[name].names
+        if likely and len(result.dimensions) == 2:
+            every[name] = partial(plot_probability, result, name, title)
+        elif few and not likely:
+            every[name] = partial(plot_sweep, result, name, title)
+    every |= {f"{name} indices": partial(plot_indices, result, name, title) for name in result.indices}
+    return every | {f"{name} history": partial(plot_history, result, name, title) for name in result.histories}
 
 
 def _of_machine(

@@ -11,11 +11,11 @@ from matplotlib.ticker import MaxNLocator
 
 from gbeam.errors import InputError
 from gbeam.plots.drawing.style import colour, heading, panels, styled, subtitle
+from gbeam.plots.drawing.units import scaled_label
 from gbeam.results.result import Floats
 from gbeam.results.sweep import SAMPLE, Parameter, Sweep
 
 FAMILY = 6  # lines that can be told apart; more are a heat map
-_READABLE = (0.01, 1e4)  # beyond it a power of ten goes to the axis
 
 
 @styled
@@ -40,8 +40,7 @@ def plot_sweep(sweep: Sweep, measure: str = "", title: str = "") -> Figure:
     if name not in sweep.measures:
         raise InputError("measure", f"is {name!r}", f"choose {', '.join(sweep.measures)}")
     values = sweep.measures[name]
-    power = _power(values)
-    label = _label(name, sweep.units[name], power)
+    power, label = scaled_label(name, sweep.units[name], values)
     lost = sweep.outcome.size - sweep.counts.get("done", 0)
     subject = name + (f" ({lost} of {sweep.outcome.size} cases are not done)" if lost else "")
     figure, (panel,) = panels(heading(title or sweep.title, subject, []), 1, heights=[2.0])
@@ -124,17 +123,3 @@ def _axis(parameter: Parameter) -> str:
 
 def _last(path: str) -> str:
     return path.replace("motion.", "", 1)
-
-
-def _power(values: Floats) -> int:
-    """A power of ten, of three, that makes small and large values readable."""
-    size = float(np.nanmax(np.abs(values), initial=0.0, where=np.isfinite(values)))
-    low, high = _READABLE
-    return 0 if size == 0 or low <= size < high else 3 * math.floor(math.log10(size) / 3)
-
-
-def _label(name: str, unit: str, power: int) -> str:
-    prefix = {-9: "n", -6: "µ", -3: "m", 3: "k", 6: "M", 9: "G"}.get(power)
-    if power and unit and prefix and not unit.startswith(("k", "m/")):
-        return f"{name}, {prefix}{unit}"
-    return f"{name}{f', {unit}' if unit else ''}" + (f" × 10^{power}" if power else "")

@@ -32,6 +32,7 @@ def to_json(case: Description) -> dict[str, Any]:
             "step": "auto" if case.step is None else case.step,
             "integrator": case.integrator,
         },
+        "distributions": dict(case.distributions),
         "warnings": list(case.warnings),
     }
 
@@ -53,5 +54,7 @@ def text(case: Description) -> str:
         lines.append(f"  {'motions' if i == 0 else '':<9} {name}" + (f": {what}" if what != name else ""))
     end = case.start + case.duration
     lines.append(f"  response  {case.start:.4g} to {end:.4g} s, {case.integrator}, step {step}")
+    for i, (path, drawn) in enumerate(case.distributions.items()):
+        lines.append(f"  {'drawn' if i == 0 else '':<9} {path}: {drawn}; here its centre")
     lines += [f"  warning: {each}" for each in case.warnings]
     return "\n".join([*lines, "Scenario valid."])

@@ -38,6 +38,8 @@ class Description(Part):
     integrator : str
     warnings : tuple of str
         What is implausible.
+    distributions : mapping of str to str
+        Of the values that have one, by path; the rest is said of their centres.
     """
 
     title: str
@@ -55,6 +57,7 @@ class Description(Part):
     integrator: str
     tracks: Mapping[str, str] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+    distributions: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def total_mass(self) -> float:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.results.result import Figured, Floats, Part
+from gbeam.results.uncertainty import Indices, Statistics
 
 SAMPLE = "sample"  # the dimension of what is drawn from distributions
 
@@ -67,6 +68,14 @@ class Sweep(Figured):
         its values, ``failed`` where the computation broke down, ``pending`` where it has not been computed.
     message : (...) array of str
         Why a case is not done.
+    histories : mapping of str to (..., t) array
+        At the times `time`, which all cases share; NaN where the case has no value. Units are in `units`.
+    time : (t,)
+        s.
+    statistics : mapping of str to Statistics
+        Of measures and, at every time, of histories, where something is drawn: at every point of the grid.
+    indices : mapping of str to Indices
+        Sobol indices of the measures, of what the sampler saltelli draws.
     """
 
     title: str
@@ -76,6 +85,10 @@ class Sweep(Figured):
     units: Mapping[str, str]
     outcome: NDArray[Any]
     message: NDArray[Any]
+    histories: Mapping[str, Floats] = field(default_factory=dict)
+    time: Floats = field(default_factory=lambda: np.empty(0))
+    statistics: Mapping[str, Statistics] = field(default_factory=dict)
+    indices: Mapping[str, Indices] = field(default_factory=dict)
 
     @property
     def dimensions(self) -> tuple[str, ...]:
@@ -92,4 +105,4 @@ class Sweep(Figured):
     def __repr__(self) -> str:
         shape = " × ".join(f"{size} {name}" for name, size in zip(self.dimensions, self.outcome.shape, strict=True))
         ended = ", ".join(f"{number} {name}" for name, number in self.counts.items())
-        return f"Sweep of {self.verb} over {shape}: {ended}; {', '.join(self.measures)}"
+        return f"Sweep of {self.verb} over {shape}: {ended}; {', '.join([*self.measures, *self.histories])}"

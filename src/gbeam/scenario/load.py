@@ -4,22 +4,26 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from copy import deepcopy
 from dataclasses import replace
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
+from gbeam.errors import InputError
 from gbeam.limits import PROBLEMS
 from gbeam.scenario.schema import Environments, Scenario
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
+from gbeam.scenario.text.distributions import Distribution, find_distributions, from_table
 from gbeam.scenario.text.overrides import override
+from gbeam.scenario.text.paths import path_text
 from gbeam.scenario.text.source import Source, parse, read_text
 
 T = TypeVar("T", bound=Environments)
 
 
-def load(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Scenario:
+def load(path: str | os.PathLike[str], overrides: Iterable[str] = (), *, distributions: bool = False) -> Scenario:
     """Read and validate a scenario file.
 
     Parameters
@@ -28,6 +32,8 @@ def load(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Scenari
         TOML, or JSON if its text begins with a brace. File names in it are relative to its folder.
     overrides : iterable of str
         Changes such as ``beam.length=250 mm`` or ``beam.masses[0].mass=0.2 kg``, made before validation.
+    distributions : bool
+        Whether values may be distributions. The scenario then has their centres, and its source has them.
 
     Returns
     -------
@@ -40,11 +46,16 @@ def load(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Scenari
         With everything that is wrong, each with its place.
     """
     file = Path(path)
-    return loads(read_text(file), os.fspath(path), overrides, folder=file.parent)
+    return loads(read_text(file), os.fspath(path), overrides, folder=file.parent, distributions=distributions)
 
 
 def loads(
-    text: str, name: str = "scenario", overrides: Iterable[str] = (), *, folder: str | os.PathLike[str] = "."
+    text: str,
+    name: str = "scenario",
+    overrides: Iterable[str] = (),
+    *,
+    folder: str | os.PathLike[str] = ".",
+    distributions: bool = False,
 ) -> Scenario:
     """Validate the text of a scenario.
 
@@ -58,6 +69,8 @@ def loads(
         As for :func:`load`.
     folder : path
         That relative file names in the scenario start from.
+    distributions : bool
+        As for :func:`load`.
 
     Returns
     -------
@@ -68,7 +81,7 @@ def loads(
     ScenarioError
         With everything that is wrong, each with its place.
     """
-    return _validated(Scenario, _source(text, name, overrides, folder))
+    return _validated(Scenario, _source(text, name, overrides, folder, distributions=distributions))
 
 
 def change(source: Source, overrides: Iterable[str]) -> Scenario:
@@ -107,9 +120,39 @@ def load_environments(path: str | os.PathLike[str], overrides: Iterable[str] = (
     return _validated(kind, source)
 
 
-def _source(text: str, name: str, overrides: Iterable[str], folder: str | os.PathLike[str]) -> Source:
+def _source(
+    text: str,
+    name: str,
+    overrides: Iterable[str],
+    folder: str | os.PathLike[str],
+    *,
+    distributions: bool = False,
+) -> Source:
     data, done = override(parse(name, text), name, overrides)
-    return Source(name, text, Path(folder), data, done)
+    source = Source(name, text, Path(folder), data, done)
+    found = list(find_distributions(data))
+    if not found:
+        return source
+    drawn: dict[str, Distribution] = {}
+    problems: list[Diagnostic] = []
+    for path, family, given in found:
+        try:
+            drawn[path_text(path)] = each = from_table(family, given)
+        except InputError as error:
+            problems.append(source.diagnostic(path, error.problem, error.fix))
+            continue
+        if not distributions:
+            one = f"`gbeam sweep` draws from it; for one value: --set {path_text(path)}={each.centre!r}"
+            problems.append(source.diagnostic(path, f"is a distribution, {each}, and this needs one value", one))
+    if problems:
+        raise ScenarioError(problems[:PROBLEMS])
+    centred = deepcopy(data)
+    for path, *_ in found:
+        node: Any = centred
+        for step in path[:-1]:
+            node = node[step]
+        node[path[-1]] = drawn[path_text(path)].centre
+    return replace(source, data=centred, distributions=drawn)
 
 
 def _validated(kind: type[T], source: Source) -> T:

@@ -22,7 +22,8 @@ left out and has no value then. `--set KEY=VALUE` of the command line names a ke
 
 A quantity is text with a unit, or a number in the SI unit. Any unit of the right dimension is read: `g` is
 9.80665 m/s² where an acceleration is expected and a gram where a mass is; 1 Hz is 2π rad/s where a rate of turning is
-expected.
+expected. In a scenario for `gbeam sweep` a distribution may stand in place of any number: `{ normal = ["70 GPa",
+"2 GPa"] }`, lognormal, uniform or triangular; the other verbs need one value.
 
 | quantity | SI unit | for example |
 |---|---|---|

@@ -28,12 +28,17 @@ def study_facts(answer: Study) -> Facts:
     facts = to_json(answer)
     # By name, not by number; and what may be accepted stands under the verdict whether or not a limit is given.
     facts["comparisons"] = {
-        each.centrifuge: {**found, "verdict": each.figures}
+        each.centrifuge: {**found, "verdict": {**each.figures, **_accepted(found.pop("accepted"))}}
         for each, found in zip(answer.comparisons, facts["comparisons"], strict=True)
     }
+    facts["study"] = answer  # for histories
     unfinished = answer.unfinished
     facts["message"] = "; ".join(f"{name}: {failure.message}" for name, failure in unfinished.items())
     return facts
+
+
+def _accepted(accepted: bool | None) -> Facts:
+    return {} if accepted is None else {"accepted": accepted}
 
 
 def _static(case: Case, motion: str | None, at: float | None) -> Facts:

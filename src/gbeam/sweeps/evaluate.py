@@ -7,13 +7,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
+import numpy as np
+
 from gbeam.analysis.study.case import Case
 from gbeam.errors import ComputationError, GbeamError
+from gbeam.results.result import Floats
 from gbeam.scenario.build import build
 from gbeam.scenario.load import change
 from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.text.source import Source
 from gbeam.sweeps.answers import VERBS, Facts
+from gbeam.sweeps.histories import History
 from gbeam.sweeps.measures import Keys, value_at
 
 Function = Callable[[Case], float]
@@ -46,6 +50,10 @@ class Question:
         Of the figures in the verb's JSON.
     functions : tuple of callable
         Of the case: further figures.
+    histories : tuple of History
+        Further figures, one for each of `times`.
+    times : (t,)
+        s.
     """
 
     source: Source
@@ -53,12 +61,19 @@ class Question:
     motion: str | None
     at: float | None = None
     keys: tuple[Keys, ...] = ()
-    functions: tuple[Function, ...] = field(default=())
+    functions: tuple[Function, ...] = ()
+    histories: tuple[History, ...] = ()
+    times: Floats = field(default_factory=lambda: np.empty(0))
 
     @cached_property
     def width(self) -> int:
         """How many figures a case has."""
-        return len(self.keys) + len(self.functions)
+        return len(self.keys) + len(self.functions) + len(self.histories) * len(self.times)
+
+    @property
+    def needs_facts(self) -> bool:
+        """Whether the verb has to answer."""
+        return bool(self.keys or self.histories)
 
     def scenario(self, overrides: Sequence[str]) -> Scenario:
         """One case's scenario, validated."""
@@ -82,7 +97,7 @@ class Question:
         """Compute one case. What goes wrong in it is part of the row: the other cases go on."""
         try:
             case = self.case(overrides)
-            facts = self.facts(case) if self.keys else NO_FACTS
+            facts = self.facts(case) if self.needs_facts else NO_FACTS
         except Exception as error:
             return without_figures(number, self.width, error)
         return self.measured(number, case, facts)
@@ -91,6 +106,8 @@ class Question:
         """The row of a case that is built, from what the verb answers to it."""
         try:
             values = [value_at(facts, keys) for keys in self.keys] + [float(each(case)) for each in self.functions]
+            for history in self.histories:
+                values += history.at(facts["study"], self.times).tolist()
         except Exception as error:
             return without_figures(number, self.width, error)
         return Row(number, tuple(values), *ended(facts))

@@ -156,7 +156,7 @@ def _alive(process: int) -> bool:
     return True
 
 
-def identity(question: Question, cases: Cases, measures: Sequence[str]) -> dict[str, Any]:
+def identity(question: Question, cases: Cases, measures: Sequence[str], histories: Sequence[Any]) -> dict[str, Any]:
     """What makes two sweeps the same: version, scenario, what varies, and what is measured."""
     digest = hashlib.sha256()
     for each in cases.variations:
@@ -170,6 +170,7 @@ def identity(question: Question, cases: Cases, measures: Sequence[str]) -> dict[
         "parameters": [each.path for each in cases.variations],
         "values": digest.hexdigest(),
         "measures": list(measures),
+        "histories": list(histories),
         "cases": len(cases),
     }
 

@@ -83,6 +83,14 @@ def value_at(facts: Facts, keys: Keys) -> float:
     return float(node) if _is_figure(node) else math.nan
 
 
+def is_truth(facts: Facts, keys: Keys) -> bool:
+    """Whether the figure there is true or false."""
+    node: Any = facts
+    for key in keys:
+        node = node[key]
+    return isinstance(node, bool)
+
+
 def unit_at(facts: Facts, keys: Keys) -> str:
     """Unit of the figure there; empty where it has none."""
     node: Any = facts

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,40 +16,62 @@ from gbeam.scenario.text.kinds import KINDS
 from gbeam.scenario.text.paths import parse_path
 from gbeam.sweeps.cases import Cases
 from gbeam.sweeps.evaluate import Row
+from gbeam.sweeps.start import Start
+from gbeam.sweeps.statistics import indices, statistics
 
 
-def assembled(
-    title: str, verb: str, cases: Cases, example: Scenario, units: Mapping[str, str], rows: Iterable[Row]
-) -> Sweep:
+def assembled(title: str, cases: Cases, names: Sequence[str], begun: Start, rows: Iterable[Row], seed: int) -> Sweep:
     """Return the result of a sweep.
 
     Parameters
     ----------
-    title, verb : str
+    title : str
     cases : Cases
-    example : Scenario
-        Of one case, whose schema knows the SI units of what varies.
-    units : mapping of str to str
+    names : sequence of str
         Of the measures, in the order of a row's values.
+    begun : Start
+        With a scenario whose schema knows the SI units of what varies.
     rows : iterable of Row
         In any order; the cases without one are pending.
+    seed : int
+        Of what is drawn, and of the bootstrap of Sobol indices.
     """
-    values = np.full((len(units), len(cases)), math.nan)
+    question = begun.question
+    values = np.full((question.width, len(cases)), math.nan)
     outcome = np.full(len(cases), "pending", dtype=object)
     message = np.full(len(cases), "", dtype=object)
     for row in rows:
         values[:, row.case] = row.values
         outcome[row.case], message[row.case] = row.outcome, row.message
-    shape = cases.shape
-    return Sweep(
+    shape, times = cases.shape, len(question.times)
+    measures = {name: values[k].reshape(shape) for k, name in enumerate(names)}
+    over_time = values[len(names) :].reshape(len(question.histories), times, *shape)
+    histories = {each.name: np.moveaxis(over_time[k], 0, -1) for k, each in enumerate(question.histories)}
+    found = Sweep(
         title=title,
-        verb=verb,
-        parameters=tuple(each.parameter(_unit(example, each.path)) for each in cases.variations),
-        measures={name: values[k].reshape(shape) for k, name in enumerate(units)},
-        units=dict(units),
+        verb=question.verb,
+        parameters=tuple(each.parameter(_unit(begun.example, each.path)) for each in cases.variations),
+        measures=measures,
+        units=dict(zip(names, begun.units, strict=True)) | {each.name: each.unit for each in question.histories},
         outcome=outcome.reshape(shape),
         message=message.reshape(shape),
+        histories=histories,
+        time=question.times,
     )
+    return with_statistics(found, cases, dict(zip(names, begun.truths, strict=True)), seed) if cases.drawn else found
+
+
+def with_statistics(sweep: Sweep, cases: Cases, truths: Mapping[str, bool], seed: int) -> Sweep:
+    """The same with what its samples say; they are the last dimension of the measures."""
+    first = slice(cases.independent)
+    known = {name: statistics(values[..., first], truth=truths[name]) for name, values in sweep.measures.items()} | {
+        name: statistics(np.swapaxes(values[..., first, :], -1, -2)) for name, values in sweep.histories.items()
+    }
+    shares = {}
+    if cases.sampler == "saltelli":
+        paths = [each.path for each in cases.drawn]
+        shares = {name: indices(values, paths, seed) for name, values in sweep.measures.items()}
+    return replace(sweep, statistics=known, indices=shares)
 
 
 def _unit(scenario: Scenario, path: str) -> str:

@@ -12,17 +12,39 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from gbeam.analysis.study.case import Case
 from gbeam.errors import GbeamError, InputError
 from gbeam.scenario.build import build
 from gbeam.scenario.schema.scenario import Scenario
 from gbeam.sweeps.cases import Cases
 from gbeam.sweeps.evaluate import NO_FACTS, Question, Row, ended, without_figures
-from gbeam.sweeps.measures import find, unit_at
+from gbeam.sweeps.histories import read_history
+from gbeam.sweeps.measures import find, is_truth, unit_at
 
 TRIED = 20  # cases, all over the sweep, of which one must be possible
 _IMPORTS = 2.0  # s: a first case that takes less may be imports and compilation above all; another one is timed
 
-Figures = Sequence[tuple[Sequence[str | int], str]]  # keys and unit of each, as a store keeps them
+# Keys, unit and whether it is true or false, of each figure, as a store keeps them.
+Figures = Sequence[tuple[Sequence[str | int], str, bool]]
+
+
+@dataclass(frozen=True)
+class OverTime:
+    """Histories by their names, each at `count` times over the response of the first case."""
+
+    names: tuple[str, ...] = ()
+    count: int = 0
+
+    def of(self, question: Question, case: Case) -> Question:
+        """The question with these histories."""
+        if not self.names:
+            return question
+        first = case.response.start
+        times = np.linspace(first, first + case.response.duration, self.count)
+        return replace(question, histories=tuple(read_history(each, case.motions) for each in self.names), times=times)
+
+
+NO_HISTORIES = OverTime()
 
 
 @dataclass(frozen=True)
@@ -35,6 +57,8 @@ class Start:
         With the keys of its figures.
     units : tuple of str
         Of the figures.
+    truths : tuple of bool
+        Which of them are true or false.
     example : Scenario
         Of a case that is possible.
     rows : tuple of Row
@@ -45,18 +69,21 @@ class Start:
 
     question: Question
     units: tuple[str, ...]
+    truths: tuple[bool, ...]
     example: Scenario
     rows: tuple[Row, ...]
     seconds: float
 
     @property
     def figures(self) -> Figures:
-        """Keys and unit of each figure; a function has no keys."""
+        """Keys, unit and kind of each figure; a function has no keys."""
         keys = self.question.keys or ((),) * len(self.units)
-        return list(zip(keys, self.units, strict=True))
+        return list(zip(keys, self.units, self.truths, strict=True))
 
 
-def start(question: Question, cases: Cases, missing: Sequence[int], names: Sequence[str]) -> Start:
+def start(
+    question: Question, cases: Cases, missing: Sequence[int], names: Sequence[str], histories: OverTime = NO_HISTORIES
+) -> Start:
     """Compute first cases until one is possible.
 
     Parameters
@@ -68,6 +95,7 @@ def start(question: Question, cases: Cases, missing: Sequence[int], names: Seque
         Cases not yet computed, one at least.
     names : sequence of str
         Of the measures.
+    histories : OverTime
 
     Raises
     ------
@@ -78,17 +106,19 @@ def start(question: Question, cases: Cases, missing: Sequence[int], names: Seque
     """
     reason: GbeamError | None = None
     rows: list[Row] = []
+    width = len(names) + len(histories.names) * histories.count
     for index in np.unique(np.linspace(0, len(missing) - 1, TRIED).astype(int)):
         number, begin = missing[index], time.perf_counter()
         try:
             scenario = question.scenario(cases.overrides(number))
             case = build(scenario)
-            facts = NO_FACTS if question.functions else question.facts(case)
+            needed = histories.names or not question.functions
+            facts = question.facts(case) if needed else NO_FACTS
         except GbeamError as error:
             reason = reason or error
-            rows.append(without_figures(number, len(names), error))
+            rows.append(without_figures(number, width, error))
             continue
-        units = ("",) * len(names)
+        units, truths = ("",) * len(names), (False,) * len(names)
         if not question.functions:
             try:
                 keys = tuple(find(facts, name) for name in names)
@@ -96,32 +126,44 @@ def start(question: Question, cases: Cases, missing: Sequence[int], names: Seque
                 if facts["outcome"] == "done":
                     raise
                 reason = reason or error
-                rows.append(Row(number, (math.nan,) * len(names), *ended(facts)))
+                rows.append(Row(number, (math.nan,) * width, *ended(facts)))
                 continue
-            question, units = replace(question, keys=keys), tuple(unit_at(facts, each) for each in keys)
+            question = replace(question, keys=keys)
+            units = tuple(unit_at(facts, each) for each in keys)
+            truths = tuple(is_truth(facts, each) for each in keys)
+        question = histories.of(question, case)
         rows.append(question.measured(number, case, facts))
         seconds = time.perf_counter() - begin
         after = missing[index + 1] if index + 1 < len(missing) else missing[0]
         if seconds < _IMPORTS and all(after != row.case for row in rows):
             row, seconds = _timed(question, cases, after)
             rows.append(row)
-        return Start(question, units, scenario, tuple(rows), seconds)
+        return Start(question, units, truths, scenario, tuple(rows), seconds)
     assert reason is not None
     raise reason
 
 
-def go_on(question: Question, cases: Cases, missing: Sequence[int], done: Sequence[Row], figures: Figures) -> Start:
+def go_on(
+    question: Question,
+    cases: Cases,
+    missing: Sequence[int],
+    done: Sequence[Row],
+    figures: Figures,
+    histories: OverTime = NO_HISTORIES,
+) -> Start:
     """The same of a sweep some of whose cases are done, by which its figures are known; nothing may be missing."""
-    question = replace(question, keys=tuple(tuple(keys) for keys, _ in figures if keys))
+    question = replace(question, keys=tuple(tuple(keys) for keys, *_ in figures if keys))
     possible = [row for row in done if row.outcome != "refused"] or done
     scenario = question.scenario(cases.overrides(possible[0].case))
+    question = histories.of(question, build(scenario)) if histories.names else question
     rows, seconds = [], 0.0
     for number in missing[:2]:
         row, seconds = _timed(question, cases, number)
         rows.append(row)
         if seconds >= _IMPORTS:
             break
-    return Start(question, tuple(unit for _, unit in figures), scenario, tuple(rows), seconds)
+    units, truths = tuple(unit for _, unit, _ in figures), tuple(truth for *_, truth in figures)
+    return Start(question, units, truths, scenario, tuple(rows), seconds)
 
 
 def _timed(question: Question, cases: Cases, number: int) -> tuple[Row, float]:

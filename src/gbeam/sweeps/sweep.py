@@ -19,9 +19,11 @@ from gbeam.sweeps.answers import VERBS
 from gbeam.sweeps.cases import read_cases
 from gbeam.sweeps.cluster import on_scheduler
 from gbeam.sweeps.evaluate import Function, Question, Row
+from gbeam.sweeps.histories import OPTION as HISTORY
+from gbeam.sweeps.histories import TIMES
 from gbeam.sweeps.journal import Journal, identity, opened
 from gbeam.sweeps.result import assembled
-from gbeam.sweeps.start import go_on, start
+from gbeam.sweeps.start import NO_HISTORIES, OverTime, go_on, start
 from gbeam.sweeps.workers import Task, in_processes, serially
 
 MANY = 100_000  # cases beyond which a sweep is begun only when that is confirmed
@@ -35,6 +37,8 @@ def sweep(
     over: Mapping[str, Any] | Sequence[str] = (),
     measure: Sequence[str] | Mapping[str, Function] = (),
     *,
+    histories: Sequence[str] = (),
+    times: int = TIMES,
     verb: str | None = None,
     motion: str | None = None,
     at: float | None = None,
@@ -62,6 +66,11 @@ def sweep(
     measure : sequence of str, or mapping of str to callable
         Figures of the verb's JSON by the end of their path, such as ``tip.z.max_abs`` or ``verdict.tip``; or functions
         of a :class:`gbeam.Case` that return a number, by name.
+    histories : sequence of str
+        Histories over time as further measures, ``flight.tip.z``: of tip, root_force or root_moment along x, y or z.
+        Where samples are drawn, their quantiles at every time are the bands that the response stays in.
+    times : int
+        At which histories are given, spread evenly over the response of the first case; 501 by default.
     verb : str
         run (the default), static, modes, critical-speed, plan or place.
     motion : str, optional
@@ -71,9 +80,11 @@ def sweep(
     overrides : sequence of str
         Changes of the scenario that all cases share, such as ``beam.length=250 mm``.
     samples : int, optional
-        Of what is drawn, 64 by default.
+        Of what is drawn, 64 by default: distributions in `over`, and those that stand in the scenario in place of a
+        value, ``youngs_modulus = { normal = ["70 GPa", "2 GPa"] }``.
     sampler : str
-        sobol (the default), latin or random.
+        sobol (the default), latin or random; or saltelli, which makes samples × (d + 2) cases of d distributions, and
+        gives Sobol indices.
     seed : int
         The same seed draws the same samples.
     workers : int
@@ -102,31 +113,32 @@ def sweep(
     ComputationError
         If the scheduler is lost; the store keeps what is done.
     """
-    base = load(scenario, overrides)
+    base = load(scenario, overrides, distributions=True)
     assert base.source is not None  # it was read from a file
     table = base.sweep
     if table is not None:
-        over, measure = over or table.over, measure or table.measure
+        over, measure, histories = over or table.over, measure or table.measure, histories or table.history
         verb, samples = verb or table.verb, table.samples if samples is None else samples
         sampler, seed = sampler or table.sampler, table.seed if seed is None else seed
     verb = verb or "run"
     if verb not in VERBS:
         raise InputError("--verb", f"is {verb!r}", advise(verb, VERBS))
     names = tuple(measure)
-    if not names or isinstance(measure, str):
+    if not (names or histories) or isinstance(measure, str):
         raise InputError("--measure", "is missing", 'name figures: --measure "tip.z.max_abs, verdict.tip"')
+    over_time = _over_time(tuple(histories), times, verb)
     if workers < 1:
         raise InputError("--workers", f"is {workers}", "give one or more")
-    cases = read_cases(_texts(over), samples, sampler or "sobol", seed or 0)
+    cases = read_cases(_texts(over), samples, sampler or "sobol", seed := seed or 0, base.source.distributions)
     functions = tuple(measure.values()) if isinstance(measure, Mapping) else ()
     question = Question(base.source, verb, motion, at, functions=functions)
-    journal, done = opened(store, resume, identity(question, cases, names))
+    journal, done = opened(store, resume, identity(question, cases, names, [over_time.names, over_time.count]))
     known = {row.case for row in done}
     missing = [number for number in range(len(cases)) if number not in known] if known else range(len(cases))
     if journal is not None and done:
-        begun = go_on(question, cases, missing, done, journal.figures)
+        begun = go_on(question, cases, missing, done, journal.figures, over_time)
     else:
-        begun = start(question, cases, missing, names)
+        begun = start(question, cases, missing, names, over_time)
     question = begun.question
     _confirm(len(missing), begun.seconds / workers, confirmed)
     tried = {row.case for row in begun.rows}
@@ -146,9 +158,19 @@ def sweep(
         with journal.writing(new=not done):
             journal.add(begun.rows)
             rows += _collected(found, rows, len(cases), progress, journal)
-    units = dict(zip(names, begun.units, strict=True))
-    made = assembled(base.title, verb, cases, begun.example, units, rows)
+    made = assembled(base.title, cases, names, begun, rows, seed)
     return replace(made, provenance=provenance(base))
+
+
+def _over_time(histories: tuple[str, ...], times: int, verb: str) -> OverTime:
+    """The histories that are measured."""
+    if not histories:
+        return NO_HISTORIES
+    if verb != "run":
+        raise InputError(HISTORY, f"stands with --verb {verb}, which has no history", "leave --verb out")
+    if times < 2:
+        raise InputError("--times", f"is {times}", "give two or more")
+    return OverTime(histories, times)
 
 
 def _texts(over: Mapping[str, Any] | Sequence[str]) -> list[str]:

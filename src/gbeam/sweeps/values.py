@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,32 +13,13 @@ from numpy.typing import NDArray
 
 from gbeam.errors import InputError
 from gbeam.results.sweep import Parameter
+from gbeam.scenario.text.distributions import Distribution, quantities, read_distribution, written
 from gbeam.scenario.text.paths import parse_path
-from gbeam.scenario.text.suggest import advise
 from gbeam.scenario.text.units import NUMBER
 
 OPTION = "--over"
 _CALL = re.compile(r"\s*([a-z]+)\s*\((.*)\)\s*", re.DOTALL)
 MAX_VALUES = 10_000_000  # of one parameter: 80 MB
-
-
-@dataclass(frozen=True)
-class Distribution:
-    """A named distribution: its arguments, and the inverse of its cumulative distribution function.
-
-    Parameters
-    ----------
-    arguments : tuple of str
-        What stands in the brackets, for messages.
-    quantile : callable
-        Of probabilities (n,) and the arguments: values (n,).
-    sound : callable
-        Of the arguments: what is wrong with them, or nothing.
-    """
-
-    arguments: tuple[str, ...]
-    quantile: Callable[..., Any]
-    sound: Callable[..., str]
 
 
 def _scipy(name: str) -> Callable[..., Any]:
@@ -58,23 +39,12 @@ def _triangular(probability: NDArray[Any], low: float, mode: float, high: float)
     return _scipy("triang")(probability, (mode - low) / (high - low), low, high - low)
 
 
-DISTRIBUTIONS = {
-    "normal": Distribution(
-        ("mean", "standard deviation"), _scipy("norm"), lambda _, s: "" if s > 0 else "a standard deviation above zero"
-    ),
-    "lognormal": Distribution(
-        ("median", "standard deviation of the logarithm"),
-        _lognormal,
-        lambda m, s: "" if m > 0 and s > 0 else "a median and a spread above zero",
-    ),
-    "uniform": Distribution(
-        ("from", "to"), lambda p, a, b: a + p * (b - a), lambda a, b: "" if b > a else "a range that ascends"
-    ),
-    "triangular": Distribution(
-        ("from", "most likely", "to"),
-        _triangular,
-        lambda a, m, b: "" if a <= m <= b and a < b else "three values that ascend",
-    ),
+# Inverses of the cumulative distribution functions: of probabilities (n,) and the distribution's arguments.
+QUANTILES: Mapping[str, Callable[..., Any]] = {
+    "normal": _scipy("norm"),
+    "lognormal": _lognormal,
+    "uniform": lambda probability, low, high: low + probability * (high - low),
+    "triangular": _triangular,
 }
 
 
@@ -90,32 +60,28 @@ class Variation:
     values : (n,) array
         The same as numbers in `unit`, or as words.
     unit : str
-    distribution : str
-        Name of the distribution; empty for a range or a list.
-    arguments : tuple of float
-        Of the distribution, in `unit`.
-    words : str
-        The arguments as they were written.
+    distribution : Distribution or None
+        What the values are drawn from; None for a range or a list.
     """
 
     path: str
     texts: tuple[str, ...] = ()
     values: NDArray[Any] | None = None
     unit: str = ""
-    distribution: str = ""
-    arguments: tuple[float, ...] = ()
-    words: str = ""
+    distribution: Distribution | None = None
 
     def drawn(self, probability: NDArray[Any]) -> Variation:
         """The same with the values at probabilities (n,), (0, 1)."""
-        values = np.asarray(DISTRIBUTIONS[self.distribution].quantile(probability, *self.arguments), dtype=float)
+        assert self.distribution is not None
+        quantile = QUANTILES[self.distribution.family]
+        values = np.asarray(quantile(probability, *self.distribution.arguments), dtype=float)
         texts = tuple(written(float(value), self.unit) for value in values)
         return replace(self, texts=texts, values=values)
 
     def parameter(self, unit: str) -> Parameter:
         """The result's record of it; `unit` is the scenario's where none was written."""
         assert self.values is not None
-        drawn = f"{self.distribution}({self.words})" if self.distribution else ""
+        drawn = str(self.distribution) if self.distribution else ""
         numeric = np.issubdtype(self.values.dtype, np.number)
         return Parameter(self.path, self.values, (self.unit or unit) if numeric else "", drawn)
 
@@ -146,23 +112,24 @@ def read_variation(text: str) -> Variation:
     if call and call[1] == "log":
         return _range(path, call[2], logarithmic=True)
     if call:
-        return _distribution(path, call[1], call[2])
+        with _of(path):
+            return drawn_from(path, read_distribution(call[1], call[2].split(",")))
     if values.count(":") == 2 and '"' not in values:
         return _range(path, values, logarithmic=False)
     return _list(path, values)
 
 
-def written(value: float, unit: str) -> str:
-    """Write a value as it replaces the scenario's: with its unit, and without a fraction that is none."""
-    number = str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
-    return f"{number} {unit}" if unit else number
+def drawn_from(path: str, distribution: Distribution) -> Variation:
+    """What is drawn from a distribution for a path."""
+    return Variation(path, unit=distribution.unit, distribution=distribution)
 
 
 def _range(path: str, text: str, *, logarithmic: bool) -> Variation:
     parts = text.split(":")
     if len(parts) != 3:
         raise InputError(OPTION, f"{path} has the range {text!r}", "write FROM:TO:COUNT, such as 1 m:12 m:12")
-    (low, high), unit = _quantities(path, parts[:2])
+    with _of(path):
+        (low, high), unit = quantities(parts[:2])
     try:
         count = int(parts[2])
     except ValueError:
@@ -193,44 +160,16 @@ def _list(path: str, text: str) -> Variation:
         twice = next(part for part in parts if parts.count(part) > 1)
         raise InputError(OPTION, f"{path} has {twice!r} twice", "give each value once")
     if all(NUMBER.fullmatch(part) for part in parts):
-        values, unit = _quantities(path, parts)
+        with _of(path):
+            values, unit = quantities(parts)
         return Variation(path, tuple(written(value, unit) for value in values), np.array(values), unit)
     return Variation(path, tuple(parts), np.array(parts, dtype=object))
 
 
-def _distribution(path: str, name: str, text: str) -> Variation:
-    known = DISTRIBUTIONS.get(name)
-    if known is None:
-        hint = advise(name, [*DISTRIBUTIONS, "log"])
-        raise InputError(OPTION, f"{path} has the unknown distribution {name!r}", hint)
-    parts = text.split(",")
-    if len(parts) != len(known.arguments):
-        expected = f"{name}({', '.join(known.arguments)})"
-        raise InputError(OPTION, f"{path} has {len(parts)} values in {name}({text})", f"write {expected}")
-    if name == "lognormal":
-        (median,), unit = _quantities(path, parts[:1])
-        (spread,), plain = _quantities(path, parts[1:])
-        if plain:
-            raise InputError(OPTION, f"{path} has a spread in {plain}", "the logarithm's has no unit")
-        arguments = [median, spread]
-    else:
-        arguments, unit = _quantities(path, parts)
-    wrong = known.sound(*arguments)
-    if wrong:
-        raise InputError(OPTION, f"{path} has {name}({text.strip()})", f"give {wrong}")
-    return Variation(path, unit=unit, distribution=name, arguments=tuple(arguments), words=text.strip())
-
-
-def _quantities(path: str, parts: list[str]) -> tuple[list[float], str]:
-    """Numbers and their one unit; where some have none they have the others'."""
-    values, units = [], []
-    for part in parts:
-        match = NUMBER.fullmatch(part)
-        if match is None or not math.isfinite(float(match[1])):
-            raise InputError(OPTION, f"{path} has {part.strip()!r}, which is no number", 'write it such as "4 g/s"')
-        values.append(float(match[1]))
-        units.append(match[2])
-    given = sorted({unit for unit in units if unit})
-    if len(given) > 1:
-        raise InputError(OPTION, f"{path} has values in {' and in '.join(given)}", "write them in one unit")
-    return values, given[0] if given else ""
+@contextmanager
+def _of(path: str) -> Iterator[None]:
+    """Name the option and the path in the InputErrors raised inside."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(OPTION, f"{path} {error.problem}", error.fix) from None

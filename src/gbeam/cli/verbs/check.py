@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from gbeam.cli.inputs import read
 from gbeam.cli.options import Json, Out, Overrides, ScenarioFile
 from gbeam.cli.outputs import show, write
@@ -11,7 +13,8 @@ def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = No
     """Say what a scenario means, without computing a response.
 
     Loads, validates and builds everything, and prints the beam's mass, its natural frequencies at rest, the motions
-    and the duration. With --out also writes check.json. Exit status: 0 the scenario is valid, 2 it is not.
+    and the duration; where a value is a distribution it takes the centre. With --out also writes check.json. Exit
+    status: 0 the scenario is valid, 2 it is not.
     """
     given = read("check", scenario, overrides, out)
 
@@ -20,6 +23,10 @@ def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = No
 
     with given.placing():
         description = describe(given.case)
+    source = given.scenario.source
+    assert source is not None  # it was read from a file
+    drawn = {path: str(each) for path, each in source.distributions.items()}
+    description = replace(description, distributions=drawn)
     facts = given.signed(report.to_json(description))
     write(out, "check", facts)
     show(report.text(description), facts, json)

@@ -43,12 +43,23 @@ def sweep(
             help='Figures of the verb by the end of their path in its JSON, "tip.z.max_abs, verdict.tip".',
         ),
     ] = (),
+    history: Annotated[
+        tuple[str, ...],
+        Parameter(
+            name="--history",
+            negative="",
+            show_default=False,
+            help='Histories by motion, quantity (tip, root_force, root_moment) and axis, "flight.tip.z"; of verb run.',
+        ),
+    ] = (),
+    times: Annotated[int, Parameter(help="At which histories are given, over the whole response.")] = 501,
     verb: Annotated[Verb | None, Parameter(help="Whose figures; run by default.")] = None,
     motion: MotionName = None,
     at: At = None,
     samples: Annotated[int | None, Parameter(help="How many are drawn from distributions; 64 by default.")] = None,
     sampler: Annotated[
-        Literal["sobol", "latin", "random"] | None, Parameter(help="How they are drawn; sobol by default.")
+        Literal["sobol", "latin", "random", "saltelli"] | None,
+        Parameter(help="How they are drawn; sobol by default, saltelli for Sobol indices."),
     ] = None,
     seed: Annotated[int | None, Parameter(help="The same seed draws the same samples.")] = None,
     workers: Annotated[int, Parameter(help="Processes of this machine.")] = 1,
@@ -69,7 +80,8 @@ def sweep(
 ) -> int:
     """Compute figures of many cases of one scenario: every combination of the values given, or samples of them.
 
-    What the command line does not say is what the scenario's [sweep] says.
+    What the command line does not say is what the scenario's [sweep] says. Values of the scenario that are
+    distributions, youngs_modulus = { normal = ["70 GPa", "2 GPa"] }, are drawn.
 
     Every case is kept in --out (by default out/ and the scenario's name and -sweep) as soon as it is done: after an
     interruption --resume does what is missing. Writes sweep.zarr, which xarray opens, sweep.json, a plot of each
@@ -90,6 +102,8 @@ def sweep(
             scenario,
             over,
             names(measure),
+            histories=names(history),
+            times=times,
             verb=verb,
             motion=motion,
             at=None if at is None else number("--at", at, "time"),
@@ -113,9 +127,8 @@ def sweep(
     def make(hidden: Path) -> None:
         from gbeam.plots import figures, save
 
-        if len(answer.dimensions) <= 2:
-            for name, draw in figures(answer).items():
-                save(draw(), hidden, re.sub(r"[^\w.-]+", "", name), "gbeam sweep")
+        for name, draw in figures(answer).items():
+            save(draw(), hidden, re.sub(r"[^\w.-]+", "_", re.sub(r"[\[\]]", "", name)), "gbeam sweep")
         write_json(hidden / "sweep.json", signed(words.to_json(answer), answer.provenance))
         if netcdf:
             answer.save(hidden / "sweep.nc")

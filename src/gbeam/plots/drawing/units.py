@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -26,6 +27,9 @@ _UNITS = {
     "stress": ((0.0, Unit(1e-3, "kPa")), (1e5, Unit(1e-6, "MPa"))),
     "acceleration": ((0.0, Unit(1.0, "m/s²")), (0.5 * STANDARD_GRAVITY, Unit(1 / STANDARD_GRAVITY, "g0"))),
 }  # fmt: skip
+
+
+_READABLE = (0.01, 1e4)  # beyond it a power of ten goes to the axis
 
 
 def unit_for(kind: str, *values: Floats) -> Unit:
@@ -60,3 +64,14 @@ def not_drawn(shown: Sequence[int], *lengths: Floats) -> str:
             unit = unit_for("length", np.array(size))
             words.append(f"{'xyz'[i]} by {unit.factor * size:.2g} {unit.name}")
     return f"\n(not drawn: {' and '.join(words)} at most)" if words else ""
+
+
+def scaled_label(name: str, unit: str, values: Floats) -> tuple[int, str]:
+    """A power of ten, of three, that makes small and large values readable, and the label of an axis in that unit."""
+    size = float(np.nanmax(np.abs(values), initial=0.0, where=np.isfinite(values)))
+    low, high = _READABLE
+    power = 0 if size == 0 or low <= size < high else 3 * math.floor(math.log10(size) / 3)
+    prefix = {-9: "n", -6: "µ", -3: "m", 3: "k", 6: "M", 9: "G"}.get(power)
+    if power and unit and prefix and not unit.startswith(("k", "m/")):
+        return power, f"{name}, {prefix}{unit}"
+    return power, f"{name}{f', {unit}' if unit else ''}" + (f" × 10^{power}" if power else "")

@@ -10,6 +10,7 @@ import numpy as np
 from gbeam.report.page.parts import Cell, Value, heading, listed, paragraph, plot_place, table, verbatim
 from gbeam.report.page.series import Numbers, Plots
 from gbeam.report.words import number
+from gbeam.results.uncertainty import BOUNDS
 
 Facts = Mapping[str, Any]
 _PLACES = {"current": "now", "best": "placed", "middle": "at mid-span"}
@@ -75,6 +76,7 @@ def sweep_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plot
     counts = ", ".join(f"{count} {name}" for name, count in facts["counts"].items())
     outcomes = np.array(facts["outcomes"], dtype=object)
     parts = [paragraph(f"figures of gbeam {facts['verb']}: {outcomes.size} cases: {counts}"), _varied(facts)]
+    parts += [_estimates(facts)]
     values = {name: np.array(each["values"], dtype=float) for name, each in facts["measures"].items()}
     drawn = any(each["distribution"] for each in facts["parameters"])
     for name, each in values.items():
@@ -84,6 +86,22 @@ def sweep_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plot
         elif (each.ndim == 1 and _numeric(facts["parameters"][0])) or drawn:
             parts.append(_scatter(facts, name, label, each, plots))
     return "".join([*parts, heading("Cases"), _cases(facts, values, outcomes), _failures(facts, outcomes)])
+
+
+def _estimates(facts: Facts) -> str:
+    """What samples say of each measure, where no grid makes many of it, with bounds of 95 % confidence."""
+    rows: list[list[Value]] = []
+    for name, known in facts["statistics"].items():
+        if name in facts["measures"] and isinstance(known["draws"], int):
+            label = _labelled(name, facts["measures"][name]["unit"])
+            rows += [[label, each, *(known[each][bound] for bound in BOUNDS)] for each in known if each != "draws"]
+            shares = facts["indices"].get(name, {})
+            rows += [
+                [label, f"share of the variance, {order}: {path}", *(each[order][bound] for bound in BOUNDS)]
+                for path, each in shares.items()
+                for order in each
+            ]
+    return table(("measure", "estimate of", *BOUNDS), rows, "bounds of 95 % confidence", words=(0, 1)) if rows else ""
 
 
 def _varied(facts: Facts) -> str:

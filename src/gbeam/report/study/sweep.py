@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.report.words import number
+from gbeam.report.study.estimates import estimates
+from gbeam.report.words import columns, number
 from gbeam.results.result import Floats
 from gbeam.results.sweep import Sweep
+from gbeam.results.uncertainty import BOUNDS, ORDERS, Indices, Statistics
 
 _ROWS = 40  # of the table on the screen
 _FAILURES = 5  # that are named
@@ -30,6 +32,9 @@ def to_json(sweep: Sweep, files: Iterable[Path] = ()) -> dict[str, Any]:
         "measures": {
             name: {"unit": sweep.units[name], "values": values.tolist()} for name, values in sweep.measures.items()
         },
+        "statistics": {name: _statistics(each) for name, each in sweep.statistics.items()},
+        "indices": {name: _indices(each) for name, each in sweep.indices.items()},
+        "time": sweep.time.tolist(),
         "outcomes": sweep.outcome.tolist(),
         "messages": sweep.message.tolist(),
         "counts": sweep.counts,
@@ -37,17 +42,48 @@ def to_json(sweep: Sweep, files: Iterable[Path] = ()) -> dict[str, Any]:
     }
 
 
+def _statistics(statistics: Statistics) -> dict[str, Any]:
+    """Every estimate by name with its bounds; lists along the grid, and along the times of a history."""
+    return {
+        "draws": statistics.count.tolist(),
+        **{name: _bounds(statistics[name]) for name in statistics.names},
+    }
+
+
+def _bounds(values: Floats) -> dict[str, Any]:
+    """Estimate, low and high; lists along the grid."""
+    return dict(zip(BOUNDS, np.moveaxis(values, -1, 0).tolist(), strict=True))
+
+
+def _indices(indices: Indices) -> dict[str, Any]:
+    """First and total index of every parameter with its bounds; lists along the grid."""
+    return {
+        parameter: {order: _bounds(indices.values[..., k, i, :]) for i, order in enumerate(ORDERS)}
+        for k, parameter in enumerate(indices.parameters)
+    }
+
+
 def text(sweep: Sweep) -> str:
     """One line per case, or per quantile where the cases are drawn or many; then what failed."""
-    heads = [f"{each.path}{f', {each.unit}' if each.unit else ''}" for each in sweep.parameters]
-    measures = [f"{name}{f', {sweep.units[name]}' if sweep.units[name] else ''}" for name in sweep.measures]
-    drawn = any(each.drawn for each in sweep.parameters)
-    if drawn or sweep.outcome.size > _ROWS:
-        lines = _table(["", *measures], _quantiles(sweep))
+    heads = [_headed(each.path, each.unit) for each in sweep.parameters if not each.drawn]
+    measures = [_headed(name, sweep.units[name]) for name in sweep.measures]
+    if sweep.statistics:
+        lines = [line for name in sweep.statistics for line in ["", *estimates(sweep, name, heads)]][1:]
+    elif sweep.outcome.size > _ROWS:
+        lines = columns(["", *measures], _quantiles(sweep))
+    elif sweep.measures:
+        lines = columns([*heads, *measures], _cases(sweep))
     else:
-        lines = _table([*heads, *measures], _cases(sweep))
+        lines = []
+    lost = sweep.outcome.size - sweep.counts.get("done", 0)
+    if sweep.statistics and lost:
+        lines += ["", f"{lost} of {sweep.outcome.size} cases are not done: the estimates are of the others"]
     ended = ", ".join(f"{count} {name}" for name, count in sweep.counts.items())
-    return "\n".join([*lines, "", f"{sweep.outcome.size} cases: {ended}", *_failures(sweep)])
+    return "\n".join([*lines, "", f"{sweep.outcome.size} cases: {ended}", *_failures(sweep)]).lstrip("\n")
+
+
+def _headed(name: str, unit: str) -> str:
+    return f"{name}{f', {unit}' if unit else ''}"
 
 
 def _cases(sweep: Sweep) -> list[list[str]]:
@@ -77,11 +113,6 @@ def _quantiles(sweep: Sweep) -> list[list[str]]:
 
 def _figure(of: Any, values: Floats) -> str:
     return number(float(of(values))) if len(values) else "–"
-
-
-def _table(heads: list[str], rows: list[list[str]]) -> list[str]:
-    widths = [max(len(row[k]) for row in [heads, *rows]) for k in range(len(heads))]
-    return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in [heads, *rows]]
 
 
 def _failures(sweep: Sweep) -> list[str]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import re
 import tomllib
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path as File
 from typing import Any, Literal
@@ -14,6 +15,7 @@ from gbeam.errors import InputError
 from gbeam.limits import SCENARIO_BYTES, refuse_large_file
 from gbeam.scenario.text.bounds import excess
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
+from gbeam.scenario.text.distributions import Distribution
 from gbeam.scenario.text.overrides import Override
 from gbeam.scenario.text.paths import Path, Place, Span, path_text
 from gbeam.scenario.text.suggest import closest
@@ -35,6 +37,8 @@ class Source:
     data : dict
         The parsed text, with the overrides in it.
     overrides : tuple of Override
+    distributions : mapping of str to Distribution
+        Of the values that have one, by path; `data` has their centres.
     """
 
     name: str
@@ -42,6 +46,7 @@ class Source:
     folder: File
     data: dict[str, Any]
     overrides: tuple[Override, ...] = ()
+    distributions: Mapping[str, Distribution] = field(default_factory=dict)
 
     @cached_property
     def places(self) -> dict[Path, Place]:

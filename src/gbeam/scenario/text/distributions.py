@@ -1,0 +1,170 @@
+"""Distributions in place of a value, ``{ normal = ["70 GPa", "2 GPa"] }``: what a sweep draws from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from gbeam.errors import InputError
+from gbeam.scenario.text.paths import Path
+from gbeam.scenario.text.suggest import closest
+from gbeam.scenario.text.units import NUMBER
+
+
+@dataclass(frozen=True)
+class Family:
+    """A named family of distributions.
+
+    Parameters
+    ----------
+    arguments : tuple of str
+        What its numbers mean, for messages.
+    fault : callable
+        Of the numbers: what they should be, or nothing where they are sound.
+    centre : callable
+        Of the numbers: the value to build the scenario with where nothing is drawn.
+    """
+
+    arguments: tuple[str, ...]
+    fault: Callable[..., str]
+    centre: Callable[..., float]
+
+
+FAMILIES = {
+    "normal": Family(
+        ("mean", "standard deviation"),
+        lambda _, spread: "" if spread > 0 else "a standard deviation above zero",
+        lambda mean, _: mean,
+    ),
+    "lognormal": Family(
+        ("median", "standard deviation of the logarithm"),
+        lambda median, spread: "" if median > 0 and spread > 0 else "a median and a spread above zero",
+        lambda median, _: median,
+    ),
+    "uniform": Family(
+        ("from", "to"),
+        lambda low, high: "" if high > low else "a range that ascends",
+        lambda low, high: (low + high) / 2,
+    ),
+    "triangular": Family(
+        ("from", "most likely", "to"),
+        lambda low, mode, high: "" if low <= mode <= high and low < high else "three values that ascend",
+        lambda _low, mode, _high: mode,
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """A distribution of one value: `family`, its `arguments` in `unit`, and these as they were written, `words`."""
+
+    family: str
+    arguments: tuple[float, ...]
+    unit: str
+    words: str
+
+    def __str__(self) -> str:
+        return f"{self.family}({self.words})"
+
+    @property
+    def centre(self) -> str | float:
+        """Mean, median, midpoint or most likely value, as it stands in a scenario."""
+        value = FAMILIES[self.family].centre(*self.arguments)
+        return written(value, self.unit) if self.unit else value
+
+
+def read_distribution(family: str, parts: Sequence[str]) -> Distribution:
+    """Read a distribution from its name and its numbers.
+
+    Raises
+    ------
+    InputError
+        Without a place, if it is unknown or its numbers are wrong.
+    """
+    known = FAMILIES.get(family)
+    if known is None:
+        near = closest(family, FAMILIES)
+        fix = f"did you mean {near!r}?" if near else f"choose {', '.join(FAMILIES)}"
+        raise InputError("", f"has the unknown distribution {family!r}", fix)
+    words = ", ".join(part.strip() for part in parts)
+    if len(parts) != len(known.arguments):
+        raise InputError(
+            "", f"has {len(parts)} values in {family}({words})", f"give {len(known.arguments)}: {_named(known)}"
+        )
+    if family == "lognormal":
+        (median,), unit = quantities(parts[:1])
+        (spread,), other = quantities(parts[1:])
+        if other:
+            raise InputError("", f"has a spread in {other}", "the logarithm's has no unit")
+        arguments = [median, spread]
+    else:
+        arguments, unit = quantities(parts)
+    if fault := known.fault(*arguments):
+        raise InputError("", f"has {family}({words})", f"give {fault}")
+    return Distribution(family, tuple(arguments), unit, words)
+
+
+def find_distributions(data: Any, path: Path = ()) -> Iterator[tuple[Path, str, Any]]:
+    """Every table of a scenario that stands for a distribution: its path, its name and what is given with it."""
+    if isinstance(data, dict):
+        if len(data) == 1 and path:
+            (name, given), *_ = data.items()
+            if name in FAMILIES or (isinstance(given, list) and closest(str(name), FAMILIES)):
+                yield path, str(name), given
+                return
+        for key, value in data.items():
+            if path or key != "sweep":
+                yield from find_distributions(value, (*path, key))
+    elif isinstance(data, list):
+        for index, value in enumerate(data):
+            yield from find_distributions(value, (*path, index))
+
+
+def from_table(name: str, given: Any) -> Distribution:
+    """Read what stands in a scenario.
+
+    Raises
+    ------
+    InputError
+        Without a place.
+    """
+    known = FAMILIES.get(name)
+    plain = isinstance(given, list) and all(
+        isinstance(each, (str, int, float)) and not isinstance(each, bool) for each in given
+    )
+    if not plain and known is not None:
+        raise InputError("", f"has no list of numbers in {name}", f"write {{ {name} = [{_named(known)}] }}")
+    return read_distribution(name, [each if isinstance(each, str) else repr(each) for each in given])
+
+
+def quantities(parts: Sequence[str]) -> tuple[list[float], str]:
+    """Numbers and their one unit; where some have none they have the others'.
+
+    Raises
+    ------
+    InputError
+        Without a place, if one is no number, or the units differ.
+    """
+    values, units = [], []
+    for part in parts:
+        match = NUMBER.fullmatch(part)
+        if match is None or not math.isfinite(float(match[1])):
+            raise InputError("", f"has {part.strip()!r}, which is no number", 'write it such as "4 g/s"')
+        values.append(float(match[1]))
+        units.append(match[2])
+    given = sorted({unit for unit in units if unit})
+    if len(given) > 1:
+        raise InputError("", f"has values in {' and in '.join(given)}", "write them in one unit")
+    return values, given[0] if given else ""
+
+
+def written(value: float, unit: str) -> str:
+    """Write a value as it replaces the scenario's: with its unit, and without a fraction that is none."""
+    number = str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+    return f"{number} {unit}" if unit else number
+
+
+def _named(family: Family) -> str:
+    return ", ".join(family.arguments)

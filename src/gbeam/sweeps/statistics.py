@@ -1,0 +1,125 @@
+"""What samples say of a figure, and how sure that is: mean, spread, quantiles, probability, Sobol indices.
+
+Every bound is of 95 % confidence for independent draws; samples that are spread evenly (sobol, latin) estimate a smooth
+figure better than their bounds say.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from gbeam.results.result import Floats
+from gbeam.results.uncertainty import BOUNDS, CONFIDENCE, MEAN, PROBABILITY, QUANTILES, SPREAD, Indices, Statistics
+
+RESAMPLES = 200  # of the bootstrap of Sobol indices
+LEAST = 8  # base samples from which indices are estimated
+
+
+def statistics(values: Floats, *, truth: bool = False) -> Statistics:
+    """Estimate what a figure's distribution is.
+
+    Parameters
+    ----------
+    values : (..., n)
+        Of independent draws along the last axis; those that are not finite, of cases that came to nothing, are left
+        out.
+    truth : bool
+        Whether the figure is 0 or 1: then the probability of 1.
+
+    Notes
+    -----
+    The mean's bounds are Student's; the standard deviation's come from the fourth moment; a quantile's are order
+    statistics, of a binomial number, and NaN where there are too few draws for one; a probability's are
+    Clopper and Pearson's.
+    """
+    names = (PROBABILITY,) if truth else (MEAN, SPREAD, *QUANTILES)
+    found = np.full((*values.shape[:-1], len(names), len(BOUNDS)), math.nan)
+    count = np.isfinite(values).sum(axis=-1)
+    for size in np.unique(count[count > 0]):
+        chosen = count == size  # all of them at once
+        draws = np.sort(values[chosen], axis=-1)[..., :size]  # NaN is last
+        found[chosen] = _probability(draws) if truth else _moments_and_quantiles(draws)
+    return Statistics(names, found, count)
+
+
+def _probability(draws: Floats) -> Floats:
+    """Share of ones among draws (m, n), with bounds (m, 1, 3)."""
+    from scipy.stats import beta
+
+    n = draws.shape[-1]
+    ones = draws.sum(axis=-1)
+    tail = (1 - CONFIDENCE) / 2
+    low = np.where(ones > 0, beta.ppf(tail, ones, n - ones + 1), 0.0)
+    high = np.where(ones < n, beta.ppf(1 - tail, ones + 1, n - ones), 1.0)
+    return np.stack([ones / n, low, high], axis=-1)[:, None]
+
+
+def _moments_and_quantiles(draws: Floats) -> Floats:
+    """Of sorted draws (m, n): (m, 2 + q, 3)."""
+    from scipy.stats import binom, norm, t
+
+    n, tail = draws.shape[-1], (1 - CONFIDENCE) / 2
+    mean = draws.mean(axis=-1)
+    rows = [np.stack([mean, np.full_like(mean, math.nan), np.full_like(mean, math.nan)], axis=-1)]
+    rows.append(np.full_like(rows[0], math.nan))
+    if n > 1:
+        spread = draws.std(axis=-1, ddof=1)
+        off = t.ppf(1 - tail, n - 1) * spread / math.sqrt(n)
+        rows[0] = np.stack([mean, mean - off, mean + off], axis=-1)
+        rows[1][:, 0] = spread
+    if n > 3:
+        fourth = ((draws - mean[:, None]) ** 4).mean(axis=-1)
+        # Variance of the sample variance: (μ₄ − σ⁴ (n − 3)/(n − 1))/n, and that of its root from the derivative.
+        variance = np.maximum(fourth - spread**4 * (n - 3) / (n - 1), 0.0) / n
+        with np.errstate(invalid="ignore", divide="ignore"):
+            off = np.where(spread > 0, norm.ppf(1 - tail) * np.sqrt(variance) / (2 * spread), 0.0)
+        rows[1] = np.stack([spread, np.maximum(spread - off, 0.0), spread + off], axis=-1)
+    for share in QUANTILES.values():
+        # The draws below the quantile are a binomial number: P(X_(low) <= quantile <= X_(high)) >= the confidence.
+        low, high = int(binom.ppf(tail, n, share)), int(binom.ppf(1 - tail, n, share)) + 1  # ranks, from 1
+        nothing = np.full_like(mean, math.nan)
+        below = draws[:, low - 1] if low >= 1 else nothing
+        above = draws[:, high - 1] if high <= n else nothing
+        rows.append(np.stack([np.quantile(draws, share, axis=-1), below, above], axis=-1))
+    return np.stack(rows, axis=1)
+
+
+def indices(values: Floats, parameters: Sequence[str], seed: int) -> Indices:
+    """Sobol indices of a figure: which share of its variance each parameter makes.
+
+    Parameters
+    ----------
+    values : (..., (d + 2) n)
+        In the order of the sampler saltelli: A, B, and A with each column of B in turn.
+    parameters : sequence of d str
+    seed : int
+        Of the bootstrap.
+
+    Notes
+    -----
+    SALib's estimators (Saltelli 2010; Jansen 1999 for the total), with bounds from its bootstrap, of normal shape.
+    Base samples one of whose cases came to nothing are left out; below 8 of them, or where nothing varies, NaN.
+    """
+    from SALib.analyze import sobol  # with pandas, a second
+
+    d = len(parameters)
+    blocks = np.moveaxis(values.reshape(*values.shape[:-1], d + 2, -1), -2, -1)  # (..., n, d + 2)
+    found = np.full((*values.shape[:-1], d, 2, len(BOUNDS)), math.nan)
+    count = np.zeros(values.shape[:-1], dtype=int)
+    for at in np.ndindex(values.shape[:-1]):
+        whole = blocks[at][np.isfinite(blocks[at]).all(axis=-1)]
+        count[at] = len(whole)
+        if len(whole) < LEAST or np.ptp(whole) <= 1e-12 * np.abs(whole).max():
+            continue
+        # SALib's order within a base sample: A, the mixed ones, B.
+        ordered = np.concatenate([whole[:, :1], whole[:, 2:], whole[:, 1:2]], axis=1).ravel()
+        problem = {"num_vars": d, "names": list(parameters)}
+        options = {"num_resamples": RESAMPLES, "conf_level": CONFIDENCE, "seed": seed + 1}  # SALib takes 0 for none
+        given = sobol.analyze(problem, ordered, calc_second_order=False, **options)
+        for k, name in enumerate(("S1", "ST")):
+            value, off = np.asarray(given[name]), np.asarray(given[f"{name}_conf"])
+            found[at][:, k] = np.stack([value, value - off, value + off], axis=-1)
+    return Indices(tuple(parameters), found, count)
