@@ -36,7 +36,7 @@ export class Plots {
     private readonly clock: Clock | null,
   ) {
     clock?.onChange(() => {
-      for (const { plot, spec } of this.made) if (spec.time) plot.redraw(false, false);
+      for (const { plot, spec } of this.made) if (spec.time) this.mark(plot);
     });
     const redo = (): void => this.again();
     window.addEventListener("gbeam-theme", redo);
@@ -53,6 +53,15 @@ export class Plots {
     plot.root.setAttribute("aria-label", `${spec.title}: ${spec.y} over ${spec.x}`);
     if (spec.time) this.common.plots.push(plot);
     this.made.push({ plot, spec, root });
+  }
+
+  /** Show the clock's time as a line above the plot: to draw the plot again takes as long as all the rest. */
+  private mark(plot: uPlot): void {
+    const line = plot.over.querySelector<HTMLElement>(".gbeam-now");
+    if (!line || !this.clock) return;
+    const x = plot.valToPos(this.clock.time, "x");
+    line.hidden = x < 0 || x > plot.over.clientWidth;
+    line.style.transform = `translateX(${x}px)`;
   }
 
   /** All of them once more, in the colours of the present theme. */
@@ -102,7 +111,7 @@ export class Plots {
       ],
       hooks: {
         drawClear: [(plot) => bands(plot, spec, dark)],
-        draw: [(plot) => levels(plot, spec, ink), (plot) => clock && now(plot, clock, dark)],
+        draw: [(plot) => levels(plot, spec, ink), (plot) => clock && this.mark(plot)],
         setScale: [
           (plot, key) => {
             if (key !== "x" || !spec.time) return;
@@ -115,6 +124,7 @@ export class Plots {
         ready: [
           (plot) => {
             if (!clock) return;
+            plot.over.append(element("div", "gbeam-now"));
             // A click without a drag takes the clock there.
             let from = 0;
             plot.over.addEventListener("mousedown", (e) => (from = e.clientX));
@@ -185,29 +195,4 @@ function levels(plot: uPlot, spec: Plot, ink: string): void {
     ctx.fillText(label, left + 4, y - 4 * devicePixelRatio);
   }
   ctx.restore();
-}
-
-function now(plot: uPlot, clock: Clock, dark: boolean): void {
-  const { left, top, width, height } = plot.bbox;
-  const x = plot.valToPos(clock.time, "x", true);
-  if (x < left || x > left + width) return;
-  plot.ctx.save();
-  plot.ctx.strokeStyle = dark ? "#f2f2f2" : "#000";
-  plot.ctx.lineWidth = devicePixelRatio;
-  plot.ctx.setLineDash([]);
-  plot.ctx.beginPath();
-  plot.ctx.moveTo(x, top);
-  plot.ctx.lineTo(x, top + height);
-  plot.ctx.stroke();
-  plot.ctx.restore();
-}
-
-/** A heading above a plot. */
-export function captioned(root: HTMLElement, title: string): HTMLElement {
-  const figure = element("figure", "gbeam-plot");
-  const caption = element("figcaption", "", title);
-  const place = element("div");
-  figure.append(caption, place);
-  root.append(figure);
-  return place;
 }
