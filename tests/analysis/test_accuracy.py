@@ -173,4 +173,6 @@ def test_a_critical_speed_states_its_error() -> None:
         [gb.PointMass(8.0, 0.5)],
     )
     found = gb.critical_speed(gb.assemble(mast, "TLAM", axial=1, y=2), gb.Hub(radius=0.5))
-    assert found.error_estimate == pytest.approx(found.value / 1.93645 - 1, rel=0.02)
+    assert found.errors.shapes == pytest.approx(found.value / 1.93645 - 1, rel=0.02)
+    assert np.isinf(found.errors.model)
+    assert any("TLAM's own: the exact model keeps its equilibrium" in each for each in found.warnings)

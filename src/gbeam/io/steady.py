@@ -109,8 +109,10 @@ def critical_group(critical: Critical) -> Group:
         "value": variable((), value, critical.unit, f"critical {critical.quantity}; missing where it is not reached"),
         "searched_to": variable((), critical.searched_to, critical.unit, "end of the search"),
     }
-    if np.isfinite(critical.error_estimate):
-        data["error_estimate"] = variable((), critical.error_estimate, "1", "error from too few shapes, a fraction")
+    causes = {"shapes": "from too few shapes", "model": "of the model against exact", "total": "in all"}
+    for name, cause in causes.items():
+        if np.isfinite(value := getattr(critical.errors, name)):
+            data[f"error_{name}"] = variable((), value, "1", f"estimated error {cause}, a fraction")
     return Group(data, {}, _critical(critical))
 
 

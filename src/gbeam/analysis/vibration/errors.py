@@ -98,16 +98,23 @@ def _about_equilibrium(rich: Structure, point: OperatingPoint) -> Linear:
     """M, C and K of a rich structure about its own equilibrium on the base of a point."""
     loads, base = point.residual.unpack(point.u)[1], point.base
     rich = replace(rich, load_values=loads)
+    if not isinstance(point.residual, OnHub):
+        return resting(rich, base)
     q = solve_equilibrium(rich, base).q
     c = rich.coefficients
     if not rich.linear:
         c, q = rich.about(q)[0], 0 * q
-    if not isinstance(point.residual, OnHub):
-        velocity, stiffness, _ = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
-        return Linear(c.mass, velocity, stiffness, np.zeros((rich.size, 0)))
     hub = point.residual
     equations = free_hub(c, hub.mount, hub.equations.ground, hub_force=rich.hub_force)
     y, yd, ydd = (np.append(x[0], beam) for x, beam in ((point.y, q), (point.yd, 0 * q), (point.ydd, 0 * q)))
     n = len(y)
     d = stepped(OnHub(equations, hub.mount), y, yd, ydd, point.u)
     return Linear(d[:, 2 * n : 3 * n], d[:, n : 2 * n], d[:, :n], -d[:, 3 * n :])
+
+
+def resting(structure: Structure, base: Base) -> Linear:
+    """M, C and K of a structure about its equilibrium on a base, under its loads, by NumPy for complete models too."""
+    q = solve_equilibrium(structure, base).q
+    c = structure.coefficients if structure.linear else structure.about(q)[0]
+    velocity, stiffness, _ = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, structure.load_values)
+    return Linear(c.mass, velocity, stiffness, np.zeros((structure.size, 0)))

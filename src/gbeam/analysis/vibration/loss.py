@@ -21,7 +21,7 @@ SCAN = 64  # points at which a loss is looked for before its root is closed in o
 UNSYMMETRIC = 1e-9  # of K: above it the loads follow the beam
 
 
-def _margin(linear: Linear) -> float:
+def stability_margin(linear: Linear) -> float:
     """Positive while the equilibrium is stable, rad²/s²; its root is where it stops."""
     stiffness = linear.stiffness
     if np.abs(stiffness - stiffness.T).max() <= UNSYMMETRIC * np.abs(stiffness).max():
@@ -59,7 +59,7 @@ def first_loss_along(
 
     def margin(value: float) -> float:
         point = _point(*path(value))
-        return -1.0 if point is None else _margin(linear_matrices(point))
+        return -1.0 if point is None else stability_margin(linear_matrices(point))
 
     def answer(value: float | None, kind: str, direction: str, reason: str) -> Critical:
         words = kind, direction, reason, structure.kind

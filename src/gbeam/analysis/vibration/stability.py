@@ -9,7 +9,6 @@ eigenvalues decide. There damping matters: the least of it lowers the flutter lo
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -17,10 +16,10 @@ import numpy as np
 
 from gbeam.analysis.equilibrium.point import REST, steady_base
 from gbeam.analysis.vibration.loss import first_loss_along
+from gbeam.analysis.vibration.loss_errors import Path, judged
 from gbeam.checks import positive
 from gbeam.errors import InputError
 from gbeam.mechanics.assembly import assemble
-from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.models import Model
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
@@ -32,7 +31,7 @@ from gbeam.structure.beam import Beam
 from gbeam.structure.bodies import PointMass
 
 SEARCH_FACTOR = 10.0  # of the lowest natural frequency: how far a search goes by default
-BEYOND = 1.01  # times a critical speed: how far it is searched with more shapes
+INSTEAD = "ask `gbeam modes` for its frequencies at a time, or `gbeam static` for its shape"
 NOTHING = 1e-12  # of the beam's stiffness: loads that bring less are rounding about none
 
 
@@ -76,16 +75,14 @@ def critical_speed(structure: Structure, motion: Motion, *, upper: float | None 
     InputError
         If the motion has no hub.
     """
-    instead = "ask `gbeam modes` for its frequencies at a time, or `gbeam static` for its shape"
-    hub = hub_of(motion, "a critical speed", instead, name)
+    hub = hub_of(motion, "a critical speed", INSTEAD, name)
     limit = SEARCH_FACTOR * lowest_frequency(structure) if upper is None else positive("to", upper, "rad/s")
-    found = first_loss_along(lambda rate: (structure, steady_base(hub, rate)), limit, "hub rate", "rad/s")
-    if not found.value or structure.source is None or not structure.linear:
-        return found
-    # With more shapes it is lost earlier.
-    rich, _ = enrichment(structure, steady_base(hub, found.value)).model(structure.kind)
-    least = first_loss_along(lambda rate: (rich, steady_base(hub, rate)), BEYOND * found.value, "hub rate", "rad/s")
-    return replace(found, error_estimate=math.nan if not least.value else abs(found.value / least.value - 1))
+    turning = _turning(structure, hub)
+    return judged(first_loss_along(turning, limit, "hub rate", "rad/s"), turning)
+
+
+def _turning(structure: Structure, hub: Hub) -> Path:
+    return lambda rate: (structure, steady_base(hub, rate))
 
 
 def critical_speed_map(
@@ -121,13 +118,14 @@ def critical_speed_map(
     InputError
         If the motion has no hub, or a mass or a position is impossible.
     """
-    unloaded = assemble(beam, model)
+    hub, unloaded = hub_of(motion, "a critical speed", INSTEAD, name), assemble(beam, model)
     limit = SEARCH_FACTOR * lowest_frequency(unloaded) if upper is None else upper
     speed = np.full((len(masses), len(positions)), np.nan)
     for i, mass in enumerate(masses):
         for j, at in enumerate(positions):
             loaded = replace(beam, masses=(*beam.masses, PointMass(at, mass)))
-            value = critical_speed(assemble(loaded, model), motion, upper=limit, name=name).value
+            turning = _turning(assemble(loaded, model), hub)
+            value = first_loss_along(turning, limit, "hub rate", "rad/s").value
             speed[i, j] = np.nan if value is None else value
     heavy, where = np.asarray(masses, dtype=float), np.asarray(positions, dtype=float)
     warnings = input_warnings(unloaded, motion, name=name)
@@ -154,7 +152,7 @@ def buckling_acceleration(structure: Structure, *, upper: float | None = None) -
     def pushed(acceleration: float) -> tuple[Structure, Base]:
         return structure, Base(np.array([acceleration, 0.0, 0.0]), np.zeros(3), np.zeros(3))
 
-    return first_loss_along(pushed, limit, "acceleration along x", "m/s²")
+    return judged(first_loss_along(pushed, limit, "acceleration along x", "m/s²"), pushed)
 
 
 def critical_load(structure: Structure, base: Base | None = None, *, upper: float | None = None) -> Critical:
@@ -190,7 +188,7 @@ def critical_load(structure: Structure, base: Base | None = None, *, upper: floa
     def loaded(factor: float) -> tuple[Structure, Base]:
         return replace(structure, load_values=factor * values), REST if base is None else base
 
-    return first_loss_along(loaded, limit, "load factor", "times the loads")
+    return judged(first_loss_along(loaded, limit, "load factor", "times the loads"), loaded)
 
 
 def _share(structure: Structure, values: np.ndarray) -> float:

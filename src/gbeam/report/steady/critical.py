@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
-from gbeam.report.words import percent, warning_lines
+from gbeam.report.words import error_words, percent, warning_lines
 from gbeam.results.steady.stability import Critical, CriticalMap
 
 KEYS = {"rate": "critical_speed", "loads": "critical_load_factor", "acceleration": "critical_acceleration"}
@@ -36,14 +37,18 @@ def to_json(critical: Critical, motion: str, varied: str = "rate") -> dict[str, 
         "reason": critical.reason,
         "model": critical.model,
         "error_estimate": critical.error_estimate,
+        "errors": asdict(critical.errors),
         "warnings": list(critical.warnings),
     }
 
 
 def text(critical: Critical, motion: str) -> str:
     """The answer as one sentence."""
-    known = math.isfinite(critical.error_estimate)
-    error = f"; estimated error from too few shapes {percent(critical.error_estimate)}" if known else ""
+    errors, error = critical.errors, ""
+    if math.isfinite(errors.total):
+        error = f"; estimated error {error_words(errors)}"
+    elif math.isfinite(errors.shapes):
+        error = f"; estimated error from too few shapes {percent(errors.shapes)}"
     return "\n".join([f"{motion}: {critical.reason}{error}", *warning_lines(critical)])
 
 

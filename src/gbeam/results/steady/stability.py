@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from gbeam.results.errors import ErrorEstimate
 from gbeam.results.result import Figured, Floats, Result, brief
 
 
@@ -27,8 +27,8 @@ class Critical(Result):
     reason : str
         The answer as a sentence.
     model : str
-    error_estimate : float
-        Error of the value from too few shapes, a fraction; NaN where there is no estimate.
+    errors : ErrorEstimate
+        Of the value. The model's is infinite where the exact one keeps its equilibrium to three times the value.
     """
 
     quantity: str
@@ -39,7 +39,12 @@ class Critical(Result):
     direction: str
     reason: str
     model: str
-    error_estimate: float = math.nan
+    errors: ErrorEstimate = field(default_factory=ErrorEstimate)
+
+    @property
+    def error_estimate(self) -> float:
+        """Error of the value from too few shapes, a fraction; NaN where there is no estimate."""
+        return self.errors.shapes
 
     def __repr__(self) -> str:
         value = f"none up to {self.searched_to:.6g}" if self.value is None else f"{self.value:.6g}"
