@@ -61,6 +61,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.motion.profiles.profile import smoothed as smoothed
     from gbeam.motion.profiles.pulse import Sine as Sine
     from gbeam.motion.profiles.pulse import SmoothStep as SmoothStep
+    from gbeam.results.fit import Fit as Fit
     from gbeam.results.imitation.comparison import Comparison as Comparison
     from gbeam.results.response import Response as Response
     from gbeam.results.sensitivity import Sensitivity as Sensitivity
@@ -76,6 +77,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.structure.material import Material as Material
     from gbeam.structure.section import Section as Section
     from gbeam.structure.support import Root as Root
+    from gbeam.studies.fit import fit as fit
     from gbeam.studies.sensitivity import sensitivity as sensitivity
     from gbeam.sweeps.sweep import sweep as sweep
 
@@ -90,6 +92,7 @@ _HOME = {
     "Choice": "analysis.imitation.choice",
     "Comparison": "results.imitation.comparison",
     "ComputationError": "errors",
+    "Fit": "results.fit",
     "Flight": "motion.bases.flight",
     "Gauge": "results.steady.state_space",
     "GbeamError": "errors",
@@ -127,6 +130,7 @@ _HOME = {
     "critical_speed": "analysis.vibration.stability",
     "critical_speed_map": "analysis.vibration.stability",
     "describe": "analysis.study.describe",
+    "fit": "studies.fit",
     "linearize": "analysis.control.linearization",
     "machines": "motion.centrifuge.machine.examples",
     "modal_truncation": "analysis.control.reduction",

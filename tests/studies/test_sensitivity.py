@@ -163,5 +163,5 @@ def test_values_may_be_others_than_the_scenarios(fast: Path) -> None:
     base = load(fast)
     assert base.source is not None
     about = Neighbourhood(Question(base.source, "static", "flight"), physical_values(base, [LENGTH]), [0.2])
-    found = about.slopes(lambda facts: np.array([facts["motions"]["flight"]["tip"]["z"]]))
+    found = about.slopes(lambda _, facts: np.array([facts["motions"]["flight"]["tip"]["z"]]))
     assert found.slopes[0, 0] * 0.2 / found.values[0] == pytest.approx(4, abs=1e-9)

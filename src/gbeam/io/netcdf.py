@@ -17,6 +17,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.io.comparisons import comparison_group
+from gbeam.io.fits import fit_group
 from gbeam.io.groups import Group, Variable
 from gbeam.io.hdf5 import write_groups
 from gbeam.io.machine import plan_group
@@ -26,6 +27,7 @@ from gbeam.io.sensitivities import sensitivity_group
 from gbeam.io.steady import campbell_group, critical_group, critical_map_group, deflection_group, modes_group
 from gbeam.io.sweeps import sweep_group
 from gbeam.io.tables import models_group, placement_group, state_space_group
+from gbeam.results.fit import Fit
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.placement import Placement
 from gbeam.results.machine import MachinePlan
@@ -52,6 +54,7 @@ _GROUPS: dict[type, Callable[[Any], Group]] = {
     Campbell: campbell_group,
     Critical: critical_group,
     CriticalMap: critical_map_group,
+    Fit: fit_group,
     MachinePlan: plan_group,
     ModelStudy: models_group,
     Placement: placement_group,

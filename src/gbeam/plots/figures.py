@@ -13,6 +13,7 @@ from gbeam.errors import InputError
 from gbeam.plots.comparison import moved, plot_comparison, plot_shock
 from gbeam.plots.drawing.files import save
 from gbeam.plots.environment import plot_base, plot_hub
+from gbeam.plots.fit import plot_fit
 from gbeam.plots.loads import plot_loads, plot_loads_along
 from gbeam.plots.machine import plot_axes, plot_tracking
 from gbeam.plots.sensitivity import plot_sensitivity
@@ -20,6 +21,7 @@ from gbeam.plots.steady import plot_campbell, plot_critical_map, plot_modes, plo
 from gbeam.plots.sweep import plot_sweep
 from gbeam.plots.tip import plot_tip
 from gbeam.plots.uncertainty import plot_history, plot_indices, plot_probability
+from gbeam.results.fit import Fit
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.machine import AxesResult, MachinePlan
 from gbeam.results.response import Response
@@ -53,7 +55,8 @@ def figures(result: Any, title: str = "") -> dict[str, Draw]:
 
     Parameters
     ----------
-    result : Response, Study, Comparison, Modes, Campbell, Deflection, CriticalMap, MachinePlan, Sweep or Sensitivity
+    result : Response, Study, Comparison, Modes, Campbell, Deflection, CriticalMap, MachinePlan, Sweep, Fit or
+        Sensitivity
     title : str
         First line above each; a study has its own.
     """
@@ -81,6 +84,8 @@ def figures(result: Any, title: str = "") -> dict[str, Draw]:
             return {"critical": partial(plot_critical_map, result, title)}
         case Sweep():
             return _of_sweep(result, title)
+        case Fit():
+            return {"fit": partial(plot_fit, result, title)}
         case Sensitivity():
             return {name: partial(plot_sensitivity, result, name, title) for name in result.measures}
     raise TypeError(f"{type(result).__name__} has no figures")

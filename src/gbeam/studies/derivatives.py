@@ -9,15 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.response.differentiated import Differentiated, Variant
+from gbeam.analysis.response.differentiated import Differentiated, Grid, Variant
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.study.case import Case
 from gbeam.analysis.study.study import study, study_of
 from gbeam.errors import ComputationError, GbeamError, InputError
+from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
@@ -25,7 +27,8 @@ from gbeam.results.study import Study
 from gbeam.studies.parameters import PhysicalValue
 from gbeam.sweeps.evaluate import Question
 
-Read = Callable[[Any], Floats]  # of an answer, a Study of run or another verb's facts: what is differentiated, (m,)
+# Of a case and its answer, a Study of run or another verb's facts: what is differentiated, (m,).
+Read = Callable[[Case, Any], Floats]
 Progress = Callable[[str, float], None]
 _NEAR = 1e-5  # of the value: on either side, about a run whose own derivative is exact
 _RUNS, _FACTS = 1e-4, 1e-3  # the same, of differences of whole runs and of other answers
@@ -65,6 +68,13 @@ class Neighbourhood:
     parameters : sequence of PhysicalValue
     values : sequence of float, optional
         Of the parameters; the scenario's by default.
+    grids : mapping of str to Grid, optional
+        By motion, of the runs that are made, without an estimate of their errors; by default every motion is run, its
+        step chosen.
+    parts : mapping of str to bool, optional
+        ``loads`` and ``axes``: false where nothing is read of loads, or of a machine's axes and no comparison.
+    adapt : callable, optional
+        Changes every case before it is answered, such as its stations or its model.
     progress : callable, optional
         Called with what is being done and the fraction of it done.
 
@@ -81,22 +91,33 @@ class Neighbourhood:
         question: Question,
         parameters: Sequence[PhysicalValue],
         values: Sequence[float] | None = None,
+        *,
+        grids: Mapping[str, Grid] | None = None,
+        parts: Mapping[str, bool] = MappingProxyType({}),
+        adapt: Callable[[Case], Case] | None = None,
         progress: Progress | None = None,
     ) -> None:
-        self.question, self.parameters, self.progress = question, parameters, progress or (lambda *_: None)
+        self.question, self.parameters, self.parts = question, parameters, parts
+        self._about: dict[str, Differentiated] = {}
+        self.progress, self.adapt = progress or (lambda *_: None), adapt or (lambda case: case)
         self.values = [each.value for each in parameters] if values is None else [float(value) for value in values]
-        self.case = question.case(self._changes(None, 0.0))
+        self.case = self.adapt(question.case(self._changes(None, 0.0)))
         self.answer: Any
         if question.verb == "run":
             if self.case.response.integrator == "adaptive":
                 fix = "choose another, such as --set response.integrator=newmark"
                 raise InputError("response.integrator", "is adaptive, whose steps have no derivative", fix)
-            self.answer = study(self.case, self.progress)
-            self._enrich()
+            if grids is None:
+                self.answer = study(self.case, self.progress)
+                self._enrich()
+            else:
+                structure = self.case.assemble()
+                own = {name: self._differentiated(structure, name, grid).own() for name, grid in grids.items()}
+                self.answer = study_of(self.case, {name: _possible(structure, each) for name, each in own.items()})
         else:
             self.answer = question.facts(self.case)
 
-    def slopes(self, read: Read, motions: Sequence[str] = (), **parts: bool) -> Slopes:
+    def slopes(self, read: Read, motions: Sequence[str] = ()) -> Slopes:
         """Derivatives of what is read.
 
         Parameters
@@ -104,42 +125,60 @@ class Neighbourhood:
         read : callable
         motions : sequence of str
             Those whose responses it reads; the others are not differentiated.
-        **parts
-            ``loads`` and ``axes``: false where it reads no loads, or nothing of a machine's axes and no comparison.
         """
         if self.question.verb == "run":
-            return self._of_runs(read, motions or list(self.case.motions), parts)
-        values = read(self.answer)
+            return self._of_runs(read, motions or list(self.case.motions))
+        values = read(self.case, self.answer)
         rows = []
         for k, each in enumerate(self.parameters):
             self.progress(each.path, k / len(self.parameters))
             step = self._step(k, _FACTS)
 
             def at(steps: float, k: int = k, step: float = step) -> Floats:
-                return read(self.question.facts(self._case(k, steps * step)))
+                case = self._case(k, steps * step)
+                return read(case, self.question.facts(case))
 
             rows.append(_differences(at, values, step))
         return _gathered(values, rows, [DIFFERENCE] * len(rows))
 
-    def _of_runs(self, read: Read, motions: Sequence[str], parts: Mapping[str, bool]) -> Slopes:
+    def done(self, name: str) -> Response:
+        """The response in one environment.
+
+        Raises
+        ------
+        ComputationError
+            If it is not done.
+        """
+        failed = self.answer.failures.get(name) or self.answer.responses[name]
+        if failed.outcome != "done":
+            raise ComputationError(failed.outcome, f"motion.{name}: {failed.message}")
+        response: Response = self.answer.responses[name]
+        return response
+
+    def grid(self, name: str) -> Grid:
+        """Steps of the run of a motion."""
+        return Grid.of(self.case.assemble(), self.case.motions[name], self.case.response, self.done(name))
+
+    def _differentiated(self, structure: Structure, name: str, grid: Grid) -> Differentiated:
+        motion, settings = self.case.motions[name], self.case.response
+        self._about[name] = Differentiated(structure, motion, settings, grid, name, **self.parts)
+        return self._about[name]
+
+    def _of_runs(self, read: Read, motions: Sequence[str]) -> Slopes:
+        done, structure = {name: self.done(name) for name in motions}, self.case.assemble()
         for name in motions:
-            if name in self.answer.failures:
-                raise ComputationError(self.answer.failures[name].outcome, self.answer.failures[name].message)
-            done = self.answer.responses[name]
-            if done.outcome != "done":
-                raise ComputationError(done.outcome, f"motion.{name}: {done.message}")
-        structure, settings, done = self.case.assemble(), self.case.response, self.answer.responses
-        about = {
-            name: Differentiated(structure, self.case.motions[name], settings, done[name], **parts) for name in motions
-        }
+            if name not in self._about:
+                self._differentiated(structure, name, self.grid(name))
+        about = {name: self._about[name] for name in motions}
         own = {name: each.own() for name, each in about.items()}
-        values = read(study_of(self.case, own))
+        values = read(self.case, study_of(self.case, own))
         steps = np.array([self._step(k, _NEAR) for k in range(len(self.parameters))])
         # Of each motion the pairs of the parameters that it feels; a parameter by which something jumps is left.
         pairs: dict[str, dict[int, Any]] = {name: {} for name in motions}
-        jumping = set()
+        jumping, cases = set(), []
         for k, step in enumerate(steps):
             less, more = (self._case(k, sign * step) for sign in (-1, 1))
+            cases.append((less, more))
             for name in motions:
                 if not self._felt(k, name):
                     continue
@@ -158,7 +197,8 @@ class Neighbourhood:
                 step = self._step(k, _RUNS)
 
                 def at(steps: float, k: int = k, step: float = step) -> Floats:
-                    return read(self._run(k, steps * step, motions))
+                    case = self._case(k, steps * step)
+                    return read(case, _runs(case, {name: done[name].step for name in motions}))
 
                 rows.append(_differences(at, values, step))
                 continue
@@ -166,24 +206,14 @@ class Neighbourhood:
             for name in motions:
                 if k in pairs[name]:
                     sides[0][name], sides[1][name] = next(responses[name])
-            ends = [read(study_of(self.case, side)) for side in sides]
+            ends = [read(case, study_of(case, side)) for case, side in zip(cases[k], sides, strict=True)]
             rows.append((*_slope(ends[0], values, ends[1], steps[k]), np.full(len(values), np.nan)))
         return _gathered(values, rows, [DIFFERENCE if k in jumping else EXACT for k in range(len(rows))])
-
-    def _run(self, k: int, step: float, motions: Sequence[str]) -> Study:
-        """The responses in some environments with another value of a parameter, by the steps of the nominal run."""
-        case = self._case(k, step)
-        structure = case.assemble()
-        responses = {}
-        for name in motions:
-            settings = replace(case.response, step=self.answer.responses[name].step, estimate=False)
-            responses[name] = simulate(structure, case.motions[name], settings, name=name)
-        return study_of(case, responses)
 
     def _case(self, k: int, step: float) -> Case:
         each = self.parameters[k]
         try:
-            case = self.question.case(self._changes(k, step))
+            case = self.adapt(self.question.case(self._changes(k, step)))
         except GbeamError as error:
             value, word = self.values[k], "less" if step < 0 else "more"
             problem = f"{each.path} = {value:.6g} {each.unit}".rstrip() + f" may not be a little {word}"
@@ -222,6 +252,23 @@ class Neighbourhood:
             if richer is None:
                 break
             self.case = replace(self.case, model=richer)
+
+
+def _possible(structure: Structure, response: Response) -> Response:
+    """The response; one that means nothing has diverged."""
+    moved = np.abs(response.displacement).max()
+    if np.isfinite(moved) and (structure.kind == "exact" or moved <= structure.length):
+        return response
+    return replace(response, outcome="diverged", message="the displacement exceeded the beam's length")
+
+
+def _runs(case: Case, steps: Mapping[str, float]) -> Study:
+    """The responses in some environments by steps that are given, without an estimate of their errors."""
+    structure, responses = case.assemble(), {}
+    for name, step in steps.items():
+        settings = replace(case.response, step=step, estimate=False)
+        responses[name] = simulate(structure, case.motions[name], settings, name=name)
+    return study_of(case, responses)
 
 
 def _motion(case: Case, name: str) -> Motion:

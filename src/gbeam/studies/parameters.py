@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from gbeam.errors import InputError
 from gbeam.scenario.schema.quantities import quantities
 from gbeam.scenario.schema.scenario import Scenario
+from gbeam.scenario.text.kinds import KINDS
 from gbeam.scenario.text.suggest import advise
 
 # Where a value belongs to the question, not to what is asked about.
@@ -33,20 +34,25 @@ class PhysicalValue:
         Its key, such as ``beam.material.youngs_modulus``.
     value : float
         SI.
-    unit : str
-        SI unit; empty for a plain number.
+    kind : str
+        Of quantity, a key of ``KINDS``.
     followers : tuple of str
         Positions at the tip, which move with the beam's length.
     """
 
     path: str
     value: float
-    unit: str
+    kind: str
     followers: tuple[str, ...] = ()
 
     def overrides(self, value: float) -> tuple[str, ...]:
         """Changes of the scenario that give it another value."""
         return tuple(f"{path}={float(value)!r}" for path in (self.path, *self.followers))
+
+    @property
+    def unit(self) -> str:
+        """SI unit; empty for a plain number."""
+        return KINDS[self.kind].unit
 
     @property
     def of_motion(self) -> str:
@@ -84,8 +90,8 @@ def physical_values(scenario: Scenario, names: Sequence[str] = ()) -> list[Physi
 
 
 def _made(path: str, every: dict[str, tuple[float, str]]) -> PhysicalValue:
-    value, unit = every[path]
-    return PhysicalValue(path, value, unit, tuple(_at_tip(every)) if path == LENGTH else ())
+    value, kind = every[path]
+    return PhysicalValue(path, value, kind, tuple(_at_tip(every)) if path == LENGTH else ())
 
 
 def _at_tip(every: dict[str, tuple[float, str]]) -> Iterable[str]:

@@ -92,8 +92,8 @@ def sensitivity(
     about = Neighbourhood(question, chosen, progress=progress)
     facts = _facts(about.answer)
     keys = tuple(figure(facts, name) for name in of)
-    motions, parts = needed(keys, about.case.tracks)
-    slopes = about.slopes(lambda answer: _values(_facts(answer), keys), motions, **parts)
+    motions, about.parts = needed(keys, about.case.tracks)
+    slopes = about.slopes(lambda _, answer: _values(_facts(answer), keys), motions)
     units = tuple(unit_at(facts, each) for each in keys)
     kinks = _kinks(slopes, [each.value for each in chosen], units)
     kinked = [

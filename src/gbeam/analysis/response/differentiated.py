@@ -8,7 +8,7 @@ second order in w: a peak needs no rule of its own, since to first order it does
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -36,15 +36,40 @@ _SAME_TIME = 1e-9  # of the duration
 _JUMP = 1e-6  # of the largest value: more than what a smooth motion changes by in the same time
 
 
+@dataclass(frozen=True)
+class Grid:
+    """The steps of a run, and which of them a response has.
+
+    Parameters
+    ----------
+    step : float
+        s.
+    stride : int
+        Every so many steps of the flight's times belong to the response.
+    """
+
+    step: float
+    stride: int
+
+    @staticmethod
+    def of(structure: Structure, motion: Motion, settings: ResponseSettings, done: Response) -> Grid:
+        """That of a run that is done."""
+        if settings.step is not None:
+            return Grid(done.step, 1)
+        prepared = motion.over(settings.start, settings.start + settings.duration)
+        return Grid(done.step, round(first_step(structure, prepared, settings) / done.step))
+
+
 class Differentiated:
-    """A run that is done, about which responses with other values of parameters are made.
+    """A run by given steps, about which responses with other values of parameters are made.
 
     Parameters
     ----------
     structure, motion, settings
         As for :func:`gbeam.simulate`; the integrator is not adaptive.
-    done : Response
-        Its answer, whose steps are taken again.
+    grid : Grid
+    name : str
+        Of the motion.
     loads, axes : bool
         Whether the responses have loads, and say what a machine's axes do: either takes as long as the rest.
     """
@@ -54,28 +79,29 @@ class Differentiated:
         structure: Structure,
         motion: Motion,
         settings: ResponseSettings,
-        done: Response,
+        grid: Grid,
+        name: str,
         *,
         loads: bool = True,
         axes: bool = True,
     ) -> None:
-        self.done, self.axes = done, axes
+        self.grid, self.name, self.axes = grid, name, axes
+        self._own_axes: AxesResult | None = None
         self.settings = replace(settings, estimate=False, loads=loads)
         start, duration = settings.start, settings.duration
         motion = motion.over(start, start + duration)
         self.coarse, self.scheme = first_step(structure, motion, settings), scheme_of(settings)
-        self.stride = 1 if settings.step is not None else round(self.coarse / done.step)
-        kept = self.stride * done.step
+        kept = grid.stride * grid.step
         before, after = steps_beyond(motion, settings, kept)
         self.begin = start - before * kept
         self.sampled = np.linspace(start, start + duration, 257)
         self.nominal = self._posed((structure, motion))
         self.jumps = self._jumps(self.nominal)
-        count = round(duration / done.step)
-        up, down = fitted(self.begin, kept, before), fitted(start + kept * (count // self.stride), kept, after)
+        count = round(duration / grid.step)
+        up, down = fitted(self.begin, kept, before), fitted(start + kept * (count // grid.stride), kept, after)
         felt = self._corners(self.nominal).felt_by(self.scheme)
-        self.parts = up, fitted(start, done.step, count, felt), down
-        # The run once more, with the ends of the parts of split steps.
+        self.parts = up, fitted(start, grid.step, count, felt), down
+        # With the ends of the parts of split steps, too.
         problem = self.nominal.problem
         q, qd = problem.q, problem.qd
         self.runs: list[Trajectory | None] = []
@@ -150,14 +176,18 @@ class Differentiated:
             for run, steps, by in zip(self.runs, self.parts, moves, strict=True)
         )
         return response_of(
-            posed.structure, posed.motion, self.settings, posed.problem, runs, self.done.name, self.done.step,
-            StepErrors(), self.stride, axes_of=self._axes,
+            posed.structure, posed.motion, self.settings, posed.problem, runs, self.name, self.grid.step,
+            StepErrors(), self.grid.stride, axes_of=self._axes,
         )  # fmt: skip
 
     def _axes(self, motion: Any, time: Floats) -> AxesResult | None:
         if not self.axes:
             return None
-        return self.done.axes if motion is self.nominal.motion else axes_result(motion, time)
+        if motion is not self.nominal.motion:
+            return axes_result(motion, time)
+        if self._own_axes is None:
+            self._own_axes = axes_result(motion, time)
+        return self._own_axes
 
     def _posed(self, variant: Variant) -> Posed:
         structure, motion = variant

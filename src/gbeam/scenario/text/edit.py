@@ -5,17 +5,19 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from gbeam.errors import InputError
 from gbeam.scenario.text.diagnostics import ScenarioError
-from gbeam.scenario.text.paths import Path, Place, path_text
+from gbeam.scenario.text.paths import Path, Place, parse_path, path_text
 from gbeam.scenario.text.source import Source, is_json, parse
+from gbeam.scenario.text.units import unit_of
 
 _OWN_LINE = re.compile(r"""\s*([\w"'-]+\s*\.\s*)*""")  # what stands before a key that has a line of its own
 
 
-def edited(source: Source, table: Path, changes: Mapping[str, str]) -> str:
+def edited(source: Source, table: Path, changes: Mapping[str, str | float]) -> str:
     """Return the text with some entries of one table set to other text.
 
     Parameters
@@ -24,7 +26,7 @@ def edited(source: Source, table: Path, changes: Mapping[str, str]) -> str:
         As it stands in the file; its overrides are left out.
     table : tuple
         Path of the table, such as ``("motion", "centrifuge")``.
-    changes : mapping of str to str
+    changes : mapping of str to (str or float)
         By key. One that the table lacks is added after the first of the others, or else after its first entry.
 
     Raises
@@ -59,6 +61,34 @@ def edited(source: Source, table: Path, changes: Mapping[str, str]) -> str:
         given = ", ".join(f"{path_text((*table, key))}={value}" for key, value in changes.items())
         raise InputError(source.name, "is written in a way that cannot be changed here", f"write it yourself: {given}")
     return changed
+
+
+def with_quantities(source: Source, changes: Mapping[str, tuple[float, str]]) -> str:
+    """Return the text with some quantities set to other values, each in the unit that it was written in.
+
+    Parameters
+    ----------
+    source : Source
+    changes : mapping of str to (float, str)
+        By path, ``beam.masses[0].mass``: the value in SI, and its kind, a key of ``KINDS``.
+
+    Raises
+    ------
+    InputError
+        As for :func:`edited`, and if the entry of a list is to be changed.
+    """
+    text, before = source.text, parse(source.name, source.text)
+    for path_words, (value, kind) in changes.items():
+        *table, key = parse_path(path_words) or ("",)
+        if not isinstance(key, str):
+            raise InputError(source.name, f"has {path_words} in a list", f"write it yourself: {value:.8g}")
+        plain = replace(source, text=text, data=before, overrides=())
+        old = plain.raw((*table, key))
+        unit, size = unit_of(old, kind) if isinstance(old, str) else ("", 1.0)
+        number = float(f"{value / size:.8g}")
+        written: str | float = f"{number!r} {unit}" if unit else number
+        text = edited(replace(source, text=text, overrides=()), tuple(table), {key: written})
+    return text
 
 
 def _added(line: str, anchor: Place, key: str, text: str, json: bool) -> tuple[int, int, int, str]:

@@ -1,0 +1,229 @@
+"""Calibration: the values of a scenario at which it is nearest to a measurement."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gbeam.errors import InputError
+from gbeam.results.fit import Fit, FittedColumn
+from gbeam.results.result import Floats
+from gbeam.scenario.load import load
+from gbeam.scenario.origin import provenance
+from gbeam.scenario.text.edit import with_quantities
+from gbeam.scenario.text.units import UnitError, argument
+from gbeam.studies.derivatives import Progress
+from gbeam.studies.least_squares import Fitted, Solution, search, tell_apart
+from gbeam.studies.measurement import Measurement, read_measurement
+from gbeam.studies.parameters import PhysicalValue, physical_values
+from gbeam.sweeps.evaluate import Question
+
+OPTION = "--free"
+_NEAR, _FAR = 0.1, 10.0  # times the scenario's value: bounds where none are given
+_HARDLY = 0.99  # correlation of two values
+_TIED = 0.7  # correlation of residuals with the next ones, which noise does not have
+_VISIBLE = 1e-5  # of the largest datum: residuals that are less are rounding
+
+
+def fit(
+    scenario: str | os.PathLike[str],
+    data: str | os.PathLike[str],
+    free: Sequence[str],
+    *,
+    bounds: Mapping[str, tuple[float | str, float | str]] | None = None,
+    motion: str | None = None,
+    at: float | None = None,
+    overrides: Sequence[str] = (),
+    progress: Progress | None = None,
+) -> Fit:
+    """Find values of a scenario by least squares from measured histories, or from frequencies and damping.
+
+    The columns of the data have unknown noise each, which is found from their residuals and weighs them. Errors hold if
+    the residuals are noise without correlation; where they are not, a warning says so.
+
+    Parameters
+    ----------
+    scenario : path
+        Of the scenario file; its values are where the search starts.
+    data : path
+        A text file with a header. Columns ``time`` and any of ``tip.z``, ``root_moment.y``, ``root_force.z``,
+        ``hub.angle``, ``hub.rate``, ``strain.z@10 mm``, with a unit in brackets or SI, after the motion's name where
+        the scenario has several; or columns ``mode``, ``frequency`` and ``damping_ratio``.
+    free : sequence of str
+        Paths of the values to find, such as ``beam.material.youngs_modulus``.
+    bounds : mapping of str to a pair, optional
+        By path, in SI or as text with a unit; a tenth to ten times the scenario's value where not given.
+    motion : str, optional
+        Of columns that name none, and of modes.
+    at : float, optional
+        Time at which that motion is frozen for modes, s; the start of the response by default.
+    overrides : sequence of str
+        Changes of the scenario, such as ``beam.length=250 mm``.
+    progress : callable, optional
+        Called with what is being done and the fraction of it done.
+
+    Returns
+    -------
+    Fit
+
+    Raises
+    ------
+    InputError, ScenarioError
+        If the scenario, the data, a value or a bound is wrong, or there are more values than data.
+    ComputationError
+        If the data cannot tell two values apart, or do not depend on one; or a run is not done.
+    """
+    base = load(scenario, overrides)
+    assert base.source is not None  # it was read from a file
+    if isinstance(free, str) or not free:
+        raise InputError(OPTION, "is missing", 'name values: --free "beam.material.youngs_modulus"')
+    parameters = _named(physical_values, base, free)
+    question = Question(base.source, "run", motion, at)
+    case = question.case(())
+    measurement = read_measurement(data, case, motion)
+    if len(measurement.values) <= len(parameters):
+        problem = f"names {len(parameters)} values for {len(measurement.values)} data"
+        raise InputError(OPTION, problem, "measure more, or free fewer")
+    limits = np.array([_bounds(each, bounds or {}) for each in parameters])
+    model = Fitted(
+        replace(question, verb="modes") if measurement.modal else question, parameters, measurement, progress
+    )
+    found = search(model, np.array([each.value for each in parameters]), limits)
+    return replace(_described(model, parameters, limits, found), title=base.title, provenance=provenance(base))
+
+
+def _named(find: Any, base: Any, names: Sequence[str]) -> list[PhysicalValue]:
+    try:
+        found: list[PhysicalValue] = find(base, names)
+    except InputError as error:
+        raise InputError(OPTION, error.problem, error.fix) from None
+    return found
+
+
+def _bounds(each: PhysicalValue, given: Mapping[str, tuple[float | str, float | str]]) -> tuple[float, float]:
+    if each.path in given:
+        low, high = (_quantity(each, end) for end in given[each.path])
+        if not low < high:
+            raise InputError("--bounds", f"of {each.path} go from {low:g} to {high:g}", "give the smaller one first")
+        if not low <= each.value <= high:
+            fix = f"begin between them: --set {each.path}={(low + high) / 2:g}"
+            raise InputError("--bounds", f"of {each.path} leave out the scenario's value, {each.value:g}", fix)
+        return low, high
+    if each.value == 0:
+        fix = f"give a value to begin with (--set {each.path}=...), or bounds"
+        raise InputError(OPTION, f"names {each.path}, which is zero", fix)
+    ends = sorted((_NEAR * each.value, _FAR * each.value))
+    return ends[0], ends[1]
+
+
+def _quantity(each: PhysicalValue, text: float | str) -> float:
+    try:
+        return argument(text, each.kind) if isinstance(text, str) else float(text)
+    except UnitError as error:
+        raise InputError("--bounds", f"of {each.path}: {error.problem}", error.hint) from None
+
+
+def fitted_text(fit: Fit, scenario: str | os.PathLike[str], folder: str | os.PathLike[str]) -> str:
+    """The scenario's text with the values found, each in its own unit; all else stays, comments too.
+
+    Parameters
+    ----------
+    fit : Fit
+    scenario : path
+        That was fitted, without overrides.
+    folder : path
+        In which the text is to be saved.
+
+    Raises
+    ------
+    InputError
+        If the text is written in a way that cannot be changed, or names records that lie in another folder.
+    """
+    base = load(scenario)
+    assert base.source is not None  # it was read from a file
+    recorded = any(getattr(motion, "record", None) is not None for motion in base.motion.values())
+    if recorded and Path(folder).resolve() != base.source.folder.resolve():
+        fix = f"write it beside {os.fspath(scenario)}"
+        raise InputError(os.fspath(folder), "is not the folder that the scenario's records are named from", fix)
+    found = zip(physical_values(base, fit.parameters), fit.values, strict=True)
+    changes = {path: (float(value), each.kind) for each, value in found for path in (each.path, *each.followers)}
+    return with_quantities(base.source, changes)
+
+
+def _described(model: Fitted, parameters: Sequence[PhysicalValue], limits: Floats, found: Solution) -> Fit:
+    from scipy.special import stdtrit
+
+    measurement = model.measurement
+    fitted, measured = model(found.values), measurement.values
+    count, size = len(measured), len(parameters)
+    reach = 1e-6 * (limits[:, 1] - limits[:, 0])
+    at_bound = (found.values - limits[:, 0] < reach) | (limits[:, 1] - found.values < reach)
+    inside = np.flatnonzero(~at_bound)
+    variance = float(np.sum(((fitted - measured) * found.weights) ** 2)) / (count - size)
+    covariance, condition = np.full((size, size), np.nan), np.nan
+    if inside.size:
+        jacobian = found.jacobian[:, inside]
+        condition = tell_apart(jacobian * found.values[inside], [parameters[int(k)] for k in inside])
+        lengths = np.linalg.norm(jacobian, axis=0)
+        unit = jacobian / lengths
+        covariance[np.ix_(inside, inside)] = variance * np.linalg.inv(unit.T @ unit) / np.outer(lengths, lengths)
+    errors = np.sqrt(np.diag(covariance))
+    half = float(stdtrit(count - size, 0.975)) * errors
+    correlation = covariance / np.outer(errors, errors)
+    columns = _columns(measurement, fitted, found.before, size)
+    return Fit(
+        title="",
+        data=measurement.file,
+        parameters=tuple(each.path for each in parameters),
+        units=tuple(each.unit for each in parameters),
+        before=np.array([each.value for each in parameters]),
+        values=found.values,
+        errors=errors,
+        intervals=np.stack([found.values - half, found.values + half], axis=1),
+        covariance=covariance,
+        correlation=correlation,
+        bounds=limits,
+        at_bound=at_bound,
+        columns=columns,
+        at=measurement.at,
+        modal=measurement.modal,
+        evaluations=model.evaluations,
+        condition=condition,
+        warnings=tuple(_doubts(parameters, at_bound, correlation, columns)),
+    )
+
+
+def _columns(measurement: Measurement, fitted: Floats, before: Floats, size: int) -> tuple[FittedColumn, ...]:
+    ends = np.cumsum([len(each.values) for each in measurement.columns])[:-1]
+    share = 1 - size / len(fitted)
+    made = []
+    for each, now, then in zip(measurement.columns, np.split(fitted, ends), np.split(before, ends), strict=True):
+        r = each.values - now
+        power = float(np.sum(r**2))
+        tied = float(np.sum(r[1:] * r[:-1])) / power if power > 0 and not measurement.modal else np.nan
+        noise = float(np.sqrt(power / (len(r) * share)))
+        made.append(FittedColumn(each.name, each.unit, each.values, now, then, noise, tied))
+    return tuple(made)
+
+
+def _doubts(
+    parameters: Sequence[PhysicalValue], at_bound: Any, correlation: Floats, columns: Sequence[FittedColumn]
+) -> Iterator[str]:
+    names = [each.path for each in parameters]
+    for k, name in enumerate(names):
+        if at_bound[k]:
+            yield f"{name} lies on its bound: the least squares are beyond, and it has no error"
+        for j in range(k):
+            if abs(both := float(correlation[k, j])) > _HARDLY:
+                yield f"the data hardly tell {names[j]} and {name} apart: their errors have a correlation of {both:.4f}"
+    for column in columns:
+        if column.correlation > _TIED and column.noise > _VISIBLE * np.abs(column.measured).max():
+            yield (
+                f"the residuals of {column.name} are no noise: each is like the next, with a correlation of "
+                f"{column.correlation:.2f}. The scenario cannot follow the data, and the errors are too small"
+            )

@@ -1,0 +1,300 @@
+"""Measured histories or modes, and the same quantities of a case."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from gbeam.analysis.study.case import Case
+from gbeam.errors import InputError
+from gbeam.motion.bases.records.table import Table
+from gbeam.motion.bases.records.text import read_text
+from gbeam.results.response import Response
+from gbeam.results.result import Floats
+from gbeam.results.study import Study
+from gbeam.scenario.text.kinds import KINDS
+from gbeam.scenario.text.suggest import advise
+from gbeam.scenario.text.units import UnitError, argument
+
+OPTION = "--data"
+_TIME = ("time", "time_s", "t")
+_MODE = "mode"
+# Kind of each quantity of a history, but for strain.
+_KINDS = {
+    **{f"tip.{axis}": "length" for axis in "xyz"},
+    **{f"root_force.{axis}": "force" for axis in "xyz"},
+    **{f"root_moment.{axis}": "torque" for axis in "xyz"},
+    "hub.angle": "angle",
+    "hub.rate": "angular rate",
+}
+_STRAIN = re.compile(r"strain\.(-?)([yz])@(.+)")
+_MODAL = {"frequency": "frequency", "damping_ratio": "ratio"}
+_USUAL = {"history": 1e-2, "frequency": 1e-3, "damping_ratio": 0.1}  # noise, of the largest or of the value
+_LEAST = 1e-6  # of that: the noise of data that were computed
+_MICROSTRAIN = {"µm/m": 1e-6, "um/m": 1e-6, "microstrain": 1e-6}
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """A strain gauge along the beam, on the extreme fibre towards ±y or ±z.
+
+    Parameters
+    ----------
+    at : float
+        From the root, m.
+    axis : str
+        y or z.
+    sign : float
+    """
+
+    at: float
+    axis: str
+    sign: float
+
+
+@dataclass(frozen=True)
+class Measured:
+    """One column of the data.
+
+    Parameters
+    ----------
+    name : str
+        As in the file, without its unit.
+    motion : str
+        Whose response it is of.
+    quantity : str
+        Such as ``tip.z``.
+    values : (t,)
+        SI.
+    unit : str
+    gauge : Gauge or None
+    """
+
+    name: str
+    motion: str
+    quantity: str
+    values: Floats
+    unit: str
+    gauge: Gauge | None = None
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """What was measured.
+
+    Parameters
+    ----------
+    file : str
+    at : (t,)
+        Times, s, or numbers of the modes, from 1.
+    modal : bool
+    columns : tuple of Measured
+    """
+
+    file: str
+    at: Floats
+    modal: bool
+    columns: tuple[Measured, ...]
+
+    @property
+    def values(self) -> Floats:
+        """All columns, one after the other, (m,)."""
+        return np.concatenate([each.values for each in self.columns])
+
+    @property
+    def motions(self) -> tuple[str, ...]:
+        """Whose responses are measured."""
+        return tuple(dict.fromkeys(each.motion for each in self.columns))
+
+    @property
+    def parts(self) -> dict[str, bool]:
+        """Which parts of a response the columns are of."""
+        return {"loads": any(not each.quantity.startswith(("tip", "hub")) for each in self.columns), "axes": False}
+
+    def weights(self, residuals: Floats | None, freed: int) -> Floats:
+        """One over the noise of every datum, (m,), that residuals (m,) show; before there are any, a usual one.
+
+        A history's noise is the same at all times, a frequency's is a share of it.
+        """
+        made, first = [], 0
+        for each in self.columns:
+            part = slice(first, first := first + len(each.values))
+            size = np.abs(each.values) if self.modal else np.full(len(each.values), np.abs(each.values).max())
+            size = np.where(size > 0, size, 1.0)
+            usual = _USUAL[each.quantity] if self.modal else _USUAL["history"]
+            # Too few data say nothing of their column's noise.
+            if residuals is not None and len(size) > 2 * freed + 2:
+                shares = residuals[part] / size
+                left = 1 - freed / len(self.values)
+                usual = max(float(np.sqrt(np.mean(shares**2) / left)), _LEAST * usual)
+            made.append(1 / (usual * size))
+        return np.concatenate(made)
+
+    def instrumented(self, case: Case) -> Case:
+        """The case with the gauges among its stations."""
+        gauges = {each.gauge.at for each in self.columns if each.gauge is not None and each.gauge.at > 0}
+        return replace(case, stations=tuple(sorted({*case.stations, *gauges}))) if gauges else case
+
+    def read(self, case: Case, answer: Any) -> Floats:
+        """The same quantities of a case, (m,)."""
+        if self.modal:
+            return np.array([_modal(answer, each.quantity, int(k)) for each in self.columns for k in self.at])
+        assert isinstance(answer, Study)
+        return np.concatenate([self._history(case, answer, each) for each in self.columns])
+
+    def _history(self, case: Case, answer: Study, column: Measured) -> Floats:
+        from scipy.interpolate import CubicSpline
+
+        response = answer.responses[column.motion]
+        values = _values(case, response, column)
+        return np.asarray(CubicSpline(response.time, values)(self.at))
+
+
+def read_measurement(path: str | os.PathLike[str], case: Case, motion: str | None = None) -> Measurement:
+    """Read measured histories (a column ``time``) or modes (a column ``mode``) from a text file.
+
+    Parameters
+    ----------
+    path : path
+        Columns ``time`` and any of ``tip.z``, ``root_moment.y``, ``root_force.z``, ``hub.angle``, ``hub.rate`` and
+        ``strain.z@10 mm`` (on the face towards +z; ``strain.-z@...`` towards −z), with a unit in brackets, ``tip.z
+        [mm]``, or SI, where several motions could be meant after its name, ``flight.tip.z``; or ``mode``, ``frequency``
+        and ``damping_ratio``.
+    case : Case
+        Whose motions they are.
+    motion : str, optional
+        Of columns that do not name one.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read or a column means nothing.
+    """
+    try:
+        return _read(os.fspath(path), case, motion)
+    except InputError as error:
+        where = OPTION if error.where.startswith("record") else error.where
+        raise InputError(where, error.problem, error.fix) from None
+
+
+def _read(path: str, case: Case, motion: str | None) -> Measurement:
+    table = read_text(path)
+    names = {(column.aliases or (column.name,))[0]: column.unit for column in table.columns}
+    clock = next((name for name in names if name.lower() in (*_TIME, _MODE)), None)
+    if clock is None:
+        raise InputError(OPTION, f"{path} has no column time or mode", f"its columns are {', '.join(names)}")
+    modal = clock.lower() == _MODE
+    at = table.numbers("file", clock) * _factor(names[clock], "time" if not modal else "ratio", clock)
+    others = [name for name in names if name != clock]
+    if not others:
+        raise InputError(OPTION, f"{path} has nothing but {clock}", f"add columns such as {_examples(modal)}")
+    _check_clock(at, path, modal, case)
+    columns = tuple(_column(table, name, names[name], modal, case, motion) for name in others)
+    return Measurement(path, at, modal, columns)
+
+
+def _check_clock(at: Floats, path: str, modal: bool, case: Case) -> None:
+    if modal:
+        if (at < 1).any() or (at % 1 != 0).any() or len(set(at)) < len(at):
+            raise InputError(OPTION, f"{path} has modes that are no numbers 1, 2, …", "number each mode once")
+        return
+    start, end = case.response.start, case.response.start + case.response.duration
+    if len(at) < 2 or (np.diff(at) <= 0).any():
+        raise InputError(OPTION, f"{path} has times that do not increase", "sort its rows")
+    slack = 1e-9 * (end - start)
+    if at[0] < start - slack or at[-1] > end + slack:
+        problem = f"{path} has times from {at[0]:g} to {at[-1]:g} s, and the response goes from {start:g} to {end:g} s"
+        raise InputError(OPTION, problem, "give response.duration the data's, or cut the data")
+
+
+def _column(table: Table, name: str, unit: str, modal: bool, case: Case, motion: str | None) -> Measured:
+    values = table.numbers("file", name)
+    if modal:
+        if name not in _MODAL:
+            raise InputError(OPTION, f"has the column {name!r}", advise(name, _MODAL))
+        return Measured(name, motion or "", name, values * _factor(unit, _MODAL[name], name), _si(_MODAL[name]))
+    first, _, rest = name.partition(".")
+    of, quantity = (first, rest) if first in case.motions else (motion or _only_motion(case, name), name)
+    if of not in case.motions:
+        raise InputError("--motion", f"is {of!r}", f"the scenario has {', '.join(case.motions)}")
+    strain = _STRAIN.fullmatch(quantity)
+    if strain is not None:
+        gauge = Gauge(_position(strain[3], case), strain[2], -1.0 if strain[1] else 1.0)
+        factor = _MICROSTRAIN.get(unit) or _factor(unit, "ratio", name)
+        return Measured(name, of, "strain", values * factor, "", gauge)
+    if quantity not in _KINDS:
+        raise InputError(OPTION, f"has the column {name!r}", advise(quantity, [*_KINDS, "strain.z@10 mm"]))
+    if quantity.startswith("hub.") and case.motions[of].kind != "hub":
+        raise InputError(OPTION, f"has the column {name!r}, and {of} is no hub", "leave it out")
+    kind = _KINDS[quantity]
+    return Measured(name, of, quantity, values * _factor(unit, kind, name), _si(kind))
+
+
+def _si(kind: str) -> str:
+    return "Hz" if kind == "frequency" else KINDS[kind].unit
+
+
+def _examples(modal: bool) -> str:
+    return "frequency" if modal else "tip.z or root_moment.y"
+
+
+def _factor(unit: str, kind: str, name: str) -> float:
+    """SI value of one unit."""
+    try:
+        return argument(f"1 {unit}" if unit else "1", kind)
+    except UnitError as error:
+        raise InputError(OPTION, f"has the column {name!r} in {unit!r}: {error.problem}", error.hint) from None
+
+
+def _position(text: str, case: Case) -> float:
+    try:
+        at = argument(text.strip(), "length")
+    except UnitError as error:
+        raise InputError(OPTION, f"has a gauge at {text!r}: {error.problem}", error.hint) from None
+    if not 0 <= at <= case.beam.length:
+        raise InputError(OPTION, f"has a gauge at {at:g} m, off the beam", f"give 0 to {case.beam.length:g} m")
+    return at
+
+
+def _only_motion(case: Case, name: str) -> str:
+    if len(case.motions) > 1:
+        choice = " or ".join(f"{each}.{name}" for each in case.motions)
+        raise InputError(OPTION, f"has the column {name!r}, and the scenario several motions", f"name it {choice}")
+    return next(iter(case.motions))
+
+
+def _modal(facts: Mapping[str, Any], quantity: str, mode: int) -> float:
+    modes: Sequence[Mapping[str, float]] = facts["modes"]
+    if mode > len(modes):
+        raise InputError(OPTION, f"has mode {mode}, and the model {len(modes)}", "raise model.modes, or leave it out")
+    return float(modes[mode - 1][quantity])
+
+
+def _values(case: Case, response: Response, column: Measured) -> Floats:
+    kind, _, axis = column.quantity.partition(".")
+    if kind == "tip":
+        return response.tip[:, "xyz".index(axis)]
+    if kind == "hub":
+        assert response.hub is not None
+        return np.asarray(getattr(response.hub, axis))
+    assert response.loads is not None
+    if column.gauge is None:
+        return np.asarray(getattr(response.loads, kind)[:, "xyz".index(axis)])
+    return _strain(case, response, column.gauge)
+
+
+def _strain(case: Case, response: Response, gauge: Gauge) -> Floats:
+    """Normal strain at an extreme fibre, from what the section carries."""
+    loads = response.loads
+    assert loads is not None
+    k = int(np.argmin(np.abs(loads.stations - gauge.at)))
+    section, modulus = case.beam.section.at(gauge.at), case.beam.material.youngs_modulus
+    force, (_, about_y, about_z) = loads.section_force[:, k, 0], loads.section_moment[:, k].T
+    bending = about_y / section.inertia_y if gauge.axis == "z" else -about_z / section.inertia_z
+    fibre = getattr(section, f"extreme_fibre_{gauge.axis}")
+    return np.asarray((force / section.area + gauge.sign * fibre * bending) / modulus)

@@ -1,0 +1,176 @@
+"""Values found from synthetic measurements, how sure they are, and what the data cannot tell."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+import gbeam as gb
+
+from ..scenarios import FLIGHT, SPECIMEN, model, response
+
+Call = Callable[..., Any]
+E, DAMPING, DENSITY = "beam.material.youngs_modulus", "beam.damping_ratio", "beam.material.density"
+INITIAL = "response.initial.tip_displacement.z"
+TRUE = {E: 66e9, DAMPING: 0.013}
+# A specimen that is released: 8 periods of its first mode.
+RELEASED = (
+    'title = "released"\n'
+    + SPECIMEN.replace("damping_ratio", "# as it came\ndamping_ratio")
+    + model("FOAM", 0, 0, 2)
+    + FLIGHT.replace("6 g", "0 g")
+    + response("0.25 s", integrator="gauss", step="1 ms")
+    + 'initial = { tip_displacement = { z = "3 mm" } }\n'
+)
+TIME = np.arange(0, 0.2501, 0.0025)
+
+
+@pytest.fixture
+def released(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The scenario, in the current folder."""
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "released.toml"
+    file.write_text(RELEASED, encoding="utf-8")
+    return file
+
+
+def true_case(file: Path, **more: float) -> gb.Case:
+    return gb.read_scenario(file, [f"{path}={value!r}" for path, value in (TRUE | more).items()])
+
+
+def written(name: str, heads: str, *columns: Any) -> str:
+    np.savetxt(name, np.column_stack(columns), delimiter=",", header=heads, comments="")
+    return name
+
+
+def histories(file: Path) -> tuple[Any, Any, Any]:
+    """Tip, root moment, and strain at 10 mm on the face towards +z, of the true values."""
+    case = true_case(file)
+    run = gb.simulate(case.assemble([0.01, 0.3]), case.motions["flight"], case.response)
+    assert run.loads is not None
+    inertia, at = 0.02 * 0.004**3 / 12, list(run.loads.stations).index(0.01)
+    strain = run.loads.section_moment[:, at, 1] * 0.002 / (TRUE[E] * inertia)
+    every = run.tip[:, 2], run.loads.root_moment[:, 1], strain
+    tip, moment, strain = (CubicSpline(run.time, each)(TIME) for each in every)
+    return tip, moment, strain
+
+
+def test_exact_data_of_three_kinds_give_the_true_values(released: Path) -> None:
+    tip, moment, strain = histories(released)
+    data = written(
+        "data.csv",
+        "time [ms],tip.z [mm],root_moment.y,strain.-z@10 mm [µm/m]",
+        1e3 * TIME,
+        1e3 * tip,
+        moment,
+        -1e6 * strain,
+    )
+    found = gb.fit(released, data, [E, DAMPING])
+    assert found.values == pytest.approx(list(TRUE.values()), rel=1e-6)
+    assert (found.errors < 1e-5 * found.values).all() and found.condition < 10 and not found.warnings
+    assert [each.unit for each in found.columns] == ["m", "N m", ""]
+    assert found.before.tolist() == [70e9, 0.01]
+    ds = found.to_xarray()
+    assert ds["fitted"].shape == (3, len(TIME)) and float(ds["value"].sel(parameter=E)) == found.values[0]
+
+
+@pytest.mark.slow
+def test_true_values_lie_within_two_sigma_in_95_of_100_trials(released: Path) -> None:
+    tip, _, _ = histories(released)
+    random, inside = np.random.default_rng(2026), np.zeros(2)
+    for _ in range(100):
+        noisy = tip + 0.02 * np.abs(tip).max() * random.standard_normal(len(tip))
+        found = gb.fit(released, written("data.csv", "time,tip.z", TIME, noisy), [E, DAMPING])
+        assert np.abs(found.values / list(TRUE.values()) - 1).max() < 0.2
+        inside += np.abs(found.values - list(TRUE.values())) <= 2 * found.errors
+    # Of 100 draws that are inside with a probability of 95.4 %, 90 or fewer are so once in 25 times.
+    assert (inside >= 90).all(), inside
+    print(inside)
+
+
+def test_frequencies_and_damping_give_the_values_and_their_errors(released: Path) -> None:
+    modes = gb.modes(true_case(released).assemble(), gb.read_scenario(released).motions["flight"])
+    data = written(
+        "modes.csv", "mode,frequency [Hz],damping_ratio", [1, 2], 1.001 * modes.frequency, modes.damping_ratio
+    )
+    found = gb.fit(released, data, [E, DAMPING])
+    # Both frequencies a thousandth too high: a stiffness that is two thousandths.
+    assert found.values == pytest.approx([1.002001 * TRUE[E], TRUE[DAMPING]], rel=1e-6)
+    assert found.modal and found.at.tolist() == [1, 2]
+
+
+def test_what_the_data_cannot_tell_is_named(released: Path) -> None:
+    data = written("modes.csv", "mode,frequency", [1, 2], [34.0, 213.0])
+    with pytest.raises(gb.ComputationError, match=f"cannot tell ({E} and {DENSITY}|{DENSITY} and {E}) apart") as raised:
+        gb.fit(
+            released,
+            written("three.csv", "mode,frequency,damping_ratio", [1, 2], [34.0, 213.0], [0.01, 0.01]),
+            [E, DENSITY],
+        )
+    assert raised.value.outcome == "not identifiable"
+    with pytest.raises(gb.ComputationError, match=f"do not depend on {INITIAL}"):
+        gb.fit(released, data, [INITIAL], motion="flight")
+
+
+def test_residuals_that_are_no_noise_are_warned_of(released: Path) -> None:
+    tip, _, _ = histories(released)
+    found = gb.fit(released, written("data.csv", "time,tip.z", TIME, tip + 1e-4 * np.sin(20 * TIME)), [E, DAMPING])
+    assert "the residuals of tip.z are no noise" in found.warnings[0]
+
+
+def test_a_value_on_its_bound_has_no_error(released: Path) -> None:
+    tip, _, _ = histories(released)
+    data = written("data.csv", "time,tip.z", TIME, tip)
+    found = gb.fit(released, data, [E, DAMPING], bounds={DAMPING: ("0.5 %", "1.2 %")})
+    assert found.at_bound.tolist() == [False, True] and np.isnan(found.errors[1])
+    assert found.values[1] == pytest.approx(0.012) and "lies on its bound" in found.warnings[0]
+
+
+@pytest.mark.parametrize(
+    ("heads", "free", "words"),
+    [
+        ("time,tip.w", [E], "tip.w.*did you mean 'tip.x'|tip.w.*choose one of|tip.w.*did you mean"),
+        ("seconds,tip.z", [E], "has no column time or mode"),
+        ("time,tip.z [kg]", [E], "in 'kg'"),
+        ("time,hub.angle", [E], "flight is no hub"),
+        ("time,strain.z@400 mm", [E], "off the beam"),
+        ("time [min],tip.z", [E], "the response goes from 0 to 0.25 s"),
+        ("mode,frequency", [E, DAMPING, DENSITY, "beam.length"], "no numbers 1, 2"),
+        ("time,tip.z", ["beam.lenght"], "--free 'beam.lenght'"),
+        ("time,tip.z", ["beam.root.rotation_y"], "is no physical value that the scenario gives"),
+        ("time,tip.z", ["response.initial.tip_displacement.y"], "is no physical value"),
+    ],
+)
+def test_what_is_wrong_with_the_data_is_said(released: Path, heads: str, free: list[str], words: str) -> None:
+    data = written("data.csv", heads, [0.0, 0.1, 0.2], [1.0, 2.0, 3.0])
+    with pytest.raises(gb.InputError, match=words):
+        gb.fit(released, data, free)
+
+
+def test_bounds_that_leave_out_the_start_are_refused(released: Path) -> None:
+    data = written("data.csv", "time,tip.z", [0.0, 0.1, 0.2], [1.0, 2.0, 3.0])
+    with pytest.raises(gb.InputError, match="leave out the scenario's value"):
+        gb.fit(released, data, [E], bounds={E: ("10 GPa", "20 GPa")})
+    with pytest.raises(gb.InputError, match=r"2 values for 1|names 3 values for 3"):
+        gb.fit(released, data, [E, DAMPING, DENSITY])
+
+
+def test_the_command_writes_a_scenario_with_the_values(released: Path, gbeam: Call) -> None:
+    tip, _, _ = histories(released)
+    data = written("data.csv", "time,tip.z", TIME, tip)
+    words = ("fit", released, "--data", data, "--free", f"{E},{DAMPING}")
+    done = gbeam(*words, "--write", "fitted.toml", "--out", "found", "--json")
+    assert done.status == 0
+    facts = json.loads(done.out)
+    assert facts["parameters"][E]["value"] == pytest.approx(TRUE[E], rel=1e-6)
+    text = Path("fitted.toml").read_text(encoding="utf-8")
+    assert 'youngs_modulus = "66.0' in text and "# as it came\ndamping_ratio = 0.013" in text
+    assert gb.read_scenario("fitted.toml").beam.material.youngs_modulus == pytest.approx(TRUE[E], rel=1e-6)
+    assert sorted(path.name for path in Path("found").iterdir()) == ["fit.nc", "fit.png", "fit.svg"]
+    assert gbeam(*words, "--write", "x.toml", "--set", "beam.length=0.2").status == 2
