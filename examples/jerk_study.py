@@ -171,8 +171,11 @@ def jerk_study(
 
     def vibration(jerk: float, arm: float) -> float:
         if law == "from-rest":
-            return _from_rest(structure, jerk, arm, at, frequency)
-        return _flat(structure, jerk, arm, at, level, width, frequency)
+            return from_rest(structure, jerk, arm, at)
+        corner = 0.5 * level / jerk
+        flight = Flight(z=tabulated([0.0, corner], [0.5 * level, level]))
+        motion = Centrifuge(flight, arm=arm, control_point=at, inverse="flat", smoothing=width, start="idle")
+        return after_corner(structure, motion, corner, width)
 
     simulated = np.vectorize(vibration, otypes=[float])(j, r)
     predicted = leading * np.abs(1 + np.sum(terms, axis=0))
@@ -202,7 +205,9 @@ def _phasor(t: Floats, z: Floats, frequency: float, trend: tuple[float, ...]) ->
     return complex(parts[0], -parts[1])
 
 
-def _from_rest(structure: Structure, jerk: float, arm: float, at: float, frequency: float) -> float:
+def from_rest(structure: Structure, jerk: float, arm: float, at: float) -> float:
+    """Amplitude at the tip, m, of the vibration that a quasi-static start from rest leaves; SI."""
+    frequency = first_mode(structure, at)[0]
     period = 2 * np.pi / frequency
     end = (2 + _PERIODS) * period
     # The square root begins vertically: knots graded towards zero, rounded over a thirtieth of a period.
@@ -215,15 +220,16 @@ def _from_rest(structure: Structure, jerk: float, arm: float, at: float, frequen
     return abs(_phasor(t[late], z[late], frequency, (0, 1, -0.5, -2.5)))
 
 
-def _flat(
-    structure: Structure, jerk: float, arm: float, at: float, level: float, width: float, frequency: float
-) -> float:
+def after_corner(structure: Structure, motion: Centrifuge, corner: float, width: float) -> float:
+    """Amplitude at the tip, m, of the vibration that a corner of the load leaves, rounded by a kernel of that width, s.
+
+    The end of a ramp, at the time `corner`, s; the ramp lasts six periods and two widths before.
+    """
+    frequency = first_mode(structure, float(motion.control_point))[0]
     period = 2 * np.pi / frequency
-    corner, watched = 0.5 * level / jerk, _PERIODS * period
+    watched = _PERIODS * period
     first, last = corner - width / 2, corner + width / 2
     start, end = first - watched, last + watched
-    flight = Flight(z=tabulated([0.0, corner], [0.5 * level, level]))
-    motion = Centrifuge(flight, arm=arm, control_point=at, inverse="flat", smoothing=width, start="idle")
     t, z = _run(structure, motion, start - width, end - start + width, period / 50)
     # The run starts with a corner of its own, from a load that stands still to the ramp: its vibration is left out.
     before, after = (_phasor(t[part], z[part], frequency, (0, 1, 2)) for part in ((t > start) & (t < first), t > last))

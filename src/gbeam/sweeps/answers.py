@@ -31,10 +31,21 @@ def study_facts(answer: Study) -> Facts:
         each.centrifuge: {**found, "verdict": {**each.figures, **_accepted(found.pop("accepted"))}}
         for each, found in zip(answer.comparisons, facts["comparisons"], strict=True)
     }
+    facts["motions"] = {name: _limits_by_name(each) for name, each in facts["motions"].items()}
     facts["study"] = answer  # for histories
     unfinished = answer.unfinished
     facts["message"] = "; ".join(f"{name}: {failure.message}" for name, failure in unfinished.items())
     return facts
+
+
+def _limits_by_name(motion: Facts) -> Facts:
+    """The facts of a motion with a machine's limits by axis and quantity, as scenarios name them."""
+    if "limits" not in motion:
+        return motion
+    axes: dict[str, dict[str, Facts]] = {}
+    for each in motion["limits"]:
+        axes.setdefault(each["axis"].replace(" ", ""), {})[each["quantity"]] = each
+    return {**motion, "limits": axes}
 
 
 def _accepted(accepted: bool | None) -> Facts:
@@ -76,7 +87,8 @@ def _plan(case: Case, motion: str | None, at: float | None) -> Facts:
     if not machines:
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
     plans = [plan(name, _prepared(case, name), case.tracks[name]) for name in machines]  # type: ignore[arg-type]
-    return report.to_json(case.title, plans, [])
+    facts = report.to_json(case.title, plans, [])
+    return {**facts, "motions": {name: _limits_by_name(each) for name, each in facts["motions"].items()}}
 
 
 def _place(case: Case, motion: str | None, at: float | None) -> Facts:

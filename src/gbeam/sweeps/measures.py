@@ -100,7 +100,8 @@ def unit_at(facts: Facts, keys: Keys) -> str:
             unit = str(node.get("unit", unit))
         node = node[key]
     if isinstance(node, Mapping) and "unit" in node:
-        return "s" if str(keys[-1]).startswith("time") else "" if keys[-1] == "ratio" else str(node["unit"])
+        plain = keys[-1] in ("ratio", "share", "exceeded")
+        return "s" if str(keys[-1]).startswith("time") else "" if plain else str(node["unit"])
     path = path_text(keys)
     return next((unit for pattern, unit in _UNITS if pattern.search(path)), unit)
 
