@@ -118,6 +118,30 @@ def test_histories_stay_in_their_bands(unsure: Path) -> None:
     assert found.histories["flight.tip.z"][3, -1] == pytest.approx(response.tip[-1, 2], rel=1e-9)
 
 
+def test_a_case_that_is_not_done_is_left_out_of_the_estimates(unsure: Path, gbeam: Call) -> None:
+    # Beyond the tip a control point is refused.
+    over = "motion.spin.control_point=uniform(0 mm, 400 mm)"
+    command = ("--verb", "static", "--over", over, "--measure", "flight.tip.z", "--samples", "16", "--out", "there")
+    answer = gbeam("sweep", unsure, *command, "--json")
+    known = answer.json["statistics"]["flight.tip.z"]
+    refused = answer.json["counts"]["refused"]
+    assert answer.status == 1 and refused > 0 and known["draws"] == 16 - refused
+    done = [each is not None for each in answer.json["measures"]["flight.tip.z"]["values"]]
+    assert done == [each == "done" for each in answer.json["outcomes"]]
+    assert (
+        f"{refused} of 16 cases are not done: the estimates are of the others"
+        in gbeam("sweep", unsure, *command, "--resume").out
+    )
+
+
+def test_a_sweep_of_distributions_is_computed_again_from_its_json(unsure: Path, gbeam: Call) -> None:
+    command = ("--verb", "static", "--measure", "flight.tip.z", "--samples", "4", "--sampler", "latin", "--seed", "5")
+    assert gbeam("sweep", unsure, *command, "--out", "there").status == 0
+    unsure.unlink()
+    again = gbeam("rerun", "there/sweep.json")
+    assert again.status == 0 and not Path("out").exists(), again.err
+
+
 def test_how_probable_it_is_that_a_machine_is_accepted(fast: Path, gbeam: Call) -> None:
     text = fast.read_text(encoding="utf-8")
     place = 'control_point = { uniform = ["0 mm", "300 mm"] }\naccept = { tip = "0.02 %" }'
@@ -168,6 +192,7 @@ def test_a_wrong_distribution_is_placed(fast: Path, gbeam: Call, value: str, pro
         (("--history", "fligth.tip.z"), "names no motion; did you mean 'flight'?"),
         (("--history", "flight.tip.z", "--times", "1"), "--times is 1"),
         (("--history", "flight.tip.z", "--verb", "static"), "stands with --verb static"),
+        (("--history", "flight.tip.z", "--times", "1000000000"), "which would take 16 GB"),
     ],
 )
 def test_a_wrong_history_is_refused(unsure: Path, gbeam: Call, arguments: tuple[str, ...], problem: str) -> None:

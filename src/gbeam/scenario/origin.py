@@ -10,6 +10,8 @@ from typing import Any
 
 from gbeam.results.provenance import Provenance, RecordFile
 from gbeam.scenario.schema import Environments, Flight
+from gbeam.scenario.text.overrides import override
+from gbeam.scenario.text.source import parse
 
 EMBEDDED = 8 * 2**20  # bytes of a record that go with the result; of a larger one only its hash
 
@@ -32,7 +34,10 @@ def provenance(scenario: Environments, command: str = "") -> Provenance:
         if isinstance(table, Flight) and table.record is not None
     )
     changes = tuple(change.text for change in source.overrides)
-    return Provenance(source.text, changes, fingerprint(source.data), records, command)
+    data = source.data
+    if source.distributions:  # which have their centres there
+        data, _ = override(parse(source.name, source.text), source.name, changes)
+    return Provenance(source.text, changes, fingerprint(data), records, command)
 
 
 def fingerprint(data: dict[str, Any]) -> str:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 from gbeam.errors import InputError
 from gbeam.scenario.schema import Scenario
+from gbeam.scenario.text.distributions import FAMILIES
 from gbeam.scenario.text.suggest import advise
 
 _HEAD = """\
@@ -135,9 +137,37 @@ def template(kind: str) -> str:
     return _HEAD + _TEMPLATES[kind]
 
 
+def _allow_distributions(node: Any) -> None:
+    """Let a distribution stand in place of every quantity."""
+    if isinstance(node, dict):
+        for value in node.values():
+            _allow_distributions(value)
+        if "x-quantity" in node and "anyOf" in node:
+            node["anyOf"] = [*node["anyOf"], {"$ref": "#/$defs/Distribution"}]
+    elif isinstance(node, list):
+        for value in node:
+            _allow_distributions(value)
+
+
+def _distribution_schema() -> dict[str, Any]:
+    """A table with one key, the family."""
+    numbers = {"type": "array", "items": {"type": ["number", "string"]}}
+    families = {
+        name: numbers
+        | {"minItems": len(family.arguments), "maxItems": len(family.arguments)}
+        | {"description": ", ".join(family.arguments)}
+        for name, family in FAMILIES.items()
+    }
+    about = {"title": "Distribution", "description": "what gbeam sweep draws from; other verbs need one value"}
+    one = {"type": "object", "minProperties": 1, "maxProperties": 1, "additionalProperties": False}
+    return {**about, **one, "properties": families}
+
+
 def json_schema() -> str:
     """Return the JSON schema of a scenario: every field with description, quantity and SI unit."""
     schema = Scenario.model_json_schema()
+    _allow_distributions(schema)
+    schema["$defs"]["Distribution"] = _distribution_schema()
     text = json.dumps(schema, indent=2, ensure_ascii=False)
     for name, table in schema["$defs"].items():  # pydantic numbers the profiles: name them by their quantity
         text = text.replace(name, table["title"].replace(" ", "-")) if "__" in name else text

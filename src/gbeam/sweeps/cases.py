@@ -106,6 +106,8 @@ def read_cases(
         raise InputError(
             "--samples", "stands without a distribution", 'draw from one: "beam.damping_ratio=uniform(0.5 %, 2 %)"'
         )
+    if sampler == "saltelli" and not drawn:
+        raise InputError("--sampler", "is saltelli, without a distribution", "draw from one, or leave it out")
     if not drawn:
         return Cases(grid, (), 0)
     count = DEFAULT_SAMPLES if samples is None else samples

@@ -64,13 +64,16 @@ def assembled(title: str, cases: Cases, names: Sequence[str], begun: Start, rows
 def with_statistics(sweep: Sweep, cases: Cases, truths: Mapping[str, bool], seed: int) -> Sweep:
     """The same with what its samples say; they are the last dimension of the measures."""
     first = slice(cases.independent)
-    known = {name: statistics(values[..., first], truth=truths[name]) for name, values in sweep.measures.items()} | {
-        name: statistics(np.swapaxes(values[..., first, :], -1, -2)) for name, values in sweep.histories.items()
-    }
+    # A figure of a case that was cut off, such as the peak until it diverged, is none of the answer.
+    done = sweep.outcome == "done"
+    measures = {name: np.where(done, values, math.nan) for name, values in sweep.measures.items()}
+    histories = {name: np.where(done[..., None], values, math.nan) for name, values in sweep.histories.items()}
+    known = {name: statistics(values[..., first], truth=truths[name]) for name, values in measures.items()}
+    known |= {name: statistics(np.swapaxes(values[..., first, :], -1, -2)) for name, values in histories.items()}
     shares = {}
     if cases.sampler == "saltelli":
         paths = [each.path for each in cases.drawn]
-        shares = {name: indices(values, paths, seed) for name, values in sweep.measures.items()}
+        shares = {name: indices(values, paths, seed) for name, values in measures.items()}
     return replace(sweep, statistics=known, indices=shares)
 
 

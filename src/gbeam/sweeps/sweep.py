@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.errors import InputError
+from gbeam.limits import HISTORY_BYTES, refuse_more
 from gbeam.results.sweep import Sweep
 from gbeam.scenario.load import load
 from gbeam.scenario.origin import provenance
@@ -130,6 +131,8 @@ def sweep(
     if workers < 1:
         raise InputError("--workers", f"is {workers}", "give one or more")
     cases = read_cases(_texts(over), samples, sampler or "sobol", seed := seed or 0, base.source.distributions)
+    size = len(over_time.names) * over_time.count * len(cases)
+    refuse_more("--times", "values of histories", size, HISTORY_BYTES // 8, 8.0, "give fewer times, or fewer cases")
     functions = tuple(measure.values()) if isinstance(measure, Mapping) else ()
     question = Question(base.source, verb, motion, at, functions=functions)
     journal, done = opened(store, resume, identity(question, cases, names, [over_time.names, over_time.count]))
