@@ -47,7 +47,7 @@ def test_modes(call):
 def test_no_unit_is_torn_and_no_rounding_is_damping(scenario, gbeam):
     answer = gbeam("linearize", "hub.toml", "--motion", "slew")
     assert answer.status == 0
-    assert "[N m]" in answer.out.replace("\N{NO-BREAK SPACE}", " ").splitlines()[-2]
+    assert "[N m]" in answer.out.replace("\N{NO-BREAK SPACE}", " ").splitlines()[-3]
     answer = gbeam("modes", "hub.toml", "--motion", "slew", "--at", "32 s")
     assert answer.status == 0 and "e-1" not in answer.out
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields
+from typing import Any
 
 import numpy as np
 
@@ -84,6 +85,13 @@ class FrequencyErrors(Part):
     shapes: Floats
     model: Floats
     total: Floats
+
+    def __getitem__(self, chosen: Any) -> FrequencyErrors:
+        return FrequencyErrors(self.shapes[chosen], self.model[chosen], self.total[chosen])
+
+    def within(self, share: float) -> int:
+        """Of how many of the first frequencies every total is within a share; none where there is no estimate."""
+        return int(np.append(np.flatnonzero(~(self.total <= share)), len(self.total))[0])
 
     @property
     def largest(self) -> float:

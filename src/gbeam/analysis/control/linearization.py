@@ -11,6 +11,7 @@ import numpy as np
 from gbeam.analysis.equilibrium.hub_point import on_hub
 from gbeam.analysis.equilibrium.operating_point import operating_point
 from gbeam.analysis.equilibrium.point import OperatingPoint, linear_matrices, on_base, steady_base
+from gbeam.analysis.vibration.errors import doubtful, pole_errors
 from gbeam.analysis.vibration.stability import hub_of
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
@@ -23,7 +24,7 @@ from gbeam.mechanics.structure import Sections, Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.complex_step import complex_step
-from gbeam.results.steady.state_space import Gauge, Signal, StateSpace
+from gbeam.results.steady.state_space import ACCURATE, Gauge, Signal, StateSpace
 
 Array = Any
 BASE_RATES = tuple(Signal(f"base_rate_{i}", "rad/s") for i in "xyz")
@@ -226,6 +227,11 @@ def linearize(
         drive, through = np.concatenate([drive[:, kept], fed]), through[:, kept]
         states += tuple(BASE_RATES[i - 3] for i in acts)
         at, given = np.concatenate([at, given[acts]]), given[kept]
+    warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)
+    frequency, errors = np.zeros(0), None
+    if q is None and qd is None and structure.source is not None:
+        frequency, errors = pole_errors(structure, point, linear)
+        warnings += doubtful(errors) if errors.within(ACCURATE) == 0 else ()
     return StateSpace(
         a=a,
         b=drive,
@@ -240,5 +246,7 @@ def linearize(
         model=structure.kind,
         motion=name,
         time=time,
-        warnings=input_warnings(structure, motion, name=name, span=(time, time), base=point.base),
+        frequency=frequency,
+        errors=errors,
+        warnings=warnings,
     )

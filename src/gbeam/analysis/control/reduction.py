@@ -64,7 +64,10 @@ def modal_truncation(system: StateSpace, modes: int) -> StateSpace:
         return system
     limit = (levels[modes] + levels[modes + 1]) / 2
     slow, fast = _split(system, lambda value: abs(value) < limit)
-    return replace(slow, d=slow.d - fast.c @ np.linalg.solve(fast.a, fast.b))
+    kept = 2 * np.pi * system.frequency < limit
+    errors = None if system.errors is None else system.errors[kept]
+    through = slow.d - fast.c @ np.linalg.solve(fast.a, fast.b)
+    return replace(slow, d=through, frequency=system.frequency[kept], errors=errors)
 
 
 def balanced_truncation(system: StateSpace, order: int) -> tuple[StateSpace, Floats]:
@@ -106,4 +109,5 @@ def balanced_truncation(system: StateSpace, order: int) -> tuple[StateSpace, Flo
     out = root(reach) @ right[:order].T * scale
     a = scipy.linalg.block_diag(kept.a, into @ decaying.a @ out)
     b, c = np.concatenate([kept.b, into @ decaying.b]), np.concatenate([kept.c, decaying.c @ out], axis=1)
-    return _named(system, a, b, c, system.d, "balanced"), hankel
+    small = _named(system, a, b, c, system.d, "balanced")
+    return replace(small, frequency=np.zeros(0), errors=None), hankel

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
 from gbeam.analysis.equilibrium.point import Linear, OperatingPoint, stepped
-from gbeam.analysis.vibration.eigenvalues import eigenvalues, mac
+from gbeam.analysis.vibration.eigenvalues import ZERO, eigenvalues, mac
 from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.equations.hub import free_hub
@@ -78,6 +78,15 @@ class Richer:
         exact = reference(self.exact)
         same = exact if self.same is self.exact else reference(self.same)
         return FrequencyErrors(np.abs(own / same - 1), np.abs(same / exact - 1), np.abs(own / exact - 1))
+
+
+def pole_errors(structure: Structure, point: OperatingPoint, linear: Linear) -> tuple[Floats, FrequencyErrors]:
+    """Frequencies (k,) Hz of the poles that oscillate about an operating point, ascending, and their errors."""
+    value, mode = eigenvalues(linear)
+    oscillating = np.flatnonzero(value.imag > ZERO * np.abs(value).max())
+    chosen = oscillating[np.argsort(np.abs(value[oscillating]), kind="stable")]
+    errors = Richer(structure, point.base).errors(point, value[chosen], mode[point.first :, chosen].T)
+    return np.abs(value[chosen]) / (2 * np.pi), errors
 
 
 def _frequencies(

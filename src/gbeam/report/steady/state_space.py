@@ -7,8 +7,10 @@ from dataclasses import asdict
 from textwrap import wrap
 from typing import Any
 
-from gbeam.report.words import warning_lines
-from gbeam.results.steady.state_space import Gauge, StateSpace
+import numpy as np
+
+from gbeam.report.words import frequency_errors, percent, warning_lines
+from gbeam.results.steady.state_space import ACCURATE, Gauge, StateSpace
 
 WIDTH = 100  # columns of the text
 
@@ -40,6 +42,13 @@ def to_json(system: StateSpace, gauges: Iterable[Gauge] = (), hankel: Iterable[f
         **{key: getattr(system, key.lower()).tolist() for key in "ABCD"},
         "gauges": [asdict(gauge) for gauge in gauges],
         "hankel_singular_values": [float(value) for value in hankel],
+        "poles": [
+            {"frequency": float(frequency), "errors": error}
+            for frequency, error in zip(
+                system.frequency, frequency_errors(system.errors, len(system.frequency)), strict=True
+            )
+        ],
+        "accurate_to": system.accurate_to,
         "warnings": list(system.warnings),
     }
 
@@ -59,6 +68,22 @@ def text(system: StateSpace, gauges: Iterable[Gauge] = (), hankel: Iterable[floa
         if f"strain_{k}" in names:
             fibre = f"fibre y {1e3 * gauge.y:g} mm, z {1e3 * gauge.z:g} mm"
             lines.append(f"  strain_{k} at {gauge.at:g} m, {fibre}")
+    lines += _accuracy(system)
     if values := list(hankel):
         lines.append("  Hankel singular values " + " ".join(f"{value:.3g}" for value in values))
     return "\n".join([*lines, *warning_lines(system), "--json prints the matrices, --out writes them for MATLAB too."])
+
+
+def _accuracy(system: StateSpace) -> list[str]:
+    """Up to which frequency its poles are those of the exact model, and how far off the others are."""
+    errors, count = system.errors, len(system.frequency)
+    if errors is None or not count:
+        return []
+    good = errors.within(ACCURATE)
+    worst = percent(float(np.max(errors.total[:good]))) if good else ""
+    words = f"frequencies within {worst} up to {system.accurate_to:.5g} Hz ({good} of {count})" if good else ""
+    if good < count:
+        known = errors.total[good:][np.isfinite(errors.total[good:])]
+        beyond = f"up to {percent(float(known.max()))} off" if len(known) else "not judged"
+        words += f"{'; ' if good else 'frequencies '}{'higher ones ' if good else ''}{beyond}"
+    return [f"  {words}, by the exact model with more shapes"]

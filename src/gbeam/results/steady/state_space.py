@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import math
 import os
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from gbeam.errors import InputError
+from gbeam.results.errors import FrequencyErrors
 from gbeam.results.result import Floats, Result
+
+ACCURATE = 0.01  # error of a frequency that is within what a design takes for accurate
 
 
 class Signal(NamedTuple):
@@ -49,6 +53,10 @@ class StateSpace(Result):
     model, motion : str
     time : float
         s.
+    frequency : (k,) Hz
+        |λ|/2π of the poles that oscillate, ascending; none of a balanced truncation, whose poles are no beam's.
+    errors : FrequencyErrors or None
+        Of these frequencies; None where there is no estimate.
     """
 
     a: Floats
@@ -64,6 +72,19 @@ class StateSpace(Result):
     model: str = ""
     motion: str = ""
     time: float = float("nan")
+    frequency: Floats = field(default_factory=lambda: np.zeros(0))
+    errors: FrequencyErrors | None = None
+
+    @property
+    def accurate_to(self) -> float:
+        """Frequency up to which every pole's is within one in a hundred of the exact model's, Hz; NaN if not known.
+
+        Zero where the first is not.
+        """
+        if self.errors is None or not len(self.frequency):
+            return math.nan
+        count = self.errors.within(ACCURATE)
+        return float(self.frequency[count - 1]) if count else 0.0
 
     def select(self, *, inputs: tuple[str, ...] | None = None, outputs: tuple[str, ...] | None = None) -> StateSpace:
         """The same system with some of its inputs and outputs only, by name.
@@ -124,7 +145,7 @@ class StateSpace(Result):
         )
 
     def to_mat(self, path: str | os.PathLike[str]) -> None:
-        """Write a MATLAB file: A, B, C, D, the operating point, names and units.
+        """Write a MATLAB file: A, B, C, D, the operating point, names and units, frequencies and their errors.
 
         Parameters
         ----------
@@ -142,6 +163,8 @@ class StateSpace(Result):
             stated, environment = self.provenance.stated()
             words["provenance"] = f"gbeam {environment.gbeam}: {stated.command}; scenario SHA-256 {stated.sha256}"
         points = {"x0": self.state, "u0": self.input, "y0": self.output}
+        if self.errors is not None:
+            points |= {"frequency_Hz": self.frequency, "frequency_error": self.errors.total}
         scipy.io.savemat(
             os.fspath(path),
             {"A": self.a, "B": self.b, "C": self.c, "D": self.d, **points, **words},
@@ -155,6 +178,10 @@ class StateSpace(Result):
             f"{len(signals)} {what} ({', '.join(each.name for each in signals[:4])}{', …' if len(signals) > 4 else ''})"
             for what, signals in (("states", self.states), ("inputs", self.inputs), ("outputs", self.outputs))
         ]
+        if not math.isnan(self.accurate_to):
+            counts.append(
+                f"frequencies within {100 * ACCURATE:g} % of the exact model's up to {self.accurate_to:.4g} Hz"
+            )
         return self._with_warnings(f"StateSpace{of}{f' on {self.motion!r}' if self.motion else ''}", *counts)
 
 
