@@ -42,7 +42,7 @@ _OF = "-of-"  # between the name of a profile and its quantity, in the schema
 
 def reference() -> str:
     """Return the page: Markdown, one table of keys for every table of a scenario."""
-    return _Page(json.loads(json_schema())).text()
+    return _Page(json.loads(json_schema(distributions=False))).text()
 
 
 class _Page:

@@ -163,11 +163,18 @@ def _distribution_schema() -> dict[str, Any]:
     return {**about, **one, "properties": families}
 
 
-def json_schema() -> str:
-    """Return the JSON schema of a scenario: every field with description, quantity and SI unit."""
+def json_schema(*, distributions: bool = True) -> str:
+    """Return the JSON schema of a scenario: every field with description, quantity and SI unit.
+
+    Parameters
+    ----------
+    distributions : bool
+        Whether it lets a distribution stand in place of every quantity.
+    """
     schema = Scenario.model_json_schema()
-    _allow_distributions(schema)
-    schema["$defs"]["Distribution"] = _distribution_schema()
+    if distributions:
+        _allow_distributions(schema)
+        schema["$defs"]["Distribution"] = _distribution_schema()
     text = json.dumps(schema, indent=2, ensure_ascii=False)
     for name, table in schema["$defs"].items():  # pydantic numbers the profiles: name them by their quantity
         text = text.replace(name, table["title"].replace(" ", "-")) if "__" in name else text
