@@ -2,8 +2,8 @@
 # make validate: compare with other codes and write docs/validation.md (minutes; what is not installed is left out);
 # make fuzz: 10,000 malformed inputs, then runs that are interrupted, killed and out of disk (half an hour);
 # make docs: the documentation site, in out/docs;
-# make web: the viewer of reports and notebooks, from web/ into the package (needs Node; users of the package do not);
-# make web-check: its tests, and whether the built viewer in the package is that of web/;
+# make web: the viewer and the app's page, from web/ into the package (needs Node; users of the package do not);
+# make web-check: their tests, and whether what is built in the package is that of web/;
 # make mutants: whether the tests catch deliberate errors in the physics (minutes);
 # make dist: sdist and wheel into dist/; make wheels: the wheel in empty environments on every Python that is there;
 # make benchmark: how long commands take, and a comparison with Exudyn (minutes; nothing else should run).
@@ -30,9 +30,9 @@ web: web/node_modules/.installed
 	cd web && npm run --silent build && npm test --silent
 
 web-check: web/node_modules/.installed
-	rm -rf out/web
+	rm -rf out/web out/web-app
 	cd web && npm test --silent && GBEAM_WEB_OUT=../out/web npm run --silent build -- --logLevel warn
-	diff -r out/web src/gbeam/report/page/assets || { echo "the built viewer is not that of web/: run make web"; exit 1; }
+	diff -r out/web src/gbeam/report/page/assets && diff -r out/web-app src/gbeam/app/assets || { echo "what is built is not that of web/: run make web"; exit 1; }
 
 web/node_modules/.installed: web/package-lock.json
 	@command -v npm > /dev/null || { echo "the viewer is built by Node 20.19 or later with npm, which is not here"; exit 1; }

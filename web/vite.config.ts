@@ -2,6 +2,7 @@ import { defineConfig } from "vite";
 
 // One module and one style sheet, committed inside the Python package: its users need no Node.
 export default defineConfig({
+  publicDir: false,
   build: {
     lib: { entry: "src/index.ts", formats: ["es"], fileName: () => "gbeam.js", cssFileName: "gbeam" },
     outDir: process.env.GBEAM_WEB_OUT ?? "../src/gbeam/report/page/assets",

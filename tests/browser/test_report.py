@@ -9,6 +9,8 @@ from typing import Any
 
 import pytest
 
+from .axe import violations
+
 CANVAS = ".gbeam-canvas"
 TIME = "window.gbeam.viewer.clock.time"
 
@@ -81,3 +83,8 @@ def test_report_prints(opened: Any, report: Path) -> None:
     streams = re.findall(rb"stream\r?\n(.*?)endstream", pdf, re.DOTALL)
     drawn = b"".join(zlib.decompressobj().decompress(each) for each in streams if each[:1] == b"x")
     assert drawn.count(b" Do") >= 7  # the viewer's picture and those of the plots
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_nothing(opened: Any, report: Path, scheme: str) -> None:
+    assert violations(opened(report, color_scheme=scheme)) == []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from threading import Event, Thread
 from time import monotonic
@@ -14,6 +15,7 @@ from gbeam.printable import on_one_line
 if TYPE_CHECKING:
     from rich.progress import Progress
 
+INTERVAL = "GBEAM_PROGRESS"  # environment: seconds between lines, for programs that read them, on a terminal too
 PATIENCE = 2.0  # s without a sign of life that need no explanation
 EVERY = 5.0  # s between lines where stderr is not a terminal
 _REDRAW = 0.1  # s
@@ -49,14 +51,15 @@ class Watch:
         return f"{on_one_line(what)}: {share:.0%}{_left(monotonic() - self._since, share)}"
 
     def _show(self) -> None:
-        if self._over.wait(PATIENCE):
+        every = _interval()
+        if self._over.wait(PATIENCE if every is None else every):
             return
-        if sys.stderr.isatty():
+        if sys.stderr.isatty() and every is None:
             self._draw()
             return
         while True:
             print(f"gbeam: {self.line()}", file=sys.stderr, flush=True)
-            if self._over.wait(EVERY):
+            if self._over.wait(EVERY if every is None else every):
                 return
 
     def _draw(self) -> None:
@@ -90,6 +93,14 @@ class Watch:
             self._thread.join()  # it may be starting the bar at this moment
         self._stop()
         self._cleaned_up.__exit__(kind, error, trace)
+
+
+def _interval() -> float | None:
+    """What the environment says of it; None where it says nothing that is a time."""
+    try:
+        return max(float(os.environ.get(INTERVAL, "")), 0.1)
+    except ValueError:
+        return None
 
 
 def _left(passed: float, share: float) -> str:

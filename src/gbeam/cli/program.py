@@ -34,6 +34,7 @@ VERBS = {
     "report": "Write a result as one page of HTML: tables, plots that zoom, and the beam in motion.",
     "fit": "Values of a scenario from a measurement, by least squares.",
     "rerun": "Compute a result again from what its file says, and compare every number.",
+    "app": "Edit, run and compare scenarios in a browser, on this computer only.",
     "check": "Say what a scenario means, without computing a response.",
     "new": "Write a commented scenario to start from.",
     "schema": "Print the JSON schema of scenario files, for editors.",

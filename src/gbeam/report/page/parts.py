@@ -75,7 +75,7 @@ def table(
     if not made:
         return ""
     top = "".join(
-        f'<th scope="col"{_class("" if column in texts else "number")}>{escaped(name)}</th>'
+        f'<th scope="col"{_class("" if column in texts else "number")}>{escaped(name)}</th>' if name else "<td></td>"
         for column, name in enumerate(head)
     )
     body = "".join(f"<tr>{''.join(row)}</tr>" for row in made)

@@ -28,7 +28,7 @@ def widget(result: Result) -> Any:
         raise InputError("view", "needs the package anywidget, which is not installed", fix) from None
     assets = files("gbeam.report.page") / "assets"
 
-    class Viewer(anywidget.AnyWidget):  # type: ignore[misc]
+    class Viewer(anywidget.AnyWidget):
         """The beam in motion."""
 
         _esm = (assets / "gbeam.js").read_text(encoding="utf-8")

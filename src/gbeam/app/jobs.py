@@ -1,0 +1,182 @@
+"""Runs, one folder each: queued, computed one after the other in a process of their own, and kept."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import re
+import secrets
+import shutil
+import signal
+import sys
+from collections.abc import Sequence
+from contextlib import suppress
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from gbeam.app.files import regular
+from gbeam.errors import InputError
+
+ID = re.compile(r"\d{8}-\d{6}-[0-9a-f]{8}")
+MEMORY = 16 * 2**30  # bytes of address space, of which compiled programs reserve far more than they use
+SECONDS = 3600  # of processor time, and of time altogether
+QUEUED = 100
+_STATE, _LOG, _ANSWER = "state.json", "progress.txt", "answer.json"
+# What may be downloaded, by its name there, and where it is.
+DOWNLOADS = {
+    "scenario.toml": "scenario.toml",
+    "result.nc": "out/result.nc",
+    "report.html": "out/report.html",
+    "answer.json": _ANSWER,
+    "messages.txt": _LOG,
+}
+
+
+class Jobs:
+    """The runs of one folder, and the queue."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._queue: asyncio.Queue[str] = asyncio.Queue()
+        self._process: tuple[str, asyncio.subprocess.Process] | None = None
+        self._task: asyncio.Task[None] | None = None
+
+    def start(self) -> None:
+        """Take up what an earlier server left in the queue, and begin."""
+        for each in reversed(self.list()):
+            if each["state"] == "queued":
+                self._queue.put_nowait(each["id"])
+            elif each["state"] == "running":  # its process ended with the server
+                self._note(each["id"], state="interrupted")
+        self._task = asyncio.create_task(self._work())
+
+    async def stop(self) -> None:
+        """End the process that runs; its run is interrupted."""
+        if self._task is not None:
+            self._task.cancel()
+            with suppress(asyncio.CancelledError):
+                await self._task
+
+    def submit(self, text: str, title: str, records: Sequence[Path]) -> str:
+        """Queue the run of a scenario, with copies of its records; return its id.
+
+        Raises
+        ------
+        InputError
+            If too many wait.
+        """
+        if self._queue.qsize() >= QUEUED:
+            raise InputError("runs", f"wait already, {QUEUED} of them", "cancel some")
+        number = f"{datetime.now():%Y%m%d-%H%M%S}-{secrets.token_hex(4)}"
+        place = self.folder / number
+        place.mkdir(parents=True)
+        (place / "scenario.toml").write_text(text, encoding="utf-8")
+        for record in records:
+            shutil.copyfile(record, place / record.name, follow_symlinks=False)
+        self._note(number, state="queued", title=title)
+        self._queue.put_nowait(number)
+        return number
+
+    def cancel(self, number: str) -> None:
+        """End a run, or take it out of the queue."""
+        state = self.state(number)["state"]
+        if state == "queued":
+            self._note(number, state="cancelled")
+        elif state == "running" and self._process is not None and self._process[0] == number:
+            self._note(number, state="cancelled")
+            _end(self._process[1])
+
+    def list(self) -> list[dict[str, Any]]:
+        """All runs, the latest first."""
+        if not self.folder.is_dir():
+            return []
+        known = [each.name for each in self.folder.iterdir() if ID.fullmatch(each.name) and (each / _STATE).is_file()]
+        return [self.state(number) for number in sorted(known, reverse=True)]
+
+    def state(self, number: str) -> dict[str, Any]:
+        """What is known of a run: its state, title, last line of progress, and the files that it has.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        place = self._place(number)
+        known: dict[str, Any] = json.loads((place / _STATE).read_text(encoding="utf-8"))
+        log = place / _LOG
+        lines = log.read_text(encoding="utf-8", errors="replace").splitlines() if log.is_file() else []
+        files = [name for name, inside in DOWNLOADS.items() if (place / inside).is_file()]
+        return {"id": number, **known, "progress": lines[-1][:300] if lines else "", "files": files}
+
+    def file(self, number: str, name: str) -> Path:
+        """The path of a file of a run.
+
+        Raises
+        ------
+        InputError
+            If there is none of that name.
+        """
+        if name not in DOWNLOADS:
+            raise InputError("file", "is none of a run's", f"choose of {', '.join(DOWNLOADS)}")
+        inside = self._place(number) / DOWNLOADS[name]
+        return regular(inside.parent, inside.name)
+
+    def _place(self, number: str) -> Path:
+        place = self.folder / number if ID.fullmatch(number) else None
+        if place is None or place.is_symlink() or not (place / _STATE).is_file():
+            raise InputError("run", "is not there", "choose one of the list")
+        return place
+
+    def _note(self, number: str, **facts: str) -> None:
+        file = self.folder / number / _STATE
+        known = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
+        new = file.with_suffix(".new")
+        new.write_text(json.dumps(known | facts), encoding="utf-8")
+        os.replace(new, file)
+
+    async def _work(self) -> None:
+        while True:
+            number = await self._queue.get()
+            if self.state(number)["state"] == "queued":
+                await self._run(number)
+
+    async def _run(self, number: str) -> None:
+        place = self.folder / number
+        self._note(number, state="running")
+        environment = {**os.environ, "GBEAM_PROGRESS": "0.5", "PYTHONUNBUFFERED": "1"}
+        with (place / _LOG).open("wb") as log, (place / _ANSWER).open("wb") as answer:
+            process = await asyncio.create_subprocess_exec(
+                *_command(), cwd=place, env=environment, stdin=asyncio.subprocess.DEVNULL, stdout=answer, stderr=log,
+                start_new_session=True,
+            )  # fmt: skip
+            self._process = number, process
+            try:
+                status = await asyncio.wait_for(process.wait(), SECONDS)
+                outcome = {0: "done", 1: "failed", 2: "refused"}.get(status, "ended")
+            except TimeoutError:
+                outcome = "out of time"
+                _end(process)
+            except asyncio.CancelledError:  # the server ends
+                _end(process)
+                self._note(number, state="interrupted")
+                raise
+            finally:
+                self._process = None
+        if self.state(number)["state"] == "running":
+            self._note(number, state=outcome)
+
+
+def _command() -> list[str]:
+    arguments = ["run", "scenario.toml", "--out", "out", "--report", "--json"]
+    return [sys.executable, "-m", "gbeam.app.limited", str(MEMORY), str(SECONDS), *arguments]
+
+
+def _end(process: asyncio.subprocess.Process) -> None:
+    """Kill a process and all that it has started."""
+    with suppress(ProcessLookupError):
+        if os.name == "posix":
+            os.killpg(process.pid, signal.SIGKILL)
+        else:
+            process.kill()

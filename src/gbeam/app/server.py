@@ -1,0 +1,150 @@
+"""The routes of the app, and the server on 127.0.0.1."""
+
+from __future__ import annotations
+
+import secrets
+import socket
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from importlib.resources import files as resources
+from pathlib import Path
+from typing import Annotated, Any
+
+from fastapi import Body, FastAPI, Request
+from fastapi.concurrency import run_in_threadpool
+from fastapi.responses import FileResponse, JSONResponse, Response
+
+from gbeam.app import documents, files
+from gbeam.app.access import REPORT_POLICY, Door
+from gbeam.app.jobs import Jobs
+from gbeam.app.preview import columns, load_curves
+from gbeam.errors import GbeamError
+from gbeam.limits import SCENARIO_BYTES
+from gbeam.scenario.template import template
+from gbeam.scenario.text.source import parse
+
+_KINDS = {".js": "text/javascript", ".css": "text/css", ".html": "text/html; charset=utf-8"}
+Text = Annotated[str, Body(embed=True, max_length=SCENARIO_BYTES)]
+Short = Annotated[str, Body(embed=True, max_length=1000)]
+
+
+def create_app(folder: Path) -> FastAPI:
+    """Return the application, without its door, over the records and the runs of a folder."""
+    records, jobs = folder / "records", Jobs(folder / "runs")
+
+    @asynccontextmanager
+    async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        jobs.start()
+        yield
+        await jobs.stop()
+
+    app = FastAPI(title="gbeam", docs_url=None, redoc_url=None, lifespan=lifespan)
+
+    @app.exception_handler(GbeamError)
+    async def refuse(_: Request, error: GbeamError) -> JSONResponse:
+        return JSONResponse({"errors": documents.problems(error)}, status_code=422)
+
+    for name in ("index.html", "app.js", "app.css"):
+        app.add_api_route("/" if name == "index.html" else f"/{name}", _asset(name), include_in_schema=False)
+
+    @app.get("/api/examples")
+    def examples() -> dict[str, str]:
+        """Scenarios to start from, by name."""
+        return {"Flight and centrifuge": template("flight"), "Hub": template("hub")}
+
+    @app.post("/api/document")
+    def document(text: Text) -> dict[str, Any]:
+        """The fields of a scenario, and what is wrong with it."""
+        return documents.described(text, records)
+
+    @app.post("/api/edit")
+    def edit(text: Text, path: Short, value: Short) -> dict[str, Any]:
+        """A scenario with another value at a path."""
+        return documents.described(documents.edited(text, path, value), records)
+
+    @app.post("/api/record")
+    def map_record(text: Text, motion: Short, record: Annotated[dict[str, str], Body(embed=True)]) -> dict[str, Any]:
+        """A scenario whose flight follows a record."""
+        return documents.described(documents.with_record(text, motion, record), records)
+
+    @app.post("/api/preview")
+    def preview(text: Text) -> dict[str, Any]:
+        """The load of every flight of a scenario over time."""
+        documents.records(parse(documents.NAME, text), records)
+        return load_curves(text, records)
+
+    @app.get("/api/records")
+    def stored() -> list[str]:
+        """The records that scenarios may name."""
+        return files.names(records)
+
+    @app.put("/api/records/{name}", openapi_extra={"requestBody": {"content": {"application/octet-stream": {}}}})
+    async def upload(name: str, request: Request) -> dict[str, Any]:
+        """Keep a record; what its columns are."""
+        files.checked(name)
+        content = await request.body()
+        await run_in_threadpool(files.store, records, name, content)
+        return {"name": name, "columns": await run_in_threadpool(columns, files.regular(records, name))}
+
+    @app.get("/api/runs")
+    def runs() -> list[dict[str, Any]]:
+        """All runs, the latest first."""
+        return jobs.list()
+
+    @app.post("/api/runs")
+    async def submit(text: Text) -> dict[str, str]:
+        """Queue the run of a scenario."""
+        found = await run_in_threadpool(documents.described, text, records)
+        if found["errors"]:
+            raise documents.Unfit(found["errors"])
+        data = parse(documents.NAME, text)
+        return {"id": jobs.submit(text, str(data.get("title", ""))[:200], documents.records(data, records))}
+
+    @app.delete("/api/runs/{number}")
+    async def cancel(number: str) -> dict[str, Any]:
+        """End a run, or take it out of the queue."""
+        jobs.cancel(number)
+        return jobs.state(number)
+
+    @app.get("/api/runs/{number}/{name}")
+    def download(number: str, name: str) -> FileResponse:
+        """A file of a run."""
+        file = jobs.file(number, name)
+        headers = {"content-security-policy": REPORT_POLICY}
+        if file.suffix == ".html":
+            return FileResponse(file, media_type="text/html; charset=utf-8", headers=headers)
+        kind = "application/octet-stream" if file.suffix == ".nc" else "text/plain; charset=utf-8"
+        return FileResponse(file, media_type=kind, filename=f"{number}-{name}", headers=headers)
+
+    return app
+
+
+def _asset(name: str) -> Callable[[], Response]:
+    def asset() -> Response:
+        content = (resources("gbeam.app") / "assets" / name).read_bytes()
+        return Response(content, media_type=_KINDS[name[name.rindex(".") :]])
+
+    return asset
+
+
+def serve(folder: Path, port: int, announce: Callable[[str], None]) -> None:
+    """Serve the app on 127.0.0.1 until it is interrupted.
+
+    Parameters
+    ----------
+    folder : Path
+        Of records and runs.
+    port : int
+        0 for any that is free.
+    announce : callable
+        Called with the address to open, once it is there.
+    """
+    import uvicorn
+
+    listening = socket.create_server(("127.0.0.1", port))
+    port = listening.getsockname()[1]
+    token = secrets.token_urlsafe(24)
+    guarded: Any = Door(create_app(folder), port, token)
+    config = uvicorn.Config(guarded, log_level="warning", access_log=False, ws="none", server_header=False)
+    announce(f"http://127.0.0.1:{port}/?token={token}")
+    uvicorn.Server(config).run(sockets=[listening])

@@ -1,0 +1,20 @@
+"""What axe finds wrong with a page for those who cannot see, or not well, or use no mouse."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+
+def violations(page: Any) -> list[str]:
+    """Rules of axe that a page breaks, each with the first element that does; skipped where axe is not installed."""
+    found = find_spec("axe_playwright_python")
+    if found is None or found.origin is None:
+        pytest.skip("axe-playwright-python is not installed")
+    script = Path(found.origin).with_name("axe.min.js").read_text(encoding="utf-8")
+    page.evaluate(f"() => {{ {script}\n }}")
+    result = page.evaluate("() => axe.run(document, {resultTypes: ['violations']})")
+    return [f"{each['id']}: {each['nodes'][0]['html'][:200]}" for each in result["violations"]]

@@ -1,0 +1,104 @@
+"""The app as a person uses it, in headless Chromium on the real server."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from ..scenarios import FAST
+from .axe import violations
+
+BIG = FAST.replace('"0.5 s"', '"400 s"').replace('title = "fast"', 'title = "long"')
+
+
+@pytest.fixture
+def address(tmp_path: Path) -> Iterator[str]:
+    """The address that `gbeam app` prints."""
+    pytest.importorskip("fastapi")
+    pytest.importorskip("uvicorn")
+    command = [sys.executable, "-m", "gbeam", "app", "--folder", str(tmp_path / "kept")]
+    server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=dict(os.environ))
+    assert server.stdout is not None
+    yield server.stdout.readline().strip()
+    server.send_signal(signal.SIGINT)
+    server.wait(20)
+
+
+def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> None:
+    home, faults = address.split("/?")[0], list[str]()
+    context = browser.new_context(viewport={"width": 1400, "height": 1000}, accept_downloads=True)
+    page = context.new_page()
+    page.on("console", lambda m: faults.append(m.text) if m.type == "error" else None)
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    page.on("request", lambda r: faults.append(r.url) if not r.url.startswith((home, "data:", "blob:")) else None)
+    page.goto(address)
+    page.wait_for_selector("html[data-gbeam]")
+    assert page.url == f"{home}/"
+
+    assert violations(page) == []
+
+    # An example, a wrong value at its field, and the right one; both views show it.
+    page.get_by_label("Start from").select_option("Hub")
+    length = page.locator('input[data-path="beam.length"]')
+    length.fill("3 kg")
+    length.press("Tab")
+    page.wait_for_selector('input[data-path="beam.length"][aria-invalid=true]')
+    assert "is a mass" in page.locator("fieldset .bad").first.inner_text()
+    assert page.get_by_role("button", name="Run", exact=True).is_disabled()
+    length.fill("9 m")
+    length.press("Tab")
+    page.wait_for_selector("[aria-invalid=true]", state="detached")
+    page.get_by_role("button", name="Text").click()
+    text = page.get_by_label("scenario as TOML")
+    assert 'length = "9 m"' in text.input_value()
+
+    # The other way, and a run of it with its report.
+    text.fill(FAST)
+    page.get_by_role("button", name="Form").click()
+    page.wait_for_selector('input[data-path="motion.spin.arm"]')
+    _run(page)
+    frame = page.frame_locator("iframe.report")
+    frame.locator("html[data-gbeam]").wait_for(timeout=20_000)
+    assert frame.locator(".gbeam-canvas").is_visible() and "fast" in frame.locator("h1").inner_text()
+
+    # A second one, side by side with the first.
+    page.locator('input[data-path="beam.length"]').fill("310 mm")
+    page.keyboard.press("Tab")
+    page.wait_for_function("() => document.querySelector('#app pre').textContent.includes('310 mm')")
+    _run(page)
+    for box in page.get_by_role("checkbox", name="compare").all():
+        box.check()
+    page.get_by_role("heading", name="Compared").wait_for()
+    row = page.locator("tr", has_text="flight: tip, mm").locator("td").all_inner_texts()
+    assert len(row) == 2 and float(row[0]) < float(row[1])
+
+    # A long one is cancelled; all are there after a reload, and are downloaded.
+    page.get_by_role("button", name="Text").click()
+    text.fill(BIG)
+    page.wait_for_function("() => document.querySelector('#app pre').textContent.includes('long')")
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.get_by_role("button", name="Cancel").click()
+    page.locator(".run", has_text="cancelled").wait_for()
+    page.reload()
+    page.wait_for_selector("html[data-gbeam]")
+    assert page.locator(".run").count() == 3
+    page.locator(".run .open", has_text="fast").first.click()
+    with page.expect_download() as download:
+        page.get_by_role("link", name="result.nc").click()
+    assert Path(download.value.path()).read_bytes()[:4] == b"\x89HDF"
+    assert page.get_by_label("scenario as TOML").input_value() == BIG  # the draft is kept
+    context.close()
+    assert faults == []
+
+
+def _run(page: Any) -> None:
+    before = page.locator(".run", has_text="done").count()
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.wait_for_function(f"() => [...document.querySelectorAll('.run .good')].length > {before}", timeout=60_000)

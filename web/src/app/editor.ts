@@ -1,0 +1,233 @@
+// The scenario: as a form and as text, two views of one document, which the server reads after every change.
+
+import uPlot from "uplot";
+import { lineColour, prefersDark } from "../colours";
+import { button, choice, element } from "../controls";
+import { api, type Document, type Problem, Refusal } from "./api";
+
+const KEPT = "gbeam-document";
+const PAUSE = 400; // ms without a key before the text is read
+const COMPONENTS = ["x", "y", "z"] as const;
+
+export class Editor {
+  readonly root = element("section");
+  private document: Document = { text: "", fields: [], errors: [], meaning: "" };
+  private readonly text = element("textarea", "text");
+  private readonly form = element("div", "form");
+  private readonly problems = element("div", "problems");
+  private readonly meaning = element("pre");
+  private readonly record = element("div", "record");
+  private readonly curves = element("div");
+  private readonly run = button("Run", () => void this.submit());
+  private readonly views: HTMLButtonElement[];
+  private waiting = 0;
+  private latest = 0;
+
+  constructor(private readonly submitted: (id: string) => void) {
+    this.root.append(element("h2", "", "Scenario"));
+    this.text.setAttribute("aria-label", "scenario as TOML");
+    this.text.spellcheck = false;
+    this.text.addEventListener("input", () => {
+      window.clearTimeout(this.waiting);
+      this.waiting = window.setTimeout(() => void this.read(this.text.value), PAUSE);
+    });
+    this.views = [button("Form", () => this.show(0)), button("Text", () => this.show(1))];
+    this.problems.setAttribute("role", "status");
+    this.run.classList.add("primary");
+    const acts = [this.run, button("Preview load", () => void this.preview()), button("Download", () => this.save())];
+    const line = element("p", "faint", "As a command: ");
+    line.append(element("code", "", "gbeam run scenario.toml --report"));
+    this.root.append(this.start(), this.record, this.row(...this.views, ...acts), this.problems, this.curves);
+    this.root.append(this.form, this.text, line, this.meaning);
+    this.show(0);
+  }
+
+  /** Take up the document of the last visit, or the first example. */
+  async begin(examples: Record<string, string>): Promise<void> {
+    await this.read(sessionStorage.getItem(KEPT) ?? Object.values(examples)[0] ?? "");
+    const options = [["", "choose"], ...Object.keys(examples).map((name) => [name, name])] as [string, string][];
+    const select = choice("Start from", options, "", (name) => {
+      if (examples[name]) void this.read(examples[name]);
+    });
+    this.root.querySelector(".start")!.prepend(select);
+  }
+
+  /** Show a text, and what the server says of it. */
+  async read(text: string): Promise<void> {
+    await this.take(api.document(text));
+  }
+
+  private async take(answer: Promise<Document>): Promise<void> {
+    const number = ++this.latest;
+    try {
+      const made = await answer;
+      if (number !== this.latest) return; // a later change has overtaken it
+      this.document = made;
+      sessionStorage.setItem(KEPT, made.text);
+      if (this.text.value !== made.text) this.text.value = made.text;
+      this.draw();
+    } catch (error) {
+      this.complain(error);
+    }
+  }
+
+  private draw(): void {
+    const { fields, errors, meaning } = this.document;
+    const focused = (document.activeElement as HTMLElement | null)?.dataset["path"];
+    this.form.replaceChildren();
+    const groups = new Map<string, HTMLFieldSetElement>();
+    fields.forEach((field, i) => {
+      const parts = field.path.split(".");
+      const name = parts[0] === "motion" ? parts.slice(0, 2).join(".") : parts.length > 1 ? parts[0]! : "general";
+      let group = groups.get(name);
+      if (!group) {
+        group = element("fieldset");
+        group.append(element("legend", "", name));
+        groups.set(name, group);
+        this.form.append(group);
+      }
+      const own = errors.filter((each) => each.path === field.path);
+      const label = element("label", "", field.path.slice(field.path.startsWith(`${name}.`) ? name.length + 1 : 0));
+      const input = element("input");
+      input.value = field.value;
+      input.dataset["path"] = field.path;
+      input.title = field.help;
+      input.addEventListener("change", () => void this.take(api.edit(this.document.text, field.path, input.value)));
+      label.append(input);
+      group.append(label);
+      if (own.length) {
+        const words = element("span", "bad", own.map((each) => `${each.message}; ${each.hint}`).join("; "));
+        words.id = `problem-${i}`;
+        input.setAttribute("aria-invalid", "true");
+        input.setAttribute("aria-describedby", words.id);
+        group.append(words);
+      }
+      if (field.path === focused) requestAnimationFrame(() => input.focus());
+    });
+    this.list(errors);
+    this.meaning.textContent = meaning;
+    this.meaning.hidden = !meaning;
+    this.run.disabled = errors.length > 0;
+  }
+
+  private list(errors: Problem[]): void {
+    this.problems.replaceChildren();
+    for (const each of errors) {
+      const where = [each.line ? `line ${each.line}` : "", each.path].filter(Boolean).join(", ");
+      this.problems.append(element("p", "bad", `${where ? `${where}: ` : ""}${each.message}${each.hint ? `; ${each.hint}` : ""}`));
+    }
+  }
+
+  private complain(error: unknown): void {
+    this.list(error instanceof Refusal ? error.problems : [{ path: "", message: String(error), hint: "", line: null }]);
+  }
+
+  private show(which: number): void {
+    this.form.hidden = which !== 0;
+    this.text.hidden = which !== 1;
+    this.views.forEach((each, i) => each.setAttribute("aria-pressed", String(i === which)));
+  }
+
+  private async submit(): Promise<void> {
+    try {
+      this.submitted((await api.submit(this.document.text)).id);
+    } catch (error) {
+      this.complain(error);
+    }
+  }
+
+  private save(): void {
+    const link = element("a");
+    link.href = URL.createObjectURL(new Blob([this.document.text], { type: "text/plain" }));
+    link.download = "scenario.toml";
+    link.click();
+    URL.revokeObjectURL(link.href);
+  }
+
+  private start(): HTMLElement {
+    const row = this.row();
+    row.classList.add("start");
+    const label = element("label", "", "Scenario or record ");
+    const input = element("input");
+    input.type = "file";
+    input.addEventListener("change", () => void this.open(input.files));
+    label.append(input);
+    row.append(label);
+    this.root.addEventListener("dragover", (e) => e.preventDefault());
+    this.root.addEventListener("drop", (e) => {
+      e.preventDefault();
+      void this.open(e.dataTransfer?.files ?? null);
+    });
+    return row;
+  }
+
+  private async open(files: FileList | null): Promise<void> {
+    for (const file of files ?? []) {
+      try {
+        if (/\.(toml|json)$/i.test(file.name)) await this.read(await file.text());
+        else this.map(await api.upload(file));
+      } catch (error) {
+        this.complain(error);
+      }
+    }
+  }
+
+  /** Columns, signs and units of a record, by hand. */
+  private map({ name, columns }: { name: string; columns: string[] }): void {
+    const flights = [...new Set(this.document.fields.map((each) => each.path.match(/^motion\.([^.]+)\.kind$/)?.[1]))].filter(
+      (each): each is string => this.document.fields.some((f) => f.path === `motion.${each}.kind` && f.value === "flight"),
+    );
+    const chosen: Record<string, string> = { file: name, time: columns[0] ?? "", x: "0", y: "0", z: "0", unit: "g" };
+    let motion = flights[0] ?? "flight";
+    const listed = columns.map((each) => [each, each] as const);
+    const signed = [["0", "none"] as const, ...listed, ...columns.map((each) => [`-${each}`, `−${each}`] as const)];
+    const set = (key: string) => (value: string) => {
+      chosen[key] = value;
+    };
+    const parts = [
+      choice("Flight", flights.map((each) => [each, each]), motion, (value) => {
+        motion = value;
+      }),
+      choice("Time", listed, chosen["time"]!, set("time")),
+      ...COMPONENTS.map((key) => choice(`${key} is`, signed, "0", set(key))),
+      choice("Unit", [["g", "g"], ["m/s^2", "m/s²"]], "g", set("unit")),
+      choice("Holds", [["specific-force", "specific force"], ["acceleration", "acceleration"]], "specific-force", set("quantity")),
+      button("Use this record", () => void this.take(api.map(this.document.text, motion, chosen)).then(() => this.preview())),
+    ];
+    this.record.replaceChildren(element("h3", "", `Record ${name}`), this.row(...parts));
+  }
+
+  private async preview(): Promise<void> {
+    this.curves.replaceChildren();
+    try {
+      const { time, flights } = await api.preview(this.document.text);
+      for (const [name, parts] of Object.entries(flights)) {
+        this.curves.append(element("h3", "", `${name}: load in base axes`));
+        const place = element("div");
+        this.curves.append(place);
+        const dark = prefersDark();
+        const axis: uPlot.Axis = { stroke: dark ? "#d7dbe2" : "#2c3138", grid: { stroke: dark ? "#333a44" : "#e3e5e9" } };
+        const series = COMPONENTS.map((label, i) => ({ label, stroke: lineColour(i, dark), width: 1.3 }));
+        new uPlot(
+          {
+            width: Math.max(280, this.root.clientWidth),
+            height: 200,
+            scales: { x: { time: false } },
+            axes: [{ ...axis, label: "time, s" }, { ...axis, label: "load, g" }],
+            series: [{ label: "time, s" }, ...series],
+          },
+          [time, ...parts] as uPlot.AlignedData,
+          place,
+        );
+      }
+    } catch (error) {
+      this.complain(error);
+    }
+  }
+
+  private row(...parts: HTMLElement[]): HTMLElement {
+    const row = element("div", "gbeam-row");
+    row.append(...parts);
+    return row;
+  }
+}

@@ -1,0 +1,17 @@
+// The page of `gbeam app`.
+
+import "../language"; // before uPlot
+import "uplot/dist/uPlot.min.css";
+import "../gbeam.css";
+import "./app.css";
+import { api } from "./api";
+import { Editor } from "./editor";
+import { Runs } from "./runs";
+
+const root = document.getElementById("app")!;
+const runs: Runs = new Runs((text) => void editor.read(text));
+const editor: Editor = new Editor((id) => void runs.watch(id));
+root.append(editor.root, runs.root);
+await editor.begin(await api.examples());
+await runs.watch();
+document.documentElement.dataset["gbeam"] = "drawn";

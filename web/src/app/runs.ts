@@ -1,0 +1,155 @@
+// The runs: listed, watched, cancelled, opened, compared; earlier ones are there again after a restart.
+
+import { button, element } from "../controls";
+import { format } from "../data";
+import { api, type Run } from "./api";
+
+const ACTIVE = ["queued", "running"];
+const OFTEN = 700; // ms, while something runs
+const SELDOM = 5000;
+
+interface Answer {
+  motions?: Record<string, { outcome: string; tip?: { size: { max_abs: number } }; loads?: { root_moment: { size: { max_abs: number } }; stress?: { max: number } } }>;
+  comparisons?: { verdict: string; accepted: boolean | null }[];
+}
+
+export class Runs {
+  readonly root = element("section");
+  private readonly list = element("div", "runs");
+  private readonly shown = element("div");
+  private readonly compared = new Set<string>();
+  private selected = "";
+  private drawn = "";
+  private timer = 0;
+
+  constructor(private readonly reuse: (text: string) => void) {
+    this.list.setAttribute("aria-live", "polite");
+    this.root.append(element("h2", "", "Runs"), this.list, this.shown);
+  }
+
+  /** Look at all runs now, and again after a while. */
+  async watch(select = ""): Promise<void> {
+    window.clearTimeout(this.timer);
+    if (select) this.selected = select;
+    let wait = SELDOM;
+    try {
+      const runs = await api.runs();
+      this.draw(runs);
+      if (runs.some((each) => ACTIVE.includes(each.state))) wait = OFTEN;
+    } catch (error) {
+      this.list.replaceChildren(element("p", "bad", String(error)));
+    }
+    this.timer = window.setTimeout(() => void this.watch(), wait);
+  }
+
+  private draw(runs: Run[]): void {
+    const now = JSON.stringify([runs, this.selected]);
+    if (now === this.drawn) return; // nothing that has the focus is made again without need
+    const before = JSON.parse(this.drawn || "[[]]") as [Run[], string?];
+    const was = before[0].find((each) => each.id === this.selected)?.state;
+    this.drawn = now;
+    const focused = (document.activeElement as HTMLElement | null)?.dataset["key"];
+    this.list.replaceChildren();
+    if (!runs.length) this.list.append(element("p", "faint", "none yet"));
+    for (const run of runs) this.list.append(this.row(run));
+    if (focused) this.list.querySelector<HTMLElement>(`[data-key="${focused}"]`)?.focus();
+    const chosen = runs.find((each) => each.id === this.selected);
+    if (chosen && (chosen.state !== was || before[1] !== this.selected)) void this.open(chosen);
+  }
+
+  private row(run: Run): HTMLElement {
+    const row = element("div", "gbeam-row run");
+    const kind = run.state === "done" ? "good" : ACTIVE.includes(run.state) ? "" : "bad";
+    const open = button(run.title || run.id, () => void this.watch(run.id));
+    open.classList.add("open");
+    open.dataset["key"] = `open-${run.id}`;
+    open.setAttribute("aria-pressed", String(run.id === this.selected));
+    row.append(open, element("span", kind, run.state));
+    if (ACTIVE.includes(run.state)) {
+      row.append(element("span", "faint", run.progress.replace(/^gbeam: /, "")));
+      const cancel = button("Cancel", () => void api.cancel(run.id).then(() => this.watch()));
+      cancel.dataset["key"] = `cancel-${run.id}`;
+      row.append(cancel);
+    } else if (run.files.includes("answer.json")) {
+      const label = element("label");
+      const box = element("input");
+      box.type = "checkbox";
+      box.checked = this.compared.has(run.id);
+      box.dataset["key"] = `compare-${run.id}`;
+      box.addEventListener("change", () => {
+        if (box.checked) this.compared.add(run.id);
+        else this.compared.delete(run.id);
+        if (this.compared.size > 1) void this.compare();
+      });
+      label.append(box, " compare");
+      row.append(label);
+    }
+    return row;
+  }
+
+  private async open(run: Run): Promise<void> {
+    this.shown.replaceChildren(element("h2", "", run.title || run.id));
+    if (ACTIVE.includes(run.state)) {
+      this.shown.append(element("p", "faint", `${run.state}: the report appears here`));
+      return;
+    }
+    const links = element("div", "gbeam-row");
+    links.append(
+      button("Use this scenario", () => void api.text(run.id, "scenario.toml").then((text) => this.reuse(text))),
+      ...run.files.map((name) => {
+        const link = element("a", "", name);
+        link.href = api.file(run.id, name);
+        if (name !== "report.html") link.download = name;
+        else link.target = "_blank";
+        return link;
+      }),
+    );
+    this.shown.append(links);
+    if (run.state !== "done" && run.files.includes("messages.txt")) {
+      this.shown.append(element("pre", "bad", await api.text(run.id, "messages.txt")));
+    }
+    if (run.files.includes("report.html")) {
+      const frame = element("iframe", "report");
+      frame.title = `report of ${run.title || run.id}`;
+      frame.setAttribute("sandbox", "allow-scripts");
+      frame.src = api.file(run.id, "report.html");
+      this.shown.append(frame);
+    }
+  }
+
+  /** The figures of the runs chosen, side by side. */
+  private async compare(): Promise<void> {
+    const ids = [...this.compared].sort();
+    const answers = await Promise.all(ids.map(async (id) => JSON.parse(await api.text(id, "answer.json")) as Answer));
+    const rows = new Map<string, string[]>();
+    const put = (name: string, column: number, value: string): void => {
+      if (!rows.has(name)) rows.set(name, ids.map(() => "–"));
+      rows.get(name)![column] = value;
+    };
+    answers.forEach((answer, i) => {
+      for (const [name, motion] of Object.entries(answer.motions ?? {})) {
+        put(`${name}: outcome`, i, motion.outcome);
+        if (motion.tip) put(`${name}: tip, mm`, i, format(1e3 * motion.tip.size.max_abs));
+        if (motion.loads) put(`${name}: root moment, N m`, i, format(motion.loads.root_moment.size.max_abs));
+        if (motion.loads?.stress) put(`${name}: stress, MPa`, i, format(1e-6 * motion.loads.stress.max));
+      }
+      for (const each of answer.comparisons ?? []) {
+        put("accepted", i, each.accepted === null ? "no limits set" : each.accepted ? "yes" : "no");
+        put("verdict", i, each.verdict);
+      }
+    });
+    const table = element("table");
+    const head = element("tr");
+    head.append(element("td"), ...ids.map((id) => element("th", "", id)));
+    table.append(head);
+    for (const [name, values] of rows) {
+      const line = element("tr");
+      line.append(element("th", "", name), ...values.map((value) => element("td", "", value)));
+      table.append(line);
+    }
+    const box = element("div", "gbeam-wide");
+    box.append(table);
+    this.selected = "";
+    this.shown.replaceChildren(element("h2", "", "Compared"), box);
+  }
+}

@@ -1,0 +1,14 @@
+import { defineConfig } from "vite";
+
+// The page of `gbeam app`, committed inside the Python package as the viewer is.
+export default defineConfig({
+  publicDir: "app-public",
+  build: {
+    lib: { entry: "src/app/main.ts", formats: ["es"], fileName: () => "app.js", cssFileName: "app" },
+    outDir: process.env.GBEAM_WEB_OUT ? `${process.env.GBEAM_WEB_OUT}-app` : "../src/gbeam/app/assets",
+    emptyOutDir: true,
+    minify: true,
+    rolldownOptions: { output: { minify: true } },
+    target: "es2022",
+  },
+});
