@@ -26,6 +26,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.analysis.imitation.place import place as place
     from gbeam.analysis.imitation.plan import commands as commands
     from gbeam.analysis.imitation.plan import plan as plan
+    from gbeam.analysis.response.batch import simulate_batch as simulate_batch
     from gbeam.analysis.response.initial import Initial as Initial
     from gbeam.analysis.response.settings import ResponseSettings as ResponseSettings
     from gbeam.analysis.response.simulation import simulate as simulate
@@ -143,6 +144,7 @@ _HOME = {
     "rerun": "scenario.rerun",
     "sensitivity": "studies.sensitivity",
     "simulate": "analysis.response.simulation",
+    "simulate_batch": "analysis.response.batch",
     "smoothed": "motion.profiles.profile",
     "solve_equilibrium": "analysis.equilibrium.equilibrium",
     "static": "analysis.equilibrium.static",

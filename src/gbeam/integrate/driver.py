@@ -154,7 +154,7 @@ def _nonlinear(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, s
 
     carry, corrections = begun(q, qd, qdd, steps.length[0]), newton.CORRECTIONS[scheme.order]
     sound = True
-    for chunk in _chunks(drive, scheme, steps, newton.PER_JACOBIAN[scheme.order]):
+    for chunk in chunks(drive, scheme, steps, newton.PER_JACOBIAN[scheme.order]):
         if traced:
             after, (*piece, left) = newton.steps(residual, *chunk.given(carry), corrections)
             fine = xp.max(left[chunk.inside]) <= newton.ACCEPTED
@@ -185,7 +185,7 @@ def _nonlinear(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, s
 
 
 @dataclass(frozen=True)
-class _Chunk:
+class Chunk:
     """Steps of one compiled call, and what drives the equations in them.
 
     Parameters
@@ -242,7 +242,7 @@ class _Chunk:
         return scheme.tableau(self.steps.length), carry, flat[0], flat[1]
 
 
-def _chunks(drive: Drive, scheme: Scheme, steps: Steps, size: int) -> Iterator[_Chunk]:
+def chunks(drive: Drive, scheme: Scheme, steps: Steps, size: int) -> Iterator[Chunk]:
     """Groups of `size` steps, chunk by chunk; what drives many chunks is computed at once."""
     import jax
 
@@ -258,7 +258,7 @@ def _chunks(drive: Drive, scheme: Scheme, steps: Steps, size: int) -> Iterator[_
             part = slice(first, first + len(each))
             first = part.stop
             own = jax.tree.map(lambda leaf, part=part: leaf[part], (tableau, inputs, at_ends))
-            yield _Chunk(steps[each.ravel()], last, *own)
+            yield Chunk(steps[each.ravel()], last, *own)
 
 
 def _groups(steps: Steps, size: int, *, restart: bool) -> Iterator[tuple[Any, Any]]:

@@ -6,8 +6,25 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from gbeam.arrays.tree import record
+
 Array = Any
 Drive = Callable[[Array], Any]  # times (t,) -> what drives the equations there, arrays with that leading axis
+
+
+@record
+class LinearTerms:
+    """C, K and F as sums over features φ of the inputs: C = Σ φ_k C_k, K = Σ φ_k K_k, F = Σ φ_k F_k.
+
+    Parameters
+    ----------
+    velocity, stiffness : (k, n, n)
+    force : (k, n)
+    """
+
+    velocity: Array
+    stiffness: Array
+    force: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,11 +38,15 @@ class LinearEquations:
         Inputs at times (t,) -> C (t, n, n), K (t, n, n), F (t, n).
     drive : callable
         Times (t,) s -> inputs.
+    terms, features : callable, optional
+        The same matrices as sums: their terms, and inputs at times (t,) -> features (t, k).
     """
 
     mass: Array
     matrices: Callable[[Any], tuple[Array, Array, Array]]
     drive: Drive
+    terms: Callable[[], LinearTerms] | None = None
+    features: Callable[[Any], Array] | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -44,7 +44,7 @@ def input_warnings(
     where = f"motion.{name}" if name else "motion"
     found = [*structure.warnings, *_frequency(structure)]
     if motion is not None:
-        found += implausible_motion(motion, where, span)
+        found += implausible_motion(motion, where, span, base)
         if base is None and motion.kind != "centrifuge" and not motion.free:
             base = motion.base(times(motion, span))
         elif base is None and motion.free:

@@ -14,7 +14,7 @@ from gbeam.plausibility import implausible
 SAMPLES = 501
 
 
-def implausible_motion(motion: Motion, where: str, span: tuple[float, float]) -> tuple[str, ...]:
+def implausible_motion(motion: Motion, where: str, span: tuple[float, float], base: Any = None) -> tuple[str, ...]:
     """Warnings of what is implausible in a motion; none where JAX traces it.
 
     Parameters
@@ -25,11 +25,13 @@ def implausible_motion(motion: Motion, where: str, span: tuple[float, float]) ->
         Path of the motion in the scenario.
     span : tuple of float
         First and last time, s.
+    base : Base or BaseMotion, optional
+        What the motion is at the times that matter, (t, 3), where it is known.
     """
-    return () if holds_jax(motion) else tuple(_each(motion, where, span))
+    return () if holds_jax(motion) else tuple(_each(motion, where, span, base))
 
 
-def _each(motion: Any, where: str, span: tuple[float, float]) -> Iterator[str]:
+def _each(motion: Any, where: str, span: tuple[float, float], base: Any) -> Iterator[str]:
     if motion.kind == "centrifuge":
         yield from implausible(f"{where}.arm", "arm", float(motion.geometry.arm))
         return
@@ -39,7 +41,7 @@ def _each(motion: Any, where: str, span: tuple[float, float]) -> Iterator[str]:
             yield from implausible(f"{where}.gravity", "gravity", float(np.linalg.norm(motion.mount.gravity)))
     if motion.free:
         return
-    base = motion.base(times(motion, span))
+    base = motion.base(times(motion, span)) if base is None else base
     rate, load = (float(np.linalg.norm(each, axis=-1).max()) for each in (base.w_WB_B, base.a_WO_B))
     odd = tuple(implausible(f"{where}.rate", "rate", rate))
     yield from odd or implausible(f"{where}.acceleration", "acceleration", load)

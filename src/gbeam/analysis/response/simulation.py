@@ -25,6 +25,7 @@ from gbeam.analysis.response.trajectories import (
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
 from gbeam.integrate.driver import Trajectory
+from gbeam.integrate.equations import Drive
 from gbeam.integrate.steps import Corners
 from gbeam.limits import HISTORY_BYTES, STEPS, refuse_more
 from gbeam.mechanics.section_forces import section_forces
@@ -81,30 +82,17 @@ def simulate(
     ComputationError
         If there is no relative equilibrium to start from.
     """
-    if settings is None:
-        settings = _settings(options)
-    elif options:
-        raise InputError(next(iter(options)), "is given beside settings", "give one of them")
+    settings = settings_of("simulate", settings, options)
     structure.require_damping("the response")
     motion = motion.over(settings.start, settings.start + settings.duration)
     if holds_jax(structure, motion):
         return _traced(structure, motion, settings, name)
-    coarse = first_step(structure, motion, settings)
-    given = None if settings.step is None else settings.duration / max(1, round(settings.duration / settings.step))
+    coarse, given, before, after = planned_steps(structure, motion, settings)
     kept = given or coarse
-    each = 8.0 * (3 * sum(structure.counts) + 9 * len(structure.stations))
-    most = min(STEPS, int(HISTORY_BYTES / each))
-    fix = f"give {most * kept:.3g} s or less, or fewer stations"
-    refuse_more("response.duration", "steps", settings.duration / kept, most, each, fix)
-    before, after = steps_beyond(motion, settings, kept)
     problem = problem_of(structure, motion, settings.start - before * kept, settings.begin)
 
     def too_far(y: Floats) -> int | None:
-        """A projected field means nothing once it moves by the beam's length."""
-        if structure.kind == "exact":
-            return None
-        moved = np.abs(structure.displacement(y[:, problem.first :])).max(axis=(1, 2))
-        return int(np.argmax(moved > structure.length)) + 1 if moved.max() > structure.length else None
+        return steps_within(structure, y[:, problem.first :])
 
     def how(what: str) -> dict[str, Any]:
         return {"stop": too_far, "progress": None if progress is None else lambda share: progress(what, share)}
@@ -136,8 +124,7 @@ def simulate(
         return response_of(structure, motion, settings, problem, (None, up, None), name, kept, StepErrors(), 1)
     begun = problem if up is None else going_on(problem, up)
 
-    times, end = corners(structure, motion, coarse), settings.start + settings.duration
-    felt = Corners.of(times, begun.equations.drive, settings.start, end)
+    felt = felt_corners(structure, motion, settings, coarse, begun.equations.drive)
     readings = Readings(tip, moment, loads)
 
     def run(step: float, what: str) -> Run:
@@ -162,14 +149,6 @@ def simulate(
     return response_of(structure, motion, settings, problem, (up, trajectory, down), name, step, errors, stride)
 
 
-def _settings(options: dict[str, Any]) -> ResponseSettings:
-    try:
-        return ResponseSettings(**options)
-    except TypeError as error:
-        fields = ", ".join(ResponseSettings.__dataclass_fields__)
-        raise InputError("simulate", f"cannot be called so ({error})", f"give duration, and any of {fields}") from None
-
-
 def _traced(structure: Structure, motion: Motion, settings: ResponseSettings, name: str) -> Response:
     """A run whose values JAX traces: of a given step, without a look at them."""
     if settings.step is None or settings.integrator == "adaptive":
@@ -183,3 +162,51 @@ def _traced(structure: Structure, motion: Motion, settings: ResponseSettings, na
     up, trajectory, down = split(entire, before, count, after)
     assert trajectory is not None
     return response_of(structure, motion, settings, problem, (up, trajectory, down), name, step, StepErrors(), 1)
+
+
+def settings_of(name: str, settings: ResponseSettings | None, options: dict[str, Any]) -> ResponseSettings:
+    """The settings that a function of some name is given, as such or by keyword; InputError if both or neither are."""
+    if settings is not None:
+        if options:
+            raise InputError(next(iter(options)), "is given beside settings", "give one of them")
+        return settings
+    try:
+        return ResponseSettings(**options)
+    except TypeError as error:
+        fields = ", ".join(ResponseSettings.__dataclass_fields__)
+        raise InputError(name, f"cannot be called so ({error})", f"give duration, and any of {fields}") from None
+
+
+def planned_steps(
+    structure: Structure, motion: Motion, settings: ResponseSettings
+) -> tuple[float, float | None, int, int]:
+    """Step of the results, that given or None, s, and how many steps a machine takes before and after the flight's.
+
+    Raises
+    ------
+    InputError
+        If there are too many.
+    """
+    coarse = first_step(structure, motion, settings)
+    given = None if settings.step is None else settings.duration / max(1, round(settings.duration / settings.step))
+    each = 8.0 * (3 * sum(structure.counts) + 9 * len(structure.stations))
+    most, kept = min(STEPS, int(HISTORY_BYTES / each)), given or coarse
+    fix = f"give {most * kept:.3g} s or less, or fewer stations"
+    refuse_more("response.duration", "steps", settings.duration / kept, most, each, fix)
+    return coarse, given, *steps_beyond(motion, settings, kept)
+
+
+def felt_corners(
+    structure: Structure, motion: Motion, settings: ResponseSettings, coarse: float, drive: Drive
+) -> Corners:
+    """Corners and jumps of what drives a run, at the flight's times."""
+    times, end = corners(structure, motion, coarse), settings.start + settings.duration
+    return Corners.of(times, drive, settings.start, end)
+
+
+def steps_within(structure: Structure, q: Floats) -> int | None:
+    """After how many steps of coordinates (t, n) a projected field moved by the beam's length, and means nothing."""
+    if structure.kind == "exact":
+        return None
+    moved = np.abs(structure.displacement(q)).max(axis=(1, 2))
+    return int(np.argmax(moved > structure.length)) + 1 if moved.max() > structure.length else None

@@ -17,6 +17,7 @@ from typing import Any
 
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
+from gbeam.integrate.equations import LinearTerms
 from gbeam.mechanics.fields.taylor import EPSILON, Places
 
 Array = Any
@@ -121,6 +122,29 @@ class Coefficients:
             stiffness = stiffness - term(load_values, self.loads.slope[:, :, 6:], 2)
             force = force + term(load_values, self.loads.constant[:, :, 6:], 2)
         return velocity, stiffness, force
+
+    def terms(self) -> LinearTerms:
+        """What :meth:`at` sums over :meth:`features`."""
+        xp, n = namespace(self.mass), self.size
+        flat = {name: xp.reshape(getattr(self, name), (9, *getattr(self, name).shape[2:])) for name in ("k_ww", "f_ww")}
+        stiffness = [self.stiffness[None], xp.zeros((3, n, n)), flat["k_ww"], self.k_al, self.k_a]
+        force = [xp.zeros((4, n)), flat["f_ww"], self.f_al, self.f_a]
+        if self.loads is not None:
+            stiffness.append(-xp.reshape(self.loads.slope[:, :, 6:], (-1, n, n)))
+            force.append(xp.reshape(self.loads.constant[:, :, 6:], (-1, n)))
+        velocity = [self.damping[None], self.gyroscopic]
+        rest = sum(len(part) for part in stiffness) - 4
+        velocity.append(xp.zeros((rest, n, n)))
+        return LinearTerms(xp.concatenate(velocity), xp.concatenate(stiffness), xp.concatenate(force))
+
+    def features(self, a_WO_B: Array, w_WB_B: Array, alpha_WB_B: Array, load_values: Array | None = None) -> Array:
+        """1, ω, ω ωᵀ, α, a_O and the components of the loads, (t, k), at base motions (t, 3)."""
+        xp = namespace(a_WO_B, w_WB_B, load_values)
+        w2 = w_WB_B[:, :, None] * w_WB_B[:, None, :]
+        parts = [xp.ones((len(w2), 1)), w_WB_B, xp.reshape(w2, (-1, 9)), alpha_WB_B, a_WO_B]
+        if load_values is not None and self.loads is not None:
+            parts.append(xp.reshape(load_values, (len(w2), -1)))
+        return xp.concatenate(parts, axis=1)
 
     def residual(
         self,

@@ -38,7 +38,14 @@ class Places:
 
     def positions(self, q: Any) -> Any:
         """Places at coordinates (..., n), (..., p, 3) m."""
-        return self.r0 + self._sum(q, 0.5 * _outer(q, q))
+        points, axes, n = self.first.shape
+        if points * axes > n:
+            return self.r0 + self._sum(q, 0.5 * _outer(q, q))
+        # Of few points, as of the tip, H q is smaller than q qᵀ.
+        xp = namespace(self.first, q)
+        turned = xp.reshape(q @ xp.reshape(self.second, (-1, n)).T, (*q.shape[:-1], points * axes, n))
+        curved = xp.reshape(xp.sum(turned * q[..., None, :], axis=-1), (*q.shape[:-1], points, axes))
+        return self.r0 + xp.reshape(q @ xp.reshape(self.first, (-1, n)).T, curved.shape) + 0.5 * curved
 
     def paths(self, q: Any, qd: Any, qdd: Any) -> tuple[Any, Any, Any]:
         """Places, velocities and accelerations relative to the base axes, (..., p, 3) each."""

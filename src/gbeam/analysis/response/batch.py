@@ -1,0 +1,139 @@
+"""Responses of many cases: those of one shape are integrated together."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gbeam.analysis.response.problem import Problem, problem_of
+from gbeam.analysis.response.record import response_of
+from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.simulation import (
+    felt_corners,
+    planned_steps,
+    settings_of,
+    simulate,
+    steps_within,
+)
+from gbeam.analysis.response.stepping import scheme_of
+from gbeam.arrays.namespace import holds_jax
+from gbeam.errors import InputError
+from gbeam.integrate.steps import fitted
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.protocol import Motion
+from gbeam.results.errors import StepErrors
+from gbeam.results.response import Response
+
+TOGETHER = {True: 64, False: 32}  # cases of a linear model and of others: what they carry stays in a cache
+
+
+@dataclass(frozen=True, eq=False)
+class _Case:
+    """A case that waits for others of its shape."""
+
+    index: int
+    structure: Structure
+    motion: Motion
+    problem: Problem
+    run: Any
+
+
+def simulate_batch(
+    cases: Iterable[tuple[Structure, Motion]], settings: ResponseSettings | None = None, **options: Any
+) -> Iterator[tuple[int, Response]]:
+    """Compute the responses of many cases, with a given step and without an estimate of their errors.
+
+    Cases of one shape are integrated together, 64 of a linear model or 32 of another at a time, by the same steps that
+    :func:`simulate` takes: of one model with equal numbers of shapes, in environments of one kind whose corners split
+    as many steps. A machine that spins up, and a case whose corrections fail, are integrated alone. No more cases are
+    taken from `cases` than wait for others of their shape.
+
+    Parameters
+    ----------
+    cases : iterable of (Structure, motion)
+    settings : ResponseSettings, optional
+        Or what it is made of, by keyword: ``simulate_batch(cases, duration=10.0, step=0.01)``; ``estimate`` is false
+        then unless it is given.
+
+    Yields
+    ------
+    int, Response
+        Place among the cases, and response, in the order in which they are computed.
+
+    Raises
+    ------
+    InputError
+        If there is no step, an estimate is to be made, or as :func:`simulate` does.
+    ComputationError
+        If a case has no relative equilibrium to start from.
+
+    Notes
+    -----
+    A batch judges nothing: simulate one or a few of its cases with an estimate.
+    """
+    settings = settings_of("simulate_batch", settings, options if settings else {"estimate": False, **options})
+    if settings.step is None or settings.integrator == "adaptive":
+        raise InputError("step", "is automatic, and cases that are integrated together share one", "give a step, s")
+    if settings.estimate:
+        raise InputError("estimate", "is true, and a batch estimates no errors", "give estimate = False")
+    return _responses(cases, settings)
+
+
+def _responses(cases: Iterable[tuple[Structure, Motion]], settings: ResponseSettings) -> Iterator[tuple[int, Response]]:
+    waiting: dict[Hashable, list[_Case]] = {}
+    for index, (structure, motion) in enumerate(cases):
+        case, shape = _posed(index, structure, motion, settings)
+        if case is None:
+            yield index, simulate(structure, motion, settings)
+            continue
+        queue = waiting.setdefault((type(motion), structure.linear, shape), [])
+        queue.append(case)
+        if len(queue) == TOGETHER[structure.linear]:
+            yield from _together(queue, settings)
+            queue.clear()
+    for queue in waiting.values():
+        yield from _together(queue, settings)
+
+
+def _posed(
+    index: int, structure: Structure, motion: Motion, settings: ResponseSettings
+) -> tuple[_Case | None, Hashable]:
+    """A case and its shape; None of one that is to be integrated alone."""
+    from gbeam.integrate.batch import Run
+
+    structure.require_damping("the response")
+    motion = motion.over(settings.start, settings.start + settings.duration)
+    if holds_jax(structure, motion):
+        raise InputError("simulate_batch", "is given what JAX traces", "map simulate over it with jax.vmap")
+    coarse, step, before, after = planned_steps(structure, motion, settings)
+    if before or after:
+        return None, None
+    assert step is not None
+    problem = problem_of(structure, motion, settings.start, settings.begin)
+    felt = felt_corners(structure, motion, settings, coarse, problem.equations.drive)
+    count, scheme = round(settings.duration / step), scheme_of(settings)
+    steps = fitted(settings.start, step, count, felt.felt_by(scheme))
+    run = Run(problem.equations, np.asarray(problem.q), np.asarray(problem.qd), steps)
+    shape = run.shape(scheme)
+    return None if shape is None else _Case(index, structure, motion, problem, run), shape
+
+
+def _together(queue: list[_Case], settings: ResponseSettings) -> Iterator[tuple[int, Response]]:
+    from gbeam.integrate.batch import integrate_together
+
+    if not queue:
+        return
+    # Filled with its last case, so that one program serves every number of them.
+    filling = [queue[-1].run] * (TOGETHER[queue[0].structure.linear] - len(queue) if len(queue) > 1 else 0)
+    trajectories = integrate_together([case.run for case in queue] + filling, scheme_of(settings))
+    for case, trajectory in zip(queue, trajectories, strict=False):
+        structure, motion, problem = case.structure, case.motion, case.problem
+        # One that leaves what its model can mean stops there.
+        if trajectory is None or steps_within(structure, trajectory.q[:, problem.first :]) is not None:
+            yield case.index, simulate(structure, motion, settings)
+            continue
+        runs, step = (None, trajectory, None), settings.duration / (len(trajectory.time) - 1)
+        yield case.index, response_of(structure, motion, settings, problem, runs, "", step, StepErrors(), 1)

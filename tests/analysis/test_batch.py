@@ -1,0 +1,91 @@
+"""Many cases at once are the same cases one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+from gbeam.analysis.response import batch
+
+from ..specimens import appendage, hub_beam, laden
+
+
+@pytest.fixture(autouse=True)
+def _few(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(batch, "TOGETHER", {True: 4, False: 2})
+
+
+def slew(level: float, duration: float) -> gb.Hub:
+    return gb.Hub(radius=0.5, rate=gb.SmoothStep(level, duration))
+
+
+def agree(cases: list[tuple[gb.Structure, Any]], within: float, **how: Any) -> list[gb.Response]:
+    together = dict(gb.simulate_batch(cases, **how))
+    assert sorted(together) == list(range(len(cases)))
+    for k, (structure, motion) in enumerate(cases):
+        alone = gb.simulate(structure, motion, estimate=False, **how)
+        size = np.abs(alone.displacement).max()
+        assert together[k].outcome == alone.outcome and together[k].warnings == alone.warnings
+        np.testing.assert_array_equal(together[k].time, alone.time)
+        np.testing.assert_allclose(together[k].displacement, alone.displacement, rtol=0, atol=within * size)
+        np.testing.assert_allclose(together[k].peaks.max_abs, alone.peaks.max_abs, rtol=0, atol=within * size)
+        np.testing.assert_allclose(together[k].q, alone.q, rtol=0, atol=within * np.abs(alone.q).max())
+        np.testing.assert_allclose(together[k].qdd, alone.qdd, rtol=0, atol=10 * within * np.abs(alone.qdd).max())
+    return [together[k] for k in range(len(cases))]
+
+
+@pytest.mark.parametrize(("integrator", "step"), [("newmark", 0.02), ("gauss", 0.05), ("generalized-alpha", 0.02)])
+def test_slews_of_many_rates_and_durations(integrator: str, step: float) -> None:
+    """Some share their corners' places among the steps and some do not; one has a structure of other sizes."""
+    model, other = hub_beam("FOAM", y=2), hub_beam("FOAM", axial=0, y=2)
+    motions = [(3.0, 2.0), (2.5, 2.0), (2.0, 1.03), (3.0, 1.57), (1.0, 0.41)]
+    cases = [(model, slew(*each)) for each in motions] + [(other, slew(3.0, 2.0)), (other, slew(2.0, 2.0))]
+    agree(cases, 1e-11, duration=3.0, integrator=integrator, step=step)
+
+
+def test_flights_with_loads_and_structures_of_their_own() -> None:
+    """Everything at once: bodies off the axis, springs, loads that follow; damping and stiffness differ."""
+    stiffer = gb.assemble(appendage(gb.PointMass(8.0, 0.2), damping_ratio=0.02), "FOAM", axial=1, y=2)
+    flights = [gb.Flight(x=1.0, y=gb.trapezoid(a, jerk=10 * a, start=0.1, hold=0.5), z=0.5) for a in (1.0, 2.0)]
+    cases = [(structure, flight) for structure in (laden("FOAM"), stiffer, hub_beam("FOAM", y=2)) for flight in flights]
+    agree(cases, 1e-11, duration=1.0, integrator="newmark", step=0.02, loads=True)
+
+
+@pytest.mark.parametrize("integrator", ["gauss", "newmark"])
+def test_free_hubs(integrator: str) -> None:
+    """Of FOAM, whose equations are polynomials; torques with a jump are split there, and the scheme starts anew."""
+    model = hub_beam("FOAM", y=2)
+    torques = [gb.Sine(200.0, 2.0), gb.Sine(150.0, 2.0), gb.Sine(100.0, 1.03), gb.Sine(50.0, 0.97)]
+    cases = [(model, gb.Hub(radius=0.5, inertia=200.0, torque=torque)) for torque in torques]
+    agree(cases, 1e-7, duration=3.0, integrator=integrator, step=0.02)
+
+
+def test_a_case_that_leaves_its_model_or_cannot_be_solved_is_integrated_alone() -> None:
+    """TLAM beyond its critical speed beside a slow slew: the same outcome and message as alone."""
+    model = hub_beam("TLAM", y=2)
+    responses = agree([(model, slew(0.5, 2.0)), (model, slew(30.0, 0.5))], 1e-9, duration=8.0, step=0.02)
+    assert [each.outcome for each in responses] == ["done", "diverged"]
+
+
+def test_no_more_cases_are_taken_than_wait_for_others() -> None:
+    taken = []
+
+    def cases() -> Iterator[tuple[gb.Structure, gb.Hub]]:
+        for k in range(9):
+            taken.append(k)
+            yield hub_beam("FOAM", y=2), slew(1.0 + 0.1 * k, 2.0)
+
+    responses = gb.simulate_batch(cases(), duration=3.0, integrator="newmark", step=0.02)
+    assert next(responses)[0] == 0 and taken == [0, 1, 2, 3]
+    assert len(list(responses)) == 8
+
+
+def test_what_a_batch_refuses() -> None:
+    cases = [(hub_beam("FOAM", y=2), slew(1.0, 2.0))]
+    for how, words in (({}, "step is automatic"), ({"step": 0.1, "estimate": True}, "a batch estimates no errors")):
+        with pytest.raises(gb.InputError, match=words):
+            gb.simulate_batch(cases, duration=3.0, **how)
