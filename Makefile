@@ -63,6 +63,7 @@ fuzz: .venv/dev-installed
 benchmark: .venv/dev-installed
 	$(BIN)/python benchmarks/latency.py
 	$(BIN)/python benchmarks/exudyn.py
+	$(BIN)/python benchmarks/batch.py
 
 # One: .venv/bin/python -m mutants WORDS OF ITS NAME
 mutants: .venv/dev-installed
