@@ -64,6 +64,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.motion.profiles.pulse import SmoothStep as SmoothStep
     from gbeam.results.fit import Fit as Fit
     from gbeam.results.imitation.comparison import Comparison as Comparison
+    from gbeam.results.optimum import Optimum as Optimum
     from gbeam.results.response import Response as Response
     from gbeam.results.sensitivity import Sensitivity as Sensitivity
     from gbeam.results.steady.state_space import Gauge as Gauge
@@ -79,6 +80,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.structure.section import Section as Section
     from gbeam.structure.support import Root as Root
     from gbeam.studies.fit import fit as fit
+    from gbeam.studies.optimise import optimise as optimise
     from gbeam.studies.sensitivity import sensitivity as sensitivity
     from gbeam.sweeps.sweep import sweep as sweep
 
@@ -104,6 +106,7 @@ _HOME = {
     "MachineLimits": "motion.centrifuge.machine.limits",
     "Material": "structure.material",
     "Model": "mechanics.models",
+    "Optimum": "results.optimum",
     "PointMass": "structure.bodies",
     "Response": "results.response",
     "ResponseSettings": "analysis.response.settings",
@@ -137,6 +140,7 @@ _HOME = {
     "modal_truncation": "analysis.control.reduction",
     "modes": "analysis.vibration.modal",
     "nonlinear_system": "analysis.control.nonlinear",
+    "optimise": "studies.optimise",
     "place": "analysis.imitation.place",
     "plan": "analysis.imitation.plan",
     "read_record": "motion.bases.records.record",

@@ -81,17 +81,16 @@ def test_exact_data_of_three_kinds_give_the_true_values(released: Path) -> None:
 
 
 @pytest.mark.slow
-def test_true_values_lie_within_two_sigma_in_95_of_100_trials(released: Path) -> None:
+def test_true_values_lie_within_two_sigma_in_trials(released: Path) -> None:
     tip, _, _ = histories(released)
     random, inside = np.random.default_rng(2026), np.zeros(2)
-    for _ in range(100):
+    for _ in range(30):  # of 100, 96 and 94 were inside
         noisy = tip + 0.02 * np.abs(tip).max() * random.standard_normal(len(tip))
         found = gb.fit(released, written("data.csv", "time,tip.z", TIME, noisy), [E, DAMPING])
         assert np.abs(found.values / list(TRUE.values()) - 1).max() < 0.2
         inside += np.abs(found.values - list(TRUE.values())) <= 2 * found.errors
-    # Of 100 draws that are inside with a probability of 95.4 %, 90 or fewer are so once in 25 times.
-    assert (inside >= 90).all(), inside
-    print(inside)
+    # Of 30 that are inside with a probability of 95.4 %, 25 or fewer are so once in a hundred times.
+    assert (inside > 25).all(), inside
 
 
 def test_frequencies_and_damping_give_the_values_and_their_errors(released: Path) -> None:
@@ -170,7 +169,7 @@ def test_the_command_writes_a_scenario_with_the_values(released: Path, gbeam: Ca
     facts = json.loads(done.out)
     assert facts["parameters"][E]["value"] == pytest.approx(TRUE[E], rel=1e-6)
     text = Path("fitted.toml").read_text(encoding="utf-8")
-    assert 'youngs_modulus = "66.0' in text and "# as it came\ndamping_ratio = 0.013" in text
+    assert 'youngs_modulus = "66 GPa"' in text and "# as it came\ndamping_ratio = 0.013" in text
     assert gb.read_scenario("fitted.toml").beam.material.youngs_modulus == pytest.approx(TRUE[E], rel=1e-6)
     assert sorted(path.name for path in Path("found").iterdir()) == ["fit.nc", "fit.png", "fit.svg"]
     assert gbeam(*words, "--write", "x.toml", "--set", "beam.length=0.2").status == 2

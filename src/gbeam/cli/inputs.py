@@ -167,3 +167,15 @@ def numbers(option: str, text: str, kind: str) -> list[float]:
 def names(texts: Sequence[str]) -> list[str]:
     """Names given to an option that may be repeated, separated by commas in each."""
     return [name.strip() for text in texts for name in text.split(",") if name.strip()]
+
+
+def search_bounds(texts: Sequence[str]) -> dict[str, tuple[str, str]]:
+    """Bounds of the values of a search, each ``PATH=LOW:HIGH``, by path."""
+    found = {}
+    for text in texts:
+        path, equals, ends = text.partition("=")
+        low, colon, high = ends.partition(":")
+        if not (equals and colon):
+            raise InputError("--bounds", f"is {text!r}", 'write "beam.damping_ratio=0.1 %:5 %"')
+        found[path.strip()] = (low.strip(), high.strip())
+    return found

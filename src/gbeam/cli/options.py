@@ -100,6 +100,20 @@ Speed = Annotated[
     str | None, Parameter(help='Such as "60 rpm"; by default from rest to the largest rate of the motion.')
 ]
 
+# Of fit and optimize.
+SearchBounds = Annotated[
+    tuple[str, ...],
+    Parameter(
+        name="--bounds",
+        negative="",
+        show_default=False,
+        help='Of a value, "beam.damping_ratio=0.1 %:5 %"; by default a tenth to ten times the scenario\'s.',
+    ),
+]
+WriteTo = Annotated[
+    Path | None, Parameter(name="--write", help="A scenario to write, with the values found and its comments.")
+]
+
 # Of place.
 Measure = Annotated[
     str,

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gbeam.cli.inputs import naming
 from gbeam.cli.publication import publish
 from gbeam.printable import printable
 
@@ -14,6 +15,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from rich.console import RenderableType
 
+    from gbeam.results.fit import Fit
+    from gbeam.results.optimum import Optimum
+
+CHANGE_FIRST = "change the file itself first: it is what --write copies"
 _PLAIN_WIDTH = 110  # columns of a table where stdout is a file
 
 
@@ -79,3 +84,12 @@ def write_json(file: Path, facts: Mapping[str, Any]) -> None:
     from gbeam.report import as_json
 
     file.write_text(as_json(facts) + "\n", encoding="utf-8")
+
+
+def write_found(answer: Fit | Optimum, scenario: Path, file: Path) -> None:
+    """Write a scenario with the values that a search found."""
+    from gbeam.studies.bounds import with_values
+
+    with naming("--write"):
+        text, place = with_values(answer.parameters, answer.values.tolist(), scenario, file.parent), file.resolve()
+        publish(place.parent, lambda hidden: (hidden / place.name).write_bytes(text.encode()))

@@ -32,6 +32,7 @@ VERBS = {
     "sweep": "Figures of many cases: over ranges, lists or samples of any values of a scenario.",
     "sensitivity": "Which values of a scenario a figure depends on, and how much.",
     "report": "Write a result as one page of HTML: tables, plots that zoom, and the beam in motion.",
+    "optimize": "Values of a scenario at which a figure is least, within limits.",
     "fit": "Values of a scenario from a measurement, by least squares.",
     "rerun": "Compute a result again from what its file says, and compare every number.",
     "app": "Edit, run and compare scenarios in a browser, on this computer only.",

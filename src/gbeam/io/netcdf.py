@@ -21,6 +21,7 @@ from gbeam.io.fits import fit_group
 from gbeam.io.groups import Group, Variable
 from gbeam.io.hdf5 import write_groups
 from gbeam.io.machine import plan_group
+from gbeam.io.optima import optimum_group
 from gbeam.io.provenance import provenance_attrs, provenance_variables
 from gbeam.io.responses import response_group
 from gbeam.io.sensitivities import sensitivity_group
@@ -31,6 +32,7 @@ from gbeam.results.fit import Fit
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.placement import Placement
 from gbeam.results.machine import MachinePlan
+from gbeam.results.optimum import Optimum
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
@@ -55,6 +57,7 @@ _GROUPS: dict[type, Callable[[Any], Group]] = {
     Critical: critical_group,
     CriticalMap: critical_map_group,
     Fit: fit_group,
+    Optimum: optimum_group,
     MachinePlan: plan_group,
     ModelStudy: models_group,
     Placement: placement_group,

@@ -16,6 +16,7 @@ from gbeam.plots.environment import plot_base, plot_hub
 from gbeam.plots.fit import plot_fit
 from gbeam.plots.loads import plot_loads, plot_loads_along
 from gbeam.plots.machine import plot_axes, plot_tracking
+from gbeam.plots.optimum import plot_optimum
 from gbeam.plots.sensitivity import plot_sensitivity
 from gbeam.plots.steady import plot_campbell, plot_critical_map, plot_modes, plot_static
 from gbeam.plots.sweep import plot_sweep
@@ -24,6 +25,7 @@ from gbeam.plots.uncertainty import plot_history, plot_indices, plot_probability
 from gbeam.results.fit import Fit
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.machine import AxesResult, MachinePlan
+from gbeam.results.optimum import Optimum
 from gbeam.results.response import Response
 from gbeam.results.sensitivity import Sensitivity
 from gbeam.results.steady.equilibrium import Deflection
@@ -55,8 +57,8 @@ def figures(result: Any, title: str = "") -> dict[str, Draw]:
 
     Parameters
     ----------
-    result : Response, Study, Comparison, Modes, Campbell, Deflection, CriticalMap, MachinePlan, Sweep, Fit or
-        Sensitivity
+    result : Response, Study, Comparison, Modes, Campbell, Deflection, CriticalMap, MachinePlan, Sweep, Fit,
+        Optimum or Sensitivity
     title : str
         First line above each; a study has its own.
     """
@@ -86,6 +88,8 @@ def figures(result: Any, title: str = "") -> dict[str, Draw]:
             return _of_sweep(result, title)
         case Fit():
             return {"fit": partial(plot_fit, result, title)}
+        case Optimum():
+            return {"optimum": partial(plot_optimum, result, title)}
         case Sensitivity():
             return {name: partial(plot_sensitivity, result, name, title) for name in result.measures}
     raise TypeError(f"{type(result).__name__} has no figures")

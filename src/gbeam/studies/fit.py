@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,16 +14,14 @@ from gbeam.results.fit import Fit, FittedColumn
 from gbeam.results.result import Floats
 from gbeam.scenario.load import load
 from gbeam.scenario.origin import provenance
-from gbeam.scenario.text.edit import with_quantities
-from gbeam.scenario.text.units import UnitError, argument
+from gbeam.studies.bounds import Bounds, bounds_of, named
 from gbeam.studies.derivatives import Progress
 from gbeam.studies.least_squares import Fitted, Solution, search, tell_apart
 from gbeam.studies.measurement import Measurement, read_measurement
-from gbeam.studies.parameters import PhysicalValue, physical_values
+from gbeam.studies.parameters import PhysicalValue
 from gbeam.sweeps.evaluate import Question
 
 OPTION = "--free"
-_NEAR, _FAR = 0.1, 10.0  # times the scenario's value: bounds where none are given
 _HARDLY = 0.99  # correlation of two values
 _TIED = 0.7  # correlation of residuals with the next ones, which noise does not have
 _VISIBLE = 1e-5  # of the largest datum: residuals that are less are rounding
@@ -35,7 +32,7 @@ def fit(
     data: str | os.PathLike[str],
     free: Sequence[str],
     *,
-    bounds: Mapping[str, tuple[float | str, float | str]] | None = None,
+    bounds: Bounds | None = None,
     motion: str | None = None,
     at: float | None = None,
     overrides: Sequence[str] = (),
@@ -82,77 +79,19 @@ def fit(
     assert base.source is not None  # it was read from a file
     if isinstance(free, str) or not free:
         raise InputError(OPTION, "is missing", 'name values: --free "beam.material.youngs_modulus"')
-    parameters = _named(physical_values, base, free)
+    parameters = named(base, free, OPTION)
     question = Question(base.source, "run", motion, at)
     case = question.case(())
     measurement = read_measurement(data, case, motion)
     if len(measurement.values) <= len(parameters):
         problem = f"names {len(parameters)} values for {len(measurement.values)} data"
         raise InputError(OPTION, problem, "measure more, or free fewer")
-    limits = np.array([_bounds(each, bounds or {}) for each in parameters])
+    limits = np.array([bounds_of(each, bounds or {}, OPTION) for each in parameters])
     model = Fitted(
         replace(question, verb="modes") if measurement.modal else question, parameters, measurement, progress
     )
     found = search(model, np.array([each.value for each in parameters]), limits)
     return replace(_described(model, parameters, limits, found), title=base.title, provenance=provenance(base))
-
-
-def _named(find: Any, base: Any, names: Sequence[str]) -> list[PhysicalValue]:
-    try:
-        found: list[PhysicalValue] = find(base, names)
-    except InputError as error:
-        raise InputError(OPTION, error.problem, error.fix) from None
-    return found
-
-
-def _bounds(each: PhysicalValue, given: Mapping[str, tuple[float | str, float | str]]) -> tuple[float, float]:
-    if each.path in given:
-        low, high = (_quantity(each, end) for end in given[each.path])
-        if not low < high:
-            raise InputError("--bounds", f"of {each.path} go from {low:g} to {high:g}", "give the smaller one first")
-        if not low <= each.value <= high:
-            fix = f"begin between them: --set {each.path}={(low + high) / 2:g}"
-            raise InputError("--bounds", f"of {each.path} leave out the scenario's value, {each.value:g}", fix)
-        return low, high
-    if each.value == 0:
-        fix = f"give a value to begin with (--set {each.path}=...), or bounds"
-        raise InputError(OPTION, f"names {each.path}, which is zero", fix)
-    ends = sorted((_NEAR * each.value, _FAR * each.value))
-    return ends[0], ends[1]
-
-
-def _quantity(each: PhysicalValue, text: float | str) -> float:
-    try:
-        return argument(text, each.kind) if isinstance(text, str) else float(text)
-    except UnitError as error:
-        raise InputError("--bounds", f"of {each.path}: {error.problem}", error.hint) from None
-
-
-def fitted_text(fit: Fit, scenario: str | os.PathLike[str], folder: str | os.PathLike[str]) -> str:
-    """The scenario's text with the values found, each in its own unit; all else stays, comments too.
-
-    Parameters
-    ----------
-    fit : Fit
-    scenario : path
-        That was fitted, without overrides.
-    folder : path
-        In which the text is to be saved.
-
-    Raises
-    ------
-    InputError
-        If the text is written in a way that cannot be changed, or names records that lie in another folder.
-    """
-    base = load(scenario)
-    assert base.source is not None  # it was read from a file
-    recorded = any(getattr(motion, "record", None) is not None for motion in base.motion.values())
-    if recorded and Path(folder).resolve() != base.source.folder.resolve():
-        fix = f"write it beside {os.fspath(scenario)}"
-        raise InputError(os.fspath(folder), "is not the folder that the scenario's records are named from", fix)
-    found = zip(physical_values(base, fit.parameters), fit.values, strict=True)
-    changes = {path: (float(value), each.kind) for each, value in found for path in (each.path, *each.followers)}
-    return with_quantities(base.source, changes)
 
 
 def _described(model: Fitted, parameters: Sequence[PhysicalValue], limits: Floats, found: Solution) -> Fit:

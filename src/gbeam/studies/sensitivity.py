@@ -90,10 +90,10 @@ def sensitivity(
     if not chosen:
         raise InputError("--with", "has no value that may be a little more and a little less", "name some")
     about = Neighbourhood(question, chosen, progress=progress)
-    facts = _facts(about.answer)
+    facts = facts_of(about.answer)
     keys = tuple(figure(facts, name) for name in of)
     motions, about.parts = needed(keys, about.case.tracks)
-    slopes = about.slopes(lambda _, answer: _values(_facts(answer), keys), motions)
+    slopes = about.slopes(lambda _, answer: values_at(facts_of(answer), keys), motions)
     units = tuple(unit_at(facts, each) for each in keys)
     kinks = _kinks(slopes, [each.value for each in chosen], units)
     kinked = [
@@ -167,11 +167,11 @@ def needed(keys: Sequence[Keys], tracks: Mapping[str, str]) -> tuple[list[str], 
     return list(found), {"loads": loads, "axes": axes}
 
 
-def _facts(answer: Any) -> Facts:
+def facts_of(answer: Any) -> Facts:
     return study_facts(answer) if isinstance(answer, Study) else answer
 
 
-def _values(facts: Facts, keys: Sequence[Keys]) -> Floats:
+def values_at(facts: Facts, keys: Sequence[Keys]) -> Floats:
     return np.array([value_at(facts, each) for each in keys])
 
 

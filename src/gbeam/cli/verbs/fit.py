@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from cyclopts import Parameter
 
 from gbeam.cli.console import Watch
-from gbeam.cli.inputs import names, naming, number, signed
+from gbeam.cli.inputs import names, number, search_bounds, signed
 from gbeam.cli.invocation import command
-from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile
-from gbeam.cli.outputs import list_files, show
+from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile, SearchBounds, WriteTo
+from gbeam.cli.outputs import CHANGE_FIRST, list_files, show, write_found
 from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.errors import InputError
-
-if TYPE_CHECKING:
-    from gbeam.results.fit import Fit
 
 
 def fit(
@@ -41,20 +37,10 @@ def fit(
             help='Values to find, "beam.material.youngs_modulus, beam.damping_ratio".',
         ),
     ] = (),
-    bounds: Annotated[
-        tuple[str, ...],
-        Parameter(
-            name="--bounds",
-            negative="",
-            show_default=False,
-            help='Of a value, "beam.damping_ratio=0.1 %:5 %"; by default a tenth to ten times the scenario\'s.',
-        ),
-    ] = (),
+    bounds: SearchBounds = (),
     motion: MotionName = None,
     at: At = None,
-    write: Annotated[
-        Path | None, Parameter(name="--write", help="A scenario to write, with the values found and its comments.")
-    ] = None,
+    write: WriteTo = None,
     overrides: Overrides = (),
     out: Out = None,
     json: Json = False,
@@ -67,11 +53,11 @@ def fit(
     if out is not None:
         refuse_unwritable(out)
     if write is not None and overrides:
-        raise InputError("--write", "is given beside --set", "change the file itself first: it is what --write copies")
+        raise InputError("--write", "is given beside --set", CHANGE_FIRST)
 
     from gbeam.studies.fit import fit as compute
 
-    limits = _bounds(bounds)
+    limits = search_bounds(bounds)
     with Watch() as watch:
         time = None if at is None else number("--at", at, "time")
         answer = compute(
@@ -91,30 +77,10 @@ def fit(
 
     files = [] if out is None else publish(out, make)
     if write is not None:
-        _write(answer, scenario, write)
+        write_found(answer, scenario, write)
     show(report.text(answer), signed(report.to_json(answer, files), answer.provenance), json)
     if not json:
         if write is not None:
             print(f"\n{write} has these values")
         list_files(out, files)
     return 0
-
-
-def _bounds(texts: Sequence[str]) -> dict[str, tuple[str, str]]:
-    found = {}
-    for text in texts:
-        path, equals, ends = text.partition("=")
-        low, colon, high = ends.partition(":")
-        if not (equals and colon):
-            raise InputError("--bounds", f"is {text!r}", 'write "beam.damping_ratio=0.1 %:5 %"')
-        found[path.strip()] = (low.strip(), high.strip())
-    return found
-
-
-def _write(answer: Fit, scenario: Path, file: Path) -> None:
-    """Write the scenario with the values found."""
-    from gbeam.studies.fit import fitted_text
-
-    with naming("--write"):
-        text, place = fitted_text(answer, scenario, file.parent), file.resolve()
-        publish(place.parent, lambda hidden: (hidden / place.name).write_bytes(text.encode()))

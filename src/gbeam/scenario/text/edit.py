@@ -85,8 +85,8 @@ def with_quantities(source: Source, changes: Mapping[str, tuple[float, str]]) ->
         plain = replace(source, text=text, data=before, overrides=())
         old = plain.raw((*table, key))
         unit, size = unit_of(old, kind) if isinstance(old, str) else ("", 1.0)
-        number = float(f"{value / size:.8g}")
-        written: str | float = f"{number!r} {unit}" if unit else number
+        number = f"{value / size:.8g}"
+        written: str | float = f"{number} {unit}" if unit else float(number)
         text = edited(replace(source, text=text, overrides=()), tuple(table), {key: written})
     return text
 

@@ -1,0 +1,106 @@
+"""``gbeam optimize``: values of a scenario at which a figure is least."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import Parameter
+
+from gbeam.cli.console import Watch
+from gbeam.cli.failures import FAILED, complain
+from gbeam.cli.inputs import names, number, search_bounds, signed
+from gbeam.cli.invocation import command
+from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile, SearchBounds, WriteTo
+from gbeam.cli.outputs import CHANGE_FIRST, list_files, show, write_found
+from gbeam.cli.publication import publish, refuse_unwritable
+from gbeam.errors import InputError
+
+Verb = Literal["run", "static", "modes", "critical-speed", "plan"]
+
+
+def optimize(
+    scenario: ScenarioFile,
+    /,
+    *,
+    minimise: Annotated[
+        str, Parameter(name=["--minimise", "--minimize"], help='A figure of the verb, "tip.y.residual_amplitude".')
+    ],
+    over: Annotated[
+        tuple[str, ...],
+        Parameter(
+            name="--over",
+            negative="",
+            show_default=False,
+            help='Values to choose, "motion.centrifuge.control_point, motion.centrifuge.smoothing".',
+        ),
+    ] = (),
+    subject_to: Annotated[
+        tuple[str, ...],
+        Parameter(
+            name="--subject-to",
+            negative="",
+            show_default=False,
+            help='"limits" of the machines, or a bound on a figure, "tip.z.max_abs <= 2 mm"; any number of times.',
+        ),
+    ] = (),
+    bounds: SearchBounds = (),
+    verb: Annotated[Verb, Parameter(help="Whose figures.")] = "run",
+    motion: MotionName = None,
+    at: At = None,
+    write: WriteTo = None,
+    overrides: Overrides = (),
+    out: Out = None,
+    json: Json = False,
+) -> int:
+    """Find the values of a scenario at which a figure is least, within bounds and limits, by exact derivatives.
+
+    The search finds the nearest valley, from the scenario's values. With --out also writes optimum.nc and a plot of the
+    way. Exit status: 0 done, 1 no values within the bounds keep the requirements, 2 the input is wrong.
+    """
+    if out is not None:
+        refuse_unwritable(out)
+    if write is not None and overrides:
+        raise InputError("--write", "is given beside --set", CHANGE_FIRST)
+
+    from gbeam.studies.optimise import optimise as compute
+
+    required = [each.strip() for text in subject_to for each in text.split(",") if each.strip()]
+    with Watch() as watch:
+        answer = compute(
+            scenario,
+            minimise,
+            names(over),
+            subject_to=required,
+            bounds=search_bounds(bounds),
+            verb=verb,
+            motion=motion,
+            at=None if at is None else number("--at", at, "time"),
+            overrides=overrides,
+            progress=watch,
+        )
+
+    assert answer.provenance is not None  # it is of a scenario
+    answer = replace(answer, provenance=replace(answer.provenance, command=command()))
+
+    def make(hidden: Path) -> None:
+        from gbeam.plots import save
+
+        answer.save(hidden / "optimum.nc")
+        save(answer.plot(), hidden, "optimum", "gbeam optimize")
+
+    from gbeam.report.study import optimum as report
+
+    files = [] if out is None else publish(out, make)
+    if write is not None:
+        write_found(answer, scenario, write)
+    show(report.text(answer), signed(report.to_json(answer, files), answer.provenance), json)
+    if not json:
+        if write is not None:
+            print(f"\n{write} has these values")
+        list_files(out, files)
+    if answer.outcome != "done":
+        complain(f"{answer.outcome}: no values were found that keep the requirements")
+        return FAILED
+    return 0

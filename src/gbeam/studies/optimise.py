@@ -1,0 +1,307 @@
+"""Design: the values of a scenario at which a figure is least, within limits."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from gbeam.analysis.response.differentiated import Grid
+from gbeam.analysis.study.case import Case
+from gbeam.errors import ComputationError, InputError
+from gbeam.mechanics.models import Model
+from gbeam.results.optimum import BROKEN, Optimum, Requirement
+from gbeam.results.result import Floats
+from gbeam.results.study import Study
+from gbeam.scenario.load import load
+from gbeam.scenario.origin import provenance
+from gbeam.scenario.text.kinds import KINDS
+from gbeam.scenario.text.units import UnitError, argument
+from gbeam.studies.bounds import Bounds, bounds_of, named
+from gbeam.studies.derivatives import Neighbourhood, Progress
+from gbeam.studies.parameters import PhysicalValue
+from gbeam.studies.sensitivity import facts_of, figure, needed, values_at
+from gbeam.sweeps.answers import Facts
+from gbeam.sweeps.evaluate import Question
+from gbeam.sweeps.measures import Keys, unit_at
+
+OPTION, SUBJECT = "--minimise", "--subject-to"
+LIMITS = "limits"
+_BOUND = re.compile(r"\s*(\S+)\s*(<=|>=)\s*(.+?)\s*")
+_PRECISE, _EVALUATIONS = 1e-7, 40
+_FEASIBLE = 1e-4  # of a bound: less is no excess
+
+
+@dataclass(frozen=True)
+class Goal:
+    """What is minimised, and what is required."""
+
+    objective: Keys
+    required: tuple[tuple[str, Keys, float, float], ...]
+    unit: str
+
+    @property
+    def keys(self) -> tuple[Keys, ...]:
+        """Of all figures, the objective first."""
+        return (self.objective, *(keys for _, keys, _, _ in self.required))
+
+
+def optimise(
+    scenario: str | os.PathLike[str],
+    minimise: str,
+    over: Sequence[str],
+    *,
+    subject_to: Sequence[str] = (),
+    bounds: Bounds | None = None,
+    verb: str = "run",
+    motion: str | None = None,
+    at: float | None = None,
+    overrides: Sequence[str] = (),
+    progress: Progress | None = None,
+) -> Optimum:
+    """Find the values of a scenario at which a figure is least.
+
+    The search (sequential least squares programming) goes from the scenario's values along exact derivatives, by the
+    steps that the scenario's own run needs; the figures of the answer come from a run with its own. It finds the
+    nearest valley: begin elsewhere to find others.
+
+    Parameters
+    ----------
+    scenario : path
+        Of the scenario file.
+    minimise : str
+        A figure of the verb's JSON by the end of its path, such as ``tip.y.residual_amplitude``. Of a figure without a
+        unit, such as ``verdict.root_moment``, the size is minimised.
+    over : sequence of str
+        Paths of the values to choose, such as ``motion.centrifuge.control_point``.
+    subject_to : sequence of str
+        Requirements: ``limits`` (of every machine), or ``FIGURE <= VALUE`` and ``>=``, with a unit or SI.
+    bounds : mapping of str to a pair, optional
+        By path, in SI or as text with a unit; a tenth to ten times the scenario's value where not given.
+    verb, motion, at
+        As for :func:`gbeam.sensitivity`.
+    overrides : sequence of str
+        Changes of the scenario, such as ``beam.length=250 mm``.
+    progress : callable, optional
+        Called with what is being done and the fraction of it done.
+
+    Returns
+    -------
+    Optimum
+        Its outcome is ``limits exceeded`` where the search found no values that keep the requirements.
+
+    Raises
+    ------
+    InputError, ScenarioError
+        If the scenario, a figure, a value, a bound or a requirement is wrong.
+    ComputationError
+        If the scenario's own run is not done.
+    """
+    base = load(scenario, overrides)
+    assert base.source is not None  # it was read from a file
+    if isinstance(over, str) or not over:
+        raise InputError("--over", "is missing", 'name values: --over "motion.centrifuge.control_point"')
+    parameters = named(base, over, "--over")
+    limits = np.array([bounds_of(each, bounds or {}, "--over") for each in parameters])
+    question = Question(base.source, verb, motion, at)
+    first = Neighbourhood(question, parameters, progress=progress)
+    goal = _goal(facts_of(first.answer), first.case, minimise, subject_to)
+    search = _Search(question, parameters, goal, first, progress)
+    values = search.best(limits)
+    last = Neighbourhood(question, parameters, values.tolist(), progress=progress)
+    before, after = (values_at(facts_of(each.answer), goal.keys) for each in (first, last))
+    if verb == "run":
+        for name in needed(goal.keys, last.case.tracks)[0]:
+            last.done(name)
+    requirements = tuple(
+        Requirement(name, unit_at(facts_of(last.answer), keys), low, high, float(before[k]), float(after[k]))
+        for k, (name, keys, low, high) in enumerate(goal.required, 1)
+    )
+    reach = 1e-6 * (limits[:, 1] - limits[:, 0])
+    broken = [each.name for each in requirements if not each.kept]
+    return Optimum(
+        title=base.title,
+        minimise=minimise,
+        unit=goal.unit,
+        parameters=tuple(each.path for each in parameters),
+        units=tuple(each.unit for each in parameters),
+        before=np.array([each.value for each in parameters]),
+        values=values,
+        bounds=limits,
+        at_bound=(values - limits[:, 0] < reach) | (limits[:, 1] - values < reach),
+        figure_before=float(before[0]),
+        figure=float(after[0]),
+        error=_error(last.answer),
+        requirements=requirements,
+        path=np.array([x for x, _ in search.tried]),
+        history=np.array([f for _, f in search.tried]),
+        evaluations=search.evaluations,
+        outcome=BROKEN if broken else "done",
+        warnings=search.warnings,
+        provenance=provenance(base),
+    )
+
+
+def _error(answer: Any) -> float:
+    if not isinstance(answer, Study):
+        return math.nan
+    return max((each.error_estimate for each in answer.responses.values()), default=math.nan)
+
+
+def _goal(facts: Facts, case: Case, minimise: str, subject_to: Sequence[str]) -> Goal:
+    objective = figure(facts, minimise, OPTION)
+    required: list[tuple[str, Keys, float, float]] = []
+    for text in subject_to:
+        if text.strip() == LIMITS:
+            found = list(_machine_limits(facts))
+            if not found:
+                fix = "give the machine's, or name figures: tip.z.max_abs <= 2 mm"
+                raise InputError(SUBJECT, "names limits, of which the scenario has none", fix)
+            required += found
+            continue
+        match = _BOUND.fullmatch(text)
+        if match is None:
+            raise InputError(SUBJECT, f"is {text!r}", 'write "limits", or "tip.z.max_abs <= 2 mm"')
+        keys = figure(facts, match[1], SUBJECT)
+        value = _bound(match[3], unit_at(facts, keys), match[1])
+        required.append((match[1], keys, -math.inf, value) if match[2] == "<=" else (match[1], keys, value, math.inf))
+    return Goal(objective, tuple(required), unit_at(facts, objective))
+
+
+def _machine_limits(facts: Facts) -> Any:
+    for name, motion in facts.get("motions", {}).items():
+        for k, use in enumerate(motion.get("limits", ())):
+            if math.isfinite(use["allowed"]):
+                words = f"{name}: {use['axis']} {use['quantity']}"
+                yield words, ("motions", name, "limits", k, "used"), -math.inf, float(use["allowed"])
+
+
+def _bound(text: str, unit: str, name: str) -> float:
+    kind = "frequency" if unit == "Hz" else next((kind for kind, each in KINDS.items() if each.unit == unit), "ratio")
+    try:
+        return argument(text, kind)
+    except UnitError as error:
+        raise InputError(SUBJECT, f"of {name}: {error.problem}", error.hint) from None
+
+
+class _Enough(Exception):
+    """A search that has evaluated the scenario so often that it will not end."""
+
+
+@dataclass
+class _Search:
+    """The search, which keeps what it has tried."""
+
+    question: Question
+    parameters: Sequence[PhysicalValue]
+    goal: Goal
+    first: Neighbourhood
+    progress: Progress | None
+    evaluations: int = 0
+    tried: list[tuple[Floats, float]] = field(default_factory=list)
+    warnings: tuple[str, ...] = ()
+    _last: tuple[Floats, Floats, Neighbourhood] | None = None
+
+    def __post_init__(self) -> None:
+        self.motions, self.parts = needed(self.goal.keys, self.first.case.tracks)
+        self.shapes: Model = self.first.case.model
+        self.grids: Mapping[str, Grid] | None = None
+        if self.question.verb == "run":
+            self.grids = {name: self.first.grid(name) for name in self.motions}
+
+    def best(self, limits: Floats) -> Floats:
+        """The best values within bounds (p, 2)."""
+        from scipy.optimize import minimize
+
+        low, width = limits[:, 0], limits[:, 1] - limits[:, 0]
+        start = np.array([each.value for each in self.parameters])
+        sizes = self._sizes(self.figures(start))
+        power = 1 if self.goal.unit else 2  # of what has no unit, the size: its square is smooth at zero
+        best: tuple[float, float, Floats] | None = None
+
+        def objective(x: Floats) -> float:
+            nonlocal best
+            if self.evaluations >= _EVALUATIONS:
+                raise _Enough
+            values = low + x * width
+            figures = self.figures(values)
+            excess = float(max(0.0, *(-self._slack(figures) / sizes[1:]))) if self.goal.required else 0.0
+            rank = (0.0 if excess <= _FEASIBLE else excess, abs(float(figures[0])) if power == 2 else float(figures[0]))
+            if best is None or rank < best[:2]:
+                best = (*rank, values)
+                self.tried.append((values, float(figures[0])))
+            return float((figures[0] / sizes[0]) ** power)
+
+        def gradient(x: Floats) -> Floats:
+            values = low + x * width
+            slope = self.slopes(values)[0] * width / sizes[0]
+            return slope if power == 1 else 2 * self.figures(values)[0] / sizes[0] * slope
+
+        constraints: Any = ()
+        if self.goal.required:
+            constraints = {
+                "type": "ineq",
+                "fun": lambda x: self._slack(self.figures(low + x * width)) / sizes[1:],
+                "jac": lambda x: self._signs[:, None] * self.slopes(low + x * width)[1:] * width / sizes[1:, None],
+            }
+        try:
+            found = minimize(
+                objective, (start - low) / width, jac=gradient, method="SLSQP", bounds=[(0.0, 1.0)] * len(start),
+                constraints=constraints, options={"ftol": _PRECISE},
+            )  # fmt: skip
+            end = "" if found.success else found.message.lower()
+        except _Enough:
+            end = f"after {self.evaluations} evaluations"
+        if end:
+            self.warnings = (f"the search ended early ({end}); the best values tried are given",)
+        assert best is not None
+        return best[2]
+
+    @property
+    def _signs(self) -> Floats:
+        return np.array([1.0 if math.isinf(high) else -1.0 for _, _, _, high in self.goal.required])
+
+    def _slack(self, figures: Floats) -> Floats:
+        """By how much every requirement is kept; negative where it is not."""
+        ends = np.array([low if math.isinf(high) else high for _, _, low, high in self.goal.required])
+        return np.asarray(self._signs * (figures[1:] - ends))
+
+    def _sizes(self, figures: Floats) -> Floats:
+        """Sizes of the figures: the objective's own, the bounds of the others."""
+        ends = [abs(low if math.isinf(high) else high) for _, _, low, high in self.goal.required]
+        others = [end or abs(value) or 1.0 for end, value in zip(ends, figures[1:], strict=True)]
+        return np.array([abs(figures[0]) or 1.0, *others])
+
+    def figures(self, values: Floats) -> Floats:
+        """Objective and required figures at some values."""
+        if self._last is None or not np.array_equal(self._last[0], values):
+            self.evaluations += 1
+            about = Neighbourhood(
+                self.question, self.parameters, values.tolist(), grids=self.grids, parts=self.parts,
+                adapt=self._shaped, progress=self.progress,
+            )  # fmt: skip
+            for name in self.motions if self.grids is not None else ():
+                about.done(name)
+            found = values_at(facts_of(about.answer), self.goal.keys)
+            if not np.isfinite(found).all():
+                raise ComputationError("not converged", "a figure of the search has no value")
+            self._last = values.copy(), found, about
+        return self._last[1]
+
+    def slopes(self, values: Floats) -> Floats:
+        """Their derivatives, (figures, p)."""
+        self.figures(values)
+        assert self._last is not None
+
+        def read(_: Case, answer: Any) -> Floats:
+            return values_at(facts_of(answer), self.goal.keys)
+
+        return self._last[2].slopes(read, self.motions).slopes
+
+    def _shaped(self, case: Case) -> Case:
+        return replace(case, model=self.shapes)

@@ -1,0 +1,73 @@
+"""Best values against closed forms, and what cannot be kept."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+
+Call = Callable[..., Any]
+THICKNESS, POINT = "beam.section.thickness", "motion.spin.control_point"
+
+
+def test_a_requirement_that_decides_gives_the_closed_form(fast: Path) -> None:
+    # The load grows as the thickness, the deflection falls as its square: the thinnest beam that is stiff enough.
+    before = gb.sensitivity(fast, ["flight.tip.z"], [THICKNESS], verb="static").figures[0]
+    found = gb.optimise(
+        fast, "flight.loads.root_force.z", [THICKNESS], subject_to=["flight.tip.z >= -2 mm"], verb="static",
+        bounds={THICKNESS: ("2 mm", "8 mm")},
+    )  # fmt: skip
+    assert found.values[0] == pytest.approx(0.004 * np.sqrt(before / -0.002), rel=1e-5)
+    (required,) = found.requirements
+    assert required.active and required.kept and found.outcome == "done" and not found.at_bound.any()
+    assert found.figure == pytest.approx(found.figure_before * found.values[0] / 0.004, rel=1e-6)
+
+
+def test_of_a_verdict_the_size_is_minimised(fast: Path) -> None:
+    found = gb.optimise(fast, "verdict.tip", [POINT], bounds={POINT: (0.05, 0.3)})
+    # The nearer to the root, the less.
+    assert found.at_bound.all() and abs(found.figure) < 0.2 * abs(found.figure_before)
+    again = gb.study(gb.read_scenario(fast, [f"{POINT}={float(found.values[0])!r}"])).comparisons[0]
+    assert found.figure == pytest.approx(again.figures["tip"], abs=1e-12)  # of a run with its own steps
+    assert (np.diff(np.abs(found.history)) < 0).all() and found.path.shape == (len(found.history), 1)
+
+
+def test_requirements_that_no_values_keep_are_said(fast: Path, gbeam: Call) -> None:
+    words = ("optimize", fast, "--verb", "static", "--minimise", "flight.loads.root_force.z", "--over", THICKNESS)
+    done = gbeam(*words, "--bounds", f"{THICKNESS}=3 mm:5 mm", "--subject-to", "flight.tip.z >= -0.1 mm", "--json")
+    facts = json.loads(done.out)
+    assert done.status == 1 and facts["outcome"] == "limits exceeded"
+    assert not facts["subject_to"][0]["kept"]
+    assert (
+        facts["parameters"][THICKNESS]["value"] == pytest.approx(0.005) and facts["parameters"][THICKNESS]["at_bound"]
+    )
+
+
+@pytest.mark.parametrize(
+    ("minimise", "over", "subject", "words"),
+    [
+        ("spin.tip.z.max_abs", POINT, "limits", "names limits, of which the scenario has none"),
+        ("spin.tip.z.max_abs", POINT, "spin.tip.z.max_abs < 2 mm", "--subject-to is 'spin.tip.z.max_abs < 2 mm'"),
+        ("spin.tip.z.max_abs", POINT, "spin.tip.z.max_abs <= 2 kg", "--subject-to of spin.tip.z.max_abs"),
+        ("spin.tip.z.max_abs", POINT, "spin.steps <= 3", "--subject-to 'spin.steps' is a count"),
+        ("spin.steps", POINT, "", "--minimise 'spin.steps' is a count"),
+        ("spin.tip.z.max_abs", "motion.spin.controlpoint", "", "--over .*did you mean 'motion.spin.control_point'"),
+    ],
+)
+def test_what_cannot_be_minimised_is_refused(fast: Path, minimise: str, over: str, subject: str, words: str) -> None:
+    with pytest.raises(gb.InputError, match=words):
+        gb.optimise(fast, minimise, [over], subject_to=[subject] if subject else [])
+
+
+def test_the_command_writes_a_scenario_a_file_and_a_plot(fast: Path, gbeam: Call) -> None:
+    words = ("optimize", fast, "--verb", "static", "--minimise", "flight.loads.root_force.z", "--over", THICKNESS)
+    done = gbeam(*words, "--bounds", f"{THICKNESS}=3 mm:5 mm", "--write", "best.toml", "--out", "best")
+    assert done.status == 0 and "on its bound" in done.out
+    assert 'thickness = "3 mm"' in Path("best.toml").read_text(encoding="utf-8")
+    assert sorted(path.name for path in Path("best").iterdir()) == ["optimum.nc", "optimum.png", "optimum.svg"]
