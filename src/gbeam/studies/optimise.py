@@ -175,10 +175,11 @@ def _goal(facts: Facts, case: Case, minimise: str, subject_to: Sequence[str]) ->
 
 def _machine_limits(facts: Facts) -> Any:
     for name, motion in facts.get("motions", {}).items():
-        for k, use in enumerate(motion.get("limits", ())):
-            if math.isfinite(use["allowed"]):
-                words = f"{name}: {use['axis']} {use['quantity']}"
-                yield words, ("motions", name, "limits", k, "used"), -math.inf, float(use["allowed"])
+        for axis, uses in motion.get("limits", {}).items():
+            for quantity, use in uses.items():
+                if math.isfinite(use["allowed"]):
+                    keys = ("motions", name, "limits", axis, quantity, "used")
+                    yield f"{name}.limits.{axis}.{quantity}.used", keys, -math.inf, float(use["allowed"])
 
 
 def _bound(text: str, unit: str, name: str) -> float:
