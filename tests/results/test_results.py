@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import jax
 import numpy as np
@@ -63,6 +64,18 @@ def test_prints_on_a_few_lines(every: dict[str, Any], kind: str) -> None:
     lines = repr(every[kind]).splitlines()
     assert 1 <= len(lines) <= 6 and max(len(line) for line in lines) <= 160
     assert lines[0].startswith(type(every[kind]).__name__) and "array(" not in repr(every[kind])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_notebooks_show_it_as_html(every: dict[str, Any], kind: str) -> None:
+    shown = ElementTree.fromstring(every[kind]._repr_html_())  # every tag is closed
+    words = " ".join("".join(shown.itertext()).split())
+    assert shown.tag in ("div", "pre") and words and "nan" not in words
+
+
+def test_what_does_not_move_is_not_viewed(every: dict[str, Any]) -> None:
+    with pytest.raises(gb.InputError, match="no beam in motion"):
+        every["campbell"].view()
 
 
 @pytest.mark.parametrize("kind", KINDS)
