@@ -135,6 +135,7 @@ def test_files_and_words(fast: Path, gbeam: Call) -> None:
         (("--measure", "tip"), "--over is missing"),
         ((*ARM, "--measure", "flight.tip.z.maxabs"), "did you mean 'flight.tip.z.max_abs'"),
         ((*ARM, "--measure", "tip.z.max_abs"), "could be any of 2 figures"),
+        ((*ARM, "--measure", "verdict.accepted"), "set them in [motion.NAME.accept]"),
         (("--over", "motion.spin.arm=1:2:1000000000", "--measure", "x"), "has 1e+09 values"),
         (
             (
@@ -151,6 +152,7 @@ def test_files_and_words(fast: Path, gbeam: Call) -> None:
         ),
         ((*ARM, "--measure", "flight.tip.z.max_abs", "--workers", "0"), "--workers is 0"),
         ((*ARM, "--measure", "flight.tip.z", "--resume", "--verb", "all"), "--verb"),
+        ((*ARM, "--measure", "flight.tip.z", "--sampler", "saltelli"), "is saltelli, without a distribution"),
     ],
 )
 def test_bad_input_is_refused_and_nothing_written(

@@ -65,6 +65,8 @@ def find(facts: Facts, name: str) -> Keys:
         ends = {path[at:] for path in every for at in _starts(path)}
         near = closest(name, sorted(ends, key=lambda end: (abs(end.count(".") - name.count(".")), end)))
         fix = f"did you mean {near!r}?" if near else "take one from what the verb prints with --json"
+        if name.endswith("verdict.accepted"):
+            fix = "a verdict is accepted or not by limits: set them in [motion.NAME.accept]"
         raise InputError(OPTION, f"{name!r} is no figure of this", fix)
     if len(fits) > 1 and name not in fits:
         shown = ", ".join(fits[:_MANY]) + (", …" if len(fits) > _MANY else "")
