@@ -56,7 +56,7 @@ def measures(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ModuleType]:
 
 
 class ByHand:
-    """A scheduler and its workers, started as anybody starts them: processes of their own."""
+    """A scheduler and its workers, as a user starts them: processes of their own."""
 
     def __init__(self, folder: Path) -> None:
         self._folder, self._file = folder, folder / "scheduler.json"

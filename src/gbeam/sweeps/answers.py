@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from gbeam.errors import InputError
 
 if TYPE_CHECKING:
     from gbeam.analysis.study.case import Case
+    from gbeam.mechanics.structure import Structure
     from gbeam.motion.protocol import Motion
     from gbeam.results.study import Study
 
 Facts = Mapping[str, Any]
 
 
-def _run(case: Case, motion: str | None, at: float | None) -> Facts:
+def _run(case: Case, motion: str | None, at: float | None, judged: bool) -> Facts:
     from gbeam.analysis.study.study import study
 
     return study_facts(study(case))
@@ -52,34 +54,34 @@ def _accepted(accepted: bool | None) -> Facts:
     return {} if accepted is None else {"accepted": accepted}
 
 
-def _static(case: Case, motion: str | None, at: float | None) -> Facts:
+def _static(case: Case, motion: str | None, at: float | None, judged: bool) -> Facts:
     from gbeam.analysis.equilibrium.static import static
     from gbeam.report.steady import deflection
 
-    structure, time = case.assemble(), _time(case, at)
+    structure, time = _structure(case, judged), _time(case, at)
     names = list(case.motions) if motion is None else [motion]
     return deflection.to_json(case.title, [static(structure, _prepared(case, name), time, name=name) for name in names])
 
 
-def _modes(case: Case, motion: str | None, at: float | None) -> Facts:
+def _modes(case: Case, motion: str | None, at: float | None, judged: bool) -> Facts:
     from gbeam.analysis.vibration import modal
     from gbeam.report.steady import modes
 
     name = _only(case, motion, "")
-    return modes.to_json(modal.modes(case.assemble(), _prepared(case, name), _time(case, at), name=name))
+    return modes.to_json(modal.modes(_structure(case, judged), _prepared(case, name), _time(case, at), name=name))
 
 
-def _critical_speed(case: Case, motion: str | None, at: float | None) -> Facts:
+def _critical_speed(case: Case, motion: str | None, at: float | None, judged: bool) -> Facts:
     from gbeam.analysis.vibration import stability
     from gbeam.report.steady import critical
 
     name = _only(case, motion, "hub")
-    structure = case.assemble().at_time(_time(case, at))
+    structure = _structure(case, judged).at_time(_time(case, at))
     found = stability.critical_speed(structure, _prepared(case, name), name=name)
     return critical.to_json(found, name)
 
 
-def _plan(case: Case, motion: str | None, at: float | None) -> Facts:
+def _plan(case: Case, motion: str | None, at: float | None, judged: bool) -> Facts:
     from gbeam.analysis.imitation.plan import plan
     from gbeam.report.machine import plan as report
 
@@ -91,7 +93,7 @@ def _plan(case: Case, motion: str | None, at: float | None) -> Facts:
     return {**facts, "motions": {name: _limits_by_name(each) for name, each in facts["motions"].items()}}
 
 
-def _place(case: Case, motion: str | None, at: float | None) -> Facts:
+def _place(case: Case, motion: str | None, at: float | None, judged: bool) -> Facts:
     from gbeam.analysis.imitation.choice import choice_of
     from gbeam.analysis.imitation.place import place
     from gbeam.motion import Centrifuge
@@ -109,7 +111,8 @@ def _place(case: Case, motion: str | None, at: float | None) -> Facts:
     return placement.to_json(found)
 
 
-VERBS: Mapping[str, Callable[[Case, str | None, float | None], Facts]] = {
+# Of a case, a motion's name, the time at which it is frozen, and whether errors are estimated.
+VERBS: Mapping[str, Callable[[Case, str | None, float | None, bool], Facts]] = {
     "run": _run,
     "static": _static,
     "modes": _modes,
@@ -117,6 +120,15 @@ VERBS: Mapping[str, Callable[[Case, str | None, float | None], Facts]] = {
     "plan": _plan,
     "place": _place,
 }
+
+
+def _structure(case: Case, judged: bool) -> Structure:
+    """The case's structure; one that is not judged does not know what it was made of, and states no errors.
+
+    They take most of the time of a steady state.
+    """
+    structure = case.assemble()
+    return structure if judged else replace(structure, source=None)
 
 
 def _prepared(case: Case, name: str) -> Motion:

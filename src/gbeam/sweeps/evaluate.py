@@ -91,7 +91,9 @@ class Question:
 
     def facts(self, case: Case) -> Facts:
         """What the verb answers, as JSON."""
-        return VERBS[self.verb](case, self.motion, self.at)
+        # Before the keys are known any figure may be meant.
+        judged = not self.keys or any("error" in str(key) for keys in self.keys for key in keys)
+        return VERBS[self.verb](case, self.motion, self.at, judged)
 
     def row(self, number: int, overrides: Sequence[str]) -> Row:
         """Compute one case. What goes wrong in it is part of the row: the other cases go on."""
