@@ -92,3 +92,40 @@ def test_a_record_without_columns_is_refused(site: Site) -> None:
     answer = site.call("PUT", "/api/records/x.mat", site.opened, content=b"\x00\x01nothing")
     assert answer.status_code == 422 and answer.json()["errors"]
     assert Path(site.folder / "records").is_dir()
+
+
+@pytest.mark.parametrize(
+    ("over", "measure"),
+    [
+        ([], "tip"),
+        (["beam.length=1:2:2"] * 3, "tip"),
+        (["motion.flight.record.file=/etc/passwd"], "tip"),
+        (["--out=/tmp/x"], "tip"),
+        (["beam={}"], "tip"),
+        (["beam.length="], "tip"),
+        (["beam.length=1:2:2"], "--out /tmp/x"),
+        (["beam.length=1:2:2"], ""),
+    ],
+)
+def test_sweeps_vary_values_of_the_form_only(site: Site, over: list[str], measure: str) -> None:
+    with_record = FAST.replace(
+        'acceleration = { z = { profile = "constant", level = "6 g" } }',
+        'record = { file = "a.csv", time = "t", x = "0", y = "0", z = "z", unit = "g" }',
+    )
+    for text in (FAST, with_record):
+        answer = site.call("POST", "/api/sweeps", site.opened, json={"text": text, "over": over, "measure": measure})
+        assert answer.status_code == 422 and answer.json()["errors"]
+    assert not (site.folder / "runs").exists()
+
+
+def test_a_case_of_a_sweep_is_run_once(site: Site) -> None:
+    body = {"text": FAST, "over": ["beam.length=300 mm, 310 mm"], "measure": "flight.tip.size.max_abs"}
+    sweep = site.call("POST", "/api/sweeps", site.opened, json=body).json()["id"]
+    ids = {
+        site.call("POST", "/api/runs", site.opened, json={"text": FAST, "case": f"{sweep}/0/{j}"}).json()["id"]
+        for j in (0, 0, 1)
+    }
+    runs = site.call("GET", "/api/runs", site.opened).json()
+    assert len(ids) == 2 and sorted(each["verb"] for each in runs) == ["run", "run", "sweep"]
+    in_table = FAST + '[sweep]\nover = ["motion.flight.record.file=/etc/passwd"]\n'
+    assert site.call("POST", "/api/sweeps", site.opened, json={**body, "text": in_table}).status_code == 422

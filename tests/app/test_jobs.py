@@ -48,7 +48,7 @@ def sleeping(monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs that sleep, with a child of their own, instead of computing."""
     code = "import subprocess, sys, time; subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(600)']);"
     code += "print('gbeam: flight: run: 10%', file=sys.stderr, flush=True); time.sleep(600)"
-    monkeypatch.setattr(module, "_command", lambda: [sys.executable, "-c", code])
+    monkeypatch.setattr(module, "_command", lambda _: [sys.executable, "-c", code])
 
 
 def test_runs_are_kept_and_wrong_ones_say_why(tmp_path: Path) -> None:

@@ -31,6 +31,7 @@ def address(tmp_path: Path) -> Iterator[str]:
     server.wait(20)
 
 
+@pytest.mark.slow
 def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> None:
     home, faults = address.split("/?")[0], list[str]()
     context = browser.new_context(viewport={"width": 1400, "height": 1000}, accept_downloads=True)
@@ -68,11 +69,14 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> Non
     frame.locator("html[data-gbeam]").wait_for(timeout=20_000)
     assert frame.locator(".gbeam-canvas").is_visible() and "fast" in frame.locator("h1").inner_text()
 
-    # A second one, side by side with the first.
-    page.locator('input[data-path="beam.length"]').fill("310 mm")
-    page.keyboard.press("Tab")
-    page.wait_for_function("() => document.querySelector('#app pre').textContent.includes('310 mm')")
-    _run(page)
+    # A sweep, of which a cell opens its run; that one side by side with the first.
+    page.locator("summary", has_text="Sweep").click()
+    page.get_by_label("Vary").select_option("beam.length")
+    page.get_by_label("over").first.fill("300 mm, 310 mm")
+    page.get_by_label("Figures").fill("flight.tip.size.max_abs")
+    page.get_by_role("button", name="Run sweep").click()
+    page.locator(".gbeam-map button").nth(1).click(timeout=60_000)
+    page.wait_for_function("() => document.querySelectorAll('.run input').length === 2", timeout=60_000)
     for box in page.get_by_role("checkbox", name="compare").all():
         box.check()
     page.get_by_role("heading", name="Compared").wait_for()
@@ -88,8 +92,8 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> Non
     page.locator(".run", has_text="cancelled").wait_for()
     page.reload()
     page.wait_for_selector("html[data-gbeam]")
-    assert page.locator(".run").count() == 3
-    page.locator(".run .open", has_text="fast").first.click()
+    assert page.locator(".run").count() == 4
+    page.locator(".run", has_text="compare").last.get_by_role("button").click()
     with page.expect_download() as download:
         page.get_by_role("link", name="result.nc").click()
     assert Path(download.value.path()).read_bytes()[:4] == b"\x89HDF"

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from gbeam.scenario.text.paths import parse_path, path_text
 from gbeam.scenario.text.source import Source, parse
 
 NAME = "scenario.toml"
+_MEASURE = re.compile(r"[A-Za-z_][\w., \[\]-]{0,300}")
 FIELDS = 400  # shown; a table of thousands of numbers is edited as text
 
 
@@ -137,6 +139,41 @@ def records(data: Any, folder: Path) -> list[Path]:
             except InputError as error:
                 raise InputError(path_text(path), f"{value[:100]!r} {error.problem}", error.fix) from None
     return found
+
+
+def sweep_arguments(text: str, over: Sequence[str], measure: str) -> list[str]:
+    """The arguments of `gbeam sweep` for one or two values of a scenario.
+
+    Parameters
+    ----------
+    text : str
+        Of the scenario.
+    over : sequence of str
+        ``PATH=VALUES`` each.
+    measure : str
+        Figures, separated by commas.
+
+    Raises
+    ------
+    InputError
+        If a path is none of the scenario's values, or is that of a file, which would lead out of the folder.
+    """
+    data = parse(NAME, text)
+    if "sweep" in data:
+        raise InputError("sweep", "is a table of the scenario", "take it out: the page says what varies")
+    known = {field["path"] for field in _fields(data)}
+    arguments = []
+    if not 1 <= len(over) <= 2:
+        raise InputError("over", f"has {len(over)} values", "vary one or two")
+    for each in over:
+        path, _, values = each.partition("=")
+        if path not in known or path.rpartition(".")[2] == "file" or not values.strip():
+            fix = "choose a value of the form, and say which values"
+            raise InputError(path[:100] or "over", "cannot be varied", fix)
+        arguments += ["--over", each]
+    if not _MEASURE.fullmatch(measure):
+        raise InputError("measure", f"is {measure[:100]!r}", 'name figures, such as "tip.z.max_abs"')
+    return [*arguments, "--measure", measure]
 
 
 def problems(error: GbeamError) -> list[dict[str, Any]]:

@@ -10,7 +10,7 @@ import secrets
 import shutil
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
@@ -59,14 +59,29 @@ class Jobs:
             with suppress(asyncio.CancelledError):
                 await self._task
 
-    def submit(self, text: str, title: str, records: Sequence[Path]) -> str:
+    def submit(
+        self, text: str, title: str, records: Sequence[Path], arguments: Sequence[str] = (), case: str = ""
+    ) -> str:
         """Queue the run of a scenario, with copies of its records; return its id.
+
+        Parameters
+        ----------
+        text, title : str
+            Of the scenario.
+        records : sequence of Path
+        arguments : sequence of str
+            Of `gbeam sweep`; of a run none.
+        case : str
+            Which case of which sweep it is; one that is there already is not run again.
 
         Raises
         ------
         InputError
             If too many wait.
         """
+        known = next((each["id"] for each in self.list() if case and each.get("case") == case), None)
+        if known is not None:
+            return str(known)
         if self._queue.qsize() >= QUEUED:
             raise InputError("runs", f"wait already, {QUEUED} of them", "cancel some")
         number = f"{datetime.now():%Y%m%d-%H%M%S}-{secrets.token_hex(4)}"
@@ -75,7 +90,8 @@ class Jobs:
         (place / "scenario.toml").write_text(text, encoding="utf-8")
         for record in records:
             shutil.copyfile(record, place / record.name, follow_symlinks=False)
-        self._note(number, state="queued", title=title)
+        verb = "sweep" if arguments else "run"
+        self._note(number, state="queued", title=title, verb=verb, case=case, arguments=list(arguments))
         self._queue.put_nowait(number)
         return number
 
@@ -129,7 +145,7 @@ class Jobs:
             raise InputError("run", "is not there", "choose one of the list")
         return place
 
-    def _note(self, number: str, **facts: str) -> None:
+    def _note(self, number: str, **facts: Any) -> None:
         file = self.folder / number / _STATE
         known = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
         new = file.with_suffix(".new")
@@ -148,9 +164,14 @@ class Jobs:
         environment = {**os.environ, "GBEAM_PROGRESS": "0.5", "PYTHONUNBUFFERED": "1"}
         with (place / _LOG).open("wb") as log, (place / _ANSWER).open("wb") as answer:
             process = await asyncio.create_subprocess_exec(
-                *_command(), cwd=place, env=environment, stdin=asyncio.subprocess.DEVNULL, stdout=answer, stderr=log,
+                *_command(self.state(number)),
+                cwd=place,
+                env=environment,
+                stdin=asyncio.subprocess.DEVNULL,
+                stdout=answer,
+                stderr=log,
                 start_new_session=True,
-            )  # fmt: skip
+            )
             self._process = number, process
             try:
                 status = await asyncio.wait_for(process.wait(), SECONDS)
@@ -168,8 +189,8 @@ class Jobs:
             self._note(number, state=outcome)
 
 
-def _command() -> list[str]:
-    arguments = ["run", "scenario.toml", "--out", "out", "--report", "--json"]
+def _command(state: Mapping[str, Any]) -> list[str]:
+    arguments = [state["verb"], "scenario.toml", *state["arguments"], "--out", "out", "--report", "--json"]
     return [sys.executable, "-m", "gbeam.app.limited", str(MEMORY), str(SECONDS), *arguments]
 
 

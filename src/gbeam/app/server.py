@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import secrets
 import socket
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
 from importlib.resources import files as resources
 from pathlib import Path
@@ -13,6 +13,7 @@ from typing import Annotated, Any
 from fastapi import Body, FastAPI, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import FileResponse, JSONResponse, Response
+from pydantic import Field
 
 from gbeam.app import documents, files
 from gbeam.app.access import REPORT_POLICY, Door
@@ -25,6 +26,7 @@ from gbeam.scenario.text.source import parse
 
 _KINDS = {".js": "text/javascript", ".css": "text/css", ".html": "text/html; charset=utf-8"}
 Text = Annotated[str, Body(embed=True, max_length=SCENARIO_BYTES)]
+Line = Annotated[str, Field(max_length=1000)]
 Short = Annotated[str, Body(embed=True, max_length=1000)]
 
 
@@ -92,13 +94,22 @@ def create_app(folder: Path) -> FastAPI:
         return jobs.list()
 
     @app.post("/api/runs")
-    async def submit(text: Text) -> dict[str, str]:
-        """Queue the run of a scenario."""
+    async def submit(text: Text, case: Annotated[str, Body(embed=True, max_length=100)] = "") -> dict[str, str]:
+        """Queue the run of a scenario; of a sweep's case the one that is there."""
+        return await queued(text, (), case)
+
+    @app.post("/api/sweeps")
+    async def submit_sweep(text: Text, over: Annotated[list[Line], Body(embed=True)], measure: Short) -> dict[str, str]:
+        """Queue a sweep over one or two values of a scenario."""
+        return await queued(text, documents.sweep_arguments(text, over, measure))
+
+    async def queued(text: str, arguments: Sequence[str], case: str = "") -> dict[str, str]:
         found = await run_in_threadpool(documents.described, text, records)
         if found["errors"]:
             raise documents.Unfit(found["errors"])
         data = parse(documents.NAME, text)
-        return {"id": jobs.submit(text, str(data.get("title", ""))[:200], documents.records(data, records))}
+        title = str(data.get("title", ""))[:200]
+        return {"id": jobs.submit(text, title, documents.records(data, records), arguments, case)}
 
     @app.delete("/api/runs/{number}")
     async def cancel(number: str) -> dict[str, Any]:

@@ -23,6 +23,7 @@ export interface Document {
 export interface Run {
   id: string;
   state: string;
+  verb: string;
   title: string;
   progress: string;
   files: string[];
@@ -65,7 +66,8 @@ export const api = {
       `/api/records/${encodeURIComponent(file.name)}`, "PUT", file, "application/octet-stream",
     ),
   runs: () => call<Run[]>("/api/runs", "GET"),
-  submit: (text: string) => post<{ id: string }>("/api/runs", { text }),
+  submit: (text: string, of = "") => post<{ id: string }>("/api/runs", { text, case: of }),
+  sweep: (text: string, over: string[], measure: string) => post<{ id: string }>("/api/sweeps", { text, over, measure }),
   cancel: (id: string) => call<Run>(`/api/runs/${id}`, "DELETE"),
   file: (id: string, name: string) => `/api/runs/${id}/${name}`,
   text: async (id: string, name: string) => (await fetch(`/api/runs/${id}/${name}`)).text(),

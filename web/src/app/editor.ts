@@ -4,6 +4,7 @@ import uPlot from "uplot";
 import { lineColour, prefersDark } from "../colours";
 import { button, choice, element } from "../controls";
 import { api, type Document, type Problem, Refusal } from "./api";
+import { SweepForm } from "./sweeps";
 
 const KEPT = "gbeam-document";
 const PAUSE = 400; // ms without a key before the text is read
@@ -20,6 +21,7 @@ export class Editor {
   private readonly curves = element("div");
   private readonly run = button("Run", () => void this.submit());
   private readonly views: HTMLButtonElement[];
+  private readonly sweep: SweepForm;
   private waiting = 0;
   private latest = 0;
 
@@ -38,7 +40,8 @@ export class Editor {
     const line = element("p", "faint", "As a command: ");
     line.append(element("code", "", "gbeam run scenario.toml --report"));
     this.root.append(this.start(), this.record, this.row(...this.views, ...acts), this.problems, this.curves);
-    this.root.append(this.form, this.text, line, this.meaning);
+    this.sweep = new SweepForm(() => this.document.text, this.submitted);
+    this.root.append(this.sweep.root, this.form, this.text, line, this.meaning);
     this.show(0);
   }
 
@@ -104,6 +107,7 @@ export class Editor {
       }
       if (field.path === focused) requestAnimationFrame(() => input.focus());
     });
+    this.sweep.offer(fields);
     this.list(errors);
     this.meaning.textContent = meaning;
     this.meaning.hidden = !meaning;

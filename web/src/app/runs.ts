@@ -3,6 +3,7 @@
 import { button, element } from "../controls";
 import { format } from "../data";
 import { api, type Run } from "./api";
+import { sweepMap } from "./sweeps";
 
 const ACTIVE = ["queued", "running"];
 const OFTEN = 700; // ms, while something runs
@@ -64,13 +65,13 @@ export class Runs {
     open.classList.add("open");
     open.dataset["key"] = `open-${run.id}`;
     open.setAttribute("aria-pressed", String(run.id === this.selected));
-    row.append(open, element("span", kind, run.state));
+    row.append(open, element("span", kind, run.verb === "sweep" ? `sweep ${run.state}` : run.state));
     if (ACTIVE.includes(run.state)) {
       row.append(element("span", "faint", run.progress.replace(/^gbeam: /, "")));
       const cancel = button("Cancel", () => void api.cancel(run.id).then(() => this.watch()));
       cancel.dataset["key"] = `cancel-${run.id}`;
       row.append(cancel);
-    } else if (run.files.includes("answer.json")) {
+    } else if (run.verb === "run" && run.files.includes("answer.json")) {
       const label = element("label");
       const box = element("input");
       box.type = "checkbox";
@@ -107,6 +108,9 @@ export class Runs {
     this.shown.append(links);
     if (run.state !== "done" && run.files.includes("messages.txt")) {
       this.shown.append(element("pre", "bad", await api.text(run.id, "messages.txt")));
+    }
+    if (run.verb === "sweep" && run.state === "done") {
+      this.shown.append(await sweepMap(run.id, (id) => void this.watch(id)));
     }
     if (run.files.includes("report.html")) {
       const frame = element("iframe", "report");
