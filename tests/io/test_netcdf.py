@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import operator
 import os
 from dataclasses import replace
@@ -16,6 +17,8 @@ from scipy.integrate import cumulative_trapezoid
 from gbeam import Hub, SmoothStep, simulate
 from gbeam.errors import InputError
 from gbeam.io import netcdf as store
+from gbeam.io.histories import csv_of
+from gbeam.io.stored import read_stored
 from gbeam.results.imitation.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.fatigue import Fatigue, StressCycles
@@ -348,3 +351,21 @@ def test_what_is_no_result_is_refused(content: bytes | None, tmp_path: Path) -> 
         path.write_bytes(content)
     with pytest.raises(InputError, match=r"x\.nc cannot be read"):
         store.read(path)
+
+
+def test_histories_as_text_are_those_of_the_file(study: Study, tmp_path: Path) -> None:
+    study.save(tmp_path / "x.nc")
+    rows = list(csv.DictReader(csv_of(read_stored(tmp_path / "x.nc")).splitlines()))
+    assert len(rows) == sum(len(response.time) for response in study.responses.values())
+    for name, response in study.responses.items():
+        own = [row for row in rows if row["motion"] == name]
+        np.testing.assert_allclose([float(row["time_s"]) for row in own], response.time, rtol=1e-8)
+        tip = [[float(row[f"tip_{axis}_m"]) for axis in "xyz"] for row in own]
+        np.testing.assert_allclose(tip, response.tip, rtol=1e-8, atol=1e-300)
+        if response.axes is None:
+            assert own[0]["axis_rate_1_rad_per_s"] == ""
+        else:
+            rates = [float(row["axis_rate_2_rad_per_s"]) for row in own]
+            np.testing.assert_allclose(rates, response.axes.rate[:, 1], rtol=1e-8)
+        if response.loads is not None:
+            assert float(own[-1]["stress_Pa"]) == pytest.approx(response.loads.stress[-1, 0])

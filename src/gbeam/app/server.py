@@ -20,6 +20,8 @@ from gbeam.app.access import REPORT_POLICY, Door
 from gbeam.app.jobs import Jobs
 from gbeam.app.preview import columns, load_curves
 from gbeam.errors import GbeamError
+from gbeam.io.histories import csv_of
+from gbeam.io.stored import read_stored
 from gbeam.limits import SCENARIO_BYTES
 from gbeam.scenario.template import template
 from gbeam.scenario.text.source import parse
@@ -116,6 +118,13 @@ def create_app(folder: Path) -> FastAPI:
         """End a run, or take it out of the queue."""
         jobs.cancel(number)
         return jobs.state(number)
+
+    @app.get("/api/runs/{number}/histories.csv")
+    def histories(number: str) -> Response:
+        """The histories of a run as text."""
+        table = csv_of(read_stored(jobs.file(number, "result.nc")))
+        headers = {"content-disposition": f'attachment; filename="{number}-histories.csv"'}
+        return Response(table, media_type="text/csv; charset=utf-8", headers=headers)
 
     @app.get("/api/runs/{number}/{name}")
     def download(number: str, name: str) -> FileResponse:

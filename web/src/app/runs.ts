@@ -97,7 +97,7 @@ export class Runs {
     const links = element("div", "gbeam-row");
     links.append(
       button("Use this scenario", () => void api.text(run.id, "scenario.toml").then((text) => this.reuse(text))),
-      ...run.files.map((name) => {
+      ...run.files.flatMap((name) => (name === "result.nc" ? [name, "histories.csv"] : [name])).map((name) => {
         const link = element("a", "", name);
         link.href = api.file(run.id, name);
         if (name !== "report.html") link.download = name;

@@ -83,6 +83,10 @@ export async function sweepMap(id: string, opened: (id: string) => void): Promis
   const all = (figure.values as unknown[]).flat().filter((each): each is number => typeof each === "number");
   const [low, high] = [Math.min(...all), Math.max(...all)];
   const text = (of: Parameter, k: number): string => `${of.values[k]}${of.unit ? ` ${of.unit}` : ""}`;
+  const short = (of: Parameter, k: number): string => {
+    const value = of.values[k]!;
+    return `${typeof value === "number" ? Number(value.toPrecision(6)) : value}${of.unit ? ` ${of.unit}` : ""}`;
+  };
   const open = async (i: number, j: number): Promise<void> => {
     let made = scenario;
     for (const [of, k] of [[rows, i], [columns, j]] as const) {
@@ -93,11 +97,11 @@ export async function sweepMap(id: string, opened: (id: string) => void): Promis
   const table = element("table", "gbeam-map");
   const head = element("tr");
   head.append(element("th", "", columns ? `${rows.path} \\ ${columns.path}` : rows.path));
-  for (let j = 0; j < (columns?.values.length ?? 1); j++) head.append(element("th", "", columns ? text(columns, j) : name));
+  for (let j = 0; j < (columns?.values.length ?? 1); j++) head.append(element("th", "", columns ? short(columns, j) : name));
   table.append(head);
   rows.values.forEach((_, i) => {
     const line = element("tr");
-    line.append(element("th", "", text(rows, i)));
+    line.append(element("th", "", short(rows, i)));
     for (let j = 0; j < (columns?.values.length ?? 1); j++) {
       const value = at(i, j);
       const cell = element("td");
