@@ -140,34 +140,53 @@ def _linear_steps(
     def weighted(features: Array, parts: Array) -> Array:
         return jnp.sum(jnp.expand_dims(features, tuple(range(2, parts.ndim + 1))) * parts, axis=1)
 
-    def step(mass: Array, inverse: Array, terms: LinearTerms, z: Array, t: Tableau, phi: Array) -> Any:
-        stages, n = len(t.c_q), mass.shape[0]
+    def stage_equations(mass: Array, terms: LinearTerms, z: Array, t: Tableau, phi: Array) -> Any:
+        """C, K, F at the stages, and the system for their accelerations."""
+        stages = len(t.c_q)
         c, k, f = weighted(phi[:, rates], terms.velocity), weighted(phi, terms.stiffness), weighted(phi, terms.force)
         rows = []
         for i in range(stages):
             blocks = [t.c_v[i, j] * c[i] + t.c_q[i, j] * k[i] + (mass if i == j else 0.0) for j in range(stages)]
             rows.append(jnp.concatenate(blocks, axis=1))
         known = times(c[:stages], t.w_v @ z) + times(k[:stages], t.w_q @ z)
-        x = jnp.linalg.solve(jnp.concatenate(rows), jnp.ravel(f[:stages] - known))
-        x = jnp.reshape(x, (stages, n))
-        q, qd = t.end_z @ z + t.end_x @ x
-        qdd = (
-            x[-1]
-            if ends
-            else times(inverse[None], (f[-1] - times(k[-1:], q[None])[0] - times(c[-1:], qd[None])[0])[None])[0]
-        )
-        return t.g @ z + t.d @ x, (q, qd, qdd)
+        return (c, k, f), jnp.concatenate(rows), jnp.ravel(f[:stages] - known)
 
-    own = None if alike else 0
-    every = jax.vmap(step, in_axes=(own, None if ends else own, own, 0, None if equal else 0, 0))
+    def after(inverse: Array, of_stages: Any, z: Array, t: Tableau, x: Array) -> Any:
+        """The next z, and q, q̇, q̈ at the end."""
+        x = jnp.reshape(x, (len(t.c_q), -1))
+        q, qd = t.end_z @ z + t.end_x @ x
+        c, k, f = of_stages
+        force = f[-1:] - times(k[-1:], q[None]) - times(c[-1:], qd[None])
+        return t.g @ z + t.d @ x, (q, qd, x[-1] if ends else times(inverse[None], force)[0])
+
+    own, by_run = None if alike else 0, None if equal else 0
+    stages_of = jax.vmap(stage_equations, in_axes=(own, own, 0, by_run, 0))
+    ends_of = jax.vmap(after, in_axes=(None if ends else own, 0, 0, by_run, 0))
     if equal:
         tableau = jax.tree.map(lambda leaf: leaf[0], tableau)
 
     def turn(z: Array, at: Any) -> Any:
         t, phi = (tableau, at) if equal else at
-        return every(mass, inverse, terms, z, t, phi)
+        matrices, left, right = stages_of(mass, terms, z, t, phi)
+        return ends_of(inverse, matrices, z, t, _eliminated(left, right))
 
     return jax.lax.scan(turn, z, phi if equal else (tableau, phi))
+
+
+def _eliminated(left: Array, right: Array) -> Array:
+    """Solutions of many small systems (b, n, n), (b, n) by elimination, all of them in every operation.
+
+    Without a choice of pivots: M and what a step adds to it is definite but for antisymmetric parts.
+    """
+    rows = jnp.moveaxis(jnp.concatenate([left, right[..., None]], axis=-1), 0, -1)
+    pivots = []
+    while len(rows):
+        pivots.append(rows[0, 1:] / rows[0, :1])
+        rows = rows[1:, 1:] - rows[1:, :1] * pivots[-1]
+    x: list[Array] = []
+    for pivot in reversed(pivots):
+        x.insert(0, pivot[-1] - sum(pivot[j] * value for j, value in enumerate(x)))
+    return jnp.stack(x, axis=-1)
 
 
 _accelerations = jax.jit(jax.vmap(newton.accelerations))
