@@ -87,6 +87,10 @@ def test_no_report_without_a_result(tmp_path: Path) -> None:
         (tmp_path / name).write_text(text)
         with pytest.raises(InputError):
             report_of_file(tmp_path / name)
+    for text in ('{"motions": 1, "comparisons": []}', '{"modes": [{}], "instabilities": [], "outcome": "done"}'):
+        (tmp_path / "c.json").write_text(text)
+        with pytest.raises(InputError, match=r"c\.json holds no whole result"):
+            report_of_file(tmp_path / "c.json")
     with pytest.raises(InputError, match="holds several results"):
         report_of_file(tmp_path)
     with pytest.raises(InputError, match="no file"):

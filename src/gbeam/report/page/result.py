@@ -85,6 +85,15 @@ def report_of_file(path: Path) -> str:
         If it cannot be read, or holds no figures of a result that has a report.
     """
     file = file_in(path) if path.is_dir() else path
+    try:
+        return _page_of(file)
+    except InputError as error:
+        raise InputError(str(file), error.problem, error.fix) from None
+    except (LookupError, TypeError, ValueError, AttributeError):  # its figures are not those of a result
+        raise InputError(str(file), "holds no whole result: it was changed or is damaged", _FIX) from None
+
+
+def _page_of(file: Path) -> str:
     if file.suffix == ".json":
         return html(_read_json(file), {})
     stored = read_stored(file)
