@@ -18,6 +18,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.analysis.control.nonlinear import nonlinear_system as nonlinear_system
     from gbeam.analysis.control.reduction import balanced_truncation as balanced_truncation
     from gbeam.analysis.control.reduction import modal_truncation as modal_truncation
+    from gbeam.analysis.control.shaping import shape_command as shape_command
     from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium as solve_equilibrium
     from gbeam.analysis.equilibrium.static import static as static
     from gbeam.analysis.imitation.choice import Choice as Choice
@@ -62,11 +63,13 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.motion.profiles.profile import smoothed as smoothed
     from gbeam.motion.profiles.pulse import Sine as Sine
     from gbeam.motion.profiles.pulse import SmoothStep as SmoothStep
+    from gbeam.motion.profiles.spline import SplineProfile as SplineProfile
     from gbeam.results.fit import Fit as Fit
     from gbeam.results.imitation.comparison import Comparison as Comparison
     from gbeam.results.optimum import Optimum as Optimum
     from gbeam.results.response import Response as Response
     from gbeam.results.sensitivity import Sensitivity as Sensitivity
+    from gbeam.results.shaping import ShapedCommand as ShapedCommand
     from gbeam.results.steady.state_space import Gauge as Gauge
     from gbeam.results.steady.state_space import StateSpace as StateSpace
     from gbeam.results.study import Study as Study
@@ -113,8 +116,10 @@ _HOME = {
     "Root": "structure.support",
     "Section": "structure.section",
     "Sensitivity": "results.sensitivity",
+    "ShapedCommand": "results.shaping",
     "Sine": "motion.profiles.pulse",
     "SmoothStep": "motion.profiles.pulse",
+    "SplineProfile": "motion.profiles.spline",
     "StateSpace": "results.steady.state_space",
     "Structure": "mechanics.structure",
     "Study": "results.study",
@@ -147,6 +152,7 @@ _HOME = {
     "read_scenario": "scenario.build",
     "rerun": "scenario.rerun",
     "sensitivity": "studies.sensitivity",
+    "shape_command": "analysis.control.shaping",
     "simulate": "analysis.response.simulation",
     "simulate_batch": "analysis.response.batch",
     "smoothed": "motion.profiles.profile",

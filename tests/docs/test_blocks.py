@@ -13,6 +13,7 @@ SLOW = {
     "docs/howto/flight_record.md",  # plans and places the F-16's flight
     "docs/tutorials/flight_on_a_centrifuge.md",
     "docs/howto/many_machines.md",  # starts two clusters
+    "docs/howto/shape_a_command.md",  # compiles the exact model
 }
 RUNNABLE = [page for page in PAGES if any(block.language in RUN for block in blocks(page))]
 

@@ -25,6 +25,7 @@ from gbeam.io.optima import optimum_group
 from gbeam.io.provenance import provenance_attrs, provenance_variables
 from gbeam.io.responses import response_group
 from gbeam.io.sensitivities import sensitivity_group
+from gbeam.io.shaping import shaping_group
 from gbeam.io.steady import campbell_group, critical_group, critical_map_group, deflection_group, modes_group
 from gbeam.io.sweeps import sweep_group
 from gbeam.io.tables import models_group, placement_group, state_space_group
@@ -37,6 +38,7 @@ from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.sensitivity import Sensitivity
+from gbeam.results.shaping import ShapedCommand
 from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.steady.modal import Campbell, Modes
 from gbeam.results.steady.stability import Critical, CriticalMap
@@ -62,6 +64,7 @@ _GROUPS: dict[type, Callable[[Any], Group]] = {
     ModelStudy: models_group,
     Placement: placement_group,
     Sensitivity: sensitivity_group,
+    ShapedCommand: shaping_group,
     StateSpace: state_space_group,
     Sweep: sweep_group,
 }

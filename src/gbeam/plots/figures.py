@@ -18,6 +18,7 @@ from gbeam.plots.loads import plot_loads, plot_loads_along
 from gbeam.plots.machine import plot_axes, plot_tracking
 from gbeam.plots.optimum import plot_optimum
 from gbeam.plots.sensitivity import plot_sensitivity
+from gbeam.plots.shaping import plot_robustness, plot_shaping
 from gbeam.plots.steady import plot_campbell, plot_critical_map, plot_modes, plot_static
 from gbeam.plots.sweep import plot_sweep
 from gbeam.plots.tip import plot_tip
@@ -28,6 +29,7 @@ from gbeam.results.machine import AxesResult, MachinePlan
 from gbeam.results.optimum import Optimum
 from gbeam.results.response import Response
 from gbeam.results.sensitivity import Sensitivity
+from gbeam.results.shaping import ShapedCommand
 from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.steady.modal import Campbell, Modes
 from gbeam.results.steady.stability import CriticalMap
@@ -90,6 +92,11 @@ def figures(result: Any, title: str = "") -> dict[str, Draw]:
             return {"fit": partial(plot_fit, result, title)}
         case Optimum():
             return {"optimum": partial(plot_optimum, result, title)}
+        case ShapedCommand():
+            return {
+                "shaping": partial(plot_shaping, result, title),
+                "robustness": partial(plot_robustness, result, title),
+            }
         case Sensitivity():
             return {name: partial(plot_sensitivity, result, name, title) for name in result.measures}
     raise TypeError(f"{type(result).__name__} has no figures")

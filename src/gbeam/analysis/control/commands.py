@@ -1,0 +1,207 @@
+"""Commands of a hub as splines, what they must do, and what they leave in the modes of a linear model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gbeam.analysis.control.linearization import linearize
+from gbeam.arrays.tree import assign
+from gbeam.errors import InputError
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.bases.hub import Hub
+from gbeam.motion.profiles.spline import SplineProfile, through
+from gbeam.numerics.bspline import DEGREE, Spline
+from gbeam.results.result import Complex, Floats
+
+_FINE = 200  # pieces of a spline that stands for another form
+_TIMES = 2001  # over a command: the splines are smooth, and vanish at the ends with four derivatives
+
+
+@dataclass(frozen=True)
+class Goal:
+    """What a command must do.
+
+    Parameters
+    ----------
+    value : float
+        Angle turned, rad, or rate reached, rad/s.
+    to_rate : bool
+    duration : float
+        s.
+    """
+
+    value: float
+    to_rate: bool
+    duration: float
+
+
+class Commands:
+    """All splines of so many pieces that drive a hub from rest.
+
+    The drive u is the torque on a free hub, or the angular acceleration of one with a prescribed rate.
+
+    Parameters
+    ----------
+    structure : Structure
+    hub : Hub
+        At rest; with an inertia and no rate it is free.
+    goal : Goal
+    pieces : int
+    """
+
+    def __init__(self, structure: Structure, hub: Hub, goal: Goal, pieces: int) -> None:
+        self.hub, self.goal = hub, goal
+        self.time = np.linspace(0.0, goal.duration, _TIMES)
+        basis = Spline(0.0, goal.duration / pieces, np.eye(pieces + DEGREE))
+        order = 0 if hub.free else 1
+        drive = np.asarray(basis.series(self.time, 1).derivatives()[order])
+        self.ends = np.zeros(pieces + DEGREE)
+        if goal.to_rate and not hub.free:
+            self.ends[-DEGREE:] = goal.value
+        self.drive, self.fixed = drive[:, DEGREE:-DEGREE], drive @ self.ends
+        self.slope = np.diff(self.drive, axis=0) / np.diff(self.time)[:, None]
+        self.inertia = turning_inertia(structure, hub) if hub.free else 1.0
+        rows, aims = self._aims(basis(self.time))
+        self.particular: Floats = np.asarray(np.linalg.pinv(rows) @ aims, dtype=np.float64)
+        self.free = _kernel(rows)
+
+    def _aims(self, basis: Floats) -> tuple[Floats, Floats]:
+        """Rows of linear conditions on the coefficients, and their values."""
+        t, goal = self.time, self.goal
+        if not self.hub.free:
+            if goal.to_rate:  # the ends say it
+                return np.zeros((1, self.drive.shape[1])), np.zeros(1)
+            return np.asarray(np.trapezoid(basis[:, DEGREE:-DEGREE], t, axis=0))[None], np.array([goal.value])
+        impulse = np.asarray(np.trapezoid(self.drive, t, axis=0))
+        turned = np.asarray(np.trapezoid((goal.duration - t)[:, None] * self.drive, t, axis=0))
+        if goal.to_rate:
+            return impulse[None], np.array([self.inertia * goal.value])
+        return np.stack([impulse, turned]), np.array([0.0, self.inertia * goal.value])
+
+    def scaled(self, drive: Floats) -> Floats:
+        """A drive (t,) of the right form, as large as the goal takes."""
+        t, goal = self.time, self.goal
+        done = np.trapezoid(drive, t) if goal.to_rate else np.trapezoid((goal.duration - t) * drive, t)
+        return np.asarray(drive * self.inertia * goal.value / done)
+
+    def profile(self, drive: Floats) -> SplineProfile:
+        """The command that a drive (t,) is."""
+        if not self.hub.free:
+            drive = np.concatenate([[0.0], np.cumsum((drive[1:] + drive[:-1]) / 2 * np.diff(self.time))])
+        return through(self.goal.duration, self.time, drive, _FINE)
+
+    def of(self, inner: Floats) -> SplineProfile:
+        """The profile of some coefficients."""
+        coefficients = self.ends.copy()
+        coefficients[DEGREE:-DEGREE] = inner
+        return SplineProfile(self.goal.duration, coefficients)
+
+
+def driven(hub: Hub, profile: SplineProfile) -> Hub:
+    """The hub under a command, mounted as it is."""
+    if hub.free:
+        springs = {"stiffness": hub.stiffness, "damping": hub.damping}
+        made = Hub(radius=hub.radius, torque=profile, inertia=hub.inertia, **springs)
+    else:
+        made = Hub(radius=hub.radius, rate=profile, inertia=hub.inertia)
+    assign(made, mount=hub.mount)
+    return made
+
+
+def turning_inertia(structure: Structure, hub: Hub) -> float:
+    """Moment of inertia of hub and straight beam about the hub's axis, kg m²."""
+    mass, sx, sy, sz, xx, yy, zz, xy, yz, zx = (float(each) for each in np.asarray(structure.coefficients.rigid))
+    to_hub = np.asarray(hub.mount.R_HB)
+    second = to_hub @ np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]]) @ to_hub.T
+    first, radius = to_hub @ np.array([sx, sy, sz]), float(hub.radius)
+    assert hub.inertia is not None
+    return float(hub.inertia) + mass * radius**2 + 2 * radius * float(first[0]) + float(second[0, 0] + second[1, 1])
+
+
+@dataclass(frozen=True)
+class Vibration:
+    """The modes of a hub at rest, by what a drive leaves in the tip's displacement.
+
+    Parameters
+    ----------
+    eigenvalue : (k,) complex
+        1/s, of the positive imaginary part.
+    gain : (k,)
+        Size of the tip's displacement over the mode's excitation ∫ exp(−λt) u dt, m.
+    """
+
+    eigenvalue: Complex
+    gain: Floats
+
+    @staticmethod
+    def of(structure: Structure, hub: Hub) -> Vibration:
+        """Those that a drive of the hub excites."""
+        linear = linearize(structure, hub)
+        if hub.free:
+            column = linear.b[:, 0]
+        else:
+            base = hub.mount.base(np.zeros(1), np.zeros(1), np.ones(1))
+            column = linear.b[:, :3] @ base.a_WO_B[0] + linear.b[:, 3:6] @ base.alpha_WB_B[0]
+        values, right = np.linalg.eig(linear.a)
+        excited = np.linalg.solve(right, column)
+        size = np.linalg.norm(linear.c[:3] @ right, axis=0) * np.abs(excited)
+        some = (values.imag > 1e-6 * np.abs(values).max()) & (size > 1e-9 * size.max())
+        order = np.argsort(values[some].imag)
+        return Vibration(values[some][order], 2 * size[some][order])
+
+    def rows(self, time: Floats, drive: Floats, ratio: float = 1.0) -> Complex:
+        """What drives (t, ...) leave in each mode, m, (k, ...), where all frequencies are `ratio` times as high."""
+        left = np.exp(-ratio * np.outer(self.eigenvalue, time))
+        weight = self.gain * np.exp(ratio * self.eigenvalue.real * time[-1])
+        flat = drive.reshape(len(time), -1)
+        values = np.stack([np.trapezoid(each[:, None] * flat, time, axis=0) for each in left])
+        return (weight[:, None] * values).reshape(len(left), *drive.shape[1:])
+
+    def amplitude(self, time: Floats, drive: Floats, ratio: Floats) -> Floats:
+        """The amplitude that a drive (t,) leaves, all modes together, m, (r,)."""
+        return np.array([float(np.linalg.norm(self.rows(time, drive, float(each)))) for each in ratio])
+
+
+def usual(commands: Commands, vibration: Vibration) -> dict[str, Floats]:
+    """The drives (t,) of a smooth step of that duration, and of a shorter one with a ZVD shaper of the first mode."""
+    found = {"smooth-step": commands.scaled(_smooth(commands.time, commands.goal))}
+    value = vibration.eigenvalue[0]
+    half = np.pi / value.imag
+    decay = float(np.exp(value.real * half))
+    left = commands.goal.duration - 2 * half
+    if left > half:
+        shorter = Goal(commands.goal.value, commands.goal.to_rate, left)
+        parts = [
+            weight * _smooth(commands.time - k * half, shorter) for k, weight in enumerate((1.0, 2 * decay, decay**2))
+        ]
+        found = {"ZVD": commands.scaled(np.sum(parts, axis=0)), **found}
+    return found
+
+
+def _smooth(time: Floats, goal: Goal) -> Floats:
+    """A drive under which the rate, or the angle, is the smooth step of 2009 (43)."""
+    phase = 2 * np.pi * time / goal.duration
+    wave = 1 - np.cos(phase) if goal.to_rate else np.sin(phase)
+    return np.where((time >= 0) & (time <= goal.duration), wave, 0.0)
+
+
+def _kernel(rows: Floats) -> Floats:
+    _, sizes, directions = np.linalg.svd(rows)
+    return np.asarray(directions[int((sizes > 0).sum()) :].T)
+
+
+def check_goal(angle: float | None, rate: float | None, duration: float) -> Goal:
+    """What is to be done; InputError unless there is one angle or rate."""
+    if (angle is None) == (rate is None):
+        raise InputError(
+            "angle", "and rate are both given or both missing", "give the angle to turn, or the rate to reach"
+        )
+    value = angle if rate is None else rate
+    assert value is not None
+    if not np.isfinite(value) or value == 0:
+        raise InputError("angle" if rate is None else "rate", f"is {value:g}", "give a finite value that is not zero")
+    if not (np.isfinite(duration) and duration > 0):
+        raise InputError("duration", f"is {duration:g} s", "give a positive time")
+    return Goal(float(value), rate is not None, float(duration))

@@ -1,0 +1,240 @@
+"""Command shaping: the torque or rate of a hub that leaves the least vibration of its beam.
+
+A command is a quintic B-spline. What it leaves in the modes of the linear model is linear in its coefficients, so that
+the least is one least-squares problem, within a limit a quadratic program. What the given model leaves, which stiffens
+as it turns, is then made least by Gauss-Newton steps along the exact derivatives of its run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from gbeam.analysis.control.commands import Commands, Vibration, check_goal, driven, usual
+from gbeam.analysis.response.differentiated import Differentiated, Grid
+from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.simulation import simulate
+from gbeam.errors import ComputationError, InputError
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.bases.hub import Hub
+from gbeam.motion.profiles.spline import SplineProfile
+from gbeam.numerics.solvers.quadratic import solve_quadratic
+from gbeam.results.response import Response
+from gbeam.results.result import Floats
+from gbeam.results.shaping import CommandRun, ShapedCommand
+
+RATIOS = np.linspace(0.7, 1.3, 61)
+# Weight of a smooth step's roughness beside what it leaves; less for a span of frequencies, which takes a larger drive.
+_SMOOTH, _SMOOTH_ROBUST = 1e-3, 1e-4
+_ROBUST = 9  # ratios over the span
+_PERIODS = 3  # of the lowest frequency, over which the residual is measured
+_ROUNDS, _MOVED = 4, 1e-3  # Gauss-Newton steps, and the difference of the drive over the largest for a derivative
+_BETTER = 0.9  # a step that leaves more than this share is the last
+
+
+def shape_command(
+    structure: Structure,
+    hub: Hub,
+    *,
+    angle: float | None = None,
+    rate: float | None = None,
+    duration: float,
+    limit: float = np.inf,
+    robust: float = 0.0,
+    pieces: int = 24,
+    check: Structure | None = None,
+    progress: Callable[[str, float], None] | None = None,
+) -> ShapedCommand:
+    """Find the command of a hub that leaves the least vibration of its beam.
+
+    The design knows the modes about the hub at rest. Without `robust` it is refined on `structure` itself, by
+    Gauss-Newton steps along the exact derivatives of its response. Then the command is run beside a smooth step of the
+    same duration and one with a ZVD shaper (Singer and Seering 1990) of the first mode.
+
+    Parameters
+    ----------
+    structure : Structure
+        To design on.
+    hub : Hub
+        With an inertia and no rate it is free, and the command is its torque; else the command is its rate.
+    angle : float, optional
+        To turn, from rest to rest, rad.
+    rate : float, optional
+        To reach from rest, rad/s, in its place.
+    duration : float
+        s.
+    limit : float
+        On the torque, N m, or the angular acceleration, rad/s².
+    robust : float
+        Share by which all frequencies may be wrong, such as 0.2: the mean square of what is left over that span is made
+        least.
+    pieces : int
+        Of the spline, 12 or more.
+    check : Structure, optional
+        That the commands are run on, such as one of the exact model; by default `structure`.
+    progress : callable, optional
+        Called with what is being done and the fraction of it done.
+
+    Returns
+    -------
+    ShapedCommand
+
+    Raises
+    ------
+    InputError
+        If the hub turns already or gravity acts, there is not one of angle and rate, or a number is impossible.
+    ComputationError
+        If no command within the limit does it in that time, or a run diverges.
+    """
+    goal = check_goal(angle, rate, duration)
+    if hub.mount.gravity is not None:
+        raise InputError("gravity", "bends the beam as it turns, which no command undoes", "leave it out")
+    if not hub.free and float(np.abs(hub.base(np.zeros(1)).w_WB_B).max()) > 0:
+        raise InputError("rate", "is not zero: the hub turns already", "leave it out")
+    if not pieces >= 12:
+        raise InputError("pieces", f"is {pieces}", "give 12 or more")
+    if not 0 <= robust < 1:
+        raise InputError("robust", f"is {robust:g}", "give a share from 0 to less than 1, such as 0.2")
+    if not limit > 0:
+        raise InputError("limit", f"is {limit:g}", "give a positive number")
+    report = progress or (lambda *_: None)
+    commands, vibration = Commands(structure, hub, goal, pieces), Vibration.of(structure, hub)
+    others = usual(commands, vibration)
+    scale = float(np.mean(vibration.amplitude(commands.time, others["smooth-step"], np.ones(1))))
+    design = _Design(commands, vibration, limit, robust, scale)
+    inner = design.linear()
+    if robust == 0:
+        inner = _refined(structure, design, inner, report)
+    profiles = {"shaped": commands.of(inner), **{name: commands.profile(drive) for name, drive in others.items()}}
+    drives = {"shaped": commands.fixed + commands.drive @ inner, **others}
+    tested = structure if check is None else check
+    settings = _settings(vibration, goal.duration)
+    runs = []
+    for k, (name, profile) in enumerate(profiles.items()):
+        report(f"{tested.kind}: {name}", k / len(profiles))
+        response = simulate(tested, driven(hub, profile), replace(settings, step=None), name=name)
+        runs.append(
+            CommandRun(
+                name, np.asarray(profile(commands.time)), float(np.abs(drives[name]).max()),
+                vibration.amplitude(commands.time, drives[name], RATIOS), response.time, np.asarray(response.tip),
+                float(np.linalg.norm(response.peaks.residual_amplitude)), response.outcome,
+            )
+        )  # fmt: skip
+    return ShapedCommand(
+        kind="torque" if hub.free else "rate",
+        goal=goal.value,
+        to_rate=goal.to_rate,
+        duration=goal.duration,
+        coefficients=np.asarray(profiles["shaped"].coefficients),
+        time=commands.time,
+        limit=float(limit),
+        robust=robust,
+        frequency=np.abs(vibration.eigenvalue) / (2 * np.pi),
+        ratio=RATIOS,
+        runs=tuple(runs),
+        design=structure.kind,
+        check=tested.kind,
+    )
+
+
+class _Design:
+    """The least of what is left, and of roughness beside it, among commands that do what they must."""
+
+    def __init__(self, commands: Commands, vibration: Vibration, limit: float, robust: float, scale: float) -> None:
+        self.commands, self.limit, self.scale = commands, limit, scale
+        t = commands.time
+        ratios = np.linspace(1 - robust, 1 + robust, _ROBUST) if robust else np.ones(1)
+        both = np.concatenate([commands.drive, commands.fixed[:, None]], axis=1)
+        rows = np.concatenate([vibration.rows(t, both, float(each)) for each in ratios]) / np.sqrt(len(ratios))
+        rows = np.concatenate([rows.real, rows.imag]) / scale
+        self.left, self.offset = rows[:, :-1], rows[:, -1]
+        # Roughness: the drive's slope, over that of a smooth step.
+        weight = np.sqrt(np.diff(t) * commands.goal.duration)[:, None]
+        goal, smooth = commands.goal, _SMOOTH_ROBUST if robust else _SMOOTH
+        size = abs(goal.value) * commands.inertia / goal.duration ** (1 if goal.to_rate else 2)
+        self.rough = smooth * weight * commands.slope / size
+        self.rough_offset = smooth * weight[:, 0] * np.diff(commands.fixed) / np.diff(t) / size
+
+    def linear(self) -> Floats:
+        """By the modes of the linear model."""
+        return self.solved(self.left, self.offset, self.commands.particular)
+
+    def solved(self, rows: Floats, offset: Floats, about: Floats) -> Floats:
+        """Coefficients c at which rows c + offset is least, on the conditions and within the limit."""
+        commands = self.commands
+        a = np.concatenate([rows, self.rough]) @ commands.free
+        b = np.concatenate([rows @ about + offset, self.rough @ about + self.rough_offset])
+        found = about + commands.free @ np.linalg.lstsq(a, -b, rcond=None)[0]
+        every = slice(None, None, 8)
+        drive, fixed = commands.drive[every], commands.fixed[every]
+        if np.abs(drive @ found + fixed).max() <= self.limit:
+            return found
+        from scipy.sparse import csc_array
+
+        size, limited = np.linalg.norm(a, axis=0).max(), (drive @ commands.free) / self.limit
+        middle = (drive @ about + fixed) / self.limit
+        change = solve_quadratic(
+            csc_array(a.T @ a / size**2), a.T @ b / size**2, csc_array(limited), -1.0 - middle, 1.0 - middle
+        )
+        if change is None:
+            word = "torque" if commands.hub.free else "angular acceleration"
+            problem = f"no command of {word} {self.limit:.4g} or less does it in {commands.goal.duration:g} s"
+            raise ComputationError("limits exceeded", problem)
+        return np.asarray(about + commands.free @ change)
+
+
+def _settings(vibration: Vibration, duration: float) -> ResponseSettings:
+    after = _PERIODS * 2 * np.pi / float(vibration.eigenvalue[0].imag)
+    return ResponseSettings(duration + after, residual_from=duration, integrator="gauss", estimate=False, loads=False)
+
+
+def _refined(structure: Structure, design: _Design, inner: Floats, report: Callable[[str, float], None]) -> Floats:
+    """Gauss-Newton steps on what the structure's own run leaves of the tip's vibration."""
+    commands = design.commands
+    settings = _settings(Vibration.of(structure, commands.hub), commands.goal.duration)
+    grid: Grid | None = None
+    best, least = inner, np.inf
+    for k in range(_ROUNDS):
+        report(f"{structure.kind}: refining", k / _ROUNDS)
+        hub = driven(commands.hub, commands.of(inner))
+        if grid is None:
+            done = simulate(structure, hub, settings)
+            if done.outcome != "done":
+                raise ComputationError(done.outcome, done.message)
+            grid = Grid.of(structure, hub, settings, done)
+        about = Differentiated(structure, hub, settings, grid, "", loads=False)
+        own = _left(about.own(), commands.goal.duration) / design.scale
+        size = float(np.linalg.norm(own))
+        if size < least:
+            better, best, least = size < _BETTER * least, inner, size
+        else:
+            better = False
+        if not better or k == _ROUNDS - 1:
+            break
+        moves = commands.free / np.abs(commands.drive @ commands.free).max(axis=0)
+        width = _MOVED * np.abs(commands.drive @ inner + commands.fixed).max()
+        pairs = []
+        for move in moves.T:
+            less, more = (commands.of(inner + sign * width / 2 * move) for sign in (-1, 1))
+            pairs.append(about.pair((None, driven(commands.hub, less)), (None, driven(commands.hub, more))))
+        slopes = [
+            (_left(more, commands.goal.duration) - _left(less, commands.goal.duration)) / width / design.scale
+            for less, more in about.responses(pairs, np.full(len(pairs), width))
+        ]
+        # In the coefficients: the derivative along every direction that is free.
+        rows = np.stack(slopes, axis=1) @ np.linalg.pinv(moves)
+        inner = design.solved(rows, own - rows @ inner, inner)
+    return best
+
+
+def _left(response: Response, duration: float) -> Floats:
+    """The tip's departures from its mean after the command, each sample by its share, (m,)."""
+    tip = np.asarray(response.tip)[response.time >= duration]
+    return ((tip - tip.mean(axis=0)) * np.sqrt(2 / len(tip))).ravel()
+
+
+def profile_of(command: ShapedCommand) -> SplineProfile:
+    """The profile of a shaped command, for a hub's torque or rate."""
+    return SplineProfile(command.duration, command.coefficients)

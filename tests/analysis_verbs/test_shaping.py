@@ -1,0 +1,83 @@
+"""Shaped commands do what they must, and leave less than a ZVD shaper and a smooth step, on a model that turns far."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+
+from ..specimens import BOX, HUB_INERTIA, HUB_RADIUS, LENGTH, METAL
+
+MODEL = gb.assemble(gb.Beam(LENGTH, BOX, METAL, [gb.PointMass(LENGTH, 0.1)], damping_ratio=0.005), "FOAM", y=2)
+PRESCRIBED, FREE = gb.Hub(radius=HUB_RADIUS), gb.Hub(radius=HUB_RADIUS, inertia=HUB_INERTIA)
+
+
+def test_a_rate_turns_by_the_angle_and_leaves_a_hundredth_of_a_zvd_shaper() -> None:
+    found = gb.shape_command(MODEL, PRESCRIBED, angle=1.0, duration=6.0)
+    profile = gb.SplineProfile(found.duration, found.coefficients)
+    assert gb.Hub(radius=HUB_RADIUS, rate=profile).angle(8.0) == pytest.approx(1.0, abs=1e-9)
+    assert profile(6.0) == pytest.approx(0, abs=1e-12) and profile(7.0) == pytest.approx(0, abs=1e-12)
+    shaped, zvd, smooth = found.runs
+    assert (shaped.name, zvd.name, smooth.name) == ("shaped", "ZVD", "smooth-step")
+    assert shaped.residual < 0.1 * zvd.residual < 0.01 * smooth.residual
+    # What the modes leave is what a run of the linear model leaves: of a small angle FOAM is one.
+    small = gb.shape_command(MODEL, PRESCRIBED, angle=1e-4, duration=6.0)
+    for run in small.runs[1:]:
+        assert run.residual == pytest.approx(run.by_ratio[found.ratio == 1][0], rel=0.1)
+    assert {each.outcome for each in found.runs} == {"done"} and found.kind == "rate"
+
+
+def test_a_rate_is_reached() -> None:
+    found = gb.shape_command(MODEL, PRESCRIBED, rate=3.0, duration=10.0)
+    assert gb.SplineProfile(10.0, found.coefficients)(np.array([0.0, 10.0, 12.0])) == pytest.approx([0, 3, 3], abs=1e-9)
+    assert found.residual < 1e-3 * found.runs[2].residual
+
+
+def test_a_torque_within_a_limit_turns_a_free_hub_from_rest_to_rest() -> None:
+    found = gb.shape_command(MODEL, FREE, angle=1.0, duration=6.0, limit=45.0)
+    assert np.abs(found.runs[0].command).max() < 45.0 * 1.001 < found.runs[1].largest
+    torque = gb.SplineProfile(found.duration, found.coefficients)
+    hub = gb.Hub(radius=HUB_RADIUS, inertia=HUB_INERTIA, torque=torque)
+    run = gb.simulate(MODEL, hub, duration=8.0, integrator="gauss", estimate=False)
+    assert run.hub is not None
+    assert run.hub.angle[-1] == pytest.approx(1.0, abs=1e-2) and abs(run.hub.rate[-1]) < 1e-3
+    assert found.residual < 0.1 * found.runs[1].residual and found.kind == "torque"
+    with pytest.raises(gb.ComputationError, match="no command of torque 20 or less does it in 6 s"):
+        gb.shape_command(MODEL, FREE, angle=1.0, duration=6.0, limit=20.0)
+
+
+def test_a_robust_command_leaves_least_over_the_span() -> None:
+    plain, robust = (gb.shape_command(MODEL, PRESCRIBED, angle=1.0, duration=9.0, robust=r) for r in (0.0, 0.2))
+    inside = np.abs(robust.ratio - 1) <= 0.2 + 1e-9
+
+    def left(run: object) -> float:
+        return float(np.sqrt(np.mean(np.asarray(run.by_ratio)[inside] ** 2)))  # type: ignore[attr-defined]
+
+    assert left(robust.runs[0]) < 0.5 * min(left(robust.runs[1]), left(plain.runs[0]))
+
+
+def test_its_results_are_drawn_and_saved() -> None:
+    found = gb.shape_command(MODEL, PRESCRIBED, angle=0.1, duration=6.0)
+    assert len(found.plot().axes) == 2 and len(found.plot("robustness").axes) == 1
+    ds = found.to_xarray()
+    assert ds["residual"].sel(run="ZVD").item() == found.runs[1].residual and "Shaped rate by 0.1 rad" in repr(found)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"duration": 6.0}, "both given or both missing"),
+        ({"angle": 1.0, "rate": 1.0, "duration": 6.0}, "both given or both missing"),
+        ({"angle": 0.0, "duration": 6.0}, "angle is 0"),
+        ({"angle": 1.0, "duration": -1.0}, "duration is -1 s"),
+        ({"angle": 1.0, "duration": 6.0, "pieces": 5}, "pieces is 5"),
+        ({"angle": 1.0, "duration": 6.0, "robust": 1.5}, "robust is 1.5"),
+        ({"angle": 1.0, "duration": 6.0, "limit": 0.0}, "limit is 0"),
+    ],
+)
+def test_what_is_no_command_is_refused(options: dict[str, float], words: str) -> None:
+    with pytest.raises(gb.InputError, match=words):
+        gb.shape_command(MODEL, PRESCRIBED, **options)  # type: ignore[arg-type]
+    with pytest.raises(gb.InputError, match="the hub turns already"):
+        gb.shape_command(MODEL, gb.Hub(radius=0.5, rate=1.0), angle=1.0, duration=6.0)
