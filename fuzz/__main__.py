@@ -18,10 +18,11 @@ from fuzz.judge import judge
 from fuzz.records import record
 from fuzz.results import result
 from fuzz.scenarios import scenario
+from fuzz.sweeps import sweep
 from fuzz.worker import Answer, call, warm_up
 from gbeam.printable import shortened
 
-KINDS = {"scenario": scenario, "record": record, "command": command, "result": result}
+KINDS = {"scenario": scenario, "record": record, "command": command, "result": result, "sweep": sweep}
 FINDINGS = Path(__file__).parent / "findings"
 
 

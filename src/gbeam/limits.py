@@ -27,6 +27,7 @@ ENTRIES = 1000  # masses, loads, stations of a section or of the output
 NODES = 5000  # of integration along the beam: 12 and four for every shape, between two stations of the section
 KNOTS = 500_000  # of a centrifuge's target: about 4 kB each while it is planned
 STEPS = 4_000_000  # in time
+WORKERS = 512  # processes of a sweep: each imports gbeam
 HISTORY_BYTES = 4 * 10**9  # of a response: coordinates, displacements and loads at every step
 
 # Records of flights.

@@ -170,3 +170,14 @@ def test_figures_are_found_by_the_end_of_their_path() -> None:
     assert find(facts, "tip.z") == ("a", "tip", "z") and find(facts, "loads[1].z") == ("a", "loads", 1, "z")
     assert value_at(facts, ("a", "tip", "z")) == 1.5 and np.isnan(value_at(facts, ("a", "loads", 1, "z")))
     assert np.isnan(value_at(facts, ("a", "gone"))) and unit_at(facts, ("peaks", "m", "f")) == "N m"
+
+
+@pytest.mark.parametrize("verb", ["static", "modes", "plan"])
+def test_a_motion_that_is_not_there_is_refused(fast: Path, verb: str) -> None:
+    with pytest.raises(gb.InputError, match="--motion is 'nowhere'; the scenario has"):
+        gb.sweep(fast, [f"{LEVEL}=2 g, 4 g"], ["tip.z"], verb=verb, motion="nowhere")
+
+
+def test_a_billion_processes_are_refused(fast: Path) -> None:
+    with pytest.raises(gb.InputError, match="--workers is 1000000000; give 1 to"):
+        gb.sweep(fast, [f"{LEVEL}=2 g, 4 g"], ["tip.z"], verb="static", workers=10**9)

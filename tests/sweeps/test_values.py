@@ -100,8 +100,15 @@ def test_a_grid_and_samples_make_both() -> None:
         (["a=1:2:2", "a=3:4:2"], None, "varies a twice"),
         (["a=1:2:2"], 8, "--samples stands without a distribution"),
         (["a=uniform(0, 1)"], 0, "--samples is 0"),
+        (["a=uniform(0, 1)"], 10**67, r"--samples makes 1e\+67 values"),
+        (["a=lognormal(1, 1000)"], 8, "draws values beyond every number"),
     ],
 )
 def test_wrong_together(over: list[str], samples: int | None, problem: str) -> None:
     with pytest.raises(InputError, match=problem):
         read_cases(over, samples)
+
+
+def test_a_seed_below_zero_is_refused() -> None:
+    with pytest.raises(InputError, match="--seed is -1"):
+        read_cases(["a=uniform(0, 1)"], 4, seed=-1)

@@ -90,7 +90,9 @@ def _surface(figure: Figure, panel: Axes, sweep: Sweep, values: Floats, label: s
 def _bands(panel: Axes, parameter: Parameter, values: Floats, label: str) -> None:
     """Median and the middle nine tenths of the samples over a parameter."""
     at = _across(panel, parameter)
-    low, middle, high = np.nanquantile(values, [0.05, 0.5, 0.95], axis=1)
+    known, quantiles = np.isfinite(values).any(axis=1), np.full((3, len(values)), np.nan)
+    quantiles[:, known] = np.nanquantile(values[known], [0.05, 0.5, 0.95], axis=1)
+    low, middle, high = quantiles
     panel.fill_between(at, low, high, color=colour(0), alpha=0.25, lw=0, label="5 % to 95 %")
     panel.plot(at, middle, "o-", ms=3.5, color=colour(0), label="median")
     panel.set_ylabel(label)

@@ -85,6 +85,8 @@ def _plan(case: Case, motion: str | None, at: float | None, judged: bool) -> Fac
     from gbeam.analysis.imitation.plan import plan
     from gbeam.report.machine import plan as report
 
+    if motion is not None:
+        _prepared(case, motion)  # or there is none of that name
     machines = {name: m for name, m in case.motions.items() if m.kind == "centrifuge" and motion in (None, name)}
     if not machines:
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
@@ -133,6 +135,8 @@ def _structure(case: Case, judged: bool) -> Structure:
 
 def _prepared(case: Case, name: str) -> Motion:
     """A motion prepared for the response's times."""
+    if name not in case.motions:
+        raise InputError("--motion", f"is {name!r}", f"the scenario has {', '.join(case.motions)}")
     first = case.response.start
     return case.motions[name].over(first, first + case.response.duration)
 

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from gbeam.errors import InputError
+from gbeam.limits import refuse_more
 from gbeam.results.sweep import SAMPLE
 from gbeam.scenario.text.distributions import Distribution
-from gbeam.sweeps.values import OPTION, Variation, drawn_from, read_variation
+from gbeam.sweeps.values import MAX_VALUES, OPTION, Variation, drawn_from, read_variation
 
 SAMPLERS = ("sobol", "latin", "random", "saltelli")
 DEFAULT_SAMPLES = 64
@@ -113,6 +114,10 @@ def read_cases(
     count = DEFAULT_SAMPLES if samples is None else samples
     if count < 1:
         raise InputError("--samples", f"is {count}", "give one or more")
+    size = count * len(drawn) * (len(drawn) + 2 if sampler == "saltelli" else 1)
+    refuse_more("--samples", "values", size, MAX_VALUES, 8.0, "give fewer")
+    if seed < 0:
+        raise InputError("--seed", f"is {seed}", "give zero or more")
     if sampler not in SAMPLERS:
         raise InputError("--sampler", f"is {sampler!r}", f"choose {', '.join(SAMPLERS)}")
     if sampler == "saltelli":

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.limits import HISTORY_BYTES, refuse_more
+from gbeam.limits import HISTORY_BYTES, WORKERS, refuse_more
 from gbeam.results.sweep import Sweep
 from gbeam.scenario.load import load
 from gbeam.scenario.origin import provenance
@@ -128,8 +128,8 @@ def sweep(
     if not (names or histories) or isinstance(measure, str):
         raise InputError("--measure", "is missing", 'name figures: --measure "tip.z.max_abs, verdict.tip"')
     over_time = _over_time(tuple(histories), times, verb)
-    if workers < 1:
-        raise InputError("--workers", f"is {workers}", "give one or more")
+    if not 1 <= workers <= WORKERS:
+        raise InputError("--workers", f"is {workers}", f"give 1 to {WORKERS}; a --scheduler has any number")
     cases = read_cases(_texts(over), samples, sampler or "sobol", seed := seed or 0, base.source.distributions)
     size = len(over_time.names) * over_time.count * len(cases)
     refuse_more("--times", "values of histories", size, HISTORY_BYTES // 8, 8.0, "give fewer times, or fewer cases")

@@ -74,7 +74,11 @@ class Variation:
         """The same with the values at probabilities (n,), (0, 1)."""
         assert self.distribution is not None
         quantile = QUANTILES[self.distribution.family]
-        values = np.asarray(quantile(probability, *self.distribution.arguments), dtype=float)
+        with np.errstate(over="ignore"):
+            values = np.asarray(quantile(probability, *self.distribution.arguments), dtype=float)
+        if not np.isfinite(values).all():
+            fix = "give a smaller spread"
+            raise InputError(f"{OPTION} {self.path}", f"{self.distribution} draws values beyond every number", fix)
         texts = tuple(written(float(value), self.unit) for value in values)
         return replace(self, texts=texts, values=values)
 
