@@ -79,6 +79,18 @@ def test_a_record_takes_the_place_of_a_profile(site: Site) -> None:
     assert z[0] == pytest.approx(1, abs=1e-3) and z[-1] == pytest.approx(1.05, abs=2e-3)
 
 
+def test_a_record_takes_the_place_of_the_examples_profile(site: Site) -> None:
+    text = site.call("GET", "/api/examples", site.opened).json()["Flight and centrifuge"]
+    site.call("PUT", "/api/records/a.csv", site.opened, content=b"t,z\n0,1\n1,1\n")
+    record = {"file": "a.csv", "time": "t", "x": "0", "y": "0", "z": "z", "unit": "g"}
+    body = {"text": text, "motion": "flight", "record": record}
+    after = tomllib.loads(site.call("POST", "/api/record", site.opened, json=body).json()["text"])
+    expected = tomllib.loads(text)
+    del expected["motion"]["flight"]["acceleration"]
+    expected["motion"]["flight"]["record"] = record
+    assert after == expected
+
+
 @pytest.mark.parametrize(
     "text", ["", "motion = 1", "[[motion]]\nx = 1", "[motion]\nflight = 3", "[motion.flight]", "x"]
 )

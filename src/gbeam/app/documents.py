@@ -5,19 +5,21 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator, Sequence
-from functools import cache
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from gbeam.app.fields import fields, leaves
 from gbeam.app.files import regular
 from gbeam.errors import GbeamError, InputError
-from gbeam.scenario import ScenarioError, build, json_schema, loads
+from gbeam.scenario import ScenarioError, build, loads
 from gbeam.scenario.text.diagnostics import Diagnostic
-from gbeam.scenario.text.paths import parse_path, path_text
+from gbeam.scenario.text.paths import Place, parse_path, path_text
 from gbeam.scenario.text.source import Source, parse
 
 NAME = "scenario.toml"
 _MEASURE = re.compile(r"[A-Za-z_][\w., \[\]-]{0,300}")
+LONGEST = 60  # lines of a profile that a record takes the place of
 FIELDS = 400  # shown; a table of thousands of numbers is edited as text
 
 
@@ -47,7 +49,7 @@ def described(text: str, folder: Path) -> dict[str, Any]:
     made: dict[str, Any] = {"text": text, "fields": [], "errors": [], "meaning": ""}
     try:
         data = parse(NAME, text)
-        made["fields"] = [*_fields(data)][:FIELDS]
+        made["fields"] = [*fields(data)][:FIELDS]
         records(data, folder)
         from gbeam.analysis.study.describe import describe
         from gbeam.report.description import text as in_words
@@ -103,22 +105,31 @@ def with_record(text: str, motion: str, record: dict[str, str]) -> str:
     key = next((each for each in ("record", "acceleration") if each in flight), None)
     fix = f"write it yourself: [motion.{motion}.record]"
     place = None if key is None else source.places.get(("motion", motion, key))
-    if key is None or place is None or place.key.line != place.value.line or text.lstrip().startswith("{"):
-        raise InputError(f"motion.{motion}", "is written in a way that cannot be changed here", fix)
+    if key is not None and place is not None and not text.lstrip().startswith("{"):
+        del flight[key]
+        flight["record"] = record
+        kind = source.places.get(("motion", motion, "kind"))
+        for changed in _replaced(text.split("\n"), place, None if kind is None else kind.key.line, record):
+            with suppress(ScenarioError):
+                if parse(NAME, changed) == data:
+                    return changed
+    raise InputError(f"motion.{motion}", "is written in a way that cannot be changed here", fix)
+
+
+def _replaced(lines: list[str], place: Place, kind: int | None, record: dict[str, str]) -> Iterator[str]:
+    """The text with a record in place of an entry, which ends on its own line or a later one, or is tables of its own.
+
+    `kind` is the number of the line that says that the motion is a flight.
+    """
     inside = ", ".join(f"{name} = {json.dumps(value, ensure_ascii=False)}" for name, value in record.items())
-    lines = text.split("\n")
-    line = lines[place.value.line - 1]
-    lines[place.value.line - 1] = f"{line[: place.key.column - 1]}record = {{ {inside} }}{line[place.value.end - 1 :]}"
-    changed = "\n".join(lines)
-    del flight[key]
-    flight["record"] = record
-    try:
-        sound = parse(NAME, changed) == data
-    except ScenarioError:
-        sound = False
-    if not sound:
-        raise InputError(f"motion.{motion}", "is written in a way that cannot be changed here", fix)
-    return changed
+    new, first = f"record = {{ {inside} }}", place.key.line - 1
+    before = f"{lines[first][: place.key.column - 1]}{new}"
+    if place.value.line == place.key.line:
+        yield "\n".join([*lines[:first], before + lines[first][place.value.end - 1 :], *lines[first + 1 :]])
+    for after in range(first + 1, min(first + LONGEST, len(lines)) + 1):
+        yield "\n".join([*lines[:first], before, *lines[after:]])
+        if kind is not None and kind <= first:
+            yield "\n".join([*lines[:kind], new, *lines[kind:first], *lines[after:]])
 
 
 def records(data: Any, folder: Path) -> list[Path]:
@@ -130,7 +141,7 @@ def records(data: Any, folder: Path) -> list[Path]:
         If one is a path, or is not there.
     """
     found = []
-    for path, value in _leaves(data):
+    for path, value in leaves(data):
         if path[-1] == "file":
             if not isinstance(value, str):
                 raise InputError(path_text(path), "is no text", "give the name of a record")
@@ -161,7 +172,7 @@ def sweep_arguments(text: str, over: Sequence[str], measure: str) -> list[str]:
     data = parse(NAME, text)
     if "sweep" in data:
         raise InputError("sweep", "is a table of the scenario", "take it out: the page says what varies")
-    known = {field["path"] for field in _fields(data)}
+    known = {field["path"] for field in fields(data)}
     arguments = []
     if not 1 <= len(over) <= 2:
         raise InputError("over", f"has {len(over)} values", "vary one or two")
@@ -201,59 +212,3 @@ def _literal(value: str, before: Any) -> str:
         if isinstance(new, (bool, int, float)):
             return json.dumps(new)
     return json.dumps(value, ensure_ascii=False)
-
-
-def _leaves(node: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[tuple[Any, ...], Any]]:
-    if isinstance(node, dict):
-        for key, each in node.items():
-            yield from _leaves(each, (*path, key))
-    elif isinstance(node, list) and any(isinstance(each, (dict, list)) for each in node):
-        for i, each in enumerate(node):
-            yield from _leaves(each, (*path, i))
-    elif path:
-        yield path, node
-
-
-def _fields(data: Any) -> Iterator[dict[str, Any]]:
-    for path, value in _leaves(data):
-        if isinstance(value, list):
-            continue
-        shown = value if isinstance(value, str) else json.dumps(value)
-        yield {"path": path_text(path), "value": shown, "help": _help(tuple(path))}
-
-
-@cache
-def _schema() -> dict[str, Any]:
-    schema: dict[str, Any] = json.loads(json_schema())
-    return schema
-
-
-def _help(path: tuple[Any, ...]) -> str:
-    """What the schema says of a key; empty where it says nothing, or not only one thing."""
-    nodes = [_schema()]
-    words = ""
-    for step in path:
-        nexts = [each for node in nodes for each in _inside(node, step)]
-        words = next((str(each["description"]) for each in nexts if "description" in each), "")
-        nodes = nexts
-    return words
-
-
-def _inside(node: dict[str, Any], step: Any) -> Iterator[dict[str, Any]]:
-    """The schemas of what is inside, of every alternative."""
-    for each in _alternatives(node):
-        if isinstance(step, int):
-            if isinstance(each.get("items"), dict):
-                yield each["items"]
-        elif step in each.get("properties", {}):
-            yield each["properties"][step]
-        elif isinstance(each.get("additionalProperties"), dict):
-            yield each["additionalProperties"]
-
-
-def _alternatives(node: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    if "$ref" in node:
-        yield from _alternatives(_schema()["$defs"][node["$ref"].rsplit("/", 1)[-1]])
-    for each in (*node.get("anyOf", ()), *node.get("oneOf", ()), *node.get("allOf", ())):
-        yield from _alternatives(each)
-    yield node

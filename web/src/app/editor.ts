@@ -60,17 +60,20 @@ export class Editor {
     await this.take(api.document(text));
   }
 
-  private async take(answer: Promise<Document>): Promise<void> {
+  /** Show what becomes of the document; whether it has been taken. */
+  private async take(answer: Promise<Document>): Promise<boolean> {
     const number = ++this.latest;
     try {
       const made = await answer;
-      if (number !== this.latest) return; // a later change has overtaken it
+      if (number !== this.latest) return false; // a later change has overtaken it
       this.document = made;
       sessionStorage.setItem(KEPT, made.text);
       if (this.text.value !== made.text) this.text.value = made.text;
       this.draw();
+      return true;
     } catch (error) {
       this.complain(error);
+      return false;
     }
   }
 
@@ -188,6 +191,9 @@ export class Editor {
     const set = (key: string) => (value: string) => {
       chosen[key] = value;
     };
+    const use = async (): Promise<void> => {
+      if (await this.take(api.map(this.document.text, motion, chosen))) await this.preview();
+    };
     const parts = [
       choice("Flight", flights.map((each) => [each, each]), motion, (value) => {
         motion = value;
@@ -196,7 +202,7 @@ export class Editor {
       ...COMPONENTS.map((key) => choice(`${key} is`, signed, "0", set(key))),
       choice("Unit", [["g", "g"], ["m/s^2", "m/s²"]], "g", set("unit")),
       choice("Holds", [["specific-force", "specific force"], ["acceleration", "acceleration"]], "specific-force", set("quantity")),
-      button("Use this record", () => void this.take(api.map(this.document.text, motion, chosen)).then(() => this.preview())),
+      button("Use this record", () => void use()),
     ];
     this.record.replaceChildren(element("h3", "", `Record ${name}`), this.row(...parts));
   }
