@@ -57,6 +57,12 @@ def test_a_robust_command_leaves_least_over_the_span() -> None:
     assert left(robust.runs[0]) < 0.5 * min(left(robust.runs[1]), left(plain.runs[0]))
 
 
+def test_a_beam_that_the_hub_does_not_bend_is_refused() -> None:
+    across = gb.assemble(gb.Beam(LENGTH, BOX, METAL, damping_ratio=0.005), "FOAM", z=2)
+    with pytest.raises(gb.InputError, match="no vibration that the hub excites"):
+        gb.shape_command(across, PRESCRIBED, angle=1.0, duration=6.0)
+
+
 def test_its_results_are_drawn_and_saved() -> None:
     found = gb.shape_command(MODEL, PRESCRIBED, angle=0.1, duration=6.0)
     assert len(found.plot().axes) == 2 and len(found.plot("robustness").axes) == 1

@@ -170,8 +170,7 @@ class Neighbourhood:
             if name not in self._about:
                 self._differentiated(structure, name, self.grid(name))
         about = {name: self._about[name] for name in motions}
-        own = {name: each.own() for name, each in about.items()}
-        values = read(self.case, study_of(self.case, own))
+        values = read(self.case, self.answer)
         steps = np.array([self._step(k, _NEAR) for k in range(len(self.parameters))])
         # Of each motion the pairs of the parameters that it feels; a parameter by which something jumps is left.
         pairs: dict[str, dict[int, Any]] = {name: {} for name in motions}
@@ -202,7 +201,7 @@ class Neighbourhood:
 
                 rows.append(_differences(at, values, step))
                 continue
-            sides: tuple[dict[str, Response], dict[str, Response]] = (dict(own), dict(own))
+            sides: tuple[dict[str, Response], dict[str, Response]] = (dict(done), dict(done))
             for name in motions:
                 if k in pairs[name]:
                     sides[0][name], sides[1][name] = next(responses[name])

@@ -148,6 +148,9 @@ class Vibration:
         excited = np.linalg.solve(right, column)
         size = np.linalg.norm(linear.c[:3] @ right, axis=0) * np.abs(excited)
         some = (values.imag > 1e-6 * np.abs(values).max()) & (size > 1e-9 * size.max())
+        if not some.any():
+            fix = "give the model shapes in the plane of rotation: y = 1 or more"
+            raise InputError("structure", "has no vibration that the hub excites", fix)
         order = np.argsort(values[some].imag)
         return Vibration(values[some][order], 2 * size[some][order])
 
