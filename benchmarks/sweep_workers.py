@@ -1,9 +1,10 @@
 """How much faster two workers compute a sweep than one: processes of this machine, and a Dask cluster on it.
 
-    python benchmarks/sweep_workers.py [CASES]
+    python benchmarks/sweep_workers.py [CASES [waiting]]
 
-Prints wall times in s and their ratio to that of one process, each with the start of the processes and without: the
-time of one case more, which is what counts in a long sweep. The aim is 1.8. Needs two cores that do nothing else.
+Prints the wall time of a sweep in s, and the time of one case more, which is what counts in a long sweep, each with its
+ratio to that of one process. The aim is 1.8. Needs two cores that do nothing else; with `waiting` a case sleeps 0.2 s
+instead of computing, so that what handing out the cases costs is seen on a machine that is busy too.
 """
 
 from __future__ import annotations
@@ -19,11 +20,17 @@ SCENARIO = Path(__file__).parents[1] / "examples" / "hubbeam2009_slew_3.toml"
 MEASURE = ["slew.tip.y.max_abs"]
 
 
-def seconds(cases: int, **options: Any) -> float:
+def waiting(case: gb.Case) -> float:
+    """Sleep."""
+    time.sleep(0.2)
+    return float(case.beam.length)
+
+
+def seconds(cases: int, measure: Any, **options: Any) -> float:
     """Wall time of a sweep over so many cases."""
     begin = time.perf_counter()
     over = {"motion.slew.rate.level": f"2:3:{cases} rad/s"}
-    found = gb.sweep(SCENARIO, over, MEASURE, **options)
+    found = gb.sweep(SCENARIO, over, measure, **options)
     assert found.counts == {"done": cases}
     return time.perf_counter() - begin
 
@@ -33,17 +40,15 @@ def main() -> None:
     from distributed import LocalCluster
 
     cases = int(sys.argv[1]) if len(sys.argv) > 1 else 120
+    measure: Any = {"waiting": waiting} if "waiting" in sys.argv[2:] else MEASURE
     few = cases // 4
-    seconds(2)
+    seconds(2, measure)
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster:
-        ways = {
-            "one process": {},
-            "--workers 2": {"workers": 2},
-            "--scheduler": {"scheduler": cluster.scheduler_address},
-        }
+        address = cluster.scheduler_address
+        ways = {"one process": {}, "--workers 2": {"workers": 2}, "--scheduler": {"scheduler": address}}
         rates: dict[str, tuple[float, float]] = {}
         for name, options in ways.items():
-            short, whole = seconds(few, **options), seconds(cases, **options)
+            short, whole = seconds(few, measure, **options), seconds(cases, measure, **options)
             rates[name] = whole, (whole - short) / (cases - few)
     print(f"{cases} cases    wall, s  ratio    s per case more  ratio")
     one, each_one = rates["one process"]
