@@ -23,7 +23,7 @@ class Opened:
     faults: list[str] = field(default_factory=list)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")  # while it is open no other test of the process can run an event loop
 def browser() -> Iterator[Any]:
     """Chromium; the tests are skipped where there is none."""
     playwright = pytest.importorskip("playwright.sync_api")
