@@ -15,7 +15,7 @@ from .strategies import beams, few, first_frequency, numbers, theorem, vectors
 @given(beam=beams(springs=True), places=vectors(0.5, 2), first=vectors(1.0), second=vectors(1.0), a=vectors(30.0))
 def test_influence(beam: Beam, places: np.ndarray, first: np.ndarray, second: np.ndarray, a: np.ndarray) -> None:
     """F₁·u₁(F₂) = F₂·u₂(F₁), on a base that accelerates along the beam as well."""
-    at = beam.length * (0.5 + places)
+    at = beam.length * (0.505 + 0.99 * places)  # at the root a force moves nothing but rounding
     base = Base(np.array([a[0], 0.0, 0.0]), np.zeros(3), np.zeros(3))
     across = np.array([0.0, 1.0, 1.0])
     forces = [1e-3 * (f + 0.1) * across for f in (first, second)]
