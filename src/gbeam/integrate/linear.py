@@ -38,8 +38,9 @@ def _solved(xp: Any, left: Array, right: Array) -> Array:
 
 def _sum(weights: Array, values: Array) -> Array:
     """Sums over k of weights (t or 1, j, k) and values (t or 1, k, ...)."""
-    w = weights.reshape(*weights.shape, *(1,) * (values.ndim - 2))
-    return sum(w[:, :, k] * values[:, None, k] for k in range(w.shape[2]))
+    rest = values.shape[2:]
+    made = weights @ values.reshape(*values.shape[:2], -1)
+    return made.reshape(*made.shape[:2], *rest)
 
 
 def chunk(
@@ -65,15 +66,16 @@ def chunk(
     maps = _sum(t.g, unit) + _sum(t.d, x)
     if scheme.ends and not steps.equal:
         maps = _started_anew(equations, scheme, maps, _sum(t.end_z, unit) + _sum(t.end_x, x), steps)
+    # Sums of products below: many products of a small matrix with one vector are slow.
     before, last = _recur(xp, xp.reshape(maps, (count, m * n, m * n + 1)), xp.reshape(z, (-1,)))
-    x = (x[..., :-1] @ before[:, None, :, None])[..., 0] + x[..., -1]
+    x = (x[..., :-1] * before[:, None, None, :]).sum(axis=-1) + x[..., -1]
     ends = _sum(t.end_z, xp.reshape(before, (count, m, n))) + _sum(t.end_x, x)
     q, qd, qdd = (values if steps.kept.all() else values[steps.kept] for values in (ends[:, 0], ends[:, 1], x[:, -1]))
     # The last stage's acceleration is that at the end, unless the stage lies before it, or just before a jump.
     again = np.flatnonzero(steps.jump[steps.kept]) if scheme.ends else np.arange(len(q))
     if again.size:
         c, k, f = equations.matrices(equations.drive(steps.end[steps.kept][again]))
-        force = f - (k @ q[again, :, None] + c @ qd[again, :, None])[..., 0]
+        force = f - (k * q[again, None] + c * qd[again, None]).sum(axis=-1)
         there = xp.linalg.solve(mass, force.T).T
         if scheme.ends:
             qdd[again] = there
