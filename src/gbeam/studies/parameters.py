@@ -12,7 +12,7 @@ from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.text.kinds import KINDS
 from gbeam.scenario.text.suggest import advise
 
-# Where a value belongs to the question, not to what is asked about.
+# Values of the computation, not of what is computed.
 _FIXED = {
     r"response\.(?!initial\.)": "is a setting of the computation, which stays as it is while one differentiates",
     r"motion\.[\w-]+\.accept\.": "is a limit of acceptance, which changes no response",

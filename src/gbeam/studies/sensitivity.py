@@ -77,7 +77,7 @@ def sensitivity(
     InputError, ScenarioError
         If the scenario, a figure or a value is wrong; or a value that is named may not be a little more or less.
     ComputationError
-        If a run that is asked about is not done.
+        If a run whose figures are differentiated is not done.
     """
     base = load(scenario, overrides)
     assert base.source is not None  # it was read from a file
