@@ -65,7 +65,7 @@ def test_a_beam_that_the_hub_does_not_bend_is_refused() -> None:
 
 def test_its_results_are_drawn_and_saved() -> None:
     found = gb.shape_command(MODEL, PRESCRIBED, angle=0.1, duration=6.0)
-    assert len(found.plot().axes) == 2 and len(found.plot("robustness").axes) == 1
+    assert len(found.plot()) == 2 and len(found.plot("robustness")) == 1
     ds = found.to_xarray()
     assert ds["residual"].sel(run="ZVD").item() == found.runs[1].residual and "Shaped rate by 0.1 rad" in repr(found)
 

@@ -230,7 +230,7 @@ def test_comparison(study: Study) -> None:
     np.testing.assert_allclose(lines["at the root"], -0.1 * gradient[:, 2])
     np.testing.assert_allclose(lines["at the tip"], 0.2 * gradient[:, 2])
     assert _shaded(panel) == {"below idle": [(0.5, 0.8)]}
-    (panel,) = full.plot("parts y").axes
+    (panel,) = full.plot("parts y")
     np.testing.assert_allclose(_lines(panel)["at the root"], -0.1 * gradient[:, 1])
 
     spectra = np.outer(np.arange(1.0, 6.0), [1, 1, 2])
@@ -253,13 +253,13 @@ def _with_root(study: Study) -> Comparison:
 def test_comparison_with_root_loads_or_without_parts(study: Study) -> None:
     compared = _with_root(study)
     history = compared.root.history
-    shear, moment = compared.plot(title="t").axes
+    shear, moment = compared.plot(title="t")
     np.testing.assert_array_equal(_lines(shear)["spin"], history.force_centrifuge[:, 2])
     np.testing.assert_array_equal(_lines(shear)["flight"], history.force_flight[:, 2])
     # What moves along z bends about y.
     assert moment.get_ylabel() == "moment M_y, N m"
     np.testing.assert_array_equal(_lines(moment)["flight"], history.moment_flight[:, 1])
-    (alone,) = replace(compared, root=None).plot().axes
+    (alone,) = replace(compared, root=None).plot()
     np.testing.assert_array_equal(alone.get_lines()[0].get_ydata(), 1e3 * compared.difference[:, 2])
 
 
@@ -306,15 +306,18 @@ def test_several_at_rest_are_all_seen(study: Study) -> None:
 
 def test_a_result_draws_itself(study: Study) -> None:
     spin = study.responses["spin"]
-    assert "tip displacement" in spin.plot(title="mine").get_suptitle()
-    assert "rate of the machine's axes" in spin.plot("axes_rate").get_suptitle()
-    assert study.plot().get_suptitle().startswith("a title\n") and "the hub" in study.plot("hub slew").get_suptitle()
+    assert "tip displacement" in spin.plot(title="mine").figure.get_suptitle()
+    assert "rate of the machine's axes" in spin.plot("axes_rate").figure.get_suptitle()
+    assert study.plot().figure.get_suptitle().startswith("a title\n")
+    hub = study.plot("hub slew")
+    assert isinstance(hub, tuple) and list(hub) == hub.figure.axes and "the hub" in hub.figure.get_suptitle()
+    assert hub._repr_png_()[:8] == b"\x89PNG\r\n\x1a\n"  # a notebook shows them
     with pytest.raises(InputError, match="choose from tip, base, tracking, axes_rate"):
         spin.plot("loads")
     plan = MachinePlan("spin", "flight", 3.3, "done", "", spin.time, spin.axes)
-    assert len(plan.plot().axes) == 3 and len(plan.plot("axes_jerk").axes) == 3
+    assert len(plan.plot()) == 3 and len(plan.plot("axes_jerk")) == 3
     x = np.linspace(0, 0.3, 5)
     along = Loads(x, *(np.ones((1, 5, 3)) for _ in range(4)), *np.ones((2, 1, 5)), np.ones((1, 5, 3)))
     moved = np.outer(x, [0.0, 1.0, 2.0])
     rest = Deflection("flight", "FOAM", 0.0, spin.base, x, moved, np.zeros(3), 0.0, True, along)
-    assert [len(rest.plot(what).axes) for what in ("", "shape", "loads")] == [2, 2, 3]
+    assert [len(rest.plot(what)) for what in ("", "shape", "loads")] == [2, 2, 3]

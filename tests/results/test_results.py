@@ -107,7 +107,10 @@ def test_values_in_xarray(every: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("kind", ["static", "modes", "campbell", "critical map", "plan", "response"])
 def test_draws_itself(every: dict[str, Any], kind: str) -> None:
-    figure = every[kind].plot(title="a title")
+    axes = every[kind].plot(title="a title")
+    assert all("," in panel.get_ylabel() for panel in axes) and "," in axes[-1].get_xlabel()  # quantity, unit
+    figure = axes[0].figure
+    assert figure is axes.figure
     assert figure.get_suptitle().startswith(("a title\n", "LIMITS EXCEEDED – a title\n"))
     figure.draw_without_rendering()
 

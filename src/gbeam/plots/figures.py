@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gbeam.errors import InputError
 from gbeam.plots.comparison import moved, plot_comparison, plot_shock
 from gbeam.plots.drawing.files import save
+from gbeam.plots.drawing.style import Shown
 from gbeam.plots.environment import plot_base, plot_hub
 from gbeam.plots.fit import plot_fit
 from gbeam.plots.loads import plot_loads, plot_loads_along
@@ -40,8 +42,22 @@ from gbeam.results.uncertainty import PROBABILITY
 Draw = Callable[[], Figure]
 
 
-def plot(result: Any, what: str = "", title: str = "") -> Figure:
-    """Draw one figure of a result: the first that it has, or the one of that name.
+class Panels(tuple[Axes, ...]):
+    """The axes of one figure from top to bottom, a tuple also where there is one; a notebook shows the figure."""
+
+    __slots__ = ()
+
+    @property
+    def figure(self) -> Shown:
+        """The figure that they are in."""
+        return cast(Shown, self[0].get_figure(root=True))
+
+    def _repr_png_(self) -> bytes:
+        return self.figure._repr_png_()
+
+
+def plot(result: Any, what: str = "", title: str = "") -> Panels:
+    """Draw one figure of a result, the first that it has or the one of that name, and return its axes.
 
     Raises
     ------
@@ -51,7 +67,7 @@ def plot(result: Any, what: str = "", title: str = "") -> Figure:
     every = figures(result, title)
     if what and what not in every:
         raise InputError("what", f"is {what!r}, which this result does not have", f"choose from {', '.join(every)}")
-    return every[what or next(iter(every))]()
+    return Panels(every[what or next(iter(every))]().axes)
 
 
 def figures(result: Any, title: str = "") -> dict[str, Draw]:

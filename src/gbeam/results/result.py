@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
+    from gbeam.plots.figures import Panels
     from gbeam.results.provenance import Provenance
 
 Floats = NDArray[np.float64]
@@ -150,8 +149,8 @@ class Figured(Result):
 
         return widget(self)
 
-    def plot(self, what: str = "", *, title: str = "") -> Figure:
-        """Draw the result.
+    def plot(self, what: str = "", *, title: str = "") -> Panels:
+        """Draw the result with Matplotlib.
 
         Parameters
         ----------
@@ -165,8 +164,9 @@ class Figured(Result):
 
         Returns
         -------
-        matplotlib.figure.Figure
-            Made without pyplot: ``figure.savefig(path)`` writes it, a notebook shows it.
+        tuple of matplotlib.axes.Axes
+            The figure's panels from top to bottom, a tuple also where there is one: ``(panel,) = modes.plot()``. Its
+            ``figure`` is made without pyplot: ``result.plot().figure.savefig(path)`` writes it. A notebook shows it.
 
         Raises
         ------

@@ -41,7 +41,7 @@ def critical_map(
 
         write_json(hidden / "critical_speed.json", facts)
         (hidden / "critical_speed.csv").write_text(report.map_csv(critical), encoding="utf-8")
-        save(critical.plot(title=case.title), hidden, "critical_speed", "gbeam critical-speed")
+        save(critical.plot(title=case.title).figure, hidden, "critical_speed", "gbeam critical-speed")
 
     if out is not None:
         publish(out, make)

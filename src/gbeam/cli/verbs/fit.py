@@ -71,7 +71,7 @@ def fit(
         from gbeam.plots import save
 
         answer.save(hidden / "fit.nc")
-        save(answer.plot(), hidden, "fit", "gbeam fit")
+        save(answer.plot().figure, hidden, "fit", "gbeam fit")
 
     from gbeam.report.study import fit as report
 

@@ -41,6 +41,6 @@ def modes(
         modes = modal.modes(given.structure(), chosen, time, gyroscopic=gyroscopic, name=name)
     facts = given.signed(words.to_json(modes))
 
-    write(folder, "modes", facts, lambda: {"modes": modes.plot(title=given.case.title)}, report=report)
+    write(folder, "modes", facts, lambda: {"modes": modes.plot(title=given.case.title).figure}, report=report)
     show(words.text(modes), facts, json)
     return 0

@@ -88,7 +88,7 @@ def optimize(
         from gbeam.plots import save
 
         answer.save(hidden / "optimum.nc")
-        save(answer.plot(), hidden, "optimum", "gbeam optimize")
+        save(answer.plot().figure, hidden, "optimum", "gbeam optimize")
 
     from gbeam.report.study import optimum as report
 

@@ -44,7 +44,7 @@ def static(
     def figures() -> dict[str, Figure]:
         from gbeam.plots import plot_static
 
-        loads = {f"loads_{each.motion}": each.plot("loads", title=title) for each in deflections}
+        loads = {f"loads_{each.motion}": each.plot("loads", title=title).figure for each in deflections}
         return {"static": plot_static(deflections, title), **loads}
 
     write(out, "static", facts, figures)
