@@ -20,7 +20,8 @@ from gbeam.integrate.schemes import Scheme
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 _NEAR, _ULPS = 1e-8, 8  # of a step, and roundings of a time: nearer to one another, two times are one
-_JUMP = 1e-4  # of the largest value at any corner: less is no jump
+_JUMP = 1e-4  # of the largest value at or between the corners: less is no jump
+_BETWEEN = 0.37  # of the way from one corner to the next
 _BESIDE = 1e-12  # of the span: where a drive is looked at on both sides of a corner
 
 
@@ -39,9 +40,11 @@ class Corners:
         if not len(time):
             return Corners(time, np.zeros(0, dtype=bool))
         beside = _BESIDE * (end - start) + _ULPS * np.spacing(max(abs(start), abs(end)))
-        jump = np.zeros(len(time), dtype=bool)
-        for before, after in zip(leaves(drive(time - beside)), leaves(drive(time + beside)), strict=True):
-            values = [np.asarray(side).reshape(len(time), -1) for side in (before, after)]
+        # Between them the drive is seen at its size: a sine is zero at both its ends.
+        between = time + _BETWEEN * np.diff(time, append=end)
+        count, jump = len(time), np.zeros(len(time), dtype=bool)
+        for leaf in leaves(drive(np.concatenate([time - beside, time + beside, between]))):
+            values = np.asarray(leaf).reshape(3, count, -1)
             change = np.abs(values[1] - values[0]).max(axis=1, initial=0.0)
             jump |= change > _JUMP * np.abs(values).max(initial=0.0)
         return Corners(time, jump)
