@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gbeam.cli.inputs import naming
+from gbeam.cli.inputs import naming, signed
+from gbeam.cli.invocation import command
 from gbeam.cli.publication import publish
+from gbeam.errors import InputError
 from gbeam.printable import printable
 
 if TYPE_CHECKING:
@@ -18,7 +21,6 @@ if TYPE_CHECKING:
     from gbeam.results.fit import Fit
     from gbeam.results.optimum import Optimum
 
-CHANGE_FIRST = "change the file itself first: it is what --write copies"
 _PLAIN_WIDTH = 110  # columns of a table where stdout is a file
 
 
@@ -86,7 +88,45 @@ def write_json(file: Path, facts: Mapping[str, Any]) -> None:
     file.write_text(as_json(facts) + "\n", encoding="utf-8")
 
 
-def write_found(answer: Fit | Optimum, scenario: Path, file: Path) -> None:
+def refuse_changes(write: Path | None, overrides: Sequence[str]) -> None:
+    """Raise InputError where values that were found are to be written beside changes of the scenario."""
+    if write is not None and overrides:
+        fix = "change the file itself first: it is what --write copies"
+        raise InputError("--write", "is given beside --set", fix)
+
+
+def show_found(
+    answer: Fit | Optimum,
+    report: Any,
+    verb: str,
+    stem: str,
+    scenario: Path,
+    *,
+    write: Path | None,
+    out: Path | None,
+    json: bool,
+) -> None:
+    """Print what a verb found; write its result and plot into a folder, and its values into a copy of the scenario."""
+    assert answer.provenance is not None  # it is of a scenario
+    answer = replace(answer, provenance=replace(answer.provenance, command=command()))
+
+    def make(hidden: Path) -> None:
+        from gbeam.plots import save
+
+        answer.save(hidden / f"{stem}.nc")
+        save(answer.plot().figure, hidden, stem, f"gbeam {verb}")
+
+    files = [] if out is None else publish(out, make)
+    if write is not None:
+        _write_found(answer, scenario, write)
+    show(report.text(answer), signed(report.to_json(answer, files), answer.provenance), json)
+    if not json:
+        if write is not None:
+            print(f"\n{write} has these values")
+        list_files(out, files)
+
+
+def _write_found(answer: Fit | Optimum, scenario: Path, file: Path) -> None:
     """Write a scenario with the values that a search found."""
     from gbeam.studies.bounds import with_values
 

@@ -20,7 +20,7 @@ from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import corners, first_step, scheme_of
 from gbeam.analysis.response.trajectories import steps_beyond
 from gbeam.integrate.driver import Trajectory, through
-from gbeam.integrate.steps import Corners, Steps, fitted, leaves
+from gbeam.integrate.steps import Corners, Steps, fitted
 from gbeam.integrate.tangent import tangent
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.centrifuge.history import axes_result
@@ -33,7 +33,6 @@ from gbeam.results.result import Floats
 Variant = tuple[Structure | None, Motion | None]  # None where it is the run's own
 _BYTES = 256 * 2**20  # of derivatives at once
 _SAME_TIME = 1e-9  # of the duration
-_JUMP = 1e-6  # of the largest value: more than what a smooth motion changes by in the same time
 
 
 @dataclass(frozen=True)
@@ -94,7 +93,6 @@ class Differentiated:
         kept = grid.stride * grid.step
         before, after = steps_beyond(motion, settings, kept)
         self.begin = start - before * kept
-        self.sampled = np.linspace(start, start + duration, 257)
         self.nominal = self._posed((structure, motion))
         self.jumps = self._jumps(self.nominal)
         count = round(duration / grid.step)
@@ -204,17 +202,9 @@ class Differentiated:
         return Corners.of(times, posed.problem.equations.drive, start, start + self.settings.duration)
 
     def _jumps(self, posed: Posed) -> Floats:
-        """Times at which something jumps, by more than the rounding of what is zero on both sides."""
-        found, drive = self._corners(posed), posed.problem.equations.drive
-        time = found.time[found.jump]
-        if not len(time):
-            return time
-        beside = _SAME_TIME * self.settings.duration
-        jumps = np.zeros(len(time), dtype=bool)
-        for each in zip(*(leaves(drive(t)) for t in (time - beside, time + beside, self.sampled)), strict=True):
-            before, after, all_over = (np.asarray(values).reshape(len(values), -1) for values in each)
-            jumps |= np.abs(after - before).max(axis=1, initial=0.0) > _JUMP * np.abs(all_over).max(initial=0.0)
-        return time[jumps]
+        """Times at which something jumps."""
+        found = self._corners(posed)
+        return found.time[found.jump]
 
 
 def _moved(run: Trajectory, steps: Steps, by: tuple[Floats, ...] | None) -> Trajectory:

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
 from gbeam.cli.console import Watch
-from gbeam.cli.inputs import names, number, search_bounds, signed
-from gbeam.cli.invocation import command
+from gbeam.cli.inputs import names, number, search_bounds
 from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile, SearchBounds, WriteTo
-from gbeam.cli.outputs import CHANGE_FIRST, list_files, show, write_found
-from gbeam.cli.publication import publish, refuse_unwritable
-from gbeam.errors import InputError
+from gbeam.cli.outputs import refuse_changes, show_found
+from gbeam.cli.publication import refuse_unwritable
 
 
 def fit(
@@ -52,8 +49,7 @@ def fit(
     """
     if out is not None:
         refuse_unwritable(out)
-    if write is not None and overrides:
-        raise InputError("--write", "is given beside --set", CHANGE_FIRST)
+    refuse_changes(write, overrides)
 
     from gbeam.studies.fit import fit as compute
 
@@ -64,23 +60,7 @@ def fit(
             scenario, data, names(free), bounds=limits, motion=motion, at=time, overrides=overrides, progress=watch
         )
 
-    assert answer.provenance is not None  # it is of a scenario
-    answer = replace(answer, provenance=replace(answer.provenance, command=command()))
-
-    def make(hidden: Path) -> None:
-        from gbeam.plots import save
-
-        answer.save(hidden / "fit.nc")
-        save(answer.plot().figure, hidden, "fit", "gbeam fit")
-
     from gbeam.report.study import fit as report
 
-    files = [] if out is None else publish(out, make)
-    if write is not None:
-        write_found(answer, scenario, write)
-    show(report.text(answer), signed(report.to_json(answer, files), answer.provenance), json)
-    if not json:
-        if write is not None:
-            print(f"\n{write} has these values")
-        list_files(out, files)
+    show_found(answer, report, "fit", "fit", scenario, write=write, out=out, json=json)
     return 0
