@@ -64,16 +64,16 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.motion.profiles.pulse import Sine as Sine
     from gbeam.motion.profiles.pulse import SmoothStep as SmoothStep
     from gbeam.motion.profiles.spline import SplineProfile as SplineProfile
-    from gbeam.results.fit import Fit as Fit
     from gbeam.results.imitation.comparison import Comparison as Comparison
-    from gbeam.results.optimum import Optimum as Optimum
     from gbeam.results.response import Response as Response
-    from gbeam.results.sensitivity import Sensitivity as Sensitivity
-    from gbeam.results.shaping import ShapedCommand as ShapedCommand
     from gbeam.results.steady.state_space import Gauge as Gauge
     from gbeam.results.steady.state_space import StateSpace as StateSpace
+    from gbeam.results.studies.fit import Fit as Fit
+    from gbeam.results.studies.optimum import Optimum as Optimum
+    from gbeam.results.studies.sensitivity import Sensitivity as Sensitivity
+    from gbeam.results.studies.shaping import ShapedCommand as ShapedCommand
+    from gbeam.results.studies.sweep import Sweep as Sweep
     from gbeam.results.study import Study as Study
-    from gbeam.results.sweep import Sweep as Sweep
     from gbeam.scenario.build import read_scenario as read_scenario
     from gbeam.scenario.rerun import rerun as rerun
     from gbeam.structure.beam import Beam as Beam
@@ -98,7 +98,7 @@ _HOME = {
     "Choice": "analysis.imitation.choice",
     "Comparison": "results.imitation.comparison",
     "ComputationError": "errors",
-    "Fit": "results.fit",
+    "Fit": "results.studies.fit",
     "Flight": "motion.bases.flight",
     "Gauge": "results.steady.state_space",
     "GbeamError": "errors",
@@ -109,21 +109,21 @@ _HOME = {
     "MachineLimits": "motion.centrifuge.machine.limits",
     "Material": "structure.material",
     "Model": "mechanics.models",
-    "Optimum": "results.optimum",
+    "Optimum": "results.studies.optimum",
     "PointMass": "structure.bodies",
     "Response": "results.response",
     "ResponseSettings": "analysis.response.settings",
     "Root": "structure.support",
     "Section": "structure.section",
-    "Sensitivity": "results.sensitivity",
-    "ShapedCommand": "results.shaping",
+    "Sensitivity": "results.studies.sensitivity",
+    "ShapedCommand": "results.studies.shaping",
     "Sine": "motion.profiles.pulse",
     "SmoothStep": "motion.profiles.pulse",
     "SplineProfile": "motion.profiles.spline",
     "StateSpace": "results.steady.state_space",
     "Structure": "mechanics.structure",
     "Study": "results.study",
-    "Sweep": "results.sweep",
+    "Sweep": "results.studies.sweep",
     "Sum": "motion.profiles.combine",
     "assemble": "mechanics.assembly",
     "balanced_truncation": "analysis.control.reduction",

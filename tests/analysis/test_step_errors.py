@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 
 from gbeam import Flight, Hub, Response, Sine, SmoothStep, Structure, simulate, smoothed, tabulated, trapezoid
 from gbeam.analysis.response.problem import problem_of
-from gbeam.analysis.response.step_errors import observed_order
+from gbeam.analysis.response.steps.step_errors import observed_order
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.results.response import BaseMotion
 from validation.accuracy import integrators

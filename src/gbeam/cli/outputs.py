@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from rich.console import RenderableType
 
-    from gbeam.results.fit import Fit
-    from gbeam.results.optimum import Optimum
+    from gbeam.results.studies.fit import Fit
+    from gbeam.results.studies.optimum import Optimum
 
 _PLAIN_WIDTH = 110  # columns of a table where stdout is a file
 

@@ -17,34 +17,34 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.io.comparisons import comparison_group
-from gbeam.io.fits import fit_group
 from gbeam.io.groups import Group, Variable
 from gbeam.io.hdf5 import write_groups
 from gbeam.io.machine import plan_group
-from gbeam.io.optima import optimum_group
 from gbeam.io.provenance import provenance_attrs, provenance_variables
 from gbeam.io.responses import response_group
-from gbeam.io.sensitivities import sensitivity_group
-from gbeam.io.shaping import shaping_group
 from gbeam.io.steady import campbell_group, critical_group, critical_map_group, deflection_group, modes_group
-from gbeam.io.sweeps import sweep_group
+from gbeam.io.studies.fits import fit_group
+from gbeam.io.studies.optima import optimum_group
+from gbeam.io.studies.sensitivities import sensitivity_group
+from gbeam.io.studies.shaping import shaping_group
+from gbeam.io.studies.sweeps import sweep_group
 from gbeam.io.tables import models_group, placement_group, state_space_group
-from gbeam.results.fit import Fit
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.placement import Placement
 from gbeam.results.machine import MachinePlan
-from gbeam.results.optimum import Optimum
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
-from gbeam.results.sensitivity import Sensitivity
-from gbeam.results.shaping import ShapedCommand
 from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.steady.modal import Campbell, Modes
 from gbeam.results.steady.stability import Critical, CriticalMap
 from gbeam.results.steady.state_space import StateSpace
+from gbeam.results.studies.fit import Fit
+from gbeam.results.studies.optimum import Optimum
+from gbeam.results.studies.sensitivity import Sensitivity
+from gbeam.results.studies.shaping import ShapedCommand
+from gbeam.results.studies.sweep import Sweep
 from gbeam.results.study import ModelStudy, Study
-from gbeam.results.sweep import Sweep
 
 if TYPE_CHECKING:
     import xarray as xr

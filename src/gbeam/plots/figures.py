@@ -15,29 +15,29 @@ from gbeam.plots.comparison import moved, plot_comparison, plot_shock
 from gbeam.plots.drawing.files import save
 from gbeam.plots.drawing.style import Shown
 from gbeam.plots.environment import plot_base, plot_hub
-from gbeam.plots.fit import plot_fit
 from gbeam.plots.loads import plot_loads, plot_loads_along
 from gbeam.plots.machine import plot_axes, plot_tracking
-from gbeam.plots.optimum import plot_optimum
-from gbeam.plots.sensitivity import plot_sensitivity
-from gbeam.plots.shaping import plot_robustness, plot_shaping
 from gbeam.plots.steady import plot_campbell, plot_critical_map, plot_modes, plot_static
-from gbeam.plots.sweep import plot_sweep
+from gbeam.plots.studies.fit import plot_fit
+from gbeam.plots.studies.optimum import plot_optimum
+from gbeam.plots.studies.sensitivity import plot_sensitivity
+from gbeam.plots.studies.shaping import plot_robustness, plot_shaping
+from gbeam.plots.studies.sweep import plot_sweep
+from gbeam.plots.studies.uncertainty import plot_history, plot_indices, plot_probability
 from gbeam.plots.tip import plot_tip
-from gbeam.plots.uncertainty import plot_history, plot_indices, plot_probability
-from gbeam.results.fit import Fit
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.machine import AxesResult, MachinePlan
-from gbeam.results.optimum import Optimum
 from gbeam.results.response import Response
-from gbeam.results.sensitivity import Sensitivity
-from gbeam.results.shaping import ShapedCommand
 from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.steady.modal import Campbell, Modes
 from gbeam.results.steady.stability import CriticalMap
+from gbeam.results.studies.fit import Fit
+from gbeam.results.studies.optimum import Optimum
+from gbeam.results.studies.sensitivity import Sensitivity
+from gbeam.results.studies.shaping import ShapedCommand
+from gbeam.results.studies.sweep import Sweep
+from gbeam.results.studies.uncertainty import PROBABILITY
 from gbeam.results.study import Study
-from gbeam.results.sweep import Sweep
-from gbeam.results.uncertainty import PROBABILITY
 
 Draw = Callable[[], Figure]
 

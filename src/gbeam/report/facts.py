@@ -13,8 +13,8 @@ from gbeam.results.imitation.placement import Placement
 from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.steady.modal import Campbell, Modes
+from gbeam.results.studies.sweep import Sweep
 from gbeam.results.study import Study
-from gbeam.results.sweep import Sweep
 
 _JSON: dict[type, Callable[[Any], dict[str, Any]]] = {
     Study: summary_json.to_json,

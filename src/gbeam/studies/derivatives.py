@@ -1,8 +1,8 @@
 """Derivatives of whatever is read from an answer, with respect to physical values of the scenario.
 
-Of responses over time they come from the derivative of the run (`gbeam.analysis.response.differentiated`); where a jump
-moves with the value, whose steps that stand still miss, and of the other verbs' answers, which are cheap and smooth,
-from central differences of fourth order, which say how far they differ from those of second order.
+Of responses over time they come from the derivative of the run (`gbeam.analysis.response.tangents.differentiated`).
+Where a jump moves with the value, whose steps that stand still miss, and of the other verbs' answers, which are cheap
+and smooth, they come from central differences of fourth order, with how far these differ from those of second order.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.response.differentiated import Differentiated, Grid, Variant
 from gbeam.analysis.response.simulation import simulate
+from gbeam.analysis.response.tangents.differentiated import Differentiated, Grid, Variant
 from gbeam.analysis.study.case import Case
 from gbeam.analysis.study.study import study, study_of
 from gbeam.errors import ComputationError, GbeamError, InputError

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.results.fit import Fit, FittedColumn
 from gbeam.results.result import Floats
+from gbeam.results.studies.fit import Fit, FittedColumn
 from gbeam.scenario.load import load
 from gbeam.scenario.origin import provenance
 from gbeam.studies.bounds import Bounds, bounds_of, named

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gbeam.analysis.response.differentiated import Grid
+from gbeam.analysis.response.tangents.differentiated import Grid
 from gbeam.analysis.study.case import Case
 from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.models import Model

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.response.differentiated import Grid
+from gbeam.analysis.response.tangents.differentiated import Grid
 from gbeam.analysis.study.case import Case
 from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.models import Model
-from gbeam.results.optimum import BROKEN, Optimum, Requirement
 from gbeam.results.result import Floats
+from gbeam.results.studies.optimum import BROKEN, Optimum, Requirement
 from gbeam.results.study import Study
 from gbeam.scenario.load import load
 from gbeam.scenario.origin import provenance

@@ -12,7 +12,7 @@ import numpy as np
 
 from gbeam.errors import GbeamError, InputError
 from gbeam.results.result import Flags, Floats
-from gbeam.results.sensitivity import Sensitivity
+from gbeam.results.studies.sensitivity import Sensitivity
 from gbeam.results.study import Study
 from gbeam.scenario.load import load
 from gbeam.scenario.origin import provenance

@@ -10,7 +10,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.limits import refuse_more
-from gbeam.results.sweep import SAMPLE
+from gbeam.results.studies.sweep import SAMPLE
 from gbeam.scenario.text.distributions import Distribution
 from gbeam.sweeps.values import MAX_VALUES, OPTION, Variation, drawn_from, read_variation
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.results.sweep import Sweep
+from gbeam.results.studies.sweep import Sweep
 from gbeam.scenario.schema.fields import kind_of
 from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.text.kinds import KINDS

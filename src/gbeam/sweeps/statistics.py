@@ -12,7 +12,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from gbeam.results.result import Floats
-from gbeam.results.uncertainty import BOUNDS, CONFIDENCE, MEAN, PROBABILITY, QUANTILES, SPREAD, Indices, Statistics
+from gbeam.results.studies.uncertainty import (
+    BOUNDS,
+    CONFIDENCE,
+    MEAN,
+    PROBABILITY,
+    QUANTILES,
+    SPREAD,
+    Indices,
+    Statistics,
+)
 
 RESAMPLES = 200  # of the bootstrap of Sobol indices
 LEAST = 8  # base samples from which indices are estimated

@@ -12,7 +12,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.limits import HISTORY_BYTES, WORKERS, refuse_more
-from gbeam.results.sweep import Sweep
+from gbeam.results.studies.sweep import Sweep
 from gbeam.scenario.load import load
 from gbeam.scenario.origin import provenance
 from gbeam.scenario.text.suggest import advise

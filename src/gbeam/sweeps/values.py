@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.errors import InputError
-from gbeam.results.sweep import Parameter
+from gbeam.results.studies.sweep import Parameter
 from gbeam.scenario.text.distributions import Distribution, quantities, read_distribution, written
 from gbeam.scenario.text.paths import parse_path
 from gbeam.scenario.text.units import NUMBER

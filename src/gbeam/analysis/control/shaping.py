@@ -13,9 +13,9 @@ from dataclasses import replace
 import numpy as np
 
 from gbeam.analysis.control.commands import Commands, Vibration, check_goal, driven, usual
-from gbeam.analysis.response.differentiated import Differentiated, Grid
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
+from gbeam.analysis.response.tangents.differentiated import Differentiated, Grid
 from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.hub import Hub
@@ -23,7 +23,7 @@ from gbeam.motion.profiles.spline import SplineProfile
 from gbeam.numerics.solvers.quadratic import solve_quadratic
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
-from gbeam.results.shaping import CommandRun, ShapedCommand
+from gbeam.results.studies.shaping import CommandRun, ShapedCommand
 
 RATIOS = np.linspace(0.7, 1.3, 61)
 # Weight of a smooth step's roughness beside what it leaves; less for a span of frequencies, which takes a larger drive.

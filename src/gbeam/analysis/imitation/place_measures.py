@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.stepping import first_step
+from gbeam.analysis.response.steps.stepping import first_step
 from gbeam.errors import InputError
 from gbeam.mechanics.influence import influence
 from gbeam.mechanics.structure import Structure

@@ -18,7 +18,7 @@ from gbeam.analysis.response.simulation import (
     simulate,
     steps_within,
 )
-from gbeam.analysis.response.stepping import scheme_of
+from gbeam.analysis.response.steps.stepping import scheme_of
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
 from gbeam.integrate.steps import fitted

@@ -16,7 +16,7 @@ from gbeam.analysis.response.outline import outline_of
 from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
 from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import NOT_ESTIMATED, ResponseSettings
-from gbeam.analysis.response.trajectories import joined
+from gbeam.analysis.response.steps.trajectories import joined
 from gbeam.arrays.namespace import is_jax
 from gbeam.integrate.driver import Trajectory
 from gbeam.mechanics.influence import influence

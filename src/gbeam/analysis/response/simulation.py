@@ -12,9 +12,9 @@ import numpy as np
 from gbeam.analysis.response.problem import problem_of
 from gbeam.analysis.response.record import moving, response_of
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.step_errors import Readings, Run
-from gbeam.analysis.response.stepping import check, corners, first_step, refine, scheme_of
-from gbeam.analysis.response.trajectories import (
+from gbeam.analysis.response.steps.step_errors import Readings, Run
+from gbeam.analysis.response.steps.stepping import check, corners, first_step, refine, scheme_of
+from gbeam.analysis.response.steps.trajectories import (
     adapted,
     going_on,
     integrated,

@@ -135,7 +135,7 @@ def sweep(
         if report:
             answer.report(hidden / "report.html")
 
-    from gbeam.io.sweeps import write_zarr
+    from gbeam.io.studies.sweeps import write_zarr
 
     files = publish(folder, make)
     write_zarr(answer, folder / "sweep.zarr")

@@ -10,7 +10,7 @@ import numpy as np
 from gbeam.report.page.parts import Cell, Value, heading, listed, paragraph, plot_place, table, verbatim
 from gbeam.report.page.series import Numbers, Plots
 from gbeam.report.words import number
-from gbeam.results.uncertainty import BOUNDS
+from gbeam.results.studies.uncertainty import BOUNDS
 
 Facts = Mapping[str, Any]
 _PLACES = {"current": "now", "best": "placed", "middle": "at mid-span"}

@@ -8,8 +8,8 @@ import numpy as np
 
 from gbeam.report.words import columns, number
 from gbeam.results.result import Floats
-from gbeam.results.sweep import Sweep
-from gbeam.results.uncertainty import PROBABILITY, Indices, Statistics
+from gbeam.results.studies.sweep import Sweep
+from gbeam.results.studies.uncertainty import PROBABILITY, Indices, Statistics
 
 
 def estimates(sweep: Sweep, name: str, heads: list[str]) -> list[str]:

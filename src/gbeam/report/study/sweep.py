@@ -11,8 +11,8 @@ import numpy as np
 from gbeam.report.study.estimates import estimates
 from gbeam.report.words import columns, number
 from gbeam.results.result import Floats
-from gbeam.results.sweep import Sweep
-from gbeam.results.uncertainty import BOUNDS, ORDERS, Indices, Statistics
+from gbeam.results.studies.sweep import Sweep
+from gbeam.results.studies.uncertainty import BOUNDS, ORDERS, Indices, Statistics
 
 _ROWS = 40  # of the table on the screen
 _FAILURES = 5  # that are named

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from gbeam.io.groups import Group, flags, labels, variable, words
-from gbeam.results.optimum import Optimum
+from gbeam.results.studies.optimum import Optimum
 
 
 def optimum_group(o: Optimum) -> Group:

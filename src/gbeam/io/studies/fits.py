@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from gbeam.io.groups import Group, flags, labels, variable, words
-from gbeam.results.fit import Fit
+from gbeam.results.studies.fit import Fit
 
 
 def fit_group(fit: Fit) -> Group:

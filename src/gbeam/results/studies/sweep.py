@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.results.result import Figured, Floats, Part
-from gbeam.results.uncertainty import Indices, Statistics
+from gbeam.results.studies.uncertainty import Indices, Statistics
 
 SAMPLE = "sample"  # the dimension of what is drawn from distributions
 

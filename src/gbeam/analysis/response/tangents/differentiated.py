@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.response.linearised import Pair, Posed, linearised
 from gbeam.analysis.response.problem import problem_of
 from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.stepping import corners, first_step, scheme_of
-from gbeam.analysis.response.trajectories import steps_beyond
+from gbeam.analysis.response.steps.stepping import corners, first_step, scheme_of
+from gbeam.analysis.response.steps.trajectories import steps_beyond
+from gbeam.analysis.response.tangents.linearised import Pair, Posed, linearised
 from gbeam.integrate.driver import Trajectory, through
 from gbeam.integrate.steps import Corners, Steps, fitted
 from gbeam.integrate.tangent import tangent

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.step_errors import Estimate, Run, of_everything, ratio
+from gbeam.analysis.response.steps.step_errors import Estimate, Run, of_everything, ratio
 from gbeam.errors import InputError
 from gbeam.integrate.schemes import Scheme, gauss, generalized_alpha, hht, newmark
 from gbeam.mechanics.structure import Structure

@@ -85,7 +85,7 @@ def _equations(posed: Posed) -> Any:
 
 
 def _nonlinear(nominal: Posed, pairs: Sequence[Pair], width: Floats) -> System:
-    from gbeam.analysis.response import compiled
+    from gbeam.analysis.response.tangents import compiled
 
     equations: Any = nominal.problem.equations
 

@@ -7,8 +7,8 @@ from matplotlib.figure import Figure
 
 from gbeam.plots.drawing.style import colour, heading, panels, show_zero, styled, subtitle
 from gbeam.plots.drawing.units import scaled_label
-from gbeam.results.sweep import Parameter, Sweep
-from gbeam.results.uncertainty import PROBABILITY
+from gbeam.results.studies.sweep import Parameter, Sweep
+from gbeam.results.studies.uncertainty import PROBABILITY
 
 _POINTS = 3  # of a grid that are drawn as bands of their own
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from gbeam.io.groups import Group, flags, labels, variable, words
-from gbeam.results.sensitivity import Sensitivity
+from gbeam.results.studies.sensitivity import Sensitivity
 
 
 def sensitivity_group(s: Sensitivity) -> Group:

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from gbeam.io.groups import Group, Variable, coordinate, labels, variable
-from gbeam.results.sweep import SAMPLE, Parameter, Sweep
-from gbeam.results.uncertainty import BOUNDS, ORDERS, PROBABILITY
+from gbeam.results.studies.sweep import SAMPLE, Parameter, Sweep
+from gbeam.results.studies.uncertainty import BOUNDS, ORDERS, PROBABILITY
 
 
 def sweep_group(sweep: Sweep) -> Group:

@@ -16,8 +16,8 @@ import numpy as np
 
 from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.step_errors import Readings, Run, of_two_tolerances
-from gbeam.analysis.response.stepping import scheme_of
+from gbeam.analysis.response.steps.step_errors import Readings, Run, of_two_tolerances
+from gbeam.analysis.response.steps.stepping import scheme_of
 from gbeam.arrays.namespace import is_traced, namespace
 from gbeam.errors import InputError
 from gbeam.integrate.adaptive import integrate_adaptively

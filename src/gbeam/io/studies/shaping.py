@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gbeam.io.groups import Group, labels, variable, words
-from gbeam.results.shaping import ShapedCommand
+from gbeam.results.studies.shaping import ShapedCommand
 
 
 def shaping_group(c: ShapedCommand) -> Group:

@@ -1,0 +1,1 @@
+"""How a response changes with what it is computed from."""

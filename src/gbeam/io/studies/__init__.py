@@ -1,0 +1,1 @@
+"""Files of what many runs say together."""
