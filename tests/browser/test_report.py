@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import zlib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -56,6 +57,38 @@ def test_plots_zoom_together_and_lead_the_viewer(opened: Any, report: Path) -> N
     start, end = page.evaluate("[window.gbeam.viewer.clock.start, window.gbeam.viewer.clock.end]")
     # The middle of what both plots show now: 0.3 to 0.6 of the whole.
     assert page.evaluate(TIME) == pytest.approx(start + 0.45 * (end - start), abs=0.02 * (end - start))
+
+
+@pytest.mark.parametrize("upright", [False, True], ids=["level", "upright"])
+def test_two_fingers_bring_the_beam_nearer(opened: Any, report: Path, upright: bool) -> None:
+    """As they spread, in whatever direction; one finger across turns the view; the page stays where it is."""
+    page = opened(report, width=700, height=740, has_touch=True)
+    page.locator(CANVAS).scroll_into_view_if_needed()
+    box = page.locator(CANVAS).bounding_box()
+    middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    touches = page.context.new_cdp_session(page)
+
+    def drag(*fingers: Callable[[float], tuple[float, float]]) -> dict[str, float]:
+        """Fingers down, along their ways in ten steps, and up; then where the camera and the page are."""
+        for kind, share in [("touchStart", 0.0), *(("touchMove", k / 10) for k in range(1, 11)), ("touchEnd", 1.0)]:
+            places = [finger(share) for finger in fingers] if kind != "touchEnd" else []
+            points = [{"x": middle[0] + x, "y": middle[1] + y, "id": k} for k, (x, y) in enumerate(places)]
+            touches.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+        seen: dict[str, float] = page.evaluate(
+            "() => { const o = window.gbeam.viewer.orbit;"
+            " return {distance: o.distance, azimuth: o.azimuth, scroll: scrollY, zoom: visualViewport.scale}; }"
+        )
+        return seen
+
+    def apart(share: float, side: float) -> tuple[float, float]:
+        half = side * (30 + 30 * share)
+        return (0.0, half) if upright else (half, 0.0)
+
+    still = drag(lambda _: (0.0, 0.0))
+    turned = drag(lambda share: (100 * share, 0.0))
+    assert turned == still | {"azimuth": pytest.approx(still["azimuth"] - 0.8)}
+    pinched = drag(lambda share: apart(share, 1.0), lambda share: apart(share, -1.0))
+    assert pinched == turned | {"distance": pytest.approx(0.5 * turned["distance"])}  # twice as far apart
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
