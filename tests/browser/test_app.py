@@ -43,7 +43,7 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> Non
     page.wait_for_selector("html[data-gbeam]")
     assert page.url == f"{home}/"
 
-    assert violations(page) == []
+    assert _violations(page) == []
 
     # An example, a wrong value at its field, and the right one; both views show it.
     page.get_by_label("Start from").select_option("Hub")
@@ -68,6 +68,8 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> Non
     frame = page.frame_locator("iframe.report")
     frame.locator("html[data-gbeam]").wait_for(timeout=20_000)
     assert frame.locator(".gbeam-canvas").is_visible() and "fast" in frame.locator("h1").inner_text()
+    assert _violations(page) == []
+    assert _not_reached(page) == []
 
     # A sweep, of which a cell opens its run; that one side by side with the first.
     page.locator("summary", has_text="Sweep").click()
@@ -75,13 +77,16 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> Non
     page.get_by_label("over").first.fill("300 mm, 310 mm")
     page.get_by_label("Figures").fill("flight.tip.size.max_abs")
     page.get_by_role("button", name="Run sweep").click()
-    page.locator(".gbeam-map button").nth(1).click(timeout=60_000)
+    page.locator(".gbeam-map button").nth(1).wait_for(timeout=60_000)
+    assert _violations(page) == []
+    page.locator(".gbeam-map button").nth(1).click()
     page.wait_for_function("() => document.querySelectorAll('.run input').length === 2", timeout=60_000)
     for box in page.get_by_role("checkbox", name="compare").all():
         box.check()
     page.get_by_role("heading", name="Compared").wait_for()
     row = page.locator("tr", has_text="flight: tip, mm").locator("td").all_inner_texts()
     assert len(row) == 2 and float(row[0]) < float(row[1])
+    assert _violations(page) == []
 
     # A long one is cancelled; all are there after a reload, and are downloaded.
     page.get_by_role("button", name="Text").click()
@@ -100,6 +105,32 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> Non
     assert page.get_by_label("scenario as TOML").input_value() == BIG  # the draft is kept
     context.close()
     assert faults == []
+
+
+def _violations(page: Any) -> list[str]:
+    """What axe finds wrong in light and in dark."""
+    found = []
+    for scheme in ("dark", "light"):
+        page.emulate_media(color_scheme=scheme)
+        found += [f"{scheme}: {each}" for each in violations(page)]
+    return found
+
+
+CONTROLS = """() => [...document.querySelectorAll(
+    "button, input, select, textarea, a[href], summary, iframe, [tabindex]"
+  )].filter(each => each.checkVisibility() && !each.disabled && each.tabIndex >= 0)"""
+
+
+def _not_reached(page: Any) -> list[str]:
+    """Controls that the Tab key does not come to, from the top of the page."""
+    count = page.evaluate(f"() => {{ const all = ({CONTROLS})(); window.left = new Set(all); return all.length; }}")
+    page.evaluate("document.activeElement.blur()")
+    page.evaluate("getSelection().setBaseAndExtent(document.body, 0, document.body, 0)")
+    assert count > 30
+    for _ in range(2 * count):
+        page.keyboard.press("Tab")
+        page.evaluate("window.left.delete(document.activeElement)")
+    return list(page.evaluate("[...window.left].map(each => each.outerHTML.slice(0, 200))"))
 
 
 def _run(page: Any) -> None:
