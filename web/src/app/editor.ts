@@ -3,12 +3,21 @@
 import uPlot from "uplot";
 import { lineColour, prefersDark } from "../colours";
 import { button, choice, element } from "../controls";
-import { api, type Document, type Problem, Refusal } from "./api";
+import { api, type Document, type Field, type Problem, Refusal } from "./api";
+import { Command } from "./command";
 import { SweepForm } from "./sweeps";
 
 const KEPT = "gbeam-document";
 const PAUSE = 400; // ms without a key before the text is read
 const COMPONENTS = ["x", "y", "z"] as const;
+
+/** A field of the form: its input, what is wrong with it, and the value that the document has. */
+interface Entry {
+  label: HTMLElement;
+  input: HTMLInputElement;
+  words: HTMLElement;
+  value: string;
+}
 
 export class Editor {
   readonly root = element("section");
@@ -22,6 +31,7 @@ export class Editor {
   private readonly run = button("Run", () => void this.submit());
   private readonly views: HTMLButtonElement[];
   private readonly sweep: SweepForm;
+  private entries = new Map<string, Entry>();
   private waiting = 0;
   private latest = 0;
 
@@ -37,11 +47,10 @@ export class Editor {
     this.problems.setAttribute("role", "status");
     this.run.classList.add("primary");
     const acts = [this.run, button("Preview load", () => void this.preview()), button("Download", () => this.save())];
-    const line = element("p", "faint", "As a command: ");
-    line.append(element("code", "", "gbeam run scenario.toml --report"));
+    const command = new Command(["gbeam", "run", "scenario.toml", "--report"]);
     this.root.append(this.start(), this.record, this.row(...this.views, ...acts), this.problems, this.curves);
     this.sweep = new SweepForm(() => this.document.text, this.submitted);
-    this.root.append(this.sweep.root, this.form, this.text, line, this.meaning);
+    this.root.append(this.sweep.root, this.form, this.text, command.root, this.meaning);
     this.show(0);
   }
 
@@ -79,11 +88,39 @@ export class Editor {
 
   private draw(): void {
     const { fields, errors, meaning } = this.document;
+    if ([...this.entries.keys()].join() !== fields.map((each) => each.path).join()) this.build(fields);
+    for (const field of fields) {
+      const entry = this.entries.get(field.path)!;
+      // An answer may come while the next field is being typed in.
+      if (entry.input !== document.activeElement || entry.input.value === entry.value) entry.input.value = field.value;
+      entry.value = field.value;
+      const own = errors.filter((each) => each.path === field.path);
+      entry.words.remove();
+      entry.words.textContent = own.map((each) => `${each.message}; ${each.hint}`).join("; ");
+      if (own.length) {
+        entry.input.setAttribute("aria-invalid", "true");
+        entry.input.setAttribute("aria-describedby", entry.words.id);
+        entry.label.after(entry.words);
+      } else {
+        entry.input.removeAttribute("aria-invalid");
+        entry.input.removeAttribute("aria-describedby");
+      }
+    }
+    this.sweep.offer(fields);
+    this.list(errors);
+    this.meaning.textContent = meaning;
+    this.meaning.hidden = !meaning;
+    this.run.disabled = errors.length > 0;
+  }
+
+  /** The form of a document's fields, without their values. */
+  private build(fields: Field[]): void {
     const focused = (document.activeElement as HTMLElement | null)?.dataset["path"];
     this.form.replaceChildren();
+    this.entries = new Map();
     const groups = new Map<string, HTMLFieldSetElement>();
-    fields.forEach((field, i) => {
-      const parts = field.path.split(".");
+    fields.forEach(({ path, help }, i) => {
+      const parts = path.split(".");
       const name = parts[0] === "motion" ? parts.slice(0, 2).join(".") : parts.length > 1 ? parts[0]! : "general";
       let group = groups.get(name);
       if (!group) {
@@ -92,29 +129,18 @@ export class Editor {
         groups.set(name, group);
         this.form.append(group);
       }
-      const own = errors.filter((each) => each.path === field.path);
-      const label = element("label", "", field.path.slice(field.path.startsWith(`${name}.`) ? name.length + 1 : 0));
+      const label = element("label", "", path.slice(path.startsWith(`${name}.`) ? name.length + 1 : 0));
       const input = element("input");
-      input.value = field.value;
-      input.dataset["path"] = field.path;
-      input.title = field.help;
-      input.addEventListener("change", () => void this.take(api.edit(this.document.text, field.path, input.value)));
+      input.dataset["path"] = path;
+      input.title = help;
+      input.addEventListener("change", () => void this.take(api.edit(this.document.text, path, input.value)));
       label.append(input);
       group.append(label);
-      if (own.length) {
-        const words = element("span", "bad", own.map((each) => `${each.message}; ${each.hint}`).join("; "));
-        words.id = `problem-${i}`;
-        input.setAttribute("aria-invalid", "true");
-        input.setAttribute("aria-describedby", words.id);
-        group.append(words);
-      }
-      if (field.path === focused) requestAnimationFrame(() => input.focus());
+      const words = element("span", "bad");
+      words.id = `problem-${i}`;
+      this.entries.set(path, { label, input, words, value: "" });
+      if (path === focused) requestAnimationFrame(() => input.focus());
     });
-    this.sweep.offer(fields);
-    this.list(errors);
-    this.meaning.textContent = meaning;
-    this.meaning.hidden = !meaning;
-    this.run.disabled = errors.length > 0;
   }
 
   private list(errors: Problem[]): void {

@@ -4,6 +4,7 @@ import { css, shade } from "../colours";
 import { button, choice, element } from "../controls";
 import { format } from "../data";
 import { api, type Field, type Problem, Refusal } from "./api";
+import { Command } from "./command";
 
 /** What varies, over which values, and which figures of the cases. */
 export class SweepForm {
@@ -11,12 +12,14 @@ export class SweepForm {
   private readonly rows = [0, 1].map(() => ({ place: element("span"), path: "", values: element("input") }));
   private readonly measure = element("input");
   private readonly problems = element("p", "bad");
+  private readonly command = new Command([]);
   private paths = "";
 
   constructor(text: () => string, submitted: (id: string) => void) {
     this.root.append(element("summary", "", "Sweep"));
     this.rows.forEach((row, i) => {
       row.values.placeholder = "1 m:12 m:12, or 1 m, 2 m";
+      row.values.addEventListener("input", () => this.say());
       const label = element("label", "", "over ");
       label.append(row.values);
       const line = element("div", "gbeam-row");
@@ -27,11 +30,11 @@ export class SweepForm {
     this.measure.value = "tip.size.max_abs";
     const label = element("label", "", "Figures ");
     label.append(this.measure);
+    this.measure.addEventListener("input", () => this.say());
     const run = async (): Promise<void> => {
       this.problems.textContent = "";
-      const over = this.rows.filter((row) => row.path && row.values.value).map((row) => `${row.path}=${row.values.value}`);
       try {
-        submitted((await api.sweep(text(), over, this.measure.value)).id);
+        submitted((await api.sweep(text(), this.over(), this.measure.value)).id);
       } catch (error) {
         const found: Problem[] = error instanceof Refusal ? error.problems : [];
         this.problems.textContent = found.map((each) => `${each.path} ${each.message}; ${each.hint}`).join(" ") || String(error);
@@ -39,7 +42,18 @@ export class SweepForm {
     };
     const line = element("div", "gbeam-row");
     line.append(label, button("Run sweep", () => void run()));
-    this.root.append(line, this.problems);
+    this.root.append(line, this.problems, this.command.root);
+    this.say();
+  }
+
+  /** What varies over which values, as `--over` has it. */
+  private over(): string[] {
+    return this.rows.filter((row) => row.path && row.values.value).map((row) => `${row.path}=${row.values.value}`);
+  }
+
+  private say(): void {
+    const over = this.over().flatMap((each) => ["--over", each]);
+    this.command.say(["gbeam", "sweep", "scenario.toml", ...over, "--measure", this.measure.value]);
   }
 
   /** Offer the values of a document. */
@@ -53,9 +67,11 @@ export class SweepForm {
       row.place.replaceChildren(
         choice(i ? "and" : "Vary", offered, row.path, (path) => {
           row.path = path;
+          this.say();
         }),
       );
     });
+    this.say();
   }
 }
 
