@@ -79,6 +79,10 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> Non
     frame = page.frame_locator("iframe.report")
     frame.locator("html[data-gbeam]").wait_for(timeout=20_000)
     assert frame.locator(".gbeam-canvas").is_visible() and "fast" in frame.locator("h1").inner_text()
+    frame.locator(".gbeam-time").press("Home")
+    first = _picture(page)
+    frame.locator(".gbeam-time").press("End")
+    assert _picture(page) != first
     assert _violations(page) == []
     assert _not_reached(page) == []
 
@@ -124,6 +128,14 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> Non
     assert page.get_by_label("scenario as TOML").input_value() == BIG  # the draft is kept
     context.close()
     assert faults == []
+
+
+def _picture(page: Any) -> bytes:
+    """The viewer of the report that is shown, once it is drawn."""
+    report = page.frames[-1]
+    report.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    picture: bytes = report.locator(".gbeam-canvas").screenshot()
+    return picture
 
 
 def _violations(page: Any) -> list[str]:

@@ -99,6 +99,14 @@ def test_small_windows_hold_the_page(opened: Any, report: Path, scheme: str) -> 
     assert (max(map(int, re.findall(r"\d+", ground))) < 60) == (scheme == "dark")
 
 
+def test_words_are_painted_before_the_views_are_made(opened: Any, report: Path) -> None:
+    note = "new MutationObserver(() => { window.drawn ??= performance.now(); })"
+    page = opened(report, before=f"{note}.observe(document, {{subtree: true, attributeFilter: ['data-gbeam']}})")
+    painted = "performance.getEntriesByName('first-contentful-paint')"
+    page.wait_for_function(f"() => {painted}.length")
+    assert page.evaluate(f"{painted}[0].startTime") < page.evaluate("window.drawn")
+
+
 def test_page_without_webgl_says_so(opened: Any, report: Path) -> None:
     none = "HTMLCanvasElement.prototype.getContext = (get => function (kind, ...more) {"
     none += " return kind.startsWith('webgl') ? null : get.call(this, kind, ...more); })"

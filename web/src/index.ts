@@ -7,6 +7,15 @@ import { render } from "./notebook";
 import { readPage, showPage } from "./report";
 
 const data = typeof document === "undefined" ? null : readPage();
-if (data) showPage(data);
+if (data) {
+  // Words and tables are painted first: views and plots take a second or two without a graphics card.
+  let drawn = false;
+  const draw = (): void => {
+    if (!drawn) showPage(data);
+    drawn = true;
+  };
+  requestAnimationFrame(() => setTimeout(draw));
+  window.addEventListener("beforeprint", draw); // which may come before any frame
+}
 
 export default { render };
