@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -42,14 +42,18 @@ class _Case:
 
 
 def simulate_batch(
-    cases: Iterable[tuple[Structure, Motion]], settings: ResponseSettings | None = None, **options: Any
+    cases: Iterable[tuple[Structure, Motion]],
+    settings: ResponseSettings | None = None,
+    *,
+    together: int | None = None,
+    **options: Any,
 ) -> Iterator[tuple[int, Response]]:
     """Compute the responses of many cases, with a given step and without an estimate of their errors.
 
-    Cases of one shape are integrated together, 64 of a linear model or 32 of another at a time, by the same steps that
-    :func:`simulate` takes: of one model with equal numbers of shapes, in environments of one kind whose corners split
-    as many steps. A machine that spins up, and a case whose corrections fail, are integrated alone. No more cases are
-    taken from `cases` than wait for others of their shape.
+    Cases of one shape are integrated together, some at a time, by the same steps that :func:`simulate` takes: of one
+    model with equal numbers of shapes, in environments of one kind whose corners split as many steps. A machine that
+    spins up, and a case whose corrections fail, are integrated alone. No more cases are taken from `cases` than wait
+    for others of their shape.
 
     Parameters
     ----------
@@ -57,6 +61,9 @@ def simulate_batch(
     settings : ResponseSettings, optional
         Or what it is made of, by keyword: ``simulate_batch(cases, duration=10.0, step=0.01)``; ``estimate`` is false
         then unless it is given.
+    together : int, optional
+        How many cases are integrated together: 64 of a linear model, 32 of another by default, which a processor's
+        cache holds; more on a GPU.
 
     Yields
     ------
@@ -66,7 +73,7 @@ def simulate_batch(
     Raises
     ------
     InputError
-        If there is no step, an estimate is to be made, or as :func:`simulate` does.
+        If there is no step, an estimate is to be made, less than one case stands together, or as :func:`simulate` does.
     ComputationError
         If a case has no relative equilibrium to start from.
 
@@ -79,10 +86,14 @@ def simulate_batch(
         raise InputError("step", "is automatic, and cases that are integrated together share one", "give a step, s")
     if settings.estimate:
         raise InputError("estimate", "is true, and a batch estimates no errors", "give estimate = False")
-    return _responses(cases, settings)
+    if together is not None and together < 1:
+        raise InputError("together", f"is {together}", "give one or more")
+    return _responses(cases, settings, TOGETHER if together is None else {True: together, False: together})
 
 
-def _responses(cases: Iterable[tuple[Structure, Motion]], settings: ResponseSettings) -> Iterator[tuple[int, Response]]:
+def _responses(
+    cases: Iterable[tuple[Structure, Motion]], settings: ResponseSettings, together: Mapping[bool, int]
+) -> Iterator[tuple[int, Response]]:
     waiting: dict[Hashable, list[_Case]] = {}
     for index, (structure, motion) in enumerate(cases):
         case, shape = _posed(index, structure, motion, settings)
@@ -91,11 +102,11 @@ def _responses(cases: Iterable[tuple[Structure, Motion]], settings: ResponseSett
             continue
         queue = waiting.setdefault((type(motion), structure.linear, shape), [])
         queue.append(case)
-        if len(queue) == TOGETHER[structure.linear]:
-            yield from _together(queue, settings)
+        if len(queue) == together[structure.linear]:
+            yield from _together(queue, settings, together)
             queue.clear()
     for queue in waiting.values():
-        yield from _together(queue, settings)
+        yield from _together(queue, settings, together)
 
 
 def _posed(
@@ -121,13 +132,15 @@ def _posed(
     return None if shape is None else _Case(index, structure, motion, problem, run), shape
 
 
-def _together(queue: list[_Case], settings: ResponseSettings) -> Iterator[tuple[int, Response]]:
+def _together(
+    queue: list[_Case], settings: ResponseSettings, together: Mapping[bool, int]
+) -> Iterator[tuple[int, Response]]:
     from gbeam.integrate.batch import integrate_together
 
     if not queue:
         return
     # Filled with its last case, so that one program serves every number of them.
-    filling = [queue[-1].run] * (TOGETHER[queue[0].structure.linear] - len(queue) if len(queue) > 1 else 0)
+    filling = [queue[-1].run] * (together[queue[0].structure.linear] - len(queue) if len(queue) > 1 else 0)
     trajectories = integrate_together([case.run for case in queue] + filling, scheme_of(settings))
     for case, trajectory in zip(queue, trajectories, strict=False):
         structure, motion, problem = case.structure, case.motion, case.problem
