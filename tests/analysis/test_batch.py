@@ -50,6 +50,15 @@ def test_flights_with_loads_and_structures_of_their_own() -> None:
     agree(cases, 1e-11, duration=1.0, integrator="newmark", step=0.02, loads=True)
 
 
+def test_cases_of_equal_sizes_with_and_without_loads_stand_apart() -> None:
+    loaded = gb.assemble(
+        appendage(gb.PointMass(8.0, 0.1), loads=[gb.Load(8.0, force=(0.0, 1.0, 0.0))]), "FOAM", axial=1, y=2
+    )
+    flights = [gb.Flight(y=gb.trapezoid(a, jerk=10 * a, start=0.1, hold=0.5)) for a in (1.0, 2.0)]
+    cases = [(structure, flight) for flight in flights for structure in (hub_beam("FOAM", y=2), loaded)]
+    agree(cases, 1e-11, duration=1.0, integrator="newmark", step=0.02)
+
+
 @pytest.mark.parametrize("integrator", ["gauss", "newmark"])
 def test_free_hubs(integrator: str) -> None:
     """Of FOAM, whose equations are polynomials; torques with a jump are split there, and the scheme starts anew."""

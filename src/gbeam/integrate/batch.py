@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import jax
@@ -50,9 +50,15 @@ class Run:
         if isinstance(self.equations, NonlinearEquations):
             leaves, form = jax.tree.flatten(self.equations.residual)
             return "nonlinear", form, *(np.shape(leaf) for leaf in leaves), len(steps), steps.anew.tobytes()
-        if self.equations.terms is None or (scheme.ends and steps.anew.any()):
+        if self.terms is None or (scheme.ends and steps.anew.any()):
             return None
-        return "linear", len(self.q), len(steps), steps.equal
+        return "linear", self.terms.velocity.shape, len(steps), steps.equal
+
+    @cached_property
+    def terms(self) -> LinearTerms | None:
+        """Those of linear equations that have them."""
+        terms = getattr(self.equations, "terms", None)
+        return None if terms is None else jax.tree.map(np.asarray, terms())
 
 
 def integrate_together(runs: Sequence[Run], scheme: Scheme) -> list[Trajectory | None]:
@@ -82,7 +88,7 @@ def _linear(runs: Sequence[Run], scheme: Scheme) -> tuple[list[Any], list[bool]]
         by_run.append(e.features(e.drive(np.concatenate(at))).reshape(len(at), count, -1))
     phi = np.stack([np.moveaxis(features, 0, 1) for features in by_run], axis=1)  # (t, b, s, k)
     driven = phi.any(axis=(0, 1, 2))
-    phi, parts = phi[..., driven], [jax.tree.map(lambda part: np.asarray(part)[driven], e.terms()) for e in equations]
+    phi, parts = phi[..., driven], [jax.tree.map(lambda part: part[driven], run.terms) for run in runs]
     # What does not depend on the rates has no part in C.
     rates = np.append(0, 1 + np.flatnonzero(np.any([part.velocity[1:].any(axis=(1, 2)) for part in parts], axis=0)))
     parts = [LinearTerms(part.velocity[rates], part.stiffness, part.force) for part in parts]
