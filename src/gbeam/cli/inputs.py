@@ -165,7 +165,7 @@ def numbers(option: str, text: str, kind: str) -> list[float]:
 
 
 def names(texts: Sequence[str]) -> list[str]:
-    """Names given to an option that may be repeated, separated by commas in each."""
+    """Names given to an option that may be option, separated by commas in each."""
     return [name.strip() for text in texts for name in text.split(",") if name.strip()]
 
 

@@ -7,31 +7,28 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
+
+def option(name: str, words: str) -> Parameter:
+    """An option without an opposite, whose default is not worth a word in the help."""
+    return Parameter(name=name, negative="", show_default=False, help=words)
+
+
 # Of all verbs, or of many.
 ScenarioFile = Annotated[Path, Parameter(help="Scenario file, TOML or JSON.")]
 Overrides = Annotated[
     tuple[str, ...],
-    Parameter(
-        name="--set",
-        negative="",
-        show_default=False,
-        help='Change the scenario, KEY=VALUE, such as "beam.length=250 mm"; any number of times.',
-    ),
+    option("--set", 'Change the scenario, KEY=VALUE, such as "beam.length=250 mm"; any number of times.'),
 ]
 Out = Annotated[
     Path | None,
     Parameter(name="--out", help="Folder for the files. Without it run writes to out/NAME, with --json nowhere."),
 ]
-Json = Annotated[
-    bool, Parameter(name="--json", negative="", show_default=False, help="Print one JSON object and nothing else.")
-]
+Json = Annotated[bool, option("--json", "Print one JSON object and nothing else.")]
 Report = Annotated[
     bool,
-    Parameter(
-        name="--report",
-        negative="",
-        show_default=False,
-        help="Also write the result as one page of HTML that opens without a network, with plots that zoom and the "
+    option(
+        "--report",
+        "Also write the result as one page of HTML that opens without a network, with plots that zoom and the "
         "beam in motion; without --out into out/NAME.",
     ),
 ]
@@ -43,12 +40,7 @@ At = Annotated[
 ]
 IgnoreLimits = Annotated[
     bool,
-    Parameter(
-        name="--ignore-limits",
-        negative="",
-        show_default=False,
-        help="Exit with 0 though a machine's limit is exceeded.",
-    ),
+    option("--ignore-limits", "Exit with 0 though a machine's limit is exceeded."),
 ]
 
 # Of critical-speed.
@@ -83,12 +75,7 @@ Balanced = Annotated[
 ]
 StrainAt = Annotated[
     tuple[str, ...],
-    Parameter(
-        name="--strain-at",
-        negative="",
-        show_default=False,
-        help='Strain at a station, "10 mm", on the faces towards +z and +y; any number of times.',
-    ),
+    option("--strain-at", 'Strain at a station, "10 mm", on the faces towards +z and +y; any number of times.'),
 ]
 Inputs = Annotated[
     str | None, Parameter(name="--inputs", help='Only these, "torque"; by default all. So with --outputs.')
@@ -103,12 +90,7 @@ Speed = Annotated[
 # Of fit and optimize.
 SearchBounds = Annotated[
     tuple[str, ...],
-    Parameter(
-        name="--bounds",
-        negative="",
-        show_default=False,
-        help='Of a value, "beam.damping_ratio=0.1 %:5 %"; by default a tenth to ten times the scenario\'s.',
-    ),
+    option("--bounds", 'Of a value, "beam.damping_ratio=0.1 %:5 %"; by default a tenth to ten times the scenario\'s.'),
 ]
 WriteTo = Annotated[
     Path | None, Parameter(name="--write", help="A scenario to write, with the values found and its comments.")
@@ -122,11 +104,9 @@ Measure = Annotated[
 CentrifugeName = Annotated[str | None, Parameter(help="Which centrifuge, where the scenario has several.")]
 Widths = Annotated[
     tuple[str, ...],
-    Parameter(
-        name="--smoothing",
-        negative="",
-        show_default=False,
-        help='Width of the kernel to keep, "60 ms"; given twice, the search goes from the one to the other. Without it '
+    option(
+        "--smoothing",
+        'Width of the kernel to keep, "60 ms"; given twice, the search goes from the one to the other. Without it '
         "from a quarter to four times the scenario's.",
     ),
 ]

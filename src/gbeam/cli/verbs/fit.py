@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 from gbeam.cli.console import Watch
 from gbeam.cli.inputs import names, number, search_bounds
-from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile, SearchBounds, WriteTo
+from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile, SearchBounds, WriteTo, option
 from gbeam.cli.outputs import refuse_changes, show_found
 from gbeam.cli.publication import refuse_unwritable
 
@@ -27,12 +27,7 @@ def fit(
     ],
     free: Annotated[
         tuple[str, ...],
-        Parameter(
-            name="--free",
-            negative="",
-            show_default=False,
-            help='Values to find, "beam.material.youngs_modulus, beam.damping_ratio".',
-        ),
+        option("--free", 'Values to find, "beam.material.youngs_modulus, beam.damping_ratio".'),
     ] = (),
     bounds: SearchBounds = (),
     motion: MotionName = None,

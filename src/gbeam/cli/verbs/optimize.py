@@ -9,7 +9,7 @@ from cyclopts import Parameter
 from gbeam.cli.console import Watch
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import names, number, search_bounds
-from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile, SearchBounds, WriteTo
+from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile, SearchBounds, WriteTo, option
 from gbeam.cli.outputs import refuse_changes, show_found
 from gbeam.cli.publication import refuse_unwritable
 
@@ -25,20 +25,13 @@ def optimize(
     ],
     over: Annotated[
         tuple[str, ...],
-        Parameter(
-            name="--over",
-            negative="",
-            show_default=False,
-            help='Values to choose, "motion.centrifuge.control_point, motion.centrifuge.smoothing".',
-        ),
+        option("--over", 'Values to choose, "motion.centrifuge.control_point, motion.centrifuge.smoothing".'),
     ] = (),
     subject_to: Annotated[
         tuple[str, ...],
-        Parameter(
-            name="--subject-to",
-            negative="",
-            show_default=False,
-            help='"limits" of the machines, or a bound on a figure, "tip.z.max_abs <= 2 mm"; any number of times.',
+        option(
+            "--subject-to",
+            '"limits" of the machines, or a bound on a figure, "tip.z.max_abs <= 2 mm"; any number of times.',
         ),
     ] = (),
     bounds: SearchBounds = (),

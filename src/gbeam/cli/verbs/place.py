@@ -5,8 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-from cyclopts import Parameter
-
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import Input, naming, number, read
 from gbeam.cli.options import (
@@ -20,6 +18,7 @@ from gbeam.cli.options import (
     Report,
     ScenarioFile,
     Widths,
+    option,
 )
 from gbeam.cli.outputs import folder_of, show, write
 from gbeam.cli.publication import publish
@@ -41,7 +40,7 @@ def place(
     report: Report = False,
     write_back: Annotated[
         bool,
-        Parameter(name="--write", negative="", show_default=False, help="Write the answer into the scenario file."),
+        option("--write", "Write the answer into the scenario file."),
     ] = False,
 ) -> int:
     """Find the control point, mounting and smoothing that change the specimen's response least.

@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from cyclopts import Parameter
-
-from gbeam.cli.options import Json
+from gbeam.cli.options import Json, option
 
 
 def schema(
     *,
     json: Json = False,
-    markdown: Annotated[
-        bool, Parameter(name="--markdown", negative="", show_default=False, help="The keys as a page to read instead.")
-    ] = False,
+    markdown: Annotated[bool, option("--markdown", "The keys as a page to read instead.")] = False,
 ) -> int:
     """Print the JSON schema of scenario files, for editors; or every key, with unit, default and meaning.
 

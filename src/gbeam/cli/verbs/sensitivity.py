@@ -12,7 +12,7 @@ from cyclopts import Parameter
 from gbeam.cli.console import Watch
 from gbeam.cli.inputs import names, number, signed
 from gbeam.cli.invocation import command
-from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile
+from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile, option
 from gbeam.cli.outputs import list_files, show
 from gbeam.cli.publication import publish, refuse_unwritable
 
@@ -25,20 +25,12 @@ def sensitivity(
     *,
     of: Annotated[
         tuple[str, ...],
-        Parameter(
-            name="--of",
-            negative="",
-            show_default=False,
-            help='Figures of the verb by the end of their path in its JSON, "tip.z.max_abs, verdict.tip".',
-        ),
+        option("--of", 'Figures of the verb by the end of their path in its JSON, "tip.z.max_abs, verdict.tip".'),
     ] = (),
     by: Annotated[
         tuple[str, ...],
-        Parameter(
-            name="--with",
-            negative="",
-            show_default=False,
-            help='Only these values, "beam.length, beam.material.youngs_modulus"; by default every physical one.',
+        option(
+            "--with", 'Only these values, "beam.length, beam.material.youngs_modulus"; by default every physical one.'
         ),
     ] = (),
     verb: Annotated[Verb, Parameter(help="Whose figures.")] = "run",

@@ -13,7 +13,7 @@ from gbeam.cli.console import Watch
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import names, number, signed
 from gbeam.cli.invocation import command
-from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile
+from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile, option
 from gbeam.cli.outputs import list_files, show, write_json
 from gbeam.cli.publication import publish, refuse_unwritable
 
@@ -26,30 +26,21 @@ def sweep(
     *,
     over: Annotated[
         tuple[str, ...],
-        Parameter(
-            name="--over",
-            negative="",
-            show_default=False,
-            help='What varies, PATH=VALUES; any number of times: "motion.centrifuge.arm=1 m:12 m:12" (from, to, how '
+        option(
+            "--over",
+            'What varies, PATH=VALUES; any number of times: "motion.centrifuge.arm=1 m:12 m:12" (from, to, how '
             'many), "model.kind=FOAM, exact", "beam.damping_ratio=uniform(0.5 %, 2 %)".',
         ),
     ] = (),
     measure: Annotated[
         tuple[str, ...],
-        Parameter(
-            name="--measure",
-            negative="",
-            show_default=False,
-            help='Figures of the verb by the end of their path in its JSON, "tip.z.max_abs, verdict.tip".',
-        ),
+        option("--measure", 'Figures of the verb by the end of their path in its JSON, "tip.z.max_abs, verdict.tip".'),
     ] = (),
     history: Annotated[
         tuple[str, ...],
-        Parameter(
-            name="--history",
-            negative="",
-            show_default=False,
-            help='Histories by motion, quantity (tip, root_force, root_moment) and axis, "flight.tip.z"; of verb run.',
+        option(
+            "--history",
+            'Histories by motion, quantity (tip, root_force, root_moment) and axis, "flight.tip.z"; of verb run.',
         ),
     ] = (),
     times: Annotated[int, Parameter(help="At which histories are given, over the whole response.")] = 501,
@@ -64,15 +55,9 @@ def sweep(
     seed: Annotated[int | None, Parameter(help="The same seed draws the same samples.")] = None,
     workers: Annotated[int, Parameter(help="Processes of this machine.")] = 1,
     scheduler: Annotated[str | None, Parameter(help="Address of a Dask scheduler whose workers compute.")] = None,
-    resume: Annotated[
-        bool, Parameter(name="--resume", negative="", show_default=False, help="Compute only what is missing in --out.")
-    ] = False,
-    yes: Annotated[
-        bool, Parameter(name="--yes", negative="", show_default=False, help="More than 100,000 cases are meant.")
-    ] = False,
-    netcdf: Annotated[
-        bool, Parameter(name="--netcdf", negative="", show_default=False, help="Write sweep.nc beside sweep.zarr.")
-    ] = False,
+    resume: Annotated[bool, option("--resume", "Compute only what is missing in --out.")] = False,
+    yes: Annotated[bool, option("--yes", "More than 100,000 cases are meant.")] = False,
+    netcdf: Annotated[bool, option("--netcdf", "Write sweep.nc beside sweep.zarr.")] = False,
     overrides: Overrides = (),
     out: Out = None,
     json: Json = False,
