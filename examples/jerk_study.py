@@ -14,7 +14,7 @@ import numpy as np
 from jerk_laws import Floats, first_mode, flat_terms, from_rest_terms, hann_transform
 
 from gbeam import Beam, Centrifuge, Flight, InputError, Material, Section, Structure, assemble, simulate, tabulated
-from gbeam.checks import positive
+from gbeam.guards.checks import positive
 from gbeam.motion import Base, Profile, smoothed
 
 G = 9.81  # m/s², as the paper has it

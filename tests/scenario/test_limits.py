@@ -14,7 +14,7 @@ import pytest
 
 import gbeam as gb
 from gbeam.errors import InputError
-from gbeam.limits import NESTING, SCENARIO_BYTES, in_bytes, refuse_large_file
+from gbeam.guards.limits import NESTING, SCENARIO_BYTES, in_bytes, refuse_large_file
 from gbeam.motion.bases.conditioning import filtered
 from gbeam.scenario import ScenarioError, load, loads
 from gbeam.scenario.text.bounds import excess

@@ -8,7 +8,7 @@ import stat
 from pathlib import Path
 
 from gbeam.errors import InputError
-from gbeam.limits import TEXT_BYTES
+from gbeam.guards.limits import TEXT_BYTES
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._()-]{0,99}")
 LARGEST = TEXT_BYTES  # of one file

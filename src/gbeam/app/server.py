@@ -20,9 +20,9 @@ from gbeam.app.access import REPORT_POLICY, Door
 from gbeam.app.jobs import Jobs
 from gbeam.app.preview import columns, load_curves
 from gbeam.errors import GbeamError
+from gbeam.guards.limits import SCENARIO_BYTES
 from gbeam.io.histories import csv_of
 from gbeam.io.stored import read_stored
-from gbeam.limits import SCENARIO_BYTES
 from gbeam.scenario.template import template
 from gbeam.scenario.text.source import parse
 

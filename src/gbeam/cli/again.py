@@ -45,7 +45,7 @@ def answer_again(file: Path) -> Reproduction:
 
 
 def _read(file: Path) -> tuple[dict[str, Any], Provenance]:
-    from gbeam.limits import BINARY_BYTES, refuse_large_file
+    from gbeam.guards.limits import BINARY_BYTES, refuse_large_file
     from gbeam.results.provenance import Environment, Provenance, RecordFile
 
     fix = "give the JSON that a verb of gbeam wrote into --out, or a result.nc"

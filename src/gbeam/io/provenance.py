@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.guards.limits import BINARY_BYTES
 from gbeam.io.groups import Variable
-from gbeam.limits import BINARY_BYTES
 from gbeam.results.provenance import Environment, Provenance, RecordFile
 
 RECORD = "record_"  # before the flight's name

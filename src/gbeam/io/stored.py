@@ -12,10 +12,10 @@ import h5py
 import numpy as np
 
 from gbeam.errors import InputError
+from gbeam.guards.limits import existing
 from gbeam.io.hdf5 import image
 from gbeam.io.netcdf import groups_of
 from gbeam.io.provenance import provenance_of
-from gbeam.limits import existing
 from gbeam.results.provenance import Provenance
 from gbeam.results.result import Result
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.errors import InputError
-from gbeam.limits import NODES, refuse_more
+from gbeam.guards.limits import NODES, refuse_more
 from gbeam.mechanics.damping import damping_matrix
 from gbeam.mechanics.equations.inertia import Elasticity, Inertia
 from gbeam.mechanics.equations.linear import coefficients

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import holds_jax
+from gbeam.guards.plausibility import implausible
 from gbeam.motion.protocol import Motion
-from gbeam.plausibility import implausible
 
 SAMPLES = 501
 

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from gbeam.errors import InputError
-from gbeam.limits import PROBLEMS
+from gbeam.guards.limits import PROBLEMS
 from gbeam.scenario.schema import Environments, Scenario
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.distributions import Distribution, find_distributions, from_table

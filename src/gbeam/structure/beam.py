@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from gbeam.arrays.namespace import is_jax
-from gbeam.checks import positive
 from gbeam.errors import InputError
-from gbeam.plausibility import possible
+from gbeam.guards.checks import positive
+from gbeam.guards.plausibility import possible
 from gbeam.structure.bodies import PointMass
 from gbeam.structure.loads import Load
 from gbeam.structure.material import Material

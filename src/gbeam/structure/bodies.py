@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from gbeam.arrays.namespace import is_jax, namespace
-from gbeam.checks import positive
 from gbeam.errors import InputError
+from gbeam.guards.checks import positive
 
 
 @dataclass(frozen=True)

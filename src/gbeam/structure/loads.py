@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gbeam.checks import positive
 from gbeam.errors import InputError
+from gbeam.guards.checks import positive
 
 if TYPE_CHECKING:
     from gbeam.motion import Profile

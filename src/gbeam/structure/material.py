@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from gbeam.checks import positive
-from gbeam.plausibility import possible
+from gbeam.guards.checks import positive
+from gbeam.guards.plausibility import possible
 
 FATIGUE_EXPONENT = 5.0
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import holds_jax
-from gbeam.plausibility import implausible
+from gbeam.guards.plausibility import implausible
 from gbeam.structure.beam import Beam
 from gbeam.structure.section import KINDS
 

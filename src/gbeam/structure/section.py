@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.arrays.tree import record, static
-from gbeam.checks import positive
 from gbeam.errors import InputError
-from gbeam.plausibility import possible
+from gbeam.guards.checks import positive
+from gbeam.guards.plausibility import possible
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.checks import positive
+from gbeam.guards.checks import positive
 
 Array = NDArray[np.float64]
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.limits import HISTORY_BYTES, WORKERS, refuse_more
+from gbeam.guards.limits import HISTORY_BYTES, WORKERS, refuse_more
 from gbeam.results.studies.sweep import Sweep
 from gbeam.scenario.load import load
 from gbeam.scenario.origin import provenance

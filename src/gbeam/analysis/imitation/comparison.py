@@ -9,8 +9,8 @@ import numpy as np
 from gbeam.analysis.imitation.accounting import History, account
 from gbeam.analysis.imitation.fatigue import fatigue
 from gbeam.analysis.imitation.peak_pairs import peak_pairs
-from gbeam.checks import positive
 from gbeam.errors import InputError
+from gbeam.guards.checks import positive
 from gbeam.motion.bases.base import gradient
 from gbeam.numerics.filters.low_pass import low_pass
 from gbeam.numerics.filters.oscillators import largest_riding_acceleration

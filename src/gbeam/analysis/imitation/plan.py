@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gbeam.limits import SAMPLES, refuse_more
+from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.motion import Centrifuge
 from gbeam.motion.centrifuge.history import axes_result, columns
 from gbeam.motion.plausibility import implausible_motion

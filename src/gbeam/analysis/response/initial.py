@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
-from gbeam.checks import choice, finite
 from gbeam.errors import ComputationError, InputError
+from gbeam.guards.checks import choice, finite
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 

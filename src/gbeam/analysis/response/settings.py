@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from gbeam.analysis.response.initial import Initial, begun
-from gbeam.checks import positive
 from gbeam.errors import InputError
-from gbeam.limits import STEPS, refuse_more
-from gbeam.plausibility import implausible, possible
+from gbeam.guards.checks import positive
+from gbeam.guards.limits import STEPS, refuse_more
+from gbeam.guards.plausibility import implausible, possible
 
 FINE = 1e-4
 NOT_ESTIMATED = "no error is estimated: the settings say estimate = false"

@@ -24,10 +24,10 @@ from gbeam.analysis.response.steps.trajectories import (
 )
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
+from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.driver import Trajectory
 from gbeam.integrate.equations import Drive
 from gbeam.integrate.steps import Corners
-from gbeam.limits import HISTORY_BYTES, STEPS, refuse_more
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion

@@ -17,8 +17,8 @@ import numpy as np
 from gbeam.analysis.equilibrium.point import REST, steady_base
 from gbeam.analysis.vibration.loss import first_loss_along
 from gbeam.analysis.vibration.loss_errors import Path, judged
-from gbeam.checks import positive
 from gbeam.errors import InputError
+from gbeam.guards.checks import positive
 from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.models import Model
 from gbeam.mechanics.plausibility import input_warnings

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.checks import positive
 from gbeam.errors import InputError
-from gbeam.limits import SAMPLES, refuse_more
+from gbeam.guards.checks import positive
+from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.numerics.filters.low_pass import low_pass
 from gbeam.numerics.intervals import true_runs
 

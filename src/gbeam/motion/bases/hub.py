@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record, static
-from gbeam.checks import positive
 from gbeam.errors import InputError
+from gbeam.guards.checks import positive
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.mount import Mount
 from gbeam.motion.profiles.combine import as_profile

@@ -8,8 +8,8 @@ import numpy as np
 
 from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record
-from gbeam.checks import finite, positive
 from gbeam.errors import InputError
+from gbeam.guards.checks import finite, positive
 from gbeam.motion.bases.base import Base
 
 POINTINGS = ("outward", "inward")

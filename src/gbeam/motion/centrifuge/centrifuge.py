@@ -9,9 +9,9 @@ import numpy as np
 
 from gbeam.arrays.namespace import as_array
 from gbeam.arrays.tree import assign, record, static
-from gbeam.checks import choice, positive
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
+from gbeam.guards.checks import choice, positive
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.flight import Flight
 from gbeam.motion.centrifuge.axis_motion import AxisMotion

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from gbeam.checks import choice, positive
 from gbeam.errors import InputError
+from gbeam.guards.checks import choice, positive
 
 STARTS = ("rest", "pre-yawed", "idle")
 

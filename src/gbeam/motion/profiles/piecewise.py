@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record, static
-from gbeam.checks import finite, positive
 from gbeam.errors import InputError
+from gbeam.guards.checks import finite, positive
 from gbeam.motion.profiles.convolution import Convolved, beside
 from gbeam.motion.profiles.hann import hann_orders
 from gbeam.motion.profiles.profile import Profile, rounded_corners, sampled

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.checks import positive
-from gbeam.limits import KNOTS, refuse_more
+from gbeam.guards.checks import positive
+from gbeam.guards.limits import KNOTS, refuse_more
 from gbeam.numerics.series import Series
 
 STEPS_PER_EVENT = 4  # a rounded corner or a pulse of so many steps is resolved

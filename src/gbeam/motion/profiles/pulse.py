@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, namespace
 from gbeam.arrays.tree import assign, record
-from gbeam.checks import finite, positive
+from gbeam.guards.checks import finite, positive
 from gbeam.motion.profiles.convolution import Convolved
 from gbeam.motion.profiles.hann import TURN, hann_orders
 from gbeam.motion.profiles.profile import STEPS_PER_EVENT, Profile, sampled

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, namespace
 from gbeam.arrays.tree import assign, record
-from gbeam.checks import finite, positive
 from gbeam.errors import InputError
+from gbeam.guards.checks import finite, positive
 from gbeam.motion.profiles.convolution import Convolved
 from gbeam.motion.profiles.profile import Profile, sampled
 from gbeam.numerics.bspline import DEGREE, PIECE, Spline

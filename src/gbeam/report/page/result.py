@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from gbeam.errors import InputError
+from gbeam.guards.limits import BINARY_BYTES, refuse_large_file
 from gbeam.io.netcdf import FACTS, groups_of
 from gbeam.io.stored import read_stored
-from gbeam.limits import BINARY_BYTES, refuse_large_file
 from gbeam.report.facts import facts, facts_text, whole
 from gbeam.report.page.document import html
 from gbeam.report.page.scene import scene

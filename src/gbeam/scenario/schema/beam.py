@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from gbeam.limits import ENTRIES
+from gbeam.guards.limits import ENTRIES
 from gbeam.scenario.schema.fields import (
     Areas,
     Density,

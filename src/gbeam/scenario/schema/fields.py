@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Discriminator, Field, GetCoreSchemaH
 from pydantic import ValidationError as PydanticError
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
 
-from gbeam.limits import ENTRIES, LARGEST, SMALLEST
+from gbeam.guards.limits import ENTRIES, LARGEST, SMALLEST
 from gbeam.scenario.text.kinds import KINDS
 from gbeam.scenario.text.units import UnitError, quantity
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Sign = Literal["any", "positive", "zero or more"]
 Loc = tuple[int | str, ...]
 
-# Kinds of which the objects say what is possible, and which unit was meant: gbeam.plausibility.
+# Kinds of which the objects say what is possible, and which unit was meant: gbeam.guards.plausibility.
 _OF_OBJECTS = ("length", "area", "second moment of area", "density", "pressure", "time")
 
 

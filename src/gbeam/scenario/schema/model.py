@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, StrictInt
 
-from gbeam.limits import SHAPES
+from gbeam.guards.limits import SHAPES
 from gbeam.scenario.schema.fields import Table
 
 Count = Annotated[StrictInt, Field(ge=0, le=SHAPES)]

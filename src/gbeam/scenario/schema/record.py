@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, StrictBool, Tag, ValidationInfo, model_validator
 
-from gbeam.limits import existing
+from gbeam.guards.limits import existing
 from gbeam.scenario.schema.fields import ONE_OR_LIST, Quantity, Table, refuse, wrong
 from gbeam.scenario.text.suggest import closest
 

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, StrictBool, model_validator
 from pydantic_core import PydanticCustomError
 
-from gbeam.limits import ENTRIES
+from gbeam.guards.limits import ENTRIES
 from gbeam.scenario.schema.fields import (
     Acceleration,
     Duration,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Self
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, model_validator
 from pydantic_core import PydanticCustomError
 
-from gbeam.limits import NAME, TITLE
+from gbeam.guards.limits import NAME, TITLE
 from gbeam.printable import shortened, unprintable
 from gbeam.scenario.schema.beam import Beam
 from gbeam.scenario.schema.fields import Loc, Table, refuse, wrong

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from gbeam.limits import NESTING, NUMBER, SCENARIO_BYTES, in_bytes
+from gbeam.guards.limits import NESTING, NUMBER, SCENARIO_BYTES, in_bytes
 from gbeam.scenario.text.paths import Span
 
 # Strings and comments are passed over; a key with more parts than tables may be nested is one token. Possessive

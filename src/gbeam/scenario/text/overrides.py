@@ -8,7 +8,7 @@ from copy import deepcopy
 from dataclasses import dataclass
 from typing import Any
 
-from gbeam.limits import NESTING
+from gbeam.guards.limits import NESTING
 from gbeam.scenario.text.bounds import excess
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.paths import Path, parse_path, path_text

@@ -12,7 +12,7 @@ from pathlib import Path as File
 from typing import Any, Literal
 
 from gbeam.errors import InputError
-from gbeam.limits import SCENARIO_BYTES, refuse_large_file
+from gbeam.guards.limits import SCENARIO_BYTES, refuse_large_file
 from gbeam.scenario.text.bounds import excess
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.distributions import Distribution

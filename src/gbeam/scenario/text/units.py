@@ -11,7 +11,7 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from gbeam.limits import QUANTITY
+from gbeam.guards.limits import QUANTITY
 from gbeam.printable import shortened
 from gbeam.scenario.text.kinds import KINDS, USUAL, Kind
 from gbeam.scenario.text.suggest import closest

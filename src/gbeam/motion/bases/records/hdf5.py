@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.errors import InputError
-from gbeam.limits import ELEMENTS, refuse_more
+from gbeam.guards.limits import ELEMENTS, refuse_more
 from gbeam.motion.bases.records.table import Column, Table, array_columns
 
 if TYPE_CHECKING:

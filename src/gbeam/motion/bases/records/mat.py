@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.limits import ELEMENTS, refuse_more
+from gbeam.guards.limits import ELEMENTS, refuse_more
 from gbeam.motion.bases.records.hdf5 import hdf5_columns
 from gbeam.motion.bases.records.table import Column, Table, array_columns
 

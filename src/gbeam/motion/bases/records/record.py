@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.limits import BINARY_BYTES, SAMPLES, refuse_large_file, refuse_more
+from gbeam.guards.limits import BINARY_BYTES, SAMPLES, refuse_large_file, refuse_more
 from gbeam.motion.bases.conditioning import FEWEST, filtered, spikes, without_spikes
 from gbeam.motion.bases.records.clock import check_interval, check_sampling
 from gbeam.motion.bases.records.hdf5 import read_hdf5

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.errors import InputError
-from gbeam.limits import COLUMNS, LARGEST
+from gbeam.guards.limits import COLUMNS, LARGEST
 
 Floats = NDArray[np.float64]
 

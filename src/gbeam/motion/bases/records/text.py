@@ -12,7 +12,7 @@ import re
 from statistics import mode
 
 from gbeam.errors import InputError
-from gbeam.limits import BINARY_BYTES, TEXT_BYTES, in_bytes, refuse_large_file
+from gbeam.guards.limits import BINARY_BYTES, TEXT_BYTES, in_bytes, refuse_large_file
 from gbeam.motion.bases.records.table import Column, Table
 from gbeam.motion.bases.records.units import is_unit
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.arrays.tree import assign, record
-from gbeam.checks import positive
 from gbeam.errors import InputError
+from gbeam.guards.checks import positive
 from gbeam.results.machine import LimitUse
 
 QUANTITIES = {"rate": "rad/s", "acceleration": "rad/s^2", "jerk": "rad/s^3"}

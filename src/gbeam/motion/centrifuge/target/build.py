@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import is_traced
-from gbeam.checks import positive
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.limits import KNOTS, refuse_more
+from gbeam.guards.checks import positive
+from gbeam.guards.limits import KNOTS, refuse_more
 from gbeam.motion.centrifuge.target.gentle_path import gentle, off_axis, unwrapped
 from gbeam.motion.centrifuge.target.load_limits import (
     LEAST_IDLE,
