@@ -25,7 +25,7 @@ from gbeam import (
     static,
     trapezoid,
 )
-from gbeam.results.peaks import VectorPeaks
+from gbeam.results.parts.peaks import VectorPeaks
 
 from ..specimens import hub_beam
 from .helpers import LENGTH, strip

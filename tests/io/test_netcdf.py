@@ -24,9 +24,9 @@ from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.fatigue import Fatigue, StressCycles
 from gbeam.results.imitation.measures import RootHistory, RootLoads, Sizes, Statistics
 from gbeam.results.machine import AxesResult, LimitUse, Shortfall
+from gbeam.results.parts.section_forces import Loads
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import BaseMotion, HubResult, Peaks, Response
-from gbeam.results.section_forces import Loads
 from gbeam.results.study import Failure, Study
 
 from ..specimens import hub_beam

@@ -29,8 +29,8 @@ from gbeam import (
 from gbeam.mechanics.influence import influence
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.motion import Base
+from gbeam.results.parts.section_forces import Loads
 from gbeam.results.response import BaseMotion
-from gbeam.results.section_forces import Loads
 
 from ..differences import along, rate
 from ..lagrange import energy_of, hub_kinetic

@@ -31,7 +31,7 @@ from gbeam.plots.drawing.lines import FLIGHT
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.measures import Mismatch, RootHistory, RootLoads, Shock
 from gbeam.results.machine import LimitUse, MachinePlan
-from gbeam.results.section_forces import Loads
+from gbeam.results.parts.section_forces import Loads
 from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.study import Study
 

@@ -22,7 +22,7 @@ from gbeam.report.page import series
 from gbeam.report.page.document import html as page_of
 from gbeam.report.page.result import report_of, report_of_file
 from gbeam.report.words import as_json
-from gbeam.results.outline import Outline
+from gbeam.results.parts.outline import Outline
 from gbeam.results.study import Study
 
 NASTY = "</script><script>alert(1)</script> <b>&\" '\u202e\x1b[31m"

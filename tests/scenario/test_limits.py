@@ -18,7 +18,7 @@ from gbeam.guards.limits import NESTING, SCENARIO_BYTES, in_bytes, refuse_large_
 from gbeam.motion.bases.conditioning import filtered
 from gbeam.scenario import ScenarioError, load, loads
 from gbeam.scenario.text.bounds import excess
-from gbeam.scenario.text.units import UnitError, quantity
+from gbeam.scenario.values.units import UnitError, quantity
 
 from ..scenarios import FAST
 

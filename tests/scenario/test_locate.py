@@ -6,7 +6,7 @@ import json
 
 from gbeam.scenario.text.locate_json import locate_json
 from gbeam.scenario.text.locate_toml import locate_toml
-from gbeam.scenario.text.paths import Path
+from gbeam.scenario.values.paths import Path
 
 TOML = """\
 title = "é" # comment

@@ -10,8 +10,8 @@ import pytest
 from gbeam.cli import main
 from gbeam.scenario import schema
 from gbeam.scenario.reference import reference
-from gbeam.scenario.schema.fields import Table
-from gbeam.scenario.text.kinds import KINDS
+from gbeam.scenario.schema.common.fields import Table
+from gbeam.scenario.values.kinds import KINDS
 
 PAGE = Path(__file__).parents[2] / "docs" / "scenario.md"
 

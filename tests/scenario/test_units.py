@@ -9,8 +9,8 @@ import scipy.constants as si
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gbeam.scenario.text.kinds import KINDS, USUAL
-from gbeam.scenario.text.units import UnitError, argument, parsed_factor, quantity
+from gbeam.scenario.values.kinds import KINDS, USUAL
+from gbeam.scenario.values.units import UnitError, argument, parsed_factor, quantity
 
 G0 = 9.80665
 

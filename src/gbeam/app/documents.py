@@ -14,8 +14,8 @@ from gbeam.app.files import regular
 from gbeam.errors import GbeamError, InputError
 from gbeam.scenario import ScenarioError, build, loads
 from gbeam.scenario.text.diagnostics import Diagnostic
-from gbeam.scenario.text.paths import Place, parse_path, path_text
 from gbeam.scenario.text.source import Source, parse
+from gbeam.scenario.values.paths import Place, parse_path, path_text
 
 NAME = "scenario.toml"
 _MEASURE = re.compile(r"[A-Za-z_][\w., \[\]-]{0,300}")

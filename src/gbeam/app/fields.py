@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any
 
 from gbeam.scenario import json_schema
-from gbeam.scenario.text.paths import path_text
+from gbeam.scenario.values.paths import path_text
 
 
 def leaves(node: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[tuple[Any, ...], Any]]:

@@ -142,7 +142,7 @@ def number(option: str, text: str, kind: str) -> float:
     InputError
         If it cannot be read.
     """
-    from gbeam.scenario.text.units import UnitError, argument
+    from gbeam.scenario.values.units import UnitError, argument
 
     try:
         return argument(text, kind)

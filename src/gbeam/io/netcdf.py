@@ -16,19 +16,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.io.comparisons import comparison_group
 from gbeam.io.groups import Group, Variable
 from gbeam.io.hdf5 import write_groups
-from gbeam.io.machine import plan_group
+from gbeam.io.layout.comparisons import comparison_group
+from gbeam.io.layout.machine import plan_group
+from gbeam.io.layout.responses import response_group
+from gbeam.io.layout.steady import campbell_group, critical_group, critical_map_group, deflection_group, modes_group
+from gbeam.io.layout.studies.fits import fit_group
+from gbeam.io.layout.studies.optima import optimum_group
+from gbeam.io.layout.studies.sensitivities import sensitivity_group
+from gbeam.io.layout.studies.shaping import shaping_group
+from gbeam.io.layout.studies.sweeps import sweep_group
+from gbeam.io.layout.tables import models_group, placement_group, state_space_group
 from gbeam.io.provenance import provenance_attrs, provenance_variables
-from gbeam.io.responses import response_group
-from gbeam.io.steady import campbell_group, critical_group, critical_map_group, deflection_group, modes_group
-from gbeam.io.studies.fits import fit_group
-from gbeam.io.studies.optima import optimum_group
-from gbeam.io.studies.sensitivities import sensitivity_group
-from gbeam.io.studies.shaping import shaping_group
-from gbeam.io.studies.sweeps import sweep_group
-from gbeam.io.tables import models_group, placement_group, state_space_group
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.placement import Placement
 from gbeam.results.machine import MachinePlan

@@ -21,8 +21,8 @@ from gbeam.mechanics.equations.sampled import paths
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
+from gbeam.results.parts.section_forces import Loads
 from gbeam.results.response import BaseMotion
-from gbeam.results.section_forces import Loads
 from gbeam.structure.stress import extreme_stresses, worst_fibre
 
 Array = Any

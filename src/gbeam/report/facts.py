@@ -7,7 +7,8 @@ from typing import Any
 
 from gbeam.report.machine import placement
 from gbeam.report.steady import campbell, modes
-from gbeam.report.study import summary_json, sweep
+from gbeam.report.studies import sweep
+from gbeam.report.study import summary_json
 from gbeam.report.words import as_json
 from gbeam.results.imitation.placement import Placement
 from gbeam.results.response import Response

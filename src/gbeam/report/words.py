@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from gbeam.printable import json_printable
-from gbeam.results.errors import ErrorEstimate, FrequencyErrors
+from gbeam.results.parts.errors import ErrorEstimate, FrequencyErrors
+from gbeam.results.parts.section_forces import yield_margin
 from gbeam.results.result import Result
-from gbeam.results.section_forces import yield_margin
 
 
 def as_json(value: Any) -> str:

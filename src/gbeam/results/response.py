@@ -9,12 +9,12 @@ from typing import Protocol
 import numpy as np
 
 from gbeam.arrays.namespace import is_traced
-from gbeam.results.errors import Errors
 from gbeam.results.machine import AxesResult
-from gbeam.results.outline import Outline
-from gbeam.results.peaks import Peaks
+from gbeam.results.parts.errors import Errors
+from gbeam.results.parts.outline import Outline
+from gbeam.results.parts.peaks import Peaks
+from gbeam.results.parts.section_forces import Influence, Loads
 from gbeam.results.result import Figured, Floats, Part, brief
-from gbeam.results.section_forces import Influence, Loads
 
 
 @dataclass(frozen=True, repr=False, eq=False)

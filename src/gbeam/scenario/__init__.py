@@ -11,7 +11,7 @@ from gbeam.scenario.placing import placed
 from gbeam.scenario.schema import Environments, Scenario
 from gbeam.scenario.template import json_schema, template
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
-from gbeam.scenario.text.units import UnitError, argument, quantity
+from gbeam.scenario.values.units import UnitError, argument, quantity
 
 __all__ = [
     "Diagnostic",

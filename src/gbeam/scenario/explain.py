@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
 from gbeam.scenario.schema import Scenario
-from gbeam.scenario.schema.fields import Quantity, Table
+from gbeam.scenario.schema.common.fields import Quantity, Table
 from gbeam.scenario.text.diagnostics import Diagnostic
-from gbeam.scenario.text.kinds import KINDS
-from gbeam.scenario.text.paths import Path
 from gbeam.scenario.text.source import Mark, Source
-from gbeam.scenario.text.suggest import advise
-from gbeam.scenario.text.units import spoken
+from gbeam.scenario.values.kinds import KINDS
+from gbeam.scenario.values.paths import Path
+from gbeam.scenario.values.suggest import advise
+from gbeam.scenario.values.units import spoken
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo

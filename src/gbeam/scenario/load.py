@@ -15,10 +15,10 @@ from gbeam.errors import InputError
 from gbeam.guards.limits import PROBLEMS
 from gbeam.scenario.schema import Environments, Scenario
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
-from gbeam.scenario.text.distributions import Distribution, find_distributions, from_table
 from gbeam.scenario.text.overrides import override
-from gbeam.scenario.text.paths import path_text
 from gbeam.scenario.text.source import Source, parse, read_text
+from gbeam.scenario.values.distributions import Distribution, find_distributions, from_table
+from gbeam.scenario.values.paths import path_text
 
 T = TypeVar("T", bound=Environments)
 

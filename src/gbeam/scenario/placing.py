@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from gbeam.errors import InputError
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
-from gbeam.scenario.text.paths import parse_path
+from gbeam.scenario.values.paths import parse_path
 
 if TYPE_CHECKING:
     from gbeam.scenario.schema import Environments

@@ -10,7 +10,7 @@ from gbeam.errors import InputError
 from gbeam.scenario.load import load
 from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.text.edit import with_quantities
-from gbeam.scenario.text.units import UnitError, argument
+from gbeam.scenario.values.units import UnitError, argument
 from gbeam.studies.parameters import PhysicalValue, physical_values
 
 Bounds = Mapping[str, tuple[float | str, float | str]]  # by path, SI or text with a unit

@@ -17,9 +17,9 @@ from gbeam.motion.bases.records.text import read_text
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Study
-from gbeam.scenario.text.kinds import KINDS
-from gbeam.scenario.text.suggest import advise
-from gbeam.scenario.text.units import UnitError, argument
+from gbeam.scenario.values.kinds import KINDS
+from gbeam.scenario.values.suggest import advise
+from gbeam.scenario.values.units import UnitError, argument
 
 OPTION = "--data"
 _TIME = ("time", "time_s", "t")

@@ -20,8 +20,8 @@ from gbeam.results.studies.optimum import BROKEN, Optimum, Requirement
 from gbeam.results.study import Study
 from gbeam.scenario.load import load
 from gbeam.scenario.origin import provenance
-from gbeam.scenario.text.kinds import KINDS
-from gbeam.scenario.text.units import UnitError, argument
+from gbeam.scenario.values.kinds import KINDS
+from gbeam.scenario.values.units import UnitError, argument
 from gbeam.studies.bounds import Bounds, bounds_of, named
 from gbeam.studies.derivatives import Neighbourhood, Progress
 from gbeam.studies.parameters import PhysicalValue

@@ -7,10 +7,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from gbeam.errors import InputError
-from gbeam.scenario.schema.quantities import quantities
+from gbeam.scenario.schema.common.quantities import quantities
 from gbeam.scenario.schema.scenario import Scenario
-from gbeam.scenario.text.kinds import KINDS
-from gbeam.scenario.text.suggest import advise
+from gbeam.scenario.values.kinds import KINDS
+from gbeam.scenario.values.suggest import advise
 
 # Values of the computation, not of what is computed.
 _FIXED = {

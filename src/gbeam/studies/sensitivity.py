@@ -16,8 +16,8 @@ from gbeam.results.studies.sensitivity import Sensitivity
 from gbeam.results.study import Study
 from gbeam.scenario.load import load
 from gbeam.scenario.origin import provenance
-from gbeam.scenario.text.paths import path_text
-from gbeam.scenario.text.suggest import advise
+from gbeam.scenario.values.paths import path_text
+from gbeam.scenario.values.suggest import advise
 from gbeam.studies.derivatives import Neighbourhood, Progress, Slopes
 from gbeam.studies.parameters import PhysicalValue, physical_values
 from gbeam.sweeps.answers import VERBS, Facts, study_facts

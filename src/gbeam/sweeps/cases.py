@@ -11,7 +11,7 @@ import numpy as np
 from gbeam.errors import InputError
 from gbeam.guards.limits import refuse_more
 from gbeam.results.studies.sweep import SAMPLE
-from gbeam.scenario.text.distributions import Distribution
+from gbeam.scenario.values.distributions import Distribution
 from gbeam.sweeps.values import MAX_VALUES, OPTION, Variation, drawn_from, read_variation
 
 SAMPLERS = ("sobol", "latin", "random", "saltelli")

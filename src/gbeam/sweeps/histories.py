@@ -11,7 +11,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.results.result import Floats
-from gbeam.scenario.text.suggest import advise
+from gbeam.scenario.values.suggest import advise
 
 if TYPE_CHECKING:
     from gbeam.results.study import Study

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from gbeam.errors import InputError
-from gbeam.scenario.text.paths import path_text
-from gbeam.scenario.text.suggest import closest
+from gbeam.scenario.values.paths import path_text
+from gbeam.scenario.values.suggest import closest
 from gbeam.sweeps.answers import Facts
 
 OPTION = "--measure"

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from gbeam.results.studies.sweep import Sweep
-from gbeam.scenario.schema.fields import kind_of
+from gbeam.scenario.schema.common.fields import kind_of
 from gbeam.scenario.schema.scenario import Scenario
-from gbeam.scenario.text.kinds import KINDS
-from gbeam.scenario.text.paths import parse_path
+from gbeam.scenario.values.kinds import KINDS
+from gbeam.scenario.values.paths import parse_path
 from gbeam.sweeps.cases import Cases
 from gbeam.sweeps.evaluate import Row
 from gbeam.sweeps.start import Start

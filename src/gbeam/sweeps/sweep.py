@@ -15,7 +15,7 @@ from gbeam.guards.limits import HISTORY_BYTES, WORKERS, refuse_more
 from gbeam.results.studies.sweep import Sweep
 from gbeam.scenario.load import load
 from gbeam.scenario.origin import provenance
-from gbeam.scenario.text.suggest import advise
+from gbeam.scenario.values.suggest import advise
 from gbeam.sweeps.answers import VERBS
 from gbeam.sweeps.cases import read_cases
 from gbeam.sweeps.cluster import on_scheduler

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from gbeam.errors import InputError
 from gbeam.results.studies.sweep import Parameter
-from gbeam.scenario.text.distributions import Distribution, quantities, read_distribution, written
-from gbeam.scenario.text.paths import parse_path
-from gbeam.scenario.text.units import NUMBER
+from gbeam.scenario.values.distributions import Distribution, quantities, read_distribution, written
+from gbeam.scenario.values.paths import parse_path
+from gbeam.scenario.values.units import NUMBER
 
 OPTION = "--over"
 _CALL = re.compile(r"\s*([a-z]+)\s*\((.*)\)\s*", re.DOTALL)

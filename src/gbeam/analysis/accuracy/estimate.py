@@ -9,9 +9,9 @@ import numpy as np
 from gbeam.analysis.accuracy.response_errors import Quantities, Solution, lacking
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
-from gbeam.results.errors import ErrorEstimate, Errors
+from gbeam.results.parts.errors import ErrorEstimate, Errors
+from gbeam.results.parts.section_forces import Loads
 from gbeam.results.result import Floats
-from gbeam.results.section_forces import Loads
 
 FEWEST, PER_PERIOD = 500, 6  # samples looked at, in all and in a period of the lowest mode
 LARGEST = 2.0  # times (v/L)²: error of a second-order model, up to what a beam that points inward on a hub has

@@ -16,9 +16,9 @@ from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
-from gbeam.results.errors import ErrorEstimate, Errors
+from gbeam.results.parts.errors import ErrorEstimate, Errors
+from gbeam.results.parts.section_forces import Loads
 from gbeam.results.result import Floats
-from gbeam.results.section_forces import Loads
 
 LIMIT = 0.01  # an error above is warned of
 NOTHING = 1e-6  # of the other load, over a length of the beam: a force or moment that is less is none

@@ -18,9 +18,9 @@ from gbeam.numerics.interpolation import interpolated
 from gbeam.results.imitation.accounting import CRITERIA, TOLERANCE, Accounting
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.measures import Mismatch, RootHistory, RootLoads, Shock, Sizes, Statistics
+from gbeam.results.parts.section_forces import Influence
 from gbeam.results.response import Response
 from gbeam.results.result import Flags, Floats
-from gbeam.results.section_forces import Influence
 
 CUTOFF = 0.5  # of the lowest natural frequency: trend below, elastic vibration above
 QUALITY = 10.0  # of the oscillators of the shock response spectrum

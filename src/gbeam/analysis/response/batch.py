@@ -24,7 +24,7 @@ from gbeam.errors import InputError
 from gbeam.integrate.steps import fitted
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
-from gbeam.results.errors import StepErrors
+from gbeam.results.parts.errors import StepErrors
 from gbeam.results.response import Response
 
 TOGETHER = {True: 64, False: 32}  # cases of a linear model and of others: what they carry stays in a cache

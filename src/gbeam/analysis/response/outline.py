@@ -9,7 +9,7 @@ import numpy as np
 
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
-from gbeam.results.outline import Outline
+from gbeam.results.parts.outline import Outline
 from gbeam.results.result import Floats
 
 POINTS = 16  # along the beam, at most

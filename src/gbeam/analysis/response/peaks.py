@@ -11,8 +11,8 @@ from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.integrate.driver import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.numerics.peaks import FEWEST, Floats, Indices, maxima, near_maxima, quintic_hermite, seven_point
-from gbeam.results.peaks import Extremes, LoadPeaks, Peaks, VectorPeaks
-from gbeam.results.section_forces import Loads
+from gbeam.results.parts.peaks import Extremes, LoadPeaks, Peaks, VectorPeaks
+from gbeam.results.parts.section_forces import Loads
 
 
 def displacement_peaks(

@@ -25,11 +25,11 @@ from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
-from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
 from gbeam.results.machine import AxesResult
+from gbeam.results.parts.errors import ErrorEstimate, Errors, StepErrors
+from gbeam.results.parts.section_forces import Loads
 from gbeam.results.response import BaseMotion, HubResult, Response
 from gbeam.results.result import Floats
-from gbeam.results.section_forces import Loads
 
 Array = Any
 

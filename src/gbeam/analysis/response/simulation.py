@@ -31,7 +31,7 @@ from gbeam.integrate.steps import Corners
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
-from gbeam.results.errors import StepErrors
+from gbeam.results.parts.errors import StepErrors
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 

@@ -20,7 +20,7 @@ from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.solvers.roots import brent
-from gbeam.results.errors import FrequencyErrors
+from gbeam.results.parts.errors import FrequencyErrors
 from gbeam.results.result import Complex, Floats
 from gbeam.results.steady.modal import Campbell, Crossing
 

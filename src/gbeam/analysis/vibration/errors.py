@@ -16,7 +16,7 @@ from gbeam.mechanics.equations.hub import free_hub
 from gbeam.mechanics.equations.residuals import OnHub
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
-from gbeam.results.errors import FrequencyErrors
+from gbeam.results.parts.errors import FrequencyErrors
 from gbeam.results.result import Complex, Floats
 
 LIMIT = 0.01  # an error above is warned of

@@ -15,7 +15,7 @@ from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.numerics.solvers.roots import brent
-from gbeam.results.errors import ErrorEstimate
+from gbeam.results.parts.errors import ErrorEstimate
 from gbeam.results.steady.stability import Critical
 
 # Shares of the critical value at which richer models are looked at, from below.

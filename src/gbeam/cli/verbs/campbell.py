@@ -56,7 +56,7 @@ def campbell(
         )
     facts = given.signed(words.to_json(diagram))
 
-    from gbeam.scenario.text.units import unit_of
+    from gbeam.scenario.values.units import unit_of
 
     # In words and in the diagram speeds are in the unit in which they are given.
     unit, size = unit_of(end or start or "0", "angular rate")

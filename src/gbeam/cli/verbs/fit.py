@@ -55,7 +55,7 @@ def fit(
             scenario, data, names(free), bounds=limits, motion=motion, at=time, overrides=overrides, progress=watch
         )
 
-    from gbeam.report.study import fit as report
+    from gbeam.report.studies import fit as report
 
     show_found(answer, report, "fit", "fit", scenario, write=write, out=out, json=json)
     return 0

@@ -69,7 +69,7 @@ def optimize(
             progress=watch,
         )
 
-    from gbeam.report.study import optimum as report
+    from gbeam.report.studies import optimum as report
 
     show_found(answer, report, "optimize", "optimum", scenario, write=write, out=out, json=json)
     if answer.outcome != "done":

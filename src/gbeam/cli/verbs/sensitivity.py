@@ -66,7 +66,7 @@ def sensitivity(
         for name, draw in figures(answer).items():
             save(draw(), hidden, re.sub(r"[^\w.-]+", "", name), "gbeam sensitivity")
 
-    from gbeam.report.study import sensitivity as report
+    from gbeam.report.studies import sensitivity as report
 
     files = [] if out is None else publish(out, make)
     show(report.text(answer), signed(report.to_json(answer, files), answer.provenance), json)

@@ -107,7 +107,7 @@ def sweep(
     assert answer.provenance is not None  # it is of a scenario
     answer = replace(answer, provenance=replace(answer.provenance, command=command()))
 
-    from gbeam.report.study import sweep as words
+    from gbeam.report.studies import sweep as words
 
     def make(hidden: Path) -> None:
         from gbeam.plots import figures, save
@@ -120,7 +120,7 @@ def sweep(
         if report:
             answer.report(hidden / "report.html")
 
-    from gbeam.io.studies.sweeps import write_zarr
+    from gbeam.io.layout.studies.sweeps import write_zarr
 
     files = publish(folder, make)
     write_zarr(answer, folder / "sweep.zarr")

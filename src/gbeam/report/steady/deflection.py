@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from gbeam.report.words import error_words, percent, stress_words, tidy, warning_lines, xyz, xyz_lists
-from gbeam.results.errors import Errors
+from gbeam.results.parts.errors import Errors
+from gbeam.results.parts.section_forces import Loads
 from gbeam.results.response import BaseMotion
-from gbeam.results.section_forces import Loads
 from gbeam.results.steady.equilibrium import Deflection
 
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from gbeam.report.machine.tracking import ends_line, not_followed_stretches, tracking
 from gbeam.report.words import error_words, number, percent, stress_words
-from gbeam.results.peaks import LoadPeaks
+from gbeam.results.parts.peaks import LoadPeaks
+from gbeam.results.parts.section_forces import Loads
 from gbeam.results.response import HubResult, Response
-from gbeam.results.section_forces import Loads
 
 ROUNDING = 1e-9  # of what it belongs to: a smaller number is none
 EPISODES = 8  # of holding listed; a rough record has hundreds

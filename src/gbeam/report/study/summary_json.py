@@ -13,10 +13,10 @@ from gbeam.report.machine import limits
 from gbeam.report.machine.tracking import ends, peak, tracking
 from gbeam.report.study import comparison, sentences
 from gbeam.results.machine import AxesResult
-from gbeam.results.peaks import Extremes, LoadPeaks, VectorPeaks
+from gbeam.results.parts.peaks import Extremes, LoadPeaks, VectorPeaks
+from gbeam.results.parts.section_forces import Loads, yield_margin
 from gbeam.results.response import HubResult, Response
 from gbeam.results.result import Floats
-from gbeam.results.section_forces import Loads, yield_margin
 from gbeam.results.study import Study
 
 

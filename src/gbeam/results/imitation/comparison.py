@@ -11,8 +11,8 @@ from gbeam.results.imitation.accounting import CRITERIA, Accounting, Criterion, 
 from gbeam.results.imitation.fatigue import Fatigue
 from gbeam.results.imitation.measures import Mismatch, RootLoads, Shock, Statistics
 from gbeam.results.imitation.verdict import verdict
+from gbeam.results.parts.section_forces import yield_margin
 from gbeam.results.result import Figured, Flags, Floats
-from gbeam.results.section_forces import yield_margin
 
 
 @dataclass(frozen=True, repr=False, eq=False)

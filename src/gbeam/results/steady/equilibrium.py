@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from gbeam.results.errors import Errors
+from gbeam.results.parts.errors import Errors
+from gbeam.results.parts.section_forces import Loads
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Figured, Floats
-from gbeam.results.section_forces import Loads
 
 
 @dataclass(frozen=True, repr=False, eq=False)

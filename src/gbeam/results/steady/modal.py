@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gbeam.results.errors import FrequencyErrors
+from gbeam.results.parts.errors import FrequencyErrors
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Complex, Figured, Floats
 from gbeam.results.steady.stability import Critical

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from gbeam.results.errors import ErrorEstimate
+from gbeam.results.parts.errors import ErrorEstimate
 from gbeam.results.result import Figured, Floats, Result, brief
 
 

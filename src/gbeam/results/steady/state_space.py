@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.results.errors import FrequencyErrors
+from gbeam.results.parts.errors import FrequencyErrors
 from gbeam.results.result import Floats, Result
 
 ACCURATE = 0.01  # error of a frequency that is within what a design takes for accurate

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag
 
 from gbeam.guards.limits import ENTRIES
-from gbeam.scenario.schema.fields import (
+from gbeam.scenario.schema.common.fields import (
     Areas,
     Density,
     Exponent,

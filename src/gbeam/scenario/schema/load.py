@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pydantic import Field, StrictBool, model_validator
 from pydantic_core import PydanticCustomError
 
-from gbeam.scenario.schema.fields import Loc, Position, Table, refuse, wrong
+from gbeam.scenario.schema.common.fields import Loc, Position, Table, refuse, wrong
 from gbeam.scenario.schema.profile import ForceOverTime, MomentOverTime, SpreadForceOverTime
 
 

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, StrictInt
 
 from gbeam.guards.limits import SHAPES
-from gbeam.scenario.schema.fields import Table
+from gbeam.scenario.schema.common.fields import Table
 
 Count = Annotated[StrictInt, Field(ge=0, le=SHAPES)]
 

@@ -7,8 +7,8 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, Field, StrictBool, model_validator
 from pydantic_core import PydanticCustomError
 
-from gbeam.scenario.schema.accept import Accept
-from gbeam.scenario.schema.fields import (
+from gbeam.scenario.schema.common.accept import Accept
+from gbeam.scenario.schema.common.fields import (
     Acceleration,
     Duration,
     Length,

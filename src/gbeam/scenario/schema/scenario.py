@@ -12,12 +12,12 @@ from pydantic_core import PydanticCustomError
 from gbeam.guards.limits import NAME, TITLE
 from gbeam.printable import shortened, unprintable
 from gbeam.scenario.schema.beam import Beam
-from gbeam.scenario.schema.fields import Loc, Table, refuse, wrong
+from gbeam.scenario.schema.common.fields import Loc, Table, refuse, wrong
 from gbeam.scenario.schema.model import Model
 from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub, Motion
 from gbeam.scenario.schema.response import Response
 from gbeam.scenario.schema.sweep import Sweep
-from gbeam.scenario.text.suggest import advise
+from gbeam.scenario.values.suggest import advise
 
 if TYPE_CHECKING:
     from gbeam.scenario.text.source import Source

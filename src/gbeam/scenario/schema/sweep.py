@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from gbeam.scenario.schema.fields import Table
+from gbeam.scenario.schema.common.fields import Table
 
 
 class Sweep(Table):

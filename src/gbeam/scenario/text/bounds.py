@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from gbeam.guards.limits import NESTING, NUMBER, SCENARIO_BYTES, in_bytes
-from gbeam.scenario.text.paths import Span
+from gbeam.scenario.values.paths import Span
 
 # Strings and comments are passed over; a key with more parts than tables may be nested is one token. Possessive
 # quantifiers: no text takes longer than its length.

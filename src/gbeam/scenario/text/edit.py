@@ -10,9 +10,9 @@ from typing import Any
 
 from gbeam.errors import InputError
 from gbeam.scenario.text.diagnostics import ScenarioError
-from gbeam.scenario.text.paths import Path, Place, parse_path, path_text
 from gbeam.scenario.text.source import Source, is_json, parse
-from gbeam.scenario.text.units import unit_of
+from gbeam.scenario.values.paths import Path, Place, parse_path, path_text
+from gbeam.scenario.values.units import unit_of
 
 _OWN_LINE = re.compile(r"""\s*([\w"'-]+\s*\.\s*)*""")  # what stands before a key that has a line of its own
 

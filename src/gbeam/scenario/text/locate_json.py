@@ -6,7 +6,7 @@ import json
 import re
 from collections.abc import Iterator
 
-from gbeam.scenario.text.paths import Path, Place, Span
+from gbeam.scenario.values.paths import Path, Place, Span
 
 _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[{}\[\]:,]|[^\s{}\[\]:,"]+')
 

@@ -6,7 +6,7 @@ import tomllib
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from gbeam.scenario.text.paths import Path, Place, Span
+from gbeam.scenario.values.paths import Path, Place, Span
 
 if TYPE_CHECKING:
     from tree_sitter import Node

@@ -11,7 +11,7 @@ from typing import Any
 from gbeam.guards.limits import NESTING
 from gbeam.scenario.text.bounds import excess
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
-from gbeam.scenario.text.paths import Path, parse_path, path_text
+from gbeam.scenario.values.paths import Path, parse_path, path_text
 
 
 @dataclass(frozen=True)

@@ -15,10 +15,10 @@ from gbeam.errors import InputError
 from gbeam.guards.limits import SCENARIO_BYTES, refuse_large_file
 from gbeam.scenario.text.bounds import excess
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
-from gbeam.scenario.text.distributions import Distribution
 from gbeam.scenario.text.overrides import Override
-from gbeam.scenario.text.paths import Path, Place, Span, path_text
-from gbeam.scenario.text.suggest import closest
+from gbeam.scenario.values.distributions import Distribution
+from gbeam.scenario.values.paths import Path, Place, Span, path_text
+from gbeam.scenario.values.suggest import closest
 
 Mark = Literal["value", "key"]
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from gbeam.analysis.response.peaks import peaks_of_coordinates
 from gbeam.integrate.driver import Trajectory
-from gbeam.results.errors import StepErrors
+from gbeam.results.parts.errors import StepErrors
 from gbeam.results.result import Floats
 
 # Believed of a history; runs that hardly converge differ by less than their error.

@@ -25,7 +25,7 @@ from gbeam.integrate.driver import Trajectory, integrate
 from gbeam.integrate.schemes import gauss
 from gbeam.integrate.steps import Corners
 from gbeam.motion.protocol import Motion
-from gbeam.results.errors import StepErrors
+from gbeam.results.parts.errors import StepErrors
 from gbeam.results.result import Floats
 
 Array = Any

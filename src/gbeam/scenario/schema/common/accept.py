@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from gbeam.scenario.schema.fields import Quantity, Table, refuse, wrong
+from gbeam.scenario.schema.common.fields import Quantity, Table, refuse, wrong
 
 Share = Annotated[float, Quantity("ratio", "positive")]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gbeam.io.groups import Variable, coordinate, variable
-from gbeam.results.outline import Outline
+from gbeam.results.parts.outline import Outline
 
 
 def outline_coordinates(outline: Outline) -> dict[str, Variable]:

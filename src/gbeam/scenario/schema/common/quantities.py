@@ -7,8 +7,8 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from gbeam.scenario.schema.fields import kind_of
-from gbeam.scenario.text.paths import Path, path_text
+from gbeam.scenario.schema.common.fields import kind_of
+from gbeam.scenario.values.paths import Path, path_text
 
 
 def quantities(table: BaseModel) -> dict[str, tuple[float, str]]:

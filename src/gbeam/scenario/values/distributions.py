@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from gbeam.errors import InputError
-from gbeam.scenario.text.paths import Path
-from gbeam.scenario.text.suggest import closest
-from gbeam.scenario.text.units import NUMBER
+from gbeam.scenario.values.paths import Path
+from gbeam.scenario.values.suggest import closest
+from gbeam.scenario.values.units import NUMBER
 
 
 @dataclass(frozen=True)

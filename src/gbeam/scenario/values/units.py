@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from gbeam.guards.limits import QUANTITY
 from gbeam.printable import shortened
-from gbeam.scenario.text.kinds import KINDS, USUAL, Kind
-from gbeam.scenario.text.suggest import closest
+from gbeam.scenario.values.kinds import KINDS, USUAL, Kind
+from gbeam.scenario.values.suggest import closest
 
 if TYPE_CHECKING:
     from pint import UnitRegistry

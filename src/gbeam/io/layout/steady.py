@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from gbeam.io.groups import AXIS, Group, Variable, coordinate, known_attrs, variable, words
-from gbeam.io.responses import error_attrs, load_variables, section_coordinate
-from gbeam.results.errors import FrequencyErrors
+from gbeam.io.layout.responses import error_attrs, load_variables, section_coordinate
+from gbeam.results.parts.errors import FrequencyErrors
 from gbeam.results.response import BaseMotion
 from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.steady.modal import Campbell, Modes

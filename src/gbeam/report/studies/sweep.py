@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.report.study.estimates import estimates
+from gbeam.report.studies.estimates import estimates
 from gbeam.report.words import columns, number
 from gbeam.results.result import Floats
 from gbeam.results.studies.sweep import Sweep

@@ -11,8 +11,8 @@ from pydantic import ValidationError as PydanticError
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
 
 from gbeam.guards.limits import ENTRIES, LARGEST, SMALLEST
-from gbeam.scenario.text.kinds import KINDS
-from gbeam.scenario.text.units import UnitError, quantity
+from gbeam.scenario.values.kinds import KINDS
+from gbeam.scenario.values.units import UnitError, quantity
 
 if TYPE_CHECKING:
     from pydantic.json_schema import JsonSchemaValue
@@ -62,7 +62,7 @@ class Quantity:
     Parameters
     ----------
     kind : str
-        A key of ``gbeam.scenario.text.kinds.KINDS``.
+        A key of ``gbeam.scenario.values.kinds.KINDS``.
     sign : str
         ``any``, ``positive`` or ``zero or more``.
     words : tuple of str

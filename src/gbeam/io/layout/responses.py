@@ -7,12 +7,12 @@ from dataclasses import asdict
 import numpy as np
 
 from gbeam.io.groups import AXIS, Group, Variable, coordinate, known, known_attrs, variable
-from gbeam.io.machine import MACHINE_AXIS, machine_variables
-from gbeam.io.outline import outline_coordinates, outline_variables
-from gbeam.results.errors import Errors
-from gbeam.results.peaks import LoadPeaks
+from gbeam.io.layout.machine import MACHINE_AXIS, machine_variables
+from gbeam.io.layout.outline import outline_coordinates, outline_variables
+from gbeam.results.parts.errors import Errors
+from gbeam.results.parts.peaks import LoadPeaks
+from gbeam.results.parts.section_forces import Loads
 from gbeam.results.response import HubResult, Response
-from gbeam.results.section_forces import Loads
 
 _T, _TA, _TC, _TS, _TSA = (
     ("time",),

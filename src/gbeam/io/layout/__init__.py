@@ -1,0 +1,1 @@
+"""Which groups, variables and attributes of a file hold each result."""

@@ -1,0 +1,1 @@
+"""Studies of many runs in words and JSON: sweeps, sensitivities, fits, optima."""
