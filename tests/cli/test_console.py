@@ -9,8 +9,8 @@ import time
 
 import pytest
 
-from gbeam.cli import console
-from gbeam.cli.console import Watch
+from gbeam.cli.terminal import console
+from gbeam.cli.terminal.console import Watch
 
 
 class _Terminal(io.StringIO):

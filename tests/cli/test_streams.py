@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from gbeam.cli.program import report_defect
-from gbeam.cli.streams import shorten_warnings
+from gbeam.cli.terminal.streams import shorten_warnings
 
 Call = Callable[..., Any]
 ESCAPE = "\x1b[31m"

@@ -28,10 +28,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     if argv is not None:
         return _status(list(argv))
-    from gbeam.cli.interrupts import end_on_signals, ignore_signals
+    from gbeam.cli.terminal.interrupts import end_on_signals, ignore_signals
 
     end_on_signals()
-    from gbeam.cli.streams import shorten_warnings
+    from gbeam.cli.terminal.streams import shorten_warnings
 
     shorten_warnings()
     status = _status(sys.argv[1:])
@@ -40,11 +40,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _status(arguments: list[str]) -> int:
-    from gbeam.cli import streams
+    from gbeam.cli.terminal import streams
 
     listening = streams.prepare()
-    from gbeam.cli.failures import FAILED, complain
     from gbeam.cli.program import run
+    from gbeam.cli.terminal.failures import FAILED, complain
 
     try:
         status = run(arguments)

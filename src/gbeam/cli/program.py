@@ -15,30 +15,30 @@ from cyclopts import App, CycloptsError
 
 import gbeam
 from gbeam.cli import invocation
-from gbeam.cli.failures import report, report_defect, report_memory, report_syntax
+from gbeam.cli.terminal.failures import report, report_defect, report_memory, report_syntax
 from gbeam.errors import GbeamError
 
-# The help stands here and not only with the verb, so that `gbeam --help` imports none of them.
+# Each verb's room, and its help: not only in its own docstring, so that `gbeam --help` imports no verb.
 VERBS = {
-    "run": "Compute the response in every environment of a scenario, and compare them.",
-    "static": "Where the beam rests relative to its base at one time of the motions.",
-    "modes": "Frequencies, damping and shapes about the equilibrium at one time of a motion.",
-    "campbell": "Frequencies against the speed of a hub, and where its multiples meet them.",
-    "critical-speed": "The hub rate, load or acceleration at which the beam's equilibrium is lost.",
-    "linearize": "State-space model A, B, C, D about the equilibrium at one time of a motion.",
-    "models": "The same scenario by every model, compared with the exact one.",
-    "plan": "Plan the axis motions of a centrifuge within its limits; needs no beam.",
-    "place": "Find where to put the specimen on the centrifuge.",
-    "sweep": "Figures of many cases: over ranges, lists or samples of any values of a scenario.",
-    "sensitivity": "Which values of a scenario a figure depends on, and how much.",
-    "report": "Write a result as one page of HTML: tables, plots that zoom, and the beam in motion.",
-    "optimize": "Values of a scenario at which a figure is least, within limits.",
-    "fit": "Values of a scenario from a measurement, by least squares.",
-    "rerun": "Compute a result again from what its file says, and compare every number.",
-    "app": "Edit, run and compare scenarios in a browser, on this computer only.",
-    "check": "Say what a scenario means, without computing a response.",
-    "new": "Write a commented scenario to start from.",
-    "schema": "Print the JSON schema of scenario files, for editors.",
+    "run": ("verbs.runs", "Compute the response in every environment of a scenario, and compare them."),
+    "static": ("verbs.steady", "Where the beam rests relative to its base at one time of the motions."),
+    "modes": ("verbs.steady", "Frequencies, damping and shapes about the equilibrium at one time of a motion."),
+    "campbell": ("verbs.steady", "Frequencies against the speed of a hub, and where its multiples meet them."),
+    "critical-speed": ("verbs.steady", "The hub rate, load or acceleration at which the beam's equilibrium is lost."),
+    "linearize": ("verbs.steady", "State-space model A, B, C, D about the equilibrium at one time of a motion."),
+    "models": ("verbs.runs", "The same scenario by every model, compared with the exact one."),
+    "plan": ("verbs.runs", "Plan the axis motions of a centrifuge within its limits; needs no beam."),
+    "place": ("verbs.runs", "Find where to put the specimen on the centrifuge."),
+    "sweep": ("verbs.studies", "Figures of many cases: over ranges, lists or samples of any values of a scenario."),
+    "sensitivity": ("verbs.studies", "Which values of a scenario a figure depends on, and how much."),
+    "report": ("verbs.runs", "Write a result as one page of HTML: tables, plots that zoom, and the beam in motion."),
+    "optimize": ("verbs.studies", "Values of a scenario at which a figure is least, within limits."),
+    "fit": ("verbs.studies", "Values of a scenario from a measurement, by least squares."),
+    "rerun": ("verbs.runs", "Compute a result again from what its file says, and compare every number."),
+    "app": ("verbs", "Edit, run and compare scenarios in a browser, on this computer only."),
+    "check": ("verbs", "Say what a scenario means, without computing a response."),
+    "new": ("verbs", "Write a commented scenario to start from."),
+    "schema": ("verbs", "Print the JSON schema of scenario files, for editors."),
 }
 _INTERRUPTED = 130
 
@@ -99,8 +99,8 @@ def _app(chosen: str) -> App:
         help_format="markdown" if chosen in VERBS else "plaintext",  # whose renderer is not worth its import
         suppress_keyboard_interrupt=False,
     )
-    for verb, summary in VERBS.items():
+    for verb, (room, summary) in VERBS.items():
         # The help of the chosen verb is its own docstring, which says more.
         name = verb.replace("-", "_")
-        app.command(f"gbeam.cli.verbs.{name}:{name}", name=verb, help=None if verb == chosen else summary)
+        app.command(f"gbeam.cli.{room}.{name}:{name}", name=verb, help=None if verb == chosen else summary)
     return app

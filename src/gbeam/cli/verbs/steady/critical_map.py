@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from gbeam.cli.console import Watch
 from gbeam.cli.inputs import Input, numbers
 from gbeam.cli.outputs import show, write_json
 from gbeam.cli.publication import publish
+from gbeam.cli.terminal.console import Watch
 from gbeam.errors import InputError
 
 
@@ -20,7 +20,7 @@ def critical_map(
     out: Path | None,
     json: bool,
 ) -> int:
-    """Print and write the map; the arguments are those of :func:`~gbeam.cli.verbs.critical_speed.critical_speed`."""
+    """Print and write the map; the arguments are those of :func:`~.critical_speed.critical_speed`."""
     name, chosen = given.motion(motion, kind="hub")
     case = given.case
     kilograms = numbers("--masses", masses, "mass")

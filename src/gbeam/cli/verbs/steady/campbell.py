@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from gbeam.cli.console import Watch
 from gbeam.cli.inputs import number, read
 from gbeam.cli.options import Json, MotionName, Out, Overrides, Report, ScenarioFile, Speed
 from gbeam.cli.outputs import folder_of, list_files, show, write
+from gbeam.cli.terminal.console import Watch
 from gbeam.errors import InputError
 
 if TYPE_CHECKING:

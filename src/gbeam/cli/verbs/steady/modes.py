@@ -6,10 +6,10 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from gbeam.cli.console import Watch
 from gbeam.cli.inputs import read
 from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile
 from gbeam.cli.outputs import folder_of, show, write
+from gbeam.cli.terminal.console import Watch
 
 
 def modes(

@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
-from gbeam.cli.console import Watch
 from gbeam.cli.inputs import naming, number, read
 from gbeam.cli.options import (
     At,
@@ -24,6 +23,7 @@ from gbeam.cli.options import (
 )
 from gbeam.cli.outputs import show, write_json
 from gbeam.cli.publication import publish
+from gbeam.cli.terminal.console import Watch
 from gbeam.errors import InputError
 
 

@@ -8,12 +8,12 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import number, signed
 from gbeam.cli.invocation import command
 from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, ScenarioFile
 from gbeam.cli.outputs import list_files, show, show_table
 from gbeam.cli.publication import publish, refuse_unwritable
+from gbeam.cli.terminal.failures import FAILED, complain
 from gbeam.errors import InputError
 
 SAMPLE = 0.005  # s, where neither the scenario nor the command line gives one

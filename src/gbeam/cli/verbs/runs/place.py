@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import Input, naming, number, read
 from gbeam.cli.options import (
     CentrifugeName,
@@ -22,6 +21,7 @@ from gbeam.cli.options import (
 )
 from gbeam.cli.outputs import folder_of, show, write
 from gbeam.cli.publication import publish
+from gbeam.cli.terminal.failures import FAILED, complain
 from gbeam.errors import InputError
 
 

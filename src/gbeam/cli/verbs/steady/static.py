@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from gbeam.cli.console import Watch
 from gbeam.cli.inputs import read
 from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile
 from gbeam.cli.outputs import show, write
+from gbeam.cli.terminal.console import Watch
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

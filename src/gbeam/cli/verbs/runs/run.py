@@ -6,12 +6,12 @@ from importlib import import_module
 from pathlib import Path
 from threading import Thread
 
-from gbeam.cli.console import Watch
-from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import read
 from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, Report, ScenarioFile
 from gbeam.cli.outputs import folder_of, list_files, show, show_table
 from gbeam.cli.publication import publish
+from gbeam.cli.terminal.console import Watch
+from gbeam.cli.terminal.failures import FAILED, complain
 
 
 def run(

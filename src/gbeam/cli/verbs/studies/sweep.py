@@ -9,13 +9,13 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from gbeam.cli.console import Watch
-from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import names, number, signed
 from gbeam.cli.invocation import command
 from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile, option
 from gbeam.cli.outputs import list_files, show, write_json
 from gbeam.cli.publication import publish, refuse_unwritable
+from gbeam.cli.terminal.console import Watch
+from gbeam.cli.terminal.failures import FAILED, complain
 
 Verb = Literal["run", "static", "modes", "critical-speed", "plan", "place"]
 

@@ -6,12 +6,12 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from gbeam.cli.console import Watch
-from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import names, number, search_bounds
 from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile, SearchBounds, WriteTo, option
 from gbeam.cli.outputs import refuse_changes, show_found
 from gbeam.cli.publication import refuse_unwritable
+from gbeam.cli.terminal.console import Watch
+from gbeam.cli.terminal.failures import FAILED, complain
 
 Verb = Literal["run", "static", "modes", "critical-speed", "plan"]
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from gbeam.cli.console import Watch
-from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import read
 from gbeam.cli.options import Json, Out, Overrides, ScenarioFile
 from gbeam.cli.outputs import show, show_table, write
+from gbeam.cli.terminal.console import Watch
+from gbeam.cli.terminal.failures import FAILED, complain
 
 
 def models(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = None, json: Json = False) -> int:

@@ -9,12 +9,12 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from gbeam.cli.console import Watch
 from gbeam.cli.inputs import names, number, signed
 from gbeam.cli.invocation import command
 from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile, option
 from gbeam.cli.outputs import list_files, show
 from gbeam.cli.publication import publish, refuse_unwritable
+from gbeam.cli.terminal.console import Watch
 
 Verb = Literal["run", "static", "modes", "critical-speed", "plan"]
 

@@ -9,7 +9,7 @@ from time import monotonic
 from types import TracebackType
 from typing import TYPE_CHECKING
 
-from gbeam.cli.interrupts import cleaned_up
+from gbeam.cli.terminal.interrupts import cleaned_up
 from gbeam.printable import on_one_line
 
 if TYPE_CHECKING:

@@ -7,9 +7,9 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.options import Json
 from gbeam.cli.outputs import show
+from gbeam.cli.terminal.failures import FAILED, complain
 
 
 def rerun(

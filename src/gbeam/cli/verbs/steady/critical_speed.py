@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from gbeam.cli.console import Watch
 from gbeam.cli.inputs import number, read
 from gbeam.cli.options import At, Json, Masses, MotionName, Out, Overrides, Positions, ScenarioFile, To, Vary
 from gbeam.cli.outputs import show, write
-from gbeam.cli.verbs.critical_map import critical_map
+from gbeam.cli.terminal.console import Watch
+from gbeam.cli.verbs.steady.critical_map import critical_map
 from gbeam.errors import InputError
 
 KINDS = {"rate": "angular rate", "loads": "ratio", "acceleration": "acceleration"}

@@ -1,0 +1,1 @@
+"""The terminal: what is printed, how failures read, signals and streams that end."""

@@ -1,0 +1,1 @@
+"""Verbs of one steady state: rest, modes, critical speeds, linear models."""

@@ -1,0 +1,1 @@
+"""Verbs of many runs: sweeps, sensitivities, fits, optima."""
