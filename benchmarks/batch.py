@@ -32,7 +32,7 @@ from exudyn_choices import PROBLEMS, Choice, Problem
 
 import gbeam as gb
 from gbeam.analysis.response.batch import TOGETHER
-from gbeam.integrate import batch as batches
+from gbeam.integrate import lanes
 
 spec = importlib.util.spec_from_file_location("comparison", os.path.join(HERE, "exudyn.py"))
 assert spec is not None and spec.loader is not None
@@ -104,17 +104,17 @@ def peak_flops() -> float:
 def steps_of(choice: Choice, problem: Problem) -> None:
     """Print what a compiled step of the linear equations takes."""
     seen: list[Any] = []
-    original = batches._linear_steps
+    original = lanes.steps
 
     def watched(*given: Any, **how: Any) -> Any:
         seen.append((given, how))
         return original(*given, **how)
 
-    batches._linear_steps = watched  # type: ignore[assignment]
-    seconds(problem, choice, TOGETHER[True])
-    batches._linear_steps = original
+    lanes.steps = watched  # type: ignore[assignment]
+    seconds(problem, choice, TOGETHER)
+    lanes.steps = original
     given, how = seen[0]
-    steps, together = given[-1].shape[:2]
+    steps, together = given[-1], given[0].shape[-1]
     times = []
     for _ in range(10):
         began = time.process_time()
@@ -122,9 +122,8 @@ def steps_of(choice: Choice, problem: Problem) -> None:
         times.append(time.process_time() - began)
     each = min(times) / steps / together
     cost = original.lower(*given, **how).compile().cost_analysis()
-    # The compiler counts the body of a loop once; LAPACK's factors and solutions it does not count.
-    n = given[0].shape[-1] * (1 if how["ends"] else 2)
-    flops = cost["flops"] / together + 2 * n**3 / 3 + 2 * n**2
+    # The compiler counts the body of a loop once.
+    flops = cost["flops"] / together
     peak = peak_flops()
     rate, size = flops / each, cost["bytes accessed"] / together
     print(f"a step of {choice.axial} + {choice.bending} modes, {choice.integrator}: ", end="")

@@ -75,6 +75,37 @@ def test_a_case_that_leaves_its_model_or_cannot_be_solved_is_integrated_alone() 
     assert [each.outcome for each in responses] == ["done", "diverged"]
 
 
+def digits(response: gb.Response) -> bytes:
+    arrays = (response.q, response.qd, response.qdd, response.displacement, response.peaks.max_abs)
+    return b"".join(np.ascontiguousarray(each).tobytes() for each in arrays)
+
+
+@pytest.mark.parametrize("kind", ["slews", "slews by gauss", "structures", "free hubs"])
+def test_what_stands_beside_a_case_does_not_change_a_digit_of_it(kind: str) -> None:
+    """Batches of one width of cases in a random order, some left out: the last one is filled, or of one case."""
+    random, model, together = np.random.default_rng(5), hub_beam("FOAM", y=2), 4
+    how: dict[str, Any] = {"duration": 3.0, "integrator": "newmark", "step": 0.02}
+    cases: list[tuple[gb.Structure, Any]] = [(model, slew(level, 2.0)) for level in np.linspace(1, 3, 6)]
+    if kind == "slews by gauss":  # those of another duration end within a step, which is split there
+        how |= {"integrator": "gauss", "step": 0.05}
+        cases = [(model, slew(level, end)) for level in (1.0, 2.0, 3.0) for end in (1.03, 2.0)]
+    if kind == "structures":
+        dampings = [gb.assemble(appendage(damping_ratio=0.01 * k), "FOAM", axial=1, y=2) for k in range(3)]
+        cases += [(each, slew(2.0, 2.0)) for each in dampings]
+    if kind == "free hubs":  # the largest needs more corrections, and those beside it have no more
+        together, how["integrator"] = 2, "gauss"
+        torques = [10.0, 100.0, 2e4, 200.0, 4e4]
+        cases = [(model, gb.Hub(radius=0.5, inertia=200.0, torque=gb.Sine(torque, 2.0))) for torque in torques]
+    alone = {}
+    for k, case in enumerate(cases):
+        ((_, response),) = gb.simulate_batch([case], together=together, **how)
+        alone[k] = digits(response)
+    for _ in range(6):
+        some = random.permutation(len(cases))[: random.integers(2, len(cases) + 1)]
+        beside = gb.simulate_batch([cases[k] for k in some], together=together, **how)
+        assert all(digits(response) == alone[some[place]] for place, response in beside)
+
+
 def test_no_more_cases_are_taken_than_wait_for_others() -> None:
     taken = []
 

@@ -12,18 +12,17 @@ from functools import cached_property, partial
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 import gbeam.arrays.jax_setup  # noqa: F401
-from gbeam.integrate import linear, newton
+from gbeam.integrate import lanes, newton
 from gbeam.integrate.driver import Trajectory, chunks
 from gbeam.integrate.equations import LinearEquations, LinearTerms, NonlinearEquations
-from gbeam.integrate.schemes import Scheme, Tableau
+from gbeam.integrate.schemes import Scheme
 from gbeam.integrate.steps import Steps
 
 Array = Any
-_PIECE = 200  # steps of linear equations per compiled call
+Histories = tuple[Array, Array, Array]  # q, q̇, q̈ of b runs at the start and the ends of the steps, (b, t + 1, n) each
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,169 +36,106 @@ class Run:
     q, qd : (n,)
         Initial state.
     steps : Steps
+    scheme : Scheme
     """
 
     equations: LinearEquations | NonlinearEquations
     q: Array
     qd: Array
     steps: Steps
+    scheme: Scheme
 
-    def shape(self, scheme: Scheme) -> Hashable | None:
+    @cached_property
+    def shape(self) -> Hashable | None:
         """What runs have in common that are integrated together; None of one that has to be integrated alone."""
         steps = self.steps
         if isinstance(self.equations, NonlinearEquations):
             leaves, form = jax.tree.flatten(self.equations.residual)
             return "nonlinear", form, *(np.shape(leaf) for leaf in leaves), len(steps), steps.anew.tobytes()
-        if self.terms is None or (scheme.ends and steps.anew.any()):
+        if self.equations.terms is None or (self.scheme.ends and steps.anew.any()):
             return None
-        return "linear", self.terms.velocity.shape, len(steps), steps.equal
+        return "linear", len(self.q), len(steps), self.parts
 
     @cached_property
-    def terms(self) -> LinearTerms | None:
-        """Those of linear equations that have them."""
-        terms = getattr(self.equations, "terms", None)
-        return None if terms is None else jax.tree.map(np.asarray, terms())
+    def terms(self) -> LinearTerms:
+        """Those of linear equations."""
+        assert isinstance(self.equations, LinearEquations) and self.equations.terms is not None
+        return self.equations.terms()
+
+    @cached_property
+    def features(self) -> Array:
+        """What linear equations depend on, at the first instant, then at every stage of the steps, (1 + t s, k).
+
+        Where the last stage is no end of the step, also there.
+        """
+        assert isinstance(self.equations, LinearEquations) and self.equations.features is not None
+        steps, offsets = self.steps, self.scheme.offsets
+        at = [steps.times(offset) for offset in offsets] + ([] if self.scheme.ends else [steps.end])
+        times = np.append(steps.first[:1], np.stack(at, axis=1))
+        return self.equations.features(self.equations.drive(times))
+
+    @cached_property
+    def parts(self) -> lanes.Parts:
+        """Of C, K and F: which features have a term that is not zero, and are not zero all the time."""
+        driven = np.any(self.features, axis=0)
+        alive = [np.any(part.reshape(len(part), -1), axis=1) & driven for part in lanes.each(self.terms)]
+        c, k, f = (tuple(np.flatnonzero(which).tolist()) for which in alive)
+        return c, k, f
+
+    @property
+    def alive(self) -> LinearTerms:
+        """The terms of these features."""
+        return LinearTerms(*(term[list(part)] for term, part in zip(lanes.each(self.terms), self.parts, strict=True)))
 
 
-def integrate_together(runs: Sequence[Run], scheme: Scheme) -> list[Trajectory | None]:
+def integrate_together(runs: Sequence[Run]) -> list[Trajectory | None]:
     """Integrate runs of one shape; None in place of one that has to be integrated alone, for its corrections failed."""
     solve = _linear if isinstance(runs[0].equations, LinearEquations) else _nonlinear
+    histories, solved = solve(runs)
     made = []
-    for run, (q, qd, qdd), sound in zip(runs, *solve(runs, scheme), strict=True):
+    for run, fine, *own in zip(runs, solved, *histories, strict=True):
         kept = np.append(True, run.steps.kept)
-        time = np.append(run.steps.begin[0], run.steps.end)[kept]
-        fine = sound and np.isfinite(qdd).all()
-        made.append(Trajectory(time, q[kept], qd[kept], qdd[kept]) if fine else None)
+        time = np.append(run.steps.begin[0], run.steps.end)
+        if not kept.all():
+            time, *own = (x[kept] for x in (time, *own))
+        made.append(Trajectory(time, *own) if fine and np.isfinite(own[2]).all() else None)
     return made
 
 
-def _stacked(parts: Sequence[Any]) -> Any:
-    return jax.tree.map(lambda *leaves: np.stack([np.asarray(leaf) for leaf in leaves]), *parts)
+def _stacked(parts: Sequence[Any], axis: int = 0) -> Any:
+    return jax.tree.map(lambda *leaves: np.stack([np.asarray(leaf) for leaf in leaves], axis=axis), *parts)
 
 
-def _linear(runs: Sequence[Run], scheme: Scheme) -> tuple[list[Any], list[bool]]:
-    equal, count = runs[0].steps.equal, len(runs[0].steps)
+def _linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
+    scheme, count, stages = runs[0].scheme, len(runs[0].steps), lanes.stages(runs[0].scheme)
+    needed = np.unique(np.concatenate(runs[0].parts)).astype(int)
+    parts = tuple(tuple(np.searchsorted(needed, part).tolist()) for part in runs[0].parts)
+    features = np.stack([run.features[:, needed] for run in runs], axis=-1)
+    lengths = np.stack([run.steps.length for run in runs], axis=-1)
+    terms = _stacked([run.alive for run in runs], axis=-1)
     equations: list[Any] = [run.equations for run in runs]
-    starts = [linear.start(e, scheme, run.steps, run.q, run.qd) for e, run in zip(equations, runs, strict=True)]
-    z = np.stack([start for start, _ in starts])
-    by_run = []
-    for e, run in zip(equations, runs, strict=True):
-        at = [run.steps.times(offset) for offset in scheme.offsets] + ([] if scheme.ends else [run.steps.end])
-        by_run.append(e.features(e.drive(np.concatenate(at))).reshape(len(at), count, -1))
-    phi = np.stack([np.moveaxis(features, 0, 1) for features in by_run], axis=1)  # (t, b, s, k)
-    driven = phi.any(axis=(0, 1, 2))
-    phi, parts = phi[..., driven], [jax.tree.map(lambda part: part[driven], run.terms) for run in runs]
-    # What does not depend on the rates has no part in C.
-    rates = np.append(0, 1 + np.flatnonzero(np.any([part.velocity[1:].any(axis=(1, 2)) for part in parts], axis=0)))
-    parts = [LinearTerms(part.velocity[rates], part.stiffness, part.force) for part in parts]
-    own = [(e.mass, part) for e, part in zip(equations, parts, strict=True)]
-    alike = all(
-        np.array_equal(a, b) for each in own[1:] for a, b in zip(*map(jax.tree.leaves, (own[0], each)), strict=True)
-    )
-    mass, terms = own[0] if alike else _stacked(own)
-    lengths = np.stack([run.steps.length for run in runs], axis=1)
-    tableau = scheme.tableau(lengths[:1, 0] if equal else lengths)
-    how = {"equal": equal, "alike": alike, "ends": scheme.ends}
-    pieces = []
-    for begin in range(0, count, _PIECE):
-        # The last piece is filled with its last step, so that one program serves every duration.
-        chosen = np.minimum(np.arange(begin, begin + _PIECE), count - 1)
-        those = tableau if equal else jax.tree.map(lambda leaf, chosen=chosen: leaf[chosen], tableau)
-        z, piece = _linear_steps(mass, terms, rates, z, those, phi[chosen], **how)
-        pieces.append([np.asarray(x)[: count - begin] for x in piece])
-    histories = [np.concatenate(part) for part in zip(*pieces, strict=True)]
-    made = []
-    for k, (run, (_, qdd)) in enumerate(zip(runs, starts, strict=True)):
-        firsts = run.q, run.qd, qdd
-        made.append(tuple(np.concatenate([x[None], part[:, k]]) for x, part in zip(firsts, histories, strict=True)))
-    return made, [True] * len(runs)
-
-
-@partial(jax.jit, static_argnames=("equal", "alike", "ends"))
-def _linear_steps(
-    mass: Array, terms: LinearTerms, rates: Array, z: Array, tableau: Tableau, phi: Array, **how: bool
-) -> Any:
-    """Steps of all runs from z (b, m, n).
-
-    Parameters
-    ----------
-    mass, terms
-        Of the runs, (b, ...), or of all where they are `alike`.
-    rates : (r,)
-        Indices of the features that C depends on.
-    tableau : Tableau
-        Of the steps and runs (t, b, ...), or (1, ...) of all where they are `equal`.
-    phi : (t, b, s, k)
-        Features at the stages of the steps and, where the last stage is no end, at their `ends`.
-
-    Returns
-    -------
-    z after them, and q, q̇, q̈ at their ends, (t, b, n) each
-    """
-    equal, alike, ends = how["equal"], how["alike"], how["ends"]
-    inverse = None if ends else jnp.linalg.inv(mass)
-
-    # Products as sums of products: a batch of small matrix products is slow.
-    def times(matrices: Array, vectors: Array) -> Array:
-        return jnp.sum(matrices * vectors[:, None, :], axis=-1)
-
-    def weighted(features: Array, parts: Array) -> Array:
-        return jnp.sum(jnp.expand_dims(features, tuple(range(2, parts.ndim + 1))) * parts, axis=1)
-
-    def stage_equations(mass: Array, terms: LinearTerms, z: Array, t: Tableau, phi: Array) -> Any:
-        """C, K, F at the stages, and the system for their accelerations."""
-        stages = len(t.c_q)
-        c, k, f = weighted(phi[:, rates], terms.velocity), weighted(phi, terms.stiffness), weighted(phi, terms.force)
-        rows = []
-        for i in range(stages):
-            blocks = [t.c_v[i, j] * c[i] + t.c_q[i, j] * k[i] + (mass if i == j else 0.0) for j in range(stages)]
-            rows.append(jnp.concatenate(blocks, axis=1))
-        known = times(c[:stages], t.w_v @ z) + times(k[:stages], t.w_q @ z)
-        return (c, k, f), jnp.concatenate(rows), jnp.ravel(f[:stages] - known)
-
-    def after(inverse: Array, of_stages: Any, z: Array, t: Tableau, x: Array) -> Any:
-        """The next z, and q, q̇, q̈ at the end."""
-        x = jnp.reshape(x, (len(t.c_q), -1))
-        q, qd = t.end_z @ z + t.end_x @ x
-        c, k, f = of_stages
-        force = f[-1:] - times(k[-1:], q[None]) - times(c[-1:], qd[None])
-        return t.g @ z + t.d @ x, (q, qd, x[-1] if ends else times(inverse[None], force)[0])
-
-    own, by_run = None if alike else 0, None if equal else 0
-    stages_of = jax.vmap(stage_equations, in_axes=(own, own, 0, by_run, 0))
-    ends_of = jax.vmap(after, in_axes=(None if ends else own, 0, 0, by_run, 0))
-    if equal:
-        tableau = jax.tree.map(lambda leaf: leaf[0], tableau)
-
-    def turn(z: Array, at: Any) -> Any:
-        t, phi = (tableau, at) if equal else at
-        matrices, left, right = stages_of(mass, terms, z, t, phi)
-        return ends_of(inverse, matrices, z, t, _eliminated(left, right))
-
-    return jax.lax.scan(turn, z, phi if equal else (tableau, phi))
-
-
-def _eliminated(left: Array, right: Array) -> Array:
-    """Solutions of many small systems (b, n, n), (b, n) by elimination, all of them in every operation.
-
-    Without a choice of pivots: M and what a step adds to it is definite but for antisymmetric parts.
-    """
-    rows = jnp.moveaxis(jnp.concatenate([left, right[..., None]], axis=-1), 0, -1)
-    pivots = []
-    while len(rows):
-        pivots.append(rows[0, 1:] / rows[0, :1])
-        rows = rows[1:, 1:] - rows[1:, :1] * pivots[-1]
-    x: list[Array] = []
-    for pivot in reversed(pivots):
-        x.insert(0, pivot[-1] - sum(pivot[j] * value for j, value in enumerate(x)))
-    return jnp.stack(x, axis=-1)
+    mass, q, qd = _stacked([(e.mass, run.q, run.qd) for e, run in zip(equations, runs, strict=True)], axis=-1)
+    inverse = np.moveaxis(np.linalg.inv(np.moveaxis(mass, -1, 0)), 0, -1)
+    qdd = lanes.accelerations(inverse, terms, features[0], parts, q, qd)
+    z = np.einsum("bmk,knb->mnb", scheme.tableau(lengths[0]).first, np.stack([q, qd, qdd]))
+    pieces = [[x[None] for x in (q, qd, qdd)]]
+    features = features[1:].reshape(count, stages, *features.shape[1:])
+    for begin in range(0, count, lanes.STEPS):
+        # The last piece is filled, so that one program serves every duration.
+        chosen, those = np.minimum(np.arange(begin, begin + lanes.STEPS), count - 1), min(lanes.STEPS, count - begin)
+        given = mass, inverse, terms, scheme.unit, z, lengths[chosen], features[chosen], those
+        z, piece = lanes.steps(*given, parts=parts, ends=scheme.ends)
+        pieces.append([np.asarray(x)[:those] for x in piece])
+    q, qd, qdd = (np.ascontiguousarray(np.moveaxis(np.concatenate(x), -1, 0)) for x in zip(*pieces, strict=True))
+    return (q, qd, qdd), np.ones(len(runs), dtype=bool)
 
 
 _accelerations = jax.jit(jax.vmap(newton.accelerations))
 _quick = jax.jit(jax.vmap(newton.steps, in_axes=(0, 0, 0, 0, 0, None, None, None)))
 
 
-def _nonlinear(runs: Sequence[Run], scheme: Scheme) -> tuple[list[Any], list[bool]]:
+def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
+    scheme = runs[0].scheme
     equations: list[Any] = [run.equations for run in runs]
     residual = _stacked([e.residual for e in equations])
     q, qd = (np.stack([getattr(run, name) for run in runs]) for name in ("q", "qd"))
@@ -221,18 +157,27 @@ def _nonlinear(runs: Sequence[Run], scheme: Scheme) -> tuple[list[Any], list[boo
     ):
         inside, ends = every[0].inside, [chunk.end for chunk in every]
         tableau, inputs, at_ends = _stacked([(chunk.tableau, chunk.inputs, chunk.at_ends) for chunk in every])
+        made: Any = None
+        solved = np.zeros(len(runs), dtype=bool)
         for tries in (corrections, newton.PATIENT[0]):
             given = tableau, carry, inputs, at_ends, every[0].last, tries, every[0].count
-            after, (*piece, left) = _quick(residual, *given)
-            solved = (np.asarray(left)[:, inside] <= newton.ACCEPTED).all(axis=1)  # NaN is not
+            new = jax.tree.map(np.asarray, _quick(residual, *given))
+            # A run that is solved keeps what it has: nothing of it depends on the others.
+            made = new if made is None else jax.tree.map(partial(_chosen, solved), made, new)
+            solved |= (new[1][-1][:, inside] <= newton.ACCEPTED).all(axis=1)  # NaN is not
             if (solved | ~sound).all():
                 break
-        sound, carry = sound & solved, after
-        piece = [np.array(values)[:, inside] for values in piece]
+        carry, piece = made[0], [np.array(values)[:, inside] for values in made[1][:-1]]
+        sound = sound & solved
         if scheme.ends and ends[0].anew:
             q, qd = piece[0][:, -1], piece[1][:, -1]
             begin, there = (accelerations([getattr(end, at) for end in ends], q, qd) for at in ("resume", "end"))
             carry, piece[2][:, -1] = begun(q, qd, begin, [end.following for end in ends]), there
         pieces.append(piece)
-    histories = [np.concatenate(part, axis=1) for part in zip(*pieces, strict=True)]
-    return [tuple(part[k] for part in histories) for k in range(len(runs))], sound.tolist()
+    q, qd, qdd = (np.concatenate(part, axis=1) for part in zip(*pieces, strict=True))
+    return (q, qd, qdd), sound
+
+
+def _chosen(which: Array, a: Array, b: Array) -> Array:
+    """One array (b, ...) where `which` (b,) is true, the other elsewhere."""
+    return np.where(which.reshape(-1, *[1] * (a.ndim - 1)), a, b)

@@ -83,18 +83,27 @@ class Scheme:
 
     @cached_property
     def _powers(self) -> dict[str, tuple[Floats, Any]]:
-        """Every array with the powers of the step that its entries have.
+        powers = powers_of_step(*self.unit.d.shape)
+        return {name: (getattr(self.unit, name), power.astype(np.float64)) for name, power in powers.items()}
 
-        z = (q*, v*, c) and (q, q̇, q̈) are of the orders 0, 1, 2 of one over the step.
-        """
-        t = self.unit
-        m, stages = t.d.shape
-        k, pair, x = np.arange(m), np.arange(2)[:, None], np.full(stages, 2)
-        powers = {
-            "w_q": k, "w_v": k - 1, "c_q": 2, "c_v": 1, "g": k - k[:, None], "d": x - k[:, None], "end_z": k - pair,
-            "end_x": x - pair, "first": np.arange(3) - k[:, None],
-        }  # fmt: skip
-        return {name: (getattr(t, name), np.asarray(power, dtype=np.float64)) for name, power in powers.items()}
+
+def powers_of_step(m: int, stages: int) -> dict[str, NDArray[np.int64]]:
+    """Powers of the step, from −2 to 2, that the entries of a tableau's arrays have.
+
+    z = (q*, v*, c) and (q, q̇, q̈) are of the orders 0, 1, 2 of one over the step.
+    """
+    k, pair, x = np.arange(m), np.arange(2)[:, None], np.full(stages, 2)
+    return {
+        "w_q": np.tile(k, (stages, 1)),
+        "w_v": np.tile(k - 1, (stages, 1)),
+        "c_q": np.full((stages, stages), 2),
+        "c_v": np.full((stages, stages), 1),
+        "g": k - k[:, None],
+        "d": x - k[:, None],
+        "end_z": k - pair,
+        "end_x": x - pair,
+        "first": np.arange(3) - k[:, None],
+    }
 
 
 def _one_step(name: str, alpha_m: float, alpha_f: float, beta: float, gamma: float) -> Scheme:

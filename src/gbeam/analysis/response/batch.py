@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,7 +27,7 @@ from gbeam.motion.protocol import Motion
 from gbeam.results.parts.errors import StepErrors
 from gbeam.results.response import Response
 
-TOGETHER = {True: 64, False: 32}  # cases of a linear model and of others: what they carry stays in a cache
+TOGETHER = 32  # cases: what they carry stays in a cache, and a processor's vectors are full
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +45,7 @@ def simulate_batch(
     cases: Iterable[tuple[Structure, Motion]],
     settings: ResponseSettings | None = None,
     *,
-    together: int | None = None,
+    together: int = TOGETHER,
     **options: Any,
 ) -> Iterator[tuple[int, Response]]:
     """Compute the responses of many cases, with a given step and without an estimate of their errors.
@@ -61,9 +61,8 @@ def simulate_batch(
     settings : ResponseSettings, optional
         Or what it is made of, by keyword: ``simulate_batch(cases, duration=10.0, step=0.01)``; ``estimate`` is false
         then unless it is given.
-    together : int, optional
-        How many cases are integrated together: 64 of a linear model, 32 of another by default, which a processor's
-        cache holds; more on a GPU.
+    together : int
+        How many cases are integrated together; by default as many as a processor's cache holds; more on a GPU.
 
     Yields
     ------
@@ -80,19 +79,22 @@ def simulate_batch(
     Notes
     -----
     A batch judges nothing: simulate one or a few of its cases with an estimate.
+
+    A case's digits depend neither on the cases beside it nor on their order, on one machine: with as many `together`, a
+    case alone, the last of a hundred and one in other company give the same bytes.
     """
     settings = settings_of("simulate_batch", settings, options if settings else {"estimate": False, **options})
     if settings.step is None or settings.integrator == "adaptive":
         raise InputError("step", "is automatic, and cases that are integrated together share one", "give a step, s")
     if settings.estimate:
         raise InputError("estimate", "is true, and a batch estimates no errors", "give estimate = False")
-    if together is not None and together < 1:
+    if together < 1:
         raise InputError("together", f"is {together}", "give one or more")
-    return _responses(cases, settings, TOGETHER if together is None else {True: together, False: together})
+    return _responses(cases, settings, together)
 
 
 def _responses(
-    cases: Iterable[tuple[Structure, Motion]], settings: ResponseSettings, together: Mapping[bool, int]
+    cases: Iterable[tuple[Structure, Motion]], settings: ResponseSettings, together: int
 ) -> Iterator[tuple[int, Response]]:
     waiting: dict[Hashable, list[_Case]] = {}
     for index, (structure, motion) in enumerate(cases):
@@ -102,7 +104,7 @@ def _responses(
             continue
         queue = waiting.setdefault((type(motion), structure.linear, shape), [])
         queue.append(case)
-        if len(queue) == together[structure.linear]:
+        if len(queue) == together:
             yield from _together(queue, settings, together)
             queue.clear()
     for queue in waiting.values():
@@ -127,21 +129,18 @@ def _posed(
     felt = felt_corners(structure, motion, settings, coarse, problem.equations.drive)
     count, scheme = round(settings.duration / step), scheme_of(settings)
     steps = fitted(settings.start, step, count, felt.felt_by(scheme))
-    run = Run(problem.equations, np.asarray(problem.q), np.asarray(problem.qd), steps)
-    shape = run.shape(scheme)
-    return None if shape is None else _Case(index, structure, motion, problem, run), shape
+    run = Run(problem.equations, np.asarray(problem.q), np.asarray(problem.qd), steps, scheme)
+    return None if run.shape is None else _Case(index, structure, motion, problem, run), run.shape
 
 
-def _together(
-    queue: list[_Case], settings: ResponseSettings, together: Mapping[bool, int]
-) -> Iterator[tuple[int, Response]]:
+def _together(queue: list[_Case], settings: ResponseSettings, together: int) -> Iterator[tuple[int, Response]]:
     from gbeam.integrate.batch import integrate_together
 
     if not queue:
         return
-    # Filled with its last case, so that one program serves every number of them.
-    filling = [queue[-1].run] * (together[queue[0].structure.linear] - len(queue) if len(queue) > 1 else 0)
-    trajectories = integrate_together([case.run for case in queue] + filling, scheme_of(settings))
+    # Filled with its last case: one program serves every number of them, and no digit depends on it.
+    filling = [queue[-1].run] * (together - len(queue))
+    trajectories = integrate_together([case.run for case in queue] + filling)
     for case, trajectory in zip(queue, trajectories, strict=False):
         structure, motion, problem = case.structure, case.motion, case.problem
         # One that leaves what its model can mean stops there.
