@@ -44,6 +44,26 @@ def test_modes(call):
     assert abs(first[0]) < 1e-15 and first[-1] == 1.0 and len(first) == len(facts["stations"])
 
 
+def test_an_equilibrium_and_its_loss_have_pages(call):
+    motion = {"static": "flight", "critical-speed": "slew"}
+    for verb, key, options in (
+        ("static", "static", ()),
+        ("critical-speed", "critical_speed", ()),
+        ("critical-speed", "critical_speed", ("--masses", "0.5 kg", "--positions", "2 m, 8 m")),
+    ):
+        status, facts, _ = call(verb, "--motion", motion[verb], *options, "--out", "pages", "--report")
+        page = Path("pages", f"{key}.html").read_text(encoding="utf-8")
+        assert status == 0 and f"gbeam {verb}" in page
+        if verb == "static":
+            flight = facts["motions"]["flight"]
+            shown = [1e3 * flight["tip"]["y"], flight["loads"]["root_moment"]["z"]]
+            assert shown[0] < -1 and shown[1] > 0  # the root goes one way, the tip stays behind
+        else:
+            shown = np.ravel(facts["critical_speed"])
+        assert len(shown) and all(f"{each:#.4g}" in page for each in shown)
+    assert np.ravel(facts["critical_speed"])[0] == pytest.approx(2.9107, rel=0.2)
+
+
 def test_no_unit_is_torn_and_no_rounding_is_damping(scenario, gbeam):
     answer = gbeam("linearize", "hub.toml", "--motion", "slew")
     assert answer.status == 0

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import inspect
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
+
+from gbeam.app.verbs import VERBS, arguments
+from gbeam.cli.program import parsed
 
 from ..calling import Answer
 from ..scenarios import FAST
 from .conftest import Site
+
+_REFERENCE = (Path(__file__).parents[2] / "docs" / "scenario.md").read_text(encoding="utf-8")
 
 
 def test_messages_are_the_command_lines(site: Site, gbeam: Callable[..., Answer]) -> None:
@@ -25,12 +32,82 @@ def test_messages_are_the_command_lines(site: Site, gbeam: Callable[..., Answer]
     assert {each["path"] for each in said} >= {"beam.length"}
 
 
-def test_fields_are_the_documents_values(site: Site) -> None:
+def test_the_form_has_every_key_of_the_schema(site: Site) -> None:
     made = site.call("POST", "/api/document", site.opened, json={"text": FAST}).json()
-    fields = {each["path"]: each for each in made["fields"]}
-    assert fields["beam.length"]["value"] == "300 mm" and fields["beam.damping_ratio"]["value"] == "0.01"
-    assert fields["motion.spin.gravity"]["value"] == "false" and "main axis" in fields["motion.spin.arm"]["help"]
+    entries = {each["path"]: each for each in _entries(made["form"])}
+    assert entries["beam.length"]["value"] == "300 mm" and entries["beam.length"]["unit"] == "m"
+    assert entries["beam.damping_ratio"]["value"] == "0.01" and entries["motion.spin.gravity"]["value"] == "false"
+    assert "main axis" in entries["motion.spin.arm"]["help"]
     assert made["errors"] == [] and "Scenario valid." in made["meaning"]
+    # What the page of the scenario file lists for a table is what the form offers, written or not.
+    tables = {"beam": "[beam]", "motion.spin": '[motion.NAME], kind = "centrifuge"', "response": "[response]"}
+    for path, heading in tables.items():
+        listed = _REFERENCE.split(f"### {heading}")[1].split("###")[0]
+        keys = {line.split("`")[1] for line in listed.splitlines() if line.startswith("| `")}
+        assert keys - {"kind"} == {each["key"] for each in entries[path]["inside"]}
+    assert entries["motion.spin.inverse"]["options"] == ["quasi-static", "flat", "exact", "planned"]
+    assert entries["response.step"]["default"] == "auto" and entries["beam.loads"]["kind"] == "list"
+    assert not entries["beam.loads"]["written"] and entries["beam.length"]["required"]
+    assert entries["motion"]["options"] == ["flight", "centrifuge", "hub"]
+
+
+def _entries(form: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+    for each in form:
+        yield each
+        yield from _entries(each.get("inside", []))
+
+
+def _added(site: Site, text: str, path: str, choice: str = "") -> dict[str, Any]:
+    made: dict[str, Any] = site.call(
+        "POST", "/api/add", site.opened, json={"text": text, "path": path, "choice": choice}
+    ).json()
+    return made
+
+
+def test_tables_are_added_filled_and_removed(site: Site) -> None:
+    before = FAST.replace("[beam]", "[beam]  # a comment")
+    made = _added(site, before, "beam.masses[0]")
+    # What is missing is said at its field, in the words of the command line.
+    fields = {each["field"]: each["message"] for each in made["errors"]}
+    assert fields == {"beam.masses[0].at": "at is missing", "beam.masses[0].mass": "mass is missing"}
+    for path, value in (("beam.masses[0].at", "300 mm"), ("beam.masses[0].mass", "0.1 kg")):
+        body = {"text": made["text"], "path": path, "value": value}
+        made = site.call("POST", "/api/edit", site.opened, json=body).json()
+    assert made["errors"] == [] and tomllib.loads(made["text"])["beam"]["masses"] == [
+        {"at": "300 mm", "mass": "0.1 kg"}
+    ]
+    made = site.call("POST", "/api/remove", site.opened, json={"text": made["text"], "path": "beam.masses"}).json()
+    assert made["text"] == before
+
+    made = _added(site, before, "motion.slew", "hub")
+    assert {"motion.slew.radius"} <= {each["field"] for each in made["errors"]}
+    made = _added(site, made["text"], "motion.slew.rate", "trapezoid")
+    missing = {each["field"] for each in made["errors"] if each["field"].startswith("motion.slew.rate")}
+    assert missing == {f"motion.slew.rate.{key}" for key in ("level", "jerk", "start", "hold")}
+
+
+def test_another_kind_keeps_what_both_have(site: Site) -> None:
+    made = _added(site, FAST, "motion.flight.acceleration.z", "smooth-step")
+    after = tomllib.loads(made["text"])["motion"]["flight"]["acceleration"]["z"]
+    assert after == {"profile": "smooth-step", "level": "6 g"}
+    made = _added(site, FAST, "beam.section", "circle")
+    assert tomllib.loads(made["text"])["beam"]["section"] == {"shape": "circle"}
+    assert [each["field"] for each in made["errors"]] == ["beam.section.diameter"]
+
+
+@pytest.mark.parametrize(
+    ("path", "choice"),
+    [("beam.length", ""), ("beam.section", "star"), ("motion.a.b", "hub"), ("nothing", ""), ("", ""), ("beam..x", "")],
+)
+def test_what_the_schema_has_not_is_not_added(site: Site, path: str, choice: str) -> None:
+    answer = site.call("POST", "/api/add", site.opened, json={"text": FAST, "path": path, "choice": choice})
+    assert answer.status_code == 422 and answer.json()["errors"]
+
+
+def test_an_emptied_field_is_left_out(site: Site) -> None:
+    body = {"text": FAST, "path": "beam.damping_ratio", "value": " "}
+    made = site.call("POST", "/api/edit", site.opened, json=body).json()
+    assert made["text"] == FAST.replace("damping_ratio = 0.01\n", "")
 
 
 @pytest.mark.parametrize(
@@ -42,6 +119,9 @@ def test_fields_are_the_documents_values(site: Site) -> None:
         ("beam.damping_ratio", "2 %", "2 %"),
         ("motion.spin.gravity", "true", True),
         ("title", "a\nb", "a\nb"),
+        ("title", "12", "12"),  # text, whatever it looks like
+        ("model.modes.z", "2", 2),
+        ("response.stations", '["100 mm", 0.2]', ["100 mm", 0.2]),  # was not written
     ],
 )
 def test_an_edit_changes_one_value_and_keeps_comments(site: Site, path: str, value: str, expected: object) -> None:
@@ -53,7 +133,7 @@ def test_an_edit_changes_one_value_and_keeps_comments(site: Site, path: str, val
         node = data
         for step in tables:
             node = node[step]
-        found = node.pop(key)
+        found = node.pop(key, None)
     assert found == expected and before == after
     assert "# a comment\n# and another" in made["text"]
 
@@ -91,9 +171,7 @@ def test_a_record_takes_the_place_of_the_examples_profile(site: Site) -> None:
     assert after == expected
 
 
-@pytest.mark.parametrize(
-    "text", ["", "motion = 1", "[[motion]]\nx = 1", "[motion]\nflight = 3", "[motion.flight]", "x"]
-)
+@pytest.mark.parametrize("text", ["", "motion = 1", "[[motion]]\nx = 1", "[motion]\nflight = 3", "[motion.spin]", "x"])
 def test_a_record_needs_a_flight_that_is_written(site: Site, text: str) -> None:
     body = {"text": text, "motion": "flight", "record": {"file": "a.csv"}}
     answer = site.call("POST", "/api/record", site.opened, json=body)
@@ -125,19 +203,62 @@ def test_sweeps_vary_values_of_the_form_only(site: Site, over: list[str], measur
         'record = { file = "a.csv", time = "t", x = "0", y = "0", z = "z", unit = "g" }',
     )
     for text in (FAST, with_record):
-        answer = site.call("POST", "/api/sweeps", site.opened, json={"text": text, "over": over, "measure": measure})
+        answer = site.call("POST", "/api/runs", site.opened, json={"text": text, **_sweep(over, measure)})
         assert answer.status_code == 422 and answer.json()["errors"]
     assert not (site.folder / "runs").exists()
 
 
+def _sweep(over: list[str], measure: str) -> dict[str, Any]:
+    return {"verb": "sweep", "options": [*(f"over={each}" for each in over), f"measure={measure}"]}
+
+
 def test_a_case_of_a_sweep_is_run_once(site: Site) -> None:
-    body = {"text": FAST, "over": ["beam.length=300 mm, 310 mm"], "measure": "flight.tip.size.max_abs"}
-    sweep = site.call("POST", "/api/sweeps", site.opened, json=body).json()["id"]
+    body = {"text": FAST, **_sweep(["beam.length=300 mm, 310 mm"], "flight.tip.size.max_abs")}
+    sweep = site.call("POST", "/api/runs", site.opened, json=body).json()["id"]
     ids = {
         site.call("POST", "/api/runs", site.opened, json={"text": FAST, "case": f"{sweep}/0/{j}"}).json()["id"]
         for j in (0, 0, 1)
     }
     runs = site.call("GET", "/api/runs", site.opened).json()
     assert len(ids) == 2 and sorted(each["verb"] for each in runs) == ["run", "run", "sweep"]
-    in_table = FAST + '[sweep]\nover = ["motion.flight.record.file=/etc/passwd"]\n'
-    assert site.call("POST", "/api/sweeps", site.opened, json={**body, "text": in_table}).status_code == 422
+    in_table = FAST + '[sweep.over]\n"motion.flight.record.file" = "/etc/passwd"\n'
+    assert site.call("POST", "/api/runs", site.opened, json={**body, "text": in_table}).status_code == 422
+
+
+@pytest.mark.parametrize(
+    ("verb", "options"),
+    [
+        ("app", []),
+        ("run", ["set=beam.length=1"]),
+        ("fit", ["data=/etc/passwd"]),
+        ("modes", ["at=--out"]),
+        ("modes", ["at=1 s", "at=2 s"]),
+        ("modes", ["at= "]),
+        ("modes", ["gyroscopic=perhaps"]),
+        ("modes", ["motion=\x1b[31m"]),
+        ("optimize", ["write=x.toml"]),
+        ("modes", ["x" * 2000]),
+    ],
+)
+def test_verbs_take_their_own_options_only(site: Site, verb: str, options: list[str]) -> None:
+    answer = site.call("POST", "/api/runs", site.opened, json={"text": FAST, "verb": verb, "options": options})
+    assert answer.status_code == 422 and not (site.folder / "runs").exists()
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_options_are_the_command_lines(verb: str) -> None:
+    data = tomllib.loads(FAST.replace("[beam]", "[beam]  # with a value to vary\n"))
+    every = [(each.name, value) for each in VERBS[verb].options for value in each.choices or [each.example or "flight"]]
+    for name, value in every:
+        options = [f"{name}={value}", *(["over=beam.length=1 m"] if verb == "sweep" and name != "over" else [])]
+        chosen = [*(["--minimise=tip"] if verb == "optimize" and name != "minimise" else [])]
+        function, bound = parsed([verb, "x.toml", *chosen, *arguments(verb, options, data)])
+        assert (function.__name__ == verb.replace("-", "_") and value in repr(bound.arguments)) or value in (
+            "true",
+            "false",
+        )
+    report = VERBS[verb].report
+    assert report == (
+        "report"
+        in inspect.signature(parsed([verb, "x.toml", "--minimise=a"][: 3 if verb == "optimize" else 2])[0]).parameters
+    )

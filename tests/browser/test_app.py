@@ -53,7 +53,7 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> Non
     length.fill("3 kg")
     length.press("Tab")
     page.wait_for_selector('input[data-path="beam.length"][aria-invalid=true]')
-    assert "is a mass" in page.locator("fieldset .bad").first.inner_text()
+    assert "is a mass" in page.locator(".field .bad", has_text="mass").inner_text()
     assert page.get_by_role("button", name="Run", exact=True).is_disabled()
     # The next field is typed in before the answer about the last has come.
     held: list[Any] = []
@@ -61,15 +61,35 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> Non
     length.fill("9 m")
     with page.expect_request("**/api/edit"):
         length.press("Tab")
-    page.keyboard.type("70 mm^2")
+    page.keyboard.type("1 %")
     held[0].continue_()
     page.wait_for_selector("[aria-invalid=true]", state="detached")
-    area = page.locator('input[data-path="beam.section.area"]')
-    assert area.input_value() == "70 mm^2" and area.evaluate("each => each === document.activeElement")
+    damping = page.locator('input[data-path="beam.damping_ratio"]')
+    assert damping.input_value() == "1 %" and damping.evaluate("each => each === document.activeElement")
     page.get_by_role("button", name="Text").click()
     text = page.get_by_label("scenario as TOML")
-    page.wait_for_function("() => document.querySelector('textarea').value.includes('area = \"70 mm^2\"')")
+    page.wait_for_function("() => document.querySelector('textarea').value.includes('damping_ratio = \"1 %\"')")
     assert 'length = "9 m"' in text.input_value()
+
+    # A load is added, with what is missing said where it belongs, and taken away again: the text is what it was.
+    before = text.input_value()
+    page.get_by_role("button", name="Form").click()
+    page.locator('details[data-of="beam"] > summary').click()
+    page.get_by_role("button", name="Add loads").click()
+    head = page.locator('[data-table="beam.loads[0]"] > .bad')
+    head.get_by_text("the load is missing").wait_for()
+    page.get_by_role("button", name="Add force").click()
+    page.locator('[data-path="beam.loads[0].force.y"]').fill("5 N")
+    page.keyboard.press("Tab")
+    page.locator(".field .bad", has_text="at is missing").wait_for()
+    page.locator('[data-path="beam.loads[0].at"]').fill("8 m")
+    page.keyboard.press("Tab")
+    page.wait_for_selector("[aria-invalid=true]", state="detached")
+    assert 'loads = [{ force = { y = "5 N" }, at = "8 m" }]' in text.input_value()
+    assert _violations(page) == []
+    page.get_by_label("Remove beam.loads", exact=True).click()
+    page.wait_for_function("was => document.querySelector('textarea').value === was", arg=before)
+    page.get_by_role("button", name="Text").click()
 
     # The other way, and a run of it with its report.
     text.fill(FAST)
@@ -87,19 +107,18 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> Non
     assert _not_reached(page) == []
 
     # A sweep, of which a cell opens its run; that one side by side with the first.
-    page.locator("summary", has_text="Sweep").click()
-    page.get_by_label("Vary").select_option("beam.length")
+    page.get_by_label("Compute").select_option("sweep")
+    page.get_by_label("vary").first.select_option("beam.length")
     page.get_by_label("over").first.fill("300 mm, 310 mm")
-    page.get_by_label("Figures").fill("flight.tip.size.max_abs")
-    command = page.locator(".sweep code").inner_text()
-    over = "beam.length=300 mm, 310 mm"
-    words = ["sweep", "scenario.toml", "--over", over, "--measure", "flight.tip.size.max_abs"]
+    page.get_by_label("measure").fill("flight.tip.size.max_abs")
+    command = page.locator(".verbs code").inner_text()
+    words = ["sweep", "scenario.toml", "--over=beam.length=300 mm, 310 mm", "--measure=flight.tip.size.max_abs"]
     assert shlex.split(command) == ["gbeam", *words]
     context.grant_permissions(["clipboard-read", "clipboard-write"])
-    page.locator(".sweep").get_by_role("button", name="Copy").click()
-    page.locator(".sweep").get_by_role("button", name="Copied").wait_for()
+    page.locator(".verbs").get_by_role("button", name="Copy").click()
+    page.locator(".verbs").get_by_role("button", name="Copied").wait_for()
     assert page.evaluate("navigator.clipboard.readText()") == command
-    page.get_by_role("button", name="Run sweep").click()
+    page.get_by_role("button", name="Run", exact=True).click()
     page.locator(".gbeam-map button").nth(1).wait_for(timeout=60_000)
     assert _violations(page) == []
     page.locator(".gbeam-map button").nth(1).click()
@@ -111,6 +130,14 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> Non
     assert len(row) == 2 and float(row[0]) < float(row[1])
     assert _violations(page) == []
 
+    # Another verb, with an option.
+    page.get_by_label("Compute").select_option("static")
+    page.get_by_label("at", exact=True).fill("0.2 s")
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.locator(".run", has_text="static done").wait_for(timeout=60_000)
+    page.frame_locator("iframe.report").get_by_text("Displacement of the tip").wait_for(timeout=20_000)
+    page.get_by_label("Compute").select_option("run")
+
     # A long one is cancelled; all are there after a reload, and are downloaded.
     page.get_by_role("button", name="Text").click()
     text.fill(BIG)
@@ -120,7 +147,7 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> Non
     page.locator(".run", has_text="cancelled").wait_for()
     page.reload()
     page.wait_for_selector("html[data-gbeam]")
-    assert page.locator(".run").count() == 4
+    assert page.locator(".run").count() == 5
     page.locator(".run", has_text="compare").last.get_by_role("button").click()
     with page.expect_download() as download:
         page.get_by_role("link", name="result.nc").click()

@@ -64,6 +64,15 @@ def test_a_plan_needs_no_beam(scenario: Path, capsys: pytest.CaptureFixture[str]
     assert "axis 2 jerk" in capsys.readouterr().out
 
 
+def test_a_plan_has_a_page(scenario: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["plan", str(scenario), "--json", "--out", str(tmp_path / "there"), "--report"]) == 0
+    limits = json.loads(capsys.readouterr().out)["motions"]["spin"]["limits"]
+    page = (tmp_path / "there" / "plan.html").read_text(encoding="utf-8")
+    used = [each["used"] for each in limits if each["used"]]
+    assert len(used) >= 7 and all(f"{each:#.4g}" in page for each in used)
+    assert "spin: load at the control point along z" in page and "spin: rate of the axes" in page
+
+
 def test_commands_are_the_axes_at_the_samples(scenario: Path, tmp_path: Path) -> None:
     assert main(["plan", str(scenario), "--out", str(tmp_path / "out"), "--json"]) == 0
     lines = (tmp_path / "out" / "commands_spin.csv").read_text(encoding="utf-8").splitlines()

@@ -39,7 +39,7 @@ def test_page_says_what_the_run_says(study: Study) -> None:
     page = html.unescape(report_of(study))
     verdict = study.comparisons[0].verdict
     assert verdict[1:] in page and '<span class="badge good">done</span>' in page
-    assert "axis 1 acceleration" in page and "89%" in page
+    assert "axis 1 acceleration" in page and "89 %" in page
     assert "Load followed within 0.600 m/s²" in page
 
 

@@ -184,6 +184,7 @@ function levels(plot: uPlot, spec: Plot, ink: string): void {
   ctx.strokeStyle = ink;
   ctx.fillStyle = ink;
   ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
+  ctx.textAlign = "left";
   ctx.setLineDash([8, 4]);
   for (const { label, value } of spec.levels ?? []) {
     const y = plot.valToPos(value, "y", true);

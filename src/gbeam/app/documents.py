@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-import json
 import re
-from collections.abc import Iterator, Sequence
-from contextlib import suppress
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from gbeam.app.fields import fields, leaves
 from gbeam.app.files import regular
+from gbeam.app.form import form, known_at, new_table, value_at
 from gbeam.errors import GbeamError, InputError
 from gbeam.scenario import ScenarioError, build, loads
 from gbeam.scenario.text.diagnostics import Diagnostic
-from gbeam.scenario.text.source import Source, parse
-from gbeam.scenario.values.paths import Place, parse_path, path_text
+from gbeam.scenario.text.revise import with_entry, without_entry
+from gbeam.scenario.text.source import parse
+from gbeam.scenario.values.paths import Path as Place
+from gbeam.scenario.values.paths import parse_path, path_text, written_at
 
 NAME = "scenario.toml"
-_MEASURE = re.compile(r"[A-Za-z_][\w., \[\]-]{0,300}")
-LONGEST = 60  # lines of a profile that a record takes the place of
-FIELDS = 400  # shown; a table of thousands of numbers is edited as text
+_MISSING = re.compile(r"(\w+) is missing")  # a message about a table, whose field that is
 
 
 class Unfit(GbeamError):
@@ -38,7 +36,7 @@ class Unfit(GbeamError):
 
 
 def described(text: str, folder: Path) -> dict[str, Any]:
-    """What a document holds: its fields, what is wrong with it, and what it means where nothing is.
+    """What a document holds: its form, what is wrong with it, and what it means where nothing is.
 
     Parameters
     ----------
@@ -46,10 +44,10 @@ def described(text: str, folder: Path) -> dict[str, Any]:
     folder : Path
         Of the records that it may name.
     """
-    made: dict[str, Any] = {"text": text, "fields": [], "errors": [], "meaning": ""}
+    made: dict[str, Any] = {"text": text, "form": [], "errors": [], "meaning": ""}
     try:
         data = parse(NAME, text)
-        made["fields"] = [*fields(data)][:FIELDS]
+        made["form"] = form(data)
         records(data, folder)
         from gbeam.analysis.study.describe import describe
         from gbeam.report.description import text as in_words
@@ -61,32 +59,52 @@ def described(text: str, folder: Path) -> dict[str, Any]:
 
 
 def edited(text: str, path: str, value: str) -> str:
-    """Return the text with another value at a path; comments and all else stay.
+    """Return the text with another value at a path, or without it where that is empty; comments and all else stay.
 
     Raises
     ------
     InputError
-        If there is no such value, or the text cannot be changed there.
+        If the schema has no value there, or the text cannot be changed there.
     """
-    source, place = Source(NAME, text, Path(), parse(NAME, text)), parse_path(path)
-    span = source.places.get(place) if place else None
-    if place is None or span is None:
-        raise InputError(path, "is not written in the scenario", "add it to the text")
-    before = source.raw(place)
-    if isinstance(before, (dict, list)):
-        raise InputError(path, "is a table", "change its values, or the text")
-    literal = _literal(value, before)
-    lines = text.split("\n")
-    line, at = lines[span.value.line - 1], span.value
-    lines[at.line - 1] = line[: at.column - 1] + literal + line[at.end - 1 :]
-    changed = "\n".join(lines)
+    data, place = parse(NAME, text), _place(path)
+    if not value.strip():
+        return without_entry(text, place) if written_at(data, place) is not None else text
+    if not known_at(place, data) and isinstance(written_at(data, place), (dict, list, type(None))):
+        raise InputError(path[:100], "is no value of a scenario", "choose one of the form")
+    return with_entry(text, place, value_at(place, data, value))
+
+
+def added(text: str, path: str, choice: str) -> str:
+    """Return the text with a new table at a path, or with another kind of table than was there.
+
+    Parameters
+    ----------
+    text, path : str
+    choice : str
+        Which of the tables that may stand there; empty where there is but one.
+
+    Raises
+    ------
+    InputError
+        If the schema has no such table there, or the text cannot be changed there.
+    """
+    data, place = parse(NAME, text), _place(path)
     try:
-        sound = Source(NAME, changed, Path(), parse(NAME, changed)).raw(place) == json.loads(literal)
-    except ScenarioError:
-        sound = False
-    if not sound:
-        raise InputError(path, "cannot be changed here", "change the text")
-    return changed
+        table = new_table(place, data, choice)
+    except KeyError:
+        raise InputError(path[:100], f"is no place for {choice[:100] or 'a table'}", "choose one of the form") from None
+    return with_entry(text, place, table)
+
+
+def removed(text: str, path: str) -> str:
+    """Return the text without what is written at a path.
+
+    Raises
+    ------
+    InputError
+        If nothing is, or the text cannot be changed there.
+    """
+    return without_entry(text, _place(path))
 
 
 def with_record(text: str, motion: str, record: dict[str, str]) -> str:
@@ -95,41 +113,34 @@ def with_record(text: str, motion: str, record: dict[str, str]) -> str:
     Raises
     ------
     InputError
-        If the text is not one that can be changed there.
+        If there is no such flight, or the text cannot be changed there.
     """
+    place: Place = ("motion", motion)
     data = parse(NAME, text)
-    source = Source(NAME, text, Path(), data)
-    motions = data.get("motion")
-    flight = motions.get(motion) if isinstance(motions, dict) else None
-    flight = flight if isinstance(flight, dict) else {}
-    key = next((each for each in ("record", "acceleration") if each in flight), None)
-    fix = f"write it yourself: [motion.{motion}.record]"
-    place = None if key is None else source.places.get(("motion", motion, key))
-    if key is not None and place is not None and not text.lstrip().startswith("{"):
-        del flight[key]
-        flight["record"] = record
-        kind = source.places.get(("motion", motion, "kind"))
-        for changed in _replaced(text.split("\n"), place, None if kind is None else kind.key.line, record):
-            with suppress(ScenarioError):
-                if parse(NAME, changed) == data:
-                    return changed
-    raise InputError(f"motion.{motion}", "is written in a way that cannot be changed here", fix)
+    if written_at(data, place) is None:
+        raise InputError(f"motion.{motion}"[:100], "is no flight of the scenario", "add a motion of kind flight")
+    if written_at(data, (*place, "acceleration")) is not None:
+        text = without_entry(text, (*place, "acceleration"))
+    return with_entry(text, (*place, "record"), record)
 
 
-def _replaced(lines: list[str], place: Place, kind: int | None, record: dict[str, str]) -> Iterator[str]:
-    """The text with a record in place of an entry, which ends on its own line or a later one, or is tables of its own.
+def _place(path: str) -> Place:
+    place = parse_path(path)
+    if place is None:
+        raise InputError(path[:100] or "path", "is no path of a scenario", "write it such as beam.masses[0].at")
+    return place
 
-    `kind` is the number of the line that says that the motion is a flight.
-    """
-    inside = ", ".join(f"{name} = {json.dumps(value, ensure_ascii=False)}" for name, value in record.items())
-    new, first = f"record = {{ {inside} }}", place.key.line - 1
-    before = f"{lines[first][: place.key.column - 1]}{new}"
-    if place.value.line == place.key.line:
-        yield "\n".join([*lines[:first], before + lines[first][place.value.end - 1 :], *lines[first + 1 :]])
-    for after in range(first + 1, min(first + LONGEST, len(lines)) + 1):
-        yield "\n".join([*lines[:first], before, *lines[after:]])
-        if kind is not None and kind <= first:
-            yield "\n".join([*lines[:kind], new, *lines[kind:first], *lines[after:]])
+
+def _leaves(node: Any, path: Place = ()) -> Iterator[tuple[Place, Any]]:
+    """Paths and values of what is no table and no list of tables."""
+    if isinstance(node, dict):
+        for key, each in node.items():
+            yield from _leaves(each, (*path, key))
+    elif isinstance(node, list) and any(isinstance(each, (dict, list)) for each in node):
+        for i, each in enumerate(node):
+            yield from _leaves(each, (*path, i))
+    elif path:
+        yield path, node
 
 
 def records(data: Any, folder: Path) -> list[Path]:
@@ -141,7 +152,7 @@ def records(data: Any, folder: Path) -> list[Path]:
         If one is a path, or is not there.
     """
     found = []
-    for path, value in leaves(data):
+    for path, value in _leaves(data):
         if path[-1] == "file":
             if not isinstance(value, str):
                 raise InputError(path_text(path), "is no text", "give the name of a record")
@@ -152,63 +163,18 @@ def records(data: Any, folder: Path) -> list[Path]:
     return found
 
 
-def sweep_arguments(text: str, over: Sequence[str], measure: str) -> list[str]:
-    """The arguments of `gbeam sweep` for one or two values of a scenario.
-
-    Parameters
-    ----------
-    text : str
-        Of the scenario.
-    over : sequence of str
-        ``PATH=VALUES`` each.
-    measure : str
-        Figures, separated by commas.
-
-    Raises
-    ------
-    InputError
-        If a path is none of the scenario's values, or is that of a file, which would lead out of the folder.
-    """
-    data = parse(NAME, text)
-    if "sweep" in data:
-        raise InputError("sweep", "is a table of the scenario", "take it out: the page says what varies")
-    known = {field["path"] for field in fields(data)}
-    arguments = []
-    if not 1 <= len(over) <= 2:
-        raise InputError("over", f"has {len(over)} values", "vary one or two")
-    for each in over:
-        path, _, values = each.partition("=")
-        if path not in known or path.rpartition(".")[2] == "file" or not values.strip():
-            fix = "choose a value of the form, and say which values"
-            raise InputError(path[:100] or "over", "cannot be varied", fix)
-        arguments += ["--over", each]
-    if not _MEASURE.fullmatch(measure):
-        raise InputError("measure", f"is {measure[:100]!r}", 'name figures, such as "tip.z.max_abs"')
-    return [*arguments, "--measure", measure]
-
-
 def problems(error: GbeamError) -> list[dict[str, Any]]:
-    """What is wrong, each with its path, its message, the fix, and its line where it has one."""
+    """What is wrong, each with its path, its field, its message, the fix, and its line where it has one."""
     if isinstance(error, Unfit):
         return error.problems
     if isinstance(error, ScenarioError):
         return [_problem(each) for each in error.diagnostics]
     if isinstance(error, InputError):
-        return [{"path": error.where, "message": error.problem, "hint": error.fix, "line": None}]
-    return [{"path": "", "message": str(error), "hint": "", "line": None}]
+        return [{"path": error.where, "field": error.where, "message": error.problem, "hint": error.fix, "line": None}]
+    return [{"path": "", "field": "", "message": str(error), "hint": "", "line": None}]
 
 
 def _problem(each: Diagnostic) -> dict[str, Any]:
-    return {"path": each.path, "message": each.message, "hint": each.hint, "line": each.line}
-
-
-def _literal(value: str, before: Any) -> str:
-    """A value as TOML and JSON write it: a number or a truth value only where one stood."""
-    if isinstance(before, (bool, int, float)):
-        try:
-            new = json.loads(value)
-        except json.JSONDecodeError:
-            new = value
-        if isinstance(new, (bool, int, float)):
-            return json.dumps(new)
-    return json.dumps(value, ensure_ascii=False)
+    missing = _MISSING.fullmatch(each.message)
+    field = f"{each.path}.{missing[1]}".removeprefix(".") if missing else each.path
+    return {"path": each.path, "field": field, "message": each.message, "hint": each.hint, "line": each.line}

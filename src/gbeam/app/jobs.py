@@ -16,22 +16,18 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from gbeam.app.files import regular
+from gbeam.app.files import names, regular
+from gbeam.app.verbs import VERBS
 from gbeam.errors import InputError
 
 ID = re.compile(r"\d{8}-\d{6}-[0-9a-f]{8}")
 MEMORY = 16 * 2**30  # bytes of address space, of which compiled programs reserve far more than they use
 SECONDS = 3600  # of processor time, and of time altogether
 QUEUED = 100
-_STATE, _LOG, _ANSWER = "state.json", "progress.txt", "answer.json"
-# What may be downloaded, by its name there, and where it is.
-DOWNLOADS = {
-    "scenario.toml": "scenario.toml",
-    "result.nc": "out/result.nc",
-    "report.html": "out/report.html",
-    "answer.json": _ANSWER,
-    "messages.txt": _LOG,
-}
+_STATE, _LOG, _ANSWER, _WORDS = "state.json", "progress.txt", "answer.json", "words.txt"
+# What may be downloaded, by its name there, and where it is; besides, of what the verb writes, files of these kinds.
+DOWNLOADS = {"scenario.toml": "scenario.toml", _ANSWER: _ANSWER, _WORDS: _WORDS, "messages.txt": _LOG}
+KINDS = (".nc", ".csv", ".mat")
 
 
 class Jobs:
@@ -60,17 +56,24 @@ class Jobs:
                 await self._task
 
     def submit(
-        self, text: str, title: str, records: Sequence[Path], arguments: Sequence[str] = (), case: str = ""
+        self,
+        text: str,
+        title: str,
+        records: Sequence[Path],
+        verb: str = "run",
+        arguments: Sequence[str] = (),
+        case: str = "",
     ) -> str:
-        """Queue the run of a scenario, with copies of its records; return its id.
+        """Queue a verb on a scenario, with copies of its records; return its id.
 
         Parameters
         ----------
         text, title : str
             Of the scenario.
         records : sequence of Path
+        verb : str
         arguments : sequence of str
-            Of `gbeam sweep`; of a run none.
+            Of the verb.
         case : str
             Which case of which sweep it is; one that is there already is not run again.
 
@@ -90,7 +93,6 @@ class Jobs:
         (place / "scenario.toml").write_text(text, encoding="utf-8")
         for record in records:
             shutil.copyfile(record, place / record.name, follow_symlinks=False)
-        verb = "sweep" if arguments else "run"
         self._note(number, state="queued", title=title, verb=verb, case=case, arguments=list(arguments))
         self._queue.put_nowait(number)
         return number
@@ -123,8 +125,7 @@ class Jobs:
         known: dict[str, Any] = json.loads((place / _STATE).read_text(encoding="utf-8"))
         log = place / _LOG
         lines = log.read_text(encoding="utf-8", errors="replace").splitlines() if log.is_file() else []
-        files = [name for name, inside in DOWNLOADS.items() if (place / inside).is_file()]
-        return {"id": number, **known, "progress": lines[-1][:300] if lines else "", "files": files}
+        return {"id": number, **known, "progress": lines[-1][:300] if lines else "", "files": [*_files(place)]}
 
     def file(self, number: str, name: str) -> Path:
         """The path of a file of a run.
@@ -134,10 +135,10 @@ class Jobs:
         InputError
             If there is none of that name.
         """
-        if name not in DOWNLOADS:
-            raise InputError("file", "is none of a run's", f"choose of {', '.join(DOWNLOADS)}")
-        inside = self._place(number) / DOWNLOADS[name]
-        return regular(inside.parent, inside.name)
+        found = _files(self._place(number))
+        if name not in found:
+            raise InputError("file", "is none of this run's", f"choose of {', '.join(found)}")
+        return regular(found[name].parent, found[name].name)
 
     def _place(self, number: str) -> Path:
         place = self.folder / number if ID.fullmatch(number) else None
@@ -161,10 +162,11 @@ class Jobs:
     async def _run(self, number: str) -> None:
         place = self.folder / number
         self._note(number, state="running")
+        command = _command(self.state(number))
         environment = {**os.environ, "GBEAM_PROGRESS": "0.5", "PYTHONUNBUFFERED": "1"}
-        with (place / _LOG).open("wb") as log, (place / _ANSWER).open("wb") as answer:
+        with (place / _LOG).open("wb") as log, (place / _stdout(command)).open("wb") as answer:
             process = await asyncio.create_subprocess_exec(
-                *_command(self.state(number)),
+                *command,
                 cwd=place,
                 env=environment,
                 stdin=asyncio.subprocess.DEVNULL,
@@ -190,8 +192,24 @@ class Jobs:
 
 
 def _command(state: Mapping[str, Any]) -> list[str]:
-    arguments = [state["verb"], "scenario.toml", *state["arguments"], "--out", "out", "--report", "--json"]
+    """A verb with its result as a report and as JSON; in words where it has no report."""
+    result = ["--report", "--json"] if VERBS[state["verb"]].report else []
+    arguments = [state["verb"], "scenario.toml", *state["arguments"], "--out", "out", *result]
     return [sys.executable, "-m", "gbeam.app.limited", str(MEMORY), str(SECONDS), *arguments]
+
+
+def _stdout(command: Sequence[str]) -> str:
+    return _ANSWER if "--json" in command else _WORDS
+
+
+def _files(place: Path) -> dict[str, Path]:
+    """The files of a run by the names under which they are downloaded; its report has one name whatever the verb."""
+    fixed = {name: place / inside for name, inside in DOWNLOADS.items() if (place / inside).is_file()}
+    out = place / "out"
+    written = {name: out / name for name in names(out)}
+    report = next((file for name, file in written.items() if name.endswith(".html")), None)
+    made = fixed if report is None else fixed | {"report.html": report}
+    return made | {name: file for name, file in written.items() if name.endswith(KINDS)}
 
 
 def _end(process: asyncio.subprocess.Process) -> None:

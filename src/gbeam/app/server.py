@@ -15,7 +15,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import FileResponse, JSONResponse, Response
 from pydantic import Field
 
-from gbeam.app import documents, files
+from gbeam.app import documents, files, verbs
 from gbeam.app.access import REPORT_POLICY, Door
 from gbeam.app.jobs import Jobs
 from gbeam.app.preview import columns, load_curves
@@ -58,13 +58,23 @@ def create_app(folder: Path) -> FastAPI:
 
     @app.post("/api/document")
     def document(text: Text) -> dict[str, Any]:
-        """The fields of a scenario, and what is wrong with it."""
+        """The form of a scenario, and what is wrong with it."""
         return documents.described(text, records)
 
     @app.post("/api/edit")
     def edit(text: Text, path: Short, value: Short) -> dict[str, Any]:
-        """A scenario with another value at a path."""
+        """A scenario with another value at a path, or without it where that is empty."""
         return documents.described(documents.edited(text, path, value), records)
+
+    @app.post("/api/add")
+    def add(text: Text, path: Short, choice: Short) -> dict[str, Any]:
+        """A scenario with a new table at a path, or another kind of table."""
+        return documents.described(documents.added(text, path, choice), records)
+
+    @app.post("/api/remove")
+    def remove(text: Text, path: Short) -> dict[str, Any]:
+        """A scenario without what is written at a path."""
+        return documents.described(documents.removed(text, path), records)
 
     @app.post("/api/record")
     def map_record(text: Text, motion: Short, record: Annotated[dict[str, str], Body(embed=True)]) -> dict[str, Any]:
@@ -95,23 +105,26 @@ def create_app(folder: Path) -> FastAPI:
         """All runs, the latest first."""
         return jobs.list()
 
+    @app.get("/api/verbs")
+    def offered() -> dict[str, Any]:
+        """What can be done with a scenario, and the options of it."""
+        return verbs.offered()
+
     @app.post("/api/runs")
-    async def submit(text: Text, case: Annotated[str, Body(embed=True, max_length=100)] = "") -> dict[str, str]:
-        """Queue the run of a scenario; of a sweep's case the one that is there."""
-        return await queued(text, (), case)
-
-    @app.post("/api/sweeps")
-    async def submit_sweep(text: Text, over: Annotated[list[Line], Body(embed=True)], measure: Short) -> dict[str, str]:
-        """Queue a sweep over one or two values of a scenario."""
-        return await queued(text, documents.sweep_arguments(text, over, measure))
-
-    async def queued(text: str, arguments: Sequence[str], case: str = "") -> dict[str, str]:
+    async def submit(
+        text: Text,
+        verb: Annotated[str, Body(embed=True, max_length=100)] = "run",
+        options: Annotated[Sequence[Line], Body(embed=True, max_length=20)] = (),
+        case: Annotated[str, Body(embed=True, max_length=100)] = "",
+    ) -> dict[str, str]:
+        """Queue a verb on a scenario; of a sweep's case the run that is there."""
         found = await run_in_threadpool(documents.described, text, records)
         if found["errors"]:
             raise documents.Unfit(found["errors"])
         data = parse(documents.NAME, text)
+        arguments = verbs.arguments(verb, options, data)
         title = str(data.get("title", ""))[:200]
-        return {"id": jobs.submit(text, title, documents.records(data, records), arguments, case)}
+        return {"id": jobs.submit(text, title, documents.records(data, records), verb, arguments, case)}
 
     @app.delete("/api/runs/{number}")
     async def cancel(number: str) -> dict[str, Any]:

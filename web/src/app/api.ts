@@ -2,22 +2,53 @@
 
 export interface Problem {
   path: string;
+  /** Of the form, such as the key that is missing in a table. */
+  field: string;
   message: string;
   hint: string;
   line: number | null;
 }
 
-export interface Field {
+/** A key of the schema, with what is written there: as `gbeam.app.form` has it. */
+export interface Entry {
   path: string;
-  value: string;
+  key: string;
   help: string;
+  required: boolean;
+  written: boolean;
+  kind: "value" | "table" | "list" | "named";
+  options: string[];
+  inside?: Entry[];
+  choice?: string;
+  about?: string;
+  count?: number;
+  value?: string;
+  long?: boolean;
+  default?: string;
+  example?: string;
+  unit?: string;
+  tables?: string[];
 }
 
 export interface Document {
   text: string;
-  fields: Field[];
+  form: Entry[];
   errors: Problem[];
   meaning: string;
+}
+
+export interface Option {
+  name: string;
+  help: string;
+  example: string;
+  choices: string[];
+  many: number;
+  of: string;
+}
+
+export interface Verb {
+  about: string;
+  options: Option[];
 }
 
 export interface Run {
@@ -41,6 +72,11 @@ export class Refusal extends Error {
   }
 }
 
+/** Something that is wrong with no place of the document. */
+export function problem(message: string): Problem {
+  return { path: "", field: "", message, hint: "", line: null };
+}
+
 async function call<T>(path: string, method: string, body?: BodyInit, kind = "application/json"): Promise<T> {
   const response = await fetch(path, { method, ...(body === undefined ? {} : { body, headers: { "content-type": kind } }) });
   if (response.ok) return (await response.json()) as T;
@@ -49,7 +85,7 @@ async function call<T>(path: string, method: string, body?: BodyInit, kind = "ap
     if (answer.errors) throw new Refusal(answer.errors);
   }
   const why = response.status === 413 ? "the file is too large" : await response.text();
-  throw new Refusal([{ path: "", message: why || `status ${response.status}`, hint: "", line: null }]);
+  throw new Refusal([problem(why || `status ${response.status}`)]);
 }
 
 const post = <T>(path: string, body: unknown): Promise<T> => call<T>(path, "POST", JSON.stringify(body));
@@ -58,6 +94,8 @@ export const api = {
   examples: () => call<Record<string, string>>("/api/examples", "GET"),
   document: (text: string) => post<Document>("/api/document", { text }),
   edit: (text: string, path: string, value: string) => post<Document>("/api/edit", { text, path, value }),
+  add: (text: string, path: string, choice: string) => post<Document>("/api/add", { text, path, choice }),
+  remove: (text: string, path: string) => post<Document>("/api/remove", { text, path }),
   map: (text: string, motion: string, record: Record<string, string>) =>
     post<Document>("/api/record", { text, motion, record }),
   preview: (text: string) => post<Curves>("/api/preview", { text }),
@@ -66,8 +104,9 @@ export const api = {
       `/api/records/${encodeURIComponent(file.name)}`, "PUT", file, "application/octet-stream",
     ),
   runs: () => call<Run[]>("/api/runs", "GET"),
-  submit: (text: string, of = "") => post<{ id: string }>("/api/runs", { text, case: of }),
-  sweep: (text: string, over: string[], measure: string) => post<{ id: string }>("/api/sweeps", { text, over, measure }),
+  verbs: () => call<Record<string, Verb>>("/api/verbs", "GET"),
+  submit: (text: string, verb = "run", options: string[] = [], of = "") =>
+    post<{ id: string }>("/api/runs", { text, verb, options, case: of }),
   cancel: (id: string) => call<Run>(`/api/runs/${id}`, "DELETE"),
   file: (id: string, name: string) => `/api/runs/${id}/${name}`,
   text: async (id: string, name: string) => (await fetch(`/api/runs/${id}/${name}`)).text(),

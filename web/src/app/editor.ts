@@ -3,39 +3,48 @@
 import uPlot from "uplot";
 import { lineColour, prefersDark } from "../colours";
 import { button, choice, element } from "../controls";
-import { api, type Document, type Field, type Problem, Refusal } from "./api";
-import { Command } from "./command";
-import { SweepForm } from "./sweeps";
+import { api, type Document, type Problem, problem, Refusal, type Verb } from "./api";
+import { Form } from "./form";
+import { Verbs } from "./verbs";
 
 const KEPT = "gbeam-document";
 const PAUSE = 400; // ms without a key before the text is read
 const COMPONENTS = ["x", "y", "z"] as const;
 
-/** A field of the form: its input, what is wrong with it, and the value that the document has. */
-interface Entry {
-  label: HTMLElement;
-  input: HTMLInputElement;
-  words: HTMLElement;
-  value: string;
+let held: Promise<void> | null = null;
+window.addEventListener("pointerdown", () => {
+  held = new Promise((done) => {
+    for (const end of ["pointerup", "pointercancel"]) {
+      window.addEventListener(end, () => window.setTimeout(done), { once: true });
+    }
+  });
+});
+
+/** Once no button of the mouse is held down, and what it did is done. */
+async function released(): Promise<void> {
+  await held;
 }
 
 export class Editor {
   readonly root = element("section");
-  private document: Document = { text: "", fields: [], errors: [], meaning: "" };
+  private document: Document = { text: "", form: [], errors: [], meaning: "" };
   private readonly text = element("textarea", "text");
-  private readonly form = element("div", "form");
+  private readonly form = new Form({
+    edit: (path, value) => this.change((text) => api.edit(text, path, value)),
+    add: (path, kind) => this.change((text) => api.add(text, path, kind)),
+    remove: (path) => this.change((text) => api.remove(text, path)),
+  });
   private readonly problems = element("div", "problems");
   private readonly meaning = element("pre");
   private readonly record = element("div", "record");
   private readonly curves = element("div");
-  private readonly run = button("Run", () => void this.submit());
   private readonly views: HTMLButtonElement[];
-  private readonly sweep: SweepForm;
-  private entries = new Map<string, Entry>();
+  private readonly verbs: Verbs;
+  private changes: Promise<unknown> = Promise.resolve();
   private waiting = 0;
   private latest = 0;
 
-  constructor(private readonly submitted: (id: string) => void) {
+  constructor(submitted: (id: string) => void) {
     this.root.append(element("h2", "", "Scenario"));
     this.text.setAttribute("aria-label", "scenario as TOML");
     this.text.spellcheck = false;
@@ -45,17 +54,16 @@ export class Editor {
     });
     this.views = [button("Form", () => this.show(0)), button("Text", () => this.show(1))];
     this.problems.setAttribute("role", "status");
-    this.run.classList.add("primary");
-    const acts = [this.run, button("Preview load", () => void this.preview()), button("Download", () => this.save())];
-    const command = new Command(["gbeam", "run", "scenario.toml", "--report"]);
-    this.root.append(this.start(), this.record, this.row(...this.views, ...acts), this.problems, this.curves);
-    this.sweep = new SweepForm(() => this.document.text, this.submitted);
-    this.root.append(this.sweep.root, this.form, this.text, command.root, this.meaning);
+    const acts = [button("Preview load", () => void this.preview()), button("Download", () => this.save())];
+    this.verbs = new Verbs(() => this.document.text, submitted);
+    this.root.append(this.start(), this.record, this.verbs.root, this.row(...this.views, ...acts), this.problems);
+    this.root.append(this.curves, this.form.root, this.text, this.meaning);
     this.show(0);
   }
 
   /** Take up the document of the last visit, or the first example. */
-  async begin(examples: Record<string, string>): Promise<void> {
+  async begin(examples: Record<string, string>, verbs: Record<string, Verb>): Promise<void> {
+    this.verbs.begin(verbs);
     await this.read(sessionStorage.getItem(KEPT) ?? Object.values(examples)[0] ?? "");
     const options = [["", "choose"], ...Object.keys(examples).map((name) => [name, name])] as [string, string][];
     const select = choice("Start from", options, "", (name) => {
@@ -69,11 +77,17 @@ export class Editor {
     await this.take(api.document(text));
   }
 
+  /** Change the document: one change after the other, each of what the last has made. */
+  private change(act: (text: string) => Promise<Document>): void {
+    this.changes = this.changes.then(() => this.take(act(this.document.text)));
+  }
+
   /** Show what becomes of the document; whether it has been taken. */
   private async take(answer: Promise<Document>): Promise<boolean> {
     const number = ++this.latest;
     try {
       const made = await answer;
+      await released(); // a click on what is made again before its end would be lost
       if (number !== this.latest) return false; // a later change has overtaken it
       this.document = made;
       sessionStorage.setItem(KEPT, made.text);
@@ -87,60 +101,12 @@ export class Editor {
   }
 
   private draw(): void {
-    const { fields, errors, meaning } = this.document;
-    if ([...this.entries.keys()].join() !== fields.map((each) => each.path).join()) this.build(fields);
-    for (const field of fields) {
-      const entry = this.entries.get(field.path)!;
-      // An answer may come while the next field is being typed in.
-      if (entry.input !== document.activeElement || entry.input.value === entry.value) entry.input.value = field.value;
-      entry.value = field.value;
-      const own = errors.filter((each) => each.path === field.path);
-      entry.words.remove();
-      entry.words.textContent = own.map((each) => `${each.message}; ${each.hint}`).join("; ");
-      if (own.length) {
-        entry.input.setAttribute("aria-invalid", "true");
-        entry.input.setAttribute("aria-describedby", entry.words.id);
-        entry.label.after(entry.words);
-      } else {
-        entry.input.removeAttribute("aria-invalid");
-        entry.input.removeAttribute("aria-describedby");
-      }
-    }
-    this.sweep.offer(fields);
+    const { form, errors, meaning } = this.document;
+    this.form.draw(form, errors);
+    this.verbs.offer(form, errors.length === 0);
     this.list(errors);
     this.meaning.textContent = meaning;
     this.meaning.hidden = !meaning;
-    this.run.disabled = errors.length > 0;
-  }
-
-  /** The form of a document's fields, without their values. */
-  private build(fields: Field[]): void {
-    const focused = (document.activeElement as HTMLElement | null)?.dataset["path"];
-    this.form.replaceChildren();
-    this.entries = new Map();
-    const groups = new Map<string, HTMLFieldSetElement>();
-    fields.forEach(({ path, help }, i) => {
-      const parts = path.split(".");
-      const name = parts[0] === "motion" ? parts.slice(0, 2).join(".") : parts.length > 1 ? parts[0]! : "general";
-      let group = groups.get(name);
-      if (!group) {
-        group = element("fieldset");
-        group.append(element("legend", "", name));
-        groups.set(name, group);
-        this.form.append(group);
-      }
-      const label = element("label", "", path.slice(path.startsWith(`${name}.`) ? name.length + 1 : 0));
-      const input = element("input");
-      input.dataset["path"] = path;
-      input.title = help;
-      input.addEventListener("change", () => void this.take(api.edit(this.document.text, path, input.value)));
-      label.append(input);
-      group.append(label);
-      const words = element("span", "bad");
-      words.id = `problem-${i}`;
-      this.entries.set(path, { label, input, words, value: "" });
-      if (path === focused) requestAnimationFrame(() => input.focus());
-    });
   }
 
   private list(errors: Problem[]): void {
@@ -152,21 +118,13 @@ export class Editor {
   }
 
   private complain(error: unknown): void {
-    this.list(error instanceof Refusal ? error.problems : [{ path: "", message: String(error), hint: "", line: null }]);
+    this.list(error instanceof Refusal ? error.problems : [problem(String(error))]);
   }
 
   private show(which: number): void {
-    this.form.hidden = which !== 0;
+    this.form.root.hidden = which !== 0;
     this.text.hidden = which !== 1;
     this.views.forEach((each, i) => each.setAttribute("aria-pressed", String(i === which)));
-  }
-
-  private async submit(): Promise<void> {
-    try {
-      this.submitted((await api.submit(this.document.text)).id);
-    } catch (error) {
-      this.complain(error);
-    }
   }
 
   private save(): void {
@@ -207,9 +165,8 @@ export class Editor {
 
   /** Columns, signs and units of a record, by hand. */
   private map({ name, columns }: { name: string; columns: string[] }): void {
-    const flights = [...new Set(this.document.fields.map((each) => each.path.match(/^motion\.([^.]+)\.kind$/)?.[1]))].filter(
-      (each): each is string => this.document.fields.some((f) => f.path === `motion.${each}.kind` && f.value === "flight"),
-    );
+    const motions = this.document.form.find((each) => each.path === "motion")?.inside ?? [];
+    const flights = motions.filter((each) => each.choice === "flight").map((each) => each.key);
     const chosen: Record<string, string> = { file: name, time: columns[0] ?? "", x: "0", y: "0", z: "0", unit: "g" };
     let motion = flights[0] ?? "flight";
     const listed = columns.map((each) => [each, each] as const);

@@ -12,6 +12,6 @@ const root = document.getElementById("app")!;
 const runs: Runs = new Runs((text) => void editor.read(text));
 const editor: Editor = new Editor((id) => void runs.watch(id));
 root.append(editor.root, runs.root);
-await editor.begin(await api.examples());
+await editor.begin(...(await Promise.all([api.examples(), api.verbs()])));
 await runs.watch();
 document.documentElement.dataset["gbeam"] = "drawn";

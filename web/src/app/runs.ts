@@ -65,7 +65,7 @@ export class Runs {
     open.classList.add("open");
     open.dataset["key"] = `open-${run.id}`;
     open.setAttribute("aria-pressed", String(run.id === this.selected));
-    row.append(open, element("span", kind, run.verb === "sweep" ? `sweep ${run.state}` : run.state));
+    row.append(open, element("span", kind, run.verb === "run" ? run.state : `${run.verb} ${run.state}`));
     if (ACTIVE.includes(run.state)) {
       row.append(element("span", "faint", run.progress.replace(/^gbeam: /, "")));
       const cancel = button("Cancel", () => void api.cancel(run.id).then(() => this.watch()));
@@ -118,6 +118,8 @@ export class Runs {
       frame.setAttribute("sandbox", "allow-scripts");
       frame.src = api.file(run.id, "report.html");
       this.shown.append(frame);
+    } else if (run.files.includes("words.txt")) {
+      this.shown.append(element("pre", "words", await api.text(run.id, "words.txt")));
     }
   }
 

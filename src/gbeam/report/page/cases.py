@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.report.page.parts import Cell, Value, heading, listed, paragraph, plot_place, table, verbatim
+from gbeam.report.page.parts import Cell, Value, heading, listed, paragraph, plot_places, table, verbatim
 from gbeam.report.page.series import Numbers, Plots
 from gbeam.report.words import number
 from gbeam.results.studies.uncertainty import BOUNDS
@@ -128,7 +128,7 @@ def _map(facts: Facts, name: str, values: Any, outcomes: Any, numbers: Numbers, 
 
 def _scatter(facts: Facts, name: str, label: str, values: Any, plots: Plots) -> str:
     """Over the one parameter of a grid a line; over each parameter that is drawn, points."""
-    parts = []
+    drawn = []
     for parameter in facts["parameters"]:
         if not _numeric(parameter) or values.ndim > 1:
             continue
@@ -136,9 +136,8 @@ def _scatter(facts: Facts, name: str, label: str, values: Any, plots: Plots) -> 
         order = np.argsort(x)
         line = {"label": name, "x": x[order], "y": values[order], "colour": 0}
         line |= {"points": True} if parameter["distribution"] else {}
-        place = plots.add(name, label, [line], x=_labelled(parameter["path"], parameter["unit"]))
-        parts.append(plot_place(place, name))
-    return f'<div class="gbeam-plots">{"".join(parts)}</div>' if parts else ""
+        drawn.append((plots.add(name, label, [line], x=_labelled(parameter["path"], parameter["unit"])), name))
+    return plot_places(drawn)
 
 
 def _cases(facts: Facts, values: Mapping[str, Any], outcomes: Any) -> str:

@@ -44,6 +44,16 @@ def of_run(facts: Mapping[str, Any], motions: Mapping[str, Any], variables: Vari
     return page.drawn
 
 
+def of_plan(motions: Mapping[str, Any], variables: Variables, plots: Plots) -> Drawn:
+    """Add the plots of a machine's plan, and return their places and titles."""
+    page = _Page(plots, variables, {})
+    for name in motions:
+        if f"motions/{name}/time" in variables:
+            page.loads(name)
+            page.limits(name)
+    return page.drawn
+
+
 class _Page:
     """The plots of one page, all over the variables of one file."""
 

@@ -6,24 +6,38 @@ import base64
 import hashlib
 import json
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from importlib.resources import files
 from typing import Any
 
 from gbeam.errors import InputError
 from gbeam.printable import json_printable
-from gbeam.report.page import cases, steady, study
+from gbeam.report.page import cases, machine, rest, steady, study
 from gbeam.report.page.parts import badge, escaped, folded, heading, listed, paragraph, table, verbatim
 from gbeam.report.page.series import Numbers, Plots
 from gbeam.report.words import as_json
 
-KINDS = {
-    "run": (("motions", "comparisons"), study.body),
-    "modes": (("modes", "instabilities"), steady.modes_body),
-    "campbell": (("tracks", "crossings"), steady.campbell_body),
-    "place": (("fraction_of_length", "options"), cases.placement_body),
-    "sweep": (("parameters", "measures"), cases.sweep_body),
+Body = Callable[[Mapping[str, Any], Mapping[str, Any], Numbers, Plots, dict[str, Any]], str]
+# By verb: keys that its facts have, keys that each of their motions has, and what makes the page's inside.
+KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...], Body]] = {
+    "run": (("motions", "comparisons"), (), study.body),
+    "static": (("motions",), ("displacement", "tip", "stable"), rest.static_body),
+    "plan": (("motions",), ("limits", "tracks"), machine.plan_body),
+    "modes": (("modes", "instabilities"), (), steady.modes_body),
+    "campbell": (("tracks", "crossings"), (), steady.campbell_body),
+    "critical-speed": (("quantity", "searched_to", "reason"), (), rest.critical_body),
+    "critical-speed --masses": (("mass", "position", "critical_speed"), (), rest.critical_map_body),
+    "place": (("fraction_of_length", "options"), (), cases.placement_body),
+    "sweep": (("parameters", "measures"), (), cases.sweep_body),
 }
+
+
+def _kind(facts: Mapping[str, Any]) -> str | None:
+    for name, (keys, each, _) in KINDS.items():
+        motions = facts["motions"].values() if each and "motions" in facts else ()
+        if all(key in facts for key in keys) and all(key in motion for motion in motions for key in each):
+            return name
+    return None
 
 
 def html(facts: Mapping[str, Any], variables: Mapping[str, Any], origin: Mapping[str, Any] | None = None) -> str:
@@ -44,7 +58,7 @@ def html(facts: Mapping[str, Any], variables: Mapping[str, Any], origin: Mapping
         If these are no facts of a result that has a report.
     """
     facts = json.loads(as_json(facts))  # what is not finite is null, as in a file
-    kind = next((name for name, (keys, _) in KINDS.items() if all(key in facts for key in keys)), None)
+    kind = _kind(facts)
     if kind is None:
         fix = f"give the result of {', '.join(f'gbeam {name}' for name in KINDS)}"
         raise InputError("result", "is of a kind that has no report", fix)
@@ -52,11 +66,11 @@ def html(facts: Mapping[str, Any], variables: Mapping[str, Any], origin: Mapping
     numbers = Numbers()
     plots = Plots(numbers)
     header: dict[str, Any] = {"maps": []}
-    body = KINDS[kind][1](facts, variables, numbers, plots, header)
+    body = KINDS[kind][2](facts, variables, numbers, plots, header)
     header["plots"] = plots.specs
     title = facts.get("title") or _title(origin) or f"gbeam {kind}"
     state = study.state(facts) if kind == "run" else (facts["outcome"], facts["outcome"] == "done")
-    warnings = study.warnings(facts) if kind == "run" else facts.get("warnings", [])
+    warnings = study.warnings(facts) if "motions" in facts else facts.get("warnings", [])
     if warnings:
         body = heading("Warnings") + listed(warnings, "warning") + body
     return _page(title, badge(*state), _subject(kind, origin), body + _origin(origin), header, numbers)

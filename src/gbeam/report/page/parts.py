@@ -60,6 +60,7 @@ def verbatim(text: str) -> str:
     return f"<pre>{escaped(text)}</pre>"
 
 
+_EXPONENTS = str.maketrans("234", "²³⁴")
 Value = Cell | str | float | None  # of a cell
 
 
@@ -88,9 +89,23 @@ def badge(text: str, good: bool) -> str:
     return f'<span class="badge {"good" if good else "bad"}">{escaped(text)}</span>'
 
 
-def plot_place(name: str, title: str) -> str:
-    """Where a plot is drawn."""
-    return f'<figure><figcaption>{escaped(title)}</figcaption><div id="{escaped(name)}"></div></figure>'
+def plot_places(drawn: Iterable[tuple[str, str]]) -> str:
+    """Where plots are drawn, each by its id and title; nothing where there is none."""
+    places = "".join(
+        f'<figure><figcaption>{escaped(title)}</figcaption><div id="{escaped(name)}"></div></figure>'
+        for name, title in drawn
+    )
+    return f'<div class="gbeam-plots">{places}</div>' if places else ""
+
+
+def raised(unit: str) -> str:
+    """A unit with its exponents as they are printed, rad/s² for rad/s^2."""
+    return unit.translate(_EXPONENTS).replace("^", "") if "^" in unit else unit
+
+
+def known(value: float | None) -> float:
+    """A number of JSON, which has null for what is none."""
+    return math.nan if value is None else float(value)
 
 
 def _cell(value: Value, numeric: bool) -> str:
@@ -101,11 +116,12 @@ def _cell(value: Value, numeric: bool) -> str:
             bar = f'<meter class="share" min="0" max="1" value="{min(value.share, 1.0):.3f}"></meter>'
         text = value.text
     elif value is None or isinstance(value, (int, float)):
-        text = number(math.nan if value is None else float(value))
+        text = number(known(value))
     else:
         text = value
     names = " ".join(each for each in (kind, "number" if numeric else "") if each)
-    return f"<td{_class(names)}>{bar}{escaped(text)}</td>"
+    inside = f"{bar}<span>{escaped(text)}</span>" if bar else escaped(text)
+    return f"<td{_class(names)}>{inside}</td>"
 
 
 def _class(names: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from gbeam.report.page.scene import scene
 from gbeam.report.page.series import Numbers
 from gbeam.report.page.steady import shapes
 from gbeam.report.provenance import to_json as origin_json
+from gbeam.results.machine import MachinePlan
 from gbeam.results.provenance import Provenance
 from gbeam.results.result import Result
 from gbeam.results.steady.modal import Modes
@@ -37,6 +39,14 @@ def report_of(result: Result) -> str:
     if found is None:
         raise InputError("result", f"{type(result).__name__} has no report", "print it, or plot it")
     return html(found, variables_of(result), origin_json(result.provenance or Provenance()))
+
+
+def report_of_plans(facts: Mapping[str, Any], plans: Mapping[str, MachinePlan]) -> str:
+    """Return the page of the plans of a scenario's machines, by motion; `facts` as `gbeam plan --json` prints them."""
+    variables = {
+        f"motions/{name}/{key}": values for name, plan in plans.items() for key, values in variables_of(plan).items()
+    }
+    return html(facts, variables)
 
 
 def variables_of(result: Result) -> dict[str, Any]:

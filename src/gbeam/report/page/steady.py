@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.report.page.parts import heading, listed, paragraph, plot_place, table
+from gbeam.report.page.parts import heading, listed, paragraph, plot_places, table
 from gbeam.report.page.scene import shape
 from gbeam.report.page.series import Numbers, Plots
 from gbeam.report.steady.modes import ROUNDING
@@ -24,7 +24,8 @@ def modes_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plot
     base = facts["base"]
     rate = float(np.linalg.norm(list(base["angular_velocity"].values())))
     coupling = "in" if facts["gyroscopic"] else "left out"
-    where = f"{facts['motion']} at {number(facts['time'])} s: {facts['model']}"
+    rate = rate if rate > 1e-9 else 0.0  # a profile's rounding
+    where = f"motion {facts['motion']} at {number(facts['time'])} s, model {facts['model']}"
     parts = [paragraph(f"{where}, base turning at {number(rate)} rad/s, Coriolis coupling {coupling}")]
     growing = [
         f"{each['kind']} along {each['direction']}: grows by {number(each['growth_rate'])} per second"
@@ -43,7 +44,7 @@ def modes_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plot
             for i, each in enumerate(facts["modes"][:6], 1)
         ]
         name = plots.add("Shapes", "displacement, largest component 1", lines, x="position along the beam, m")
-        parts.append(f'<div class="gbeam-plots">{plot_place(name, "Shapes along their main direction")}</div>')
+        parts.append(plot_places([(name, "Shapes along their main direction")]))
     return "".join(parts)
 
 
@@ -64,7 +65,7 @@ def campbell_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: P
         order = np.argsort(at[0])
         lines.append({"label": "crossings", "x": at[0][order], "y": at[1][order], "colour": 1, "points": True})
     name = plots.add("Campbell diagram", "frequency, Hz", lines, x="speed, rad/s")
-    parts = [heading("Campbell diagram"), plot_place(name, f"{facts['motion']}: {facts['model']}")]
+    parts = [heading("Campbell diagram"), plot_places([(name, f"{facts['motion']}: {facts['model']}")])]
     if facts["critical_speed"] is not None:
         parts.append(paragraph(f"the equilibrium is lost at {number(facts['critical_speed'])} rad/s", "bad"))
     parts += [heading("Modes"), tracks_table(facts), heading("Crossings")]

@@ -9,7 +9,8 @@ from typing import Any
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.report import words
 from gbeam.report.page import curves
-from gbeam.report.page.parts import Cell, Value, folded, heading, listed, paragraph, plot_place, table
+from gbeam.report.page.machine import machine_section
+from gbeam.report.page.parts import Cell, Value, folded, heading, known, listed, paragraph, plot_places, table
 from gbeam.report.page.scene import scene
 from gbeam.report.page.series import Numbers, Plots
 from gbeam.results.imitation.verdict import change, percent
@@ -35,11 +36,10 @@ def body(facts: Facts, variables: Mapping[str, Any], numbers: Numbers, plots: Pl
         parts += [heading("Motion"), '<div id="gbeam-viewer"></div>']
     drawn = curves.of_run(facts, motions, variables, plots)
     if drawn:
-        places = "".join(plot_place(name, title) for name, title in drawn)
         hint = _HINT + (_GREY if any(each["accounting"]["not_followed"] for each in facts["comparisons"]) else "")
-        parts += [heading("Histories"), paragraph(hint, "faint"), f'<div class="gbeam-plots">{places}</div>']
+        parts += [heading("Histories"), paragraph(hint, "faint"), plot_places(drawn)]
     parts += [heading("Response"), tips_table(motions), loads_table(motions)]
-    parts += [_machine(name, each) for name, each in motions.items() if "limits" in each]
+    parts += [machine_section(name, each) for name, each in motions.items() if "limits" in each]
     parts += [heading("Accuracy"), _errors(motions)]
     parts += [folded(f"{name}: in words", listed(each["lines"])) for name, each in motions.items()]
     return "".join(parts)
@@ -97,7 +97,7 @@ def _peaks(compared: Facts) -> str:
     rows = []
     for key, pair in compared["peaks"].items():
         label, scale = _QUANTITIES[key]
-        flight, machine, ratio = (_known(pair[name]) for name in ("flight", "machine", "ratio"))
+        flight, machine, ratio = (known(pair[name]) for name in ("flight", "machine", "ratio"))
         if math.isfinite(flight):
             rows.append([label, scale * flight, scale * machine, _change(ratio), pair["time_flight"]])
     head = ("largest", compared["flight"], compared["centrifuge"], "change", "in flight at, s")
@@ -136,8 +136,8 @@ def tips_table(motions: Facts) -> str:
     rows = []
     for name, each in motions.items():
         for axis, peak in each["tip"].items():
-            size, left = (_known(peak.get(key)) for key in ("max_abs", "residual_amplitude"))
-            if size > 1e-9 * max(_known(other["max_abs"]) for other in each["tip"].values()):
+            size, left = (known(peak.get(key)) for key in ("max_abs", "residual_amplitude"))
+            if size > 1e-9 * max(known(other["max_abs"]) for other in each["tip"].values()):
                 rows.append([name, axis, 1e3 * size, peak["time_of_max"], 1e3 * left])
     head = ["motion", "tip along", "largest, mm", "at, s", "residual amplitude, mm"]
     if all(math.isnan(float(row[-1])) for row in rows):
@@ -153,7 +153,7 @@ def loads_table(motions: Facts) -> str:
             loads = each["loads"]
             force, moment = loads["root_force"]["size"], loads["root_moment"]["size"]
             stress = loads.get("stress", {})
-            largest, margin = _known(stress.get("max")), loads.get("margin", {}).get("min")
+            largest, margin = known(stress.get("max")), loads.get("margin", {}).get("min")
             row = [name, force["max_abs"], force["time_of_max"], moment["max_abs"], moment["time_of_max"]]
             rows.append([*row, 1e-6 * largest, stress.get("time_of_max"), margin])
     head = ["motion", "root force, N", "at, s", "root moment, N m", "at, s", "stress, MPa", "at, s", "margin on yield"]
@@ -164,27 +164,11 @@ def loads_table(motions: Facts) -> str:
     return table(head, rows, "Largest loads of the root, and stress anywhere")
 
 
-def _machine(name: str, motion: Facts) -> str:
-    def row(use: Facts) -> list[Value]:
-        limited = use["allowed"] is not None and math.isfinite(use["allowed"])
-        kind = "bad" if use["exceeded"] else ""
-        share = Cell(f"{use['share']:.0%}", kind, use["share"]) if limited else "no limit"
-        what = f"{use['axis']} {use['quantity']}"
-        return [what, use["used"], use["allowed"], use["unit"], share, f"{use['time']:.3f}" if use["used"] else "–"]
-
-    error = motion["tracking_error"]
-    largest, when = words.number(_known(error["max"]), 3), words.number(_known(error["time_of_max"]))
-    followed = f"load followed within {largest} m/s², at {when} s"
-    head = ("", "used", "allowed", "unit", "share", "at, s")
-    rows = map(row, motion["limits"])
-    return heading(f"Machine: {name}") + table(head, rows, "Limits used", words=(0, 3)) + paragraph(followed)
-
-
 def _errors(motions: Facts) -> str:
     rows = []
     for name, motion in motions.items():
         for quantity in ("displacement", "loads", "stress"):
-            parts = [_known(motion["errors"][quantity][key]) for key in ("total", "model", "shapes", "step")]
+            parts = [known(motion["errors"][quantity][key]) for key in ("total", "model", "shapes", "step")]
             if math.isfinite(parts[0]):
                 rows.append([name, quantity, *(words.percent(part) for part in parts)])
     head = ("motion", "of", "total", "of the model", "of too few shapes", "of the time step")
@@ -193,15 +177,9 @@ def _errors(motions: Facts) -> str:
 
 
 def _change(ratio: float | None) -> str:
-    known = _known(ratio)
-    return change(known) if math.isfinite(known) else "–"
+    return change(known(ratio)) if math.isfinite(known(ratio)) else "–"
 
 
-def _percent(share: float | None) -> str:
-    known = _known(share)
-    return percent(known if abs(known) > 5e-5 else 0.0) if math.isfinite(known) else "–"
-
-
-def _known(value: float | None) -> float:
-    """What JSON has no word for is null there."""
-    return math.nan if value is None else float(value)
+def _percent(value: float | None) -> str:
+    share = known(value)
+    return percent(share if abs(share) > 5e-5 else 0.0) if math.isfinite(share) else "–"

@@ -20,13 +20,17 @@ def locate_toml(text: str) -> dict[Path, Place]:
     text : str
         A TOML document that parses. What tree-sitter's grammar does not know is left out.
     """
+    finder = _Finder(text)
+    finder.document(syntax_tree(text.encode()))
+    return finder.places
+
+
+def syntax_tree(code: bytes) -> Node:
+    """The syntax tree of a TOML text."""
     import tree_sitter
     import tree_sitter_toml
 
-    language = tree_sitter.Language(tree_sitter_toml.language())
-    finder = _Finder(text)
-    finder.document(tree_sitter.Parser(language).parse(text.encode()).root_node)
-    return finder.places
+    return tree_sitter.Parser(tree_sitter.Language(tree_sitter_toml.language())).parse(code).root_node
 
 
 class _Finder:
@@ -58,7 +62,7 @@ class _Finder:
                 self.pair((), node)
             elif node.type in ("table", "table_array_element"):
                 path: Path = ()
-                keys = list(_keys(node.named_children[0]))
+                keys = list(keys_of(node.named_children[0]))
                 for i, (name, key) in enumerate(keys):
                     path += (name,)
                     self.note(path, key, key)
@@ -78,7 +82,7 @@ class _Finder:
         if len(inside) != 2:
             return
         key_node, value = inside
-        for name, key in _keys(key_node):
+        for name, key in keys_of(key_node):
             path += (name,)
             self.note(path, key, value)
         self.value(path, value)
@@ -107,12 +111,12 @@ def _inside(node: Node) -> list[Node]:
     return [child for child in node.named_children if child.type not in ("comment", "ERROR")]
 
 
-def _keys(node: Node) -> Iterator[tuple[str, Node]]:
+def keys_of(node: Node) -> Iterator[tuple[str, Node]]:
     """Names in a key, with their nodes; several in a dotted one."""
     text = (node.text or b"").decode()
     if node.type == "dotted_key":
         for child in node.named_children:
-            yield from _keys(child)
+            yield from keys_of(child)
     elif node.type == "bare_key":
         yield text, node
     elif node.type == "quoted_key":

@@ -68,10 +68,11 @@ def _read(text: str) -> Override:
         raise _Refused(f"has more than {NESTING} tables or lists in one another", "shorten the key")
     if not equals or path is None:
         raise _Refused("is not key=value", 'write it such as --set "beam.length=250 mm"')
-    return Override(text, path, _value(value.strip()))
+    return Override(text, path, value_of(value.strip()))
 
 
-def _value(text: str) -> Any:
+def value_of(text: str) -> Any:
+    """A TOML number, boolean, list or inline table where the text reads as one; else the text itself."""
     beyond = excess(text)
     if beyond is not None:
         _, problem, fix = beyond

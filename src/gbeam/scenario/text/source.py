@@ -17,7 +17,7 @@ from gbeam.scenario.text.bounds import excess
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.overrides import Override
 from gbeam.scenario.values.distributions import Distribution
-from gbeam.scenario.values.paths import Path, Place, Span, path_text
+from gbeam.scenario.values.paths import Path, Place, Span, path_text, written_at
 from gbeam.scenario.values.suggest import closest
 
 Mark = Literal["value", "key"]
@@ -59,13 +59,7 @@ class Source:
 
     def raw(self, path: Path) -> Any:
         """Return what is written at `path`, None if nothing is."""
-        node: Any = self.data
-        for step in path:
-            try:
-                node = node[step]
-            except (KeyError, IndexError, TypeError):
-                return None
-        return node
+        return written_at(self.data, path)
 
     def diagnostic(self, path: Path, message: str, hint: str = "", mark: Mark = "value") -> Diagnostic:
         """Put a message at the place of `path`: in the file, or in the override that wrote it."""

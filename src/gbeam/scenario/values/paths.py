@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from typing import Any
 
 Path = tuple[str | int, ...]
 
@@ -45,3 +46,13 @@ def parse_path(text: str) -> Path | None:
             return None
         path += (match[1], *(int(index) for index in re.findall(r"\d+", match[2])))
     return path
+
+
+def written_at(data: Any, path: Path) -> Any:
+    """Return what a parsed scenario holds at `path`, None if nothing."""
+    for step in path:
+        try:
+            data = data[step]
+        except (LookupError, TypeError):
+            return None
+    return data

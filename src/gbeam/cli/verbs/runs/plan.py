@@ -10,8 +10,8 @@ from cyclopts import Parameter
 
 from gbeam.cli.inputs import number, signed
 from gbeam.cli.invocation import command
-from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, ScenarioFile
-from gbeam.cli.outputs import list_files, show, show_table
+from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, Report, ScenarioFile
+from gbeam.cli.outputs import folder_of, list_files, show, show_table
 from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.cli.terminal.failures import FAILED, complain
 from gbeam.errors import InputError
@@ -30,15 +30,17 @@ def plan(
         str | None, Parameter(help='Sample time of the commands, such as "5 ms"; else the scenario\'s, else 5 ms.')
     ] = None,
     ignore_limits: IgnoreLimits = False,
+    report: Report = False,
 ) -> int:
     """Plan the axis motions of the centrifuges of a scenario; it needs no beam.
 
     Prints what the axes do, what that uses of the machine's limits, how well the load is followed and where it cannot
-    be. With --out also writes the axis motions at the controller's sample time (commands_NAME.csv and .mat) and plots.
-    Exit status: 0 done, 1 a limit is exceeded, 2 the input is wrong.
+    be. With --out also writes the axis motions at the controller's sample time (commands_NAME.csv and .mat) and plots,
+    with --report plan.html. Exit status: 0 done, 1 a limit is exceeded, 2 the input is wrong.
     """
-    if out is not None:
-        refuse_unwritable(out)
+    folder = folder_of(out, scenario, default=report)
+    if folder is not None:
+        refuse_unwritable(folder)
 
     from gbeam.scenario import build_machines, load_environments, provenance, schema
 
@@ -51,7 +53,7 @@ def plan(
         raise InputError("--sample", f"is {sample}", 'give a positive time, such as "5 ms"')
 
     from gbeam.analysis.imitation import plan as analysis
-    from gbeam.report.machine import plan as report
+    from gbeam.report.machine import plan as words
 
     origin = provenance(given, command())
     tables = {name: table for name, table in given.motion.items() if isinstance(table, schema.Centrifuge)}
@@ -71,12 +73,18 @@ def plan(
             for kind, draw in figures(each, given.title).items():
                 save(draw(), hidden, f"{kind}_{name}", "gbeam plan")
 
+        if report:
+            from gbeam.report.page.result import report_of_plans
+
+            facts = signed(words.to_json(given.title, plans.values()), origin)
+            (hidden / "plan.html").write_text(report_of_plans(facts, plans), encoding="utf-8")
+
     if not json:
-        show_table(report.table(given.title, plans.values()))
-    files = [] if out is None else publish(out, make)
+        show_table(words.table(given.title, plans.values()))
+    files = [] if folder is None else publish(folder, make)
     if json:
-        show("", signed(report.to_json(given.title, plans.values(), files), origin), json)
-    list_files(None if json else out, files)
+        show("", signed(words.to_json(given.title, plans.values(), files), origin), json)
+    list_files(None if json else folder, files)
     broken = [each for each in plans.values() if each.outcome != "done"]
     for each in broken:
         complain(f"motion.{each.name} {each.outcome}: {each.message}" + (" (allowed)" if ignore_limits else ""))

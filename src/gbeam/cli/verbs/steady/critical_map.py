@@ -19,6 +19,7 @@ def critical_map(
     upper: float | None,
     out: Path | None,
     json: bool,
+    report: bool,
 ) -> int:
     """Print and write the map; the arguments are those of :func:`~.critical_speed.critical_speed`."""
     name, chosen = given.motion(motion, kind="hub")
@@ -30,20 +31,24 @@ def critical_map(
         raise InputError("--positions", f"has {max(places):g} m, off the beam", f"give 0 to {length:g} m")
 
     from gbeam.analysis.vibration.stability import critical_speed_map
-    from gbeam.report.steady import critical as report
+    from gbeam.report.steady import critical as words
 
     with Watch(), given.placing():
         critical = critical_speed_map(case.beam, case.model, chosen, kilograms, places, upper, name=name)
-    facts = given.signed(report.map_json(critical))
+    facts = given.signed(words.map_json(critical))
 
     def make(hidden: Path) -> None:
         from gbeam.plots import save
 
         write_json(hidden / "critical_speed.json", facts)
-        (hidden / "critical_speed.csv").write_text(report.map_csv(critical), encoding="utf-8")
+        (hidden / "critical_speed.csv").write_text(words.map_csv(critical), encoding="utf-8")
+        if report:
+            from gbeam.report.page.document import html
+
+            (hidden / "critical_speed.html").write_text(html(facts, {}), encoding="utf-8")
         save(critical.plot(title=case.title).figure, hidden, "critical_speed", "gbeam critical-speed")
 
     if out is not None:
         publish(out, make)
-    show(report.map_text(critical), facts, json)
+    show(words.map_text(critical), facts, json)
     return 0

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from gbeam.cli.inputs import read
-from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile
-from gbeam.cli.outputs import show, write
+from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile
+from gbeam.cli.outputs import folder_of, show, write
 from gbeam.cli.terminal.console import Watch
 
 if TYPE_CHECKING:
@@ -22,24 +22,26 @@ def static(
     overrides: Overrides = (),
     out: Out = None,
     json: Json = False,
+    report: Report = False,
 ) -> int:
     """Where the beam rests relative to its base at one time of the motions, and what its sections carry.
 
-    Without --motion for all of them. With --out also writes static.json and plots of shapes and loads. Exit status:
-    0 done, 1 there is no equilibrium, 2 the input is wrong.
+    Without --motion for all of them. With --out also writes static.json and plots of shapes and loads, with
+    --report static.html. Exit status: 0 done, 1 there is no equilibrium, 2 the input is wrong.
     """
-    given = read("static", scenario, overrides, out)
+    folder = folder_of(out, scenario, default=report)
+    given = read("static", scenario, overrides, folder)
     chosen = dict(given.case.motions) if motion is None else dict([given.motion(motion)])
     time = given.time(at)
 
     from gbeam.analysis.equilibrium.static import static
-    from gbeam.report.steady import deflection as report
+    from gbeam.report.steady import deflection as words
 
     with Watch(), given.placing():
         structure = given.structure()
         deflections = [static(structure, each, time, name=name) for name, each in chosen.items()]
     title = given.case.title
-    facts = given.signed(report.to_json(title, deflections))
+    facts = given.signed(words.to_json(title, deflections))
 
     def figures() -> dict[str, Figure]:
         from gbeam.plots import plot_static
@@ -47,6 +49,6 @@ def static(
         loads = {f"loads_{each.motion}": each.plot("loads", title=title).figure for each in deflections}
         return {"static": plot_static(deflections, title), **loads}
 
-    write(out, "static", facts, figures)
-    show(report.text(deflections), facts, json)
+    write(folder, "static", facts, figures, report=report)
+    show(words.text(deflections), facts, json)
     return 0

@@ -1,0 +1,214 @@
+"""The form of a scenario: every key of the schema, with what is written there and what the schema says of it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from functools import cache
+from typing import Any
+
+from gbeam.scenario import json_schema
+from gbeam.scenario.text.overrides import value_of
+from gbeam.scenario.text.revise import toml
+from gbeam.scenario.values.paths import Path, path_text, written_at
+
+Node = dict[str, Any]
+_TAGS = ("kind", "shape", "profile")  # keys that say which of several tables one is
+LISTED = 40  # tables of a list that the form shows
+LONGEST = 1000  # characters of a value that the form shows; longer ones are edited as text
+
+
+def form(data: Any) -> list[Node]:
+    """Return the entries of the whole scenario.
+
+    Parameters
+    ----------
+    data : dict
+        A parsed scenario, sound or not.
+
+    Returns
+    -------
+    list of dict
+        Each with its `path`, `key`, `help`, and whether it is `required` and `written`. One of kind
+
+        - ``value`` has its text, its `default` and `example`, the SI `unit` of a bare number, and the `options` that it
+          is one of;
+        - ``table`` has the entries `inside`, and the `choice` among the `options` where it is one of several tables;
+        - ``list`` and ``named`` (tables by names that the user gives) have tables `inside`, and the `options` of a new
+          one.
+
+        A value that may be a table too has the `options` of that as `tables`.
+    """
+    return _inside(_schema(), data if isinstance(data, dict) else {}, ())
+
+
+def known_at(path: Path, data: Any) -> bool:
+    """Tell whether the schema has a value at a path: a key that may hold anything but tables."""
+    schema = _schema_at(path, data)
+    tables = _tables(schema)
+    return any(each not in tables and not _names_tables(each) for each in _alternatives(schema)) and bool(schema)
+
+
+def value_at(path: Path, data: Any, text: str) -> Any:
+    """Read what is typed into a field as `--set` does; text alone where the schema has nothing else."""
+    kinds = {each.get("type", "string") for each in _alternatives(_schema_at(path, data))}
+    return text if kinds == {"string"} else value_of(text)
+
+
+def new_table(path: Path, data: Any, choice: str) -> dict[str, Any]:
+    """Return a table of a kind, with what one of another kind that stands there has in common with it.
+
+    Raises
+    ------
+    KeyError
+        If the schema has no such table there.
+    """
+    table = {_tag(each)[1]: each for each in _tables(_schema_at(path, data))}[choice]
+    before = written_at(data, path)
+    kept = before if isinstance(before, dict) else {}
+    key = _tag(table)[0]
+    return ({key: choice} if key else {}) | {
+        name: value for name, value in kept.items() if name in table["properties"] and name != key
+    }
+
+
+@cache
+def _schema() -> Node:
+    schema: Node = json.loads(json_schema(distributions=False))
+    return schema
+
+
+def _inside(table: Node, data: dict[str, Any], path: Path) -> list[Node]:
+    """The entries of a table, known ones first."""
+    tag = _tag(table)[0]
+    required = table.get("required", ())
+    known = table["properties"]
+    made = [_entry(schema, data, (*path, key), required=key in required) for key, schema in known.items() if key != tag]
+    return made + [_entry({}, data, (*path, key), required=False) for key in data if key not in known]
+
+
+def _entry(schema: Node, around: Any, path: Path, *, required: bool) -> Node:
+    key = path[-1]
+    written = key in around if isinstance(around, dict) else True
+    raw = around[key] if written else None
+    made: Node = {"path": path_text(path), "key": str(key), "required": required, "written": written}
+    made["help"] = schema.get("description", "")
+    alternatives = [*_alternatives(schema)]
+    listed = next((each["items"] for each in alternatives if "items" in each and _tables(each["items"])), None)
+    named = next((each["additionalProperties"] for each in alternatives if _names_tables(each)), None)
+    tables = _tables(schema)
+    if named is not None:
+        inside = raw if isinstance(raw, dict) else {}
+        tabled = [_entry(named, inside, (*path, name), required=False) for name in inside]
+        return made | {"kind": "named", "options": _words(named), "inside": tabled}
+    if listed is not None and (raw is None or isinstance(raw, list)):
+        count = len(raw or ())
+        tabled = [_entry(listed, raw, (*path, i), required=False) for i in range(min(count, LISTED))]
+        return made | {"kind": "list", "options": _words(listed), "inside": tabled, "count": count}
+    if tables and (isinstance(raw, dict) or len(tables) == len(alternatives)):
+        return made | _table(schema, tables, raw, path)
+    return made | _value(schema, alternatives, raw) | {"tables": _words(schema)}
+
+
+def _table(schema: Node, tables: list[Node], raw: Any, path: Path) -> Node:
+    table = _table_of(tables, raw)
+    inside = [] if table is None or not isinstance(raw, dict) else _inside(table, raw, path)
+    choice = "" if table is None or not isinstance(raw, dict) else _tag(table)[1]
+    about = "" if table is None or len(tables) == 1 else table.get("description", "")
+    return {"kind": "table", "options": _words(schema), "choice": choice, "about": about, "inside": inside}
+
+
+def _value(schema: Node, alternatives: list[Node], raw: Any) -> Node:
+    """What a field shows: text as it is, anything else as TOML."""
+    shown = "" if raw is None else raw if isinstance(raw, str) else toml(raw)
+    default = schema.get("default")
+    words = [str(word) for each in alternatives for word in _literals(each)]
+    only = words if len(words) and all([*_literals(each)] for each in alternatives) else []
+    examples = (example for each in alternatives for example in each.get("examples", ()))
+    return {
+        "kind": "value",
+        "value": shown if len(shown) <= LONGEST else "",
+        "long": len(shown) > LONGEST,
+        "default": "" if default in (None, "", [], {}) else default if isinstance(default, str) else toml(default),
+        "example": next(examples, ""),
+        "unit": next((each["x-unit"] for each in _quantities(schema)), ""),
+        "options": only,
+    }
+
+
+def _literals(schema: Node) -> Iterator[str]:
+    if schema.get("type") == "boolean":
+        yield from ("true", "false")
+    yield from schema.get("enum", [schema["const"]] if "const" in schema else [])
+
+
+def _quantities(schema: Node) -> Iterator[Node]:
+    if "x-quantity" in schema:
+        yield schema
+    for each in (*schema.get("anyOf", ()), *schema.get("oneOf", ()), *schema.get("prefixItems", ())):
+        yield from _quantities(each)
+    if "items" in schema:
+        yield from _quantities(schema["items"])
+
+
+def _words(schema: Node) -> list[str]:
+    """The words of the tables that one may choose of; one that is empty where there is but one table."""
+    return [_tag(each)[1] for each in _tables(schema)]
+
+
+def _tables(schema: Node) -> list[Node]:
+    return [each for each in _alternatives(schema) if "properties" in each]
+
+
+def _table_of(tables: list[Node], raw: Any) -> Node | None:
+    """The table that is written, by its word; without one, that which may leave the word out."""
+    if len(tables) == 1:
+        return tables[0]
+    written = raw if isinstance(raw, dict) else {}
+    for table in tables:
+        key, word = _tag(table)
+        if written.get(key, table["properties"][key].get("default")) == word:
+            return table
+    return None
+
+
+def _tag(table: Node) -> tuple[str, str]:
+    """Key and word by which a table is told from others at its place; empty where it is the only one."""
+    properties = table["properties"]
+    words = ((key, properties.get(key, {}).get("const")) for key in _TAGS)
+    return next(((key, word) for key, word in words if word), ("", ""))
+
+
+def _names_tables(schema: Node) -> bool:
+    inner = schema.get("additionalProperties")
+    return isinstance(inner, dict) and bool(_tables(inner))
+
+
+def _alternatives(schema: Node) -> Iterator[Node]:
+    """What may stand at a place, one by one, null apart."""
+    if "$ref" in schema:
+        yield from _alternatives(_schema()["$defs"][schema["$ref"].rpartition("/")[2]])
+    elif "anyOf" in schema or "oneOf" in schema:
+        for each in (*schema.get("anyOf", ()), *schema.get("oneOf", ())):
+            yield from _alternatives(each)
+    elif schema.get("type") != "null":
+        yield schema
+
+
+def _schema_at(path: Path, data: Any) -> Node:
+    """The schema of what may stand at a path; empty where the schema has no such key."""
+    schema, raw = _schema(), data
+    for step in path:
+        tables = _tables(schema)
+        table = _table_of(tables, raw) if tables else None
+        alternatives = [*_alternatives(schema)]
+        if isinstance(step, int):
+            schema = next((each["items"] for each in alternatives if "items" in each), {})
+        elif table is not None:
+            schema = table["properties"].get(step, {})
+        else:
+            named = next((each for each in alternatives if "additionalProperties" in each), {})
+            inner = named.get("additionalProperties")
+            schema = inner if isinstance(inner, dict) else {}
+        raw = written_at(raw, (step,))
+    return schema
