@@ -53,3 +53,12 @@ def test_refusals(kind: type) -> None:
         with pytest.raises(InputError) as caught:
             kind(*arguments)
         assert caught.value.where == where
+
+
+def test_integral_of_the_smooth_step() -> None:
+    """Half a level times the duration over the slew, the level times the time after; in between, by quadrature."""
+    step = SmoothStep(level=3.0, duration=30.0, start=2.0)
+    times = np.array([0.0, 2.0, 9.0, 20.0, 32.0, 40.0])
+    expected = [quad(lambda t: float(step(t)), 0.0, time, points=[2.0, 32.0])[0] for time in times]
+    np.testing.assert_allclose(step.integral(times), expected, rtol=1e-12, atol=1e-12)
+    assert step.integral(40.0) == pytest.approx(3.0 * (15.0 + 8.0), rel=1e-14)

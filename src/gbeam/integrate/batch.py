@@ -52,40 +52,53 @@ class Run:
         if isinstance(self.equations, NonlinearEquations):
             leaves, form = jax.tree.flatten(self.equations.residual)
             return "nonlinear", form, *(np.shape(leaf) for leaf in leaves), len(steps), steps.anew.tobytes()
-        if self.equations.terms is None or (self.scheme.ends and steps.anew.any()):
+        if self.terms is None or (self.scheme.ends and steps.anew.any()):
             return None
         return "linear", len(self.q), len(steps), self.parts
 
     @cached_property
-    def terms(self) -> LinearTerms:
-        """Those of linear equations."""
-        assert isinstance(self.equations, LinearEquations) and self.equations.terms is not None
-        return self.equations.terms()
+    def terms(self) -> LinearTerms | None:
+        """Those of linear equations that have them."""
+        terms = getattr(self.equations, "terms", None)
+        return None if terms is None else terms()
 
     @cached_property
-    def features(self) -> Array:
-        """What linear equations depend on, at the first instant, then at every stage of the steps, (1 + t s, k).
+    def inputs(self) -> Any:
+        """What drives linear equations, at the first instant, then at every stage of the steps, arrays (1 + t s, ...).
 
         Where the last stage is no end of the step, also there.
         """
-        assert isinstance(self.equations, LinearEquations) and self.equations.features is not None
         steps, offsets = self.steps, self.scheme.offsets
         at = [steps.times(offset) for offset in offsets] + ([] if self.scheme.ends else [steps.end])
-        times = np.append(steps.first[:1], np.stack(at, axis=1))
-        return self.equations.features(self.equations.drive(times))
+        return self.equations.drive(np.append(steps.first[:1], np.stack(at, axis=1)))
+
+    @property
+    def at_times(self) -> Any:
+        """What drives them at the result's times; None where that is not known, for it jumps at the first."""
+        if self.steps.first[0] != self.steps.begin[0]:
+            return None
+        kept = np.append(True, self.steps.kept)
+        return jax.tree.map(lambda leaf: leaf[:: lanes.stages(self.scheme)][kept], self.inputs)
+
+    @cached_property
+    def features(self) -> Array:
+        """What linear equations depend on of that, (1 + t s, k)."""
+        assert isinstance(self.equations, LinearEquations) and self.equations.features is not None
+        return self.equations.features(self.inputs)
 
     @cached_property
     def parts(self) -> lanes.Parts:
         """Of C, K and F: which features have a term that is not zero, and are not zero all the time."""
+        assert self.terms is not None
         driven = np.any(self.features, axis=0)
-        alive = [np.any(part.reshape(len(part), -1), axis=1) & driven for part in lanes.each(self.terms)]
-        c, k, f = (tuple(np.flatnonzero(which).tolist()) for which in alive)
+        c, k, f = (tuple(np.flatnonzero(driven & some).tolist()) for some in self.terms.nonzero)
         return c, k, f
 
     @property
     def alive(self) -> LinearTerms:
         """The terms of these features."""
-        return LinearTerms(*(term[list(part)] for term, part in zip(lanes.each(self.terms), self.parts, strict=True)))
+        assert self.terms is not None
+        return LinearTerms(*(term[list(part)] for term, part in zip(self.terms.each, self.parts, strict=True)))
 
 
 def integrate_together(runs: Sequence[Run]) -> list[Trajectory | None]:
@@ -118,16 +131,17 @@ def _linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     inverse = np.moveaxis(np.linalg.inv(np.moveaxis(mass, -1, 0)), 0, -1)
     qdd = lanes.accelerations(inverse, terms, features[0], parts, q, qd)
     z = np.einsum("bmk,knb->mnb", scheme.tableau(lengths[0]).first, np.stack([q, qd, qdd]))
-    pieces = [[x[None] for x in (q, qd, qdd)]]
+    histories = np.empty((3, len(runs), count + 1, len(q)))
+    histories[:, :, 0] = np.moveaxis(np.stack([q, qd, qdd]), -1, 1)
     features = features[1:].reshape(count, stages, *features.shape[1:])
     for begin in range(0, count, lanes.STEPS):
         # The last piece is filled, so that one program serves every duration.
         chosen, those = np.minimum(np.arange(begin, begin + lanes.STEPS), count - 1), min(lanes.STEPS, count - begin)
         given = mass, inverse, terms, scheme.unit, z, lengths[chosen], features[chosen], those
         z, piece = lanes.steps(*given, parts=parts, ends=scheme.ends)
-        pieces.append([np.asarray(x)[:those] for x in piece])
-    q, qd, qdd = (np.ascontiguousarray(np.moveaxis(np.concatenate(x), -1, 0)) for x in zip(*pieces, strict=True))
-    return (q, qd, qdd), np.ones(len(runs), dtype=bool)
+        for whole, part in zip(histories, piece, strict=True):
+            whole[:, begin + 1 : begin + 1 + those] = np.asarray(part)[:, :those]
+    return (histories[0], histories[1], histories[2]), np.ones(len(runs), dtype=bool)
 
 
 _accelerations = jax.jit(jax.vmap(newton.accelerations))

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
+
+import numpy as np
 
 from gbeam.arrays.tree import record
 
@@ -25,6 +28,17 @@ class LinearTerms:
     velocity: Array
     stiffness: Array
     force: Array
+
+    @property
+    def each(self) -> tuple[Array, Array, Array]:
+        """Those of C, of K and of F."""
+        return self.velocity, self.stiffness, self.force
+
+    @cached_property
+    def nonzero(self) -> tuple[Array, Array, Array]:
+        """Which of them are not zero, (k,) each."""
+        c, k, f = (np.any(np.reshape(part, (len(part), -1)), axis=1) for part in self.each)
+        return c, k, f
 
 
 @dataclass(frozen=True, eq=False)

@@ -35,7 +35,7 @@ def steps(
     *,
     parts: Parts,
     ends: bool,
-) -> tuple[Array, tuple[Array, Array, Array]]:
+) -> tuple[Array, tuple[Array, ...]]:
     """Steps of b runs from z (m, n, b).
 
     Parameters
@@ -59,13 +59,13 @@ def steps(
 
     Returns
     -------
-    z after them, and q, q̇, q̈ at their ends, (t, n, b) each
+    z after them, and q, q̇, q̈ at their ends, (b, t, n) each
     """
 
     def step(z: Array, h: Array, phi: Array) -> tuple[Array, tuple[Array, Array, Array]]:
         t = _tableau(unit, h)
         stages, (_, n, b) = len(t.c_q), z.shape
-        c, k, f = ([_sum(of, at, chosen) for at in phi] for of, chosen in zip(each(terms), parts, strict=True))
+        c, k, f = ([_sum(of, at, chosen) for at in phi] for of, chosen in zip(terms.each, parts, strict=True))
         q0, v0 = _combined(t.w_q, z), _combined(t.w_v, z)
         rows = []
         for i in range(stages):
@@ -84,7 +84,8 @@ def steps(
         return z, tuple(jax.lax.dynamic_update_index_in_dim(a, b, i, 0) for a, b in zip(made, new, strict=True))
 
     made = (jnp.zeros((len(lengths), *z.shape[1:])),) * 3
-    return jax.lax.fori_loop(0, count, turn, (z, made))
+    z, made = jax.lax.fori_loop(0, count, turn, (z, made))
+    return z, tuple(jnp.moveaxis(x, -1, 0) for x in made)
 
 
 def eliminated(rows: Array) -> Array:
@@ -102,11 +103,6 @@ def eliminated(rows: Array) -> Array:
     return jnp.stack(x)
 
 
-def each(terms: LinearTerms) -> tuple[Array, Array, Array]:
-    """Those of C, of K and of F."""
-    return terms.velocity, terms.stiffness, terms.force
-
-
 def stages(scheme: Scheme) -> int:
     """At how many times of a step its features are read."""
     return len(scheme.offsets) + (not scheme.ends)
@@ -114,7 +110,7 @@ def stages(scheme: Scheme) -> int:
 
 def accelerations(inverse: Array, terms: LinearTerms, features: Array, parts: Parts, q: Array, qd: Array) -> Array:
     """q̈ (n, b) that the equations demand at features (k, b)."""
-    c, k, f = (_sum(of, features, chosen) for of, chosen in zip(each(terms), parts, strict=True))
+    c, k, f = (_sum(of, features, chosen) for of, chosen in zip(terms.each, parts, strict=True))
     return _times(inverse, f - _times(k, q) - _times(c, qd))
 
 

@@ -103,6 +103,8 @@ class Steps:
 
     def times(self, offset: float) -> Floats:
         """Times a share `offset` of the way through the steps, s."""
+        if offset == 1.0:
+            return self.last
         return np.clip(self.begin + offset * self.length, self.first, self.last)
 
     @property

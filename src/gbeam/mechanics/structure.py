@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.errors import InputError
 from gbeam.mechanics.damping import damping_matrix, rest_modes
@@ -220,6 +220,11 @@ class Structure:
     def traced(self) -> bool:
         """Whether JAX traces its values, which then have no numbers to decide anything by."""
         return is_jax(self.coefficients.mass)
+
+    @cached_property
+    def holds_jax(self) -> bool:
+        """Whether any array of it is JAX's, or traced by it."""
+        return holds_jax(self)
 
     @cached_property
     def equations(self) -> Coefficients | Complete:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from gbeam.mechanics.equations.linear import Coefficients
+from gbeam.numerics.solvers.eigen import positive_definite
 from gbeam.results.response import BaseMotion
 
 Array = Any
 _BLOCK = 2000  # times whose stiffness is looked at together
+_ROW, _COLUMN = np.tril_indices(3, -1)
 
 
 def first_loss(coefficients: Coefficients, time: Array, base: BaseMotion) -> tuple[float, float] | None:
@@ -23,7 +26,7 @@ def first_loss(coefficients: Coefficients, time: Array, base: BaseMotion) -> tup
     doubtful = np.flatnonzero(_bound(coefficients, base) >= 1.0)
     for i in range(0, len(doubtful), _BLOCK):
         block = doubtful[i : i + _BLOCK]
-        if _all_definite(coefficients, base, block):
+        if positive_definite(_stiffness(coefficients, base, block)):
             continue
         lost = np.flatnonzero(lowest_over_time(coefficients, base, block) < 0)
         if lost.size:
@@ -31,35 +34,26 @@ def first_loss(coefficients: Coefficients, time: Array, base: BaseMotion) -> tup
     return None
 
 
-def _scale(c: Coefficients) -> Array:
-    """L⁻¹ with K_e = L Lᵀ: what measures a stiffness against the elastic one."""
-    return np.linalg.inv(np.linalg.cholesky(c.stiffness))
+@lru_cache(maxsize=8)
+def _shares(c: Coefficients) -> tuple[Array, Array]:
+    """What a unit of each term takes of the elastic stiffness at most, (9,): of either sign; (3,): of squared rates."""
+    scale = np.linalg.inv(np.linalg.cholesky(c.stiffness))  # measures a stiffness against the elastic one
+    terms = np.concatenate([c.k_a, c.k_al, c.k_ww[_ROW, _COLUMN], c.k_ww[range(3), range(3)]])
+    shares = np.linalg.eigvalsh(scale @ (terms + np.swapaxes(terms, 1, 2)) @ scale.T / 2)
+    return np.abs(shares[:9]).max(axis=1), np.maximum(-shares[9:, 0], 0.0)
 
 
 def _bound(c: Coefficients, base: BaseMotion) -> Array:
     """An upper bound of what the base's motion takes of the elastic stiffness, (t,)."""
-    scale, (row, column) = _scale(c), np.tril_indices(3, -1)
-    terms = np.concatenate([c.k_a, c.k_al, c.k_ww[row, column], c.k_ww[range(3), range(3)]])
-    shares = np.linalg.eigvalsh(scale @ (terms + np.swapaxes(terms, 1, 2)) @ scale.T / 2)
-    either, softened = np.abs(shares[:9]).max(axis=1), np.maximum(-shares[9:, 0], 0.0)
+    either, softened = _shares(c)
     w = base.w_WB_B
-    across = np.abs(np.concatenate([base.a_WO_B, base.alpha_WB_B, 2 * w[:, row] * w[:, column]], axis=1))
+    across = np.abs(np.concatenate([base.a_WO_B, base.alpha_WB_B, 2 * w[:, _ROW] * w[:, _COLUMN]], axis=1))
     return np.asarray(across @ either + w**2 @ softened)
 
 
-def _symmetric(c: Coefficients, base: BaseMotion, times: Array) -> Array:
-    """Twice the symmetric part of K at some of the times, (t, n, n)."""
-    _, k, _ = c.at(base.a_WO_B[times], base.w_WB_B[times], base.alpha_WB_B[times])
-    return k + np.swapaxes(k, -1, -2)
-
-
-def _all_definite(c: Coefficients, base: BaseMotion, times: Array) -> bool:
-    """Whether K is positive definite at all of the times: by factors, which cost a tenth of the eigenvalues."""
-    try:
-        np.linalg.cholesky(_symmetric(c, base, times))
-    except np.linalg.LinAlgError:
-        return False
-    return True
+def _stiffness(c: Coefficients, base: BaseMotion, times: Array) -> Array:
+    """K at some of the times, (t, n, n)."""
+    return np.asarray(c.at(base.a_WO_B[times], base.w_WB_B[times], base.alpha_WB_B[times])[1])
 
 
 def lowest_over_time(c: Coefficients, base: BaseMotion, times: Array) -> Array:
@@ -68,7 +62,8 @@ def lowest_over_time(c: Coefficients, base: BaseMotion, times: Array) -> Array:
     The antisymmetric part of K, from the angular acceleration, stores no energy and is left out.
     """
     scale = np.linalg.inv(np.linalg.cholesky(c.mass))
-    return np.linalg.eigvalsh(scale @ _symmetric(c, base, times) @ scale.T / 2)[..., 0]
+    k = _stiffness(c, base, times)
+    return np.linalg.eigvalsh(scale @ (k + np.swapaxes(k, -1, -2)) @ scale.T / 2)[..., 0]
 
 
 def _between(c: Coefficients, time: Array, base: BaseMotion, i: int) -> tuple[float, float]:

@@ -10,7 +10,7 @@ from gbeam.arrays.namespace import is_traced, namespace
 from gbeam.errors import ComputationError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
-from gbeam.numerics.solvers.eigen import symmetric_modes
+from gbeam.numerics.solvers.eigen import positive_definite, symmetric_modes
 
 Array = Any
 _ITERATIONS, _TRACED = 30, 8  # of Newton's method; where no number says that it has converged
@@ -67,7 +67,7 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
         return Equilibrium(jnp.linalg.solve(stiffness, force), True)
     q = _solved(np, stiffness, force)
     if np.isfinite(q).all():
-        return Equilibrium(q, lowest_stiffness(c.mass, stiffness)[0] > 0)
+        return Equilibrium(q, positive_definite(stiffness))
     raise ComputationError(
         "not converged",
         f"no relative equilibrium: the stiffness is singular, or the base's motion not finite; "
@@ -94,7 +94,7 @@ def _along_a_path(structure: Structure, base: Base, values: Array | None) -> Equ
                 f"no relative equilibrium beyond {reached:.4g} of the load: the beam buckles or diverges there; "
                 f"the rate is {_rate(base):.4g} rad/s",
             )
-    return Equilibrium(q, bool(np.linalg.eigvalsh(stiffness + stiffness.T)[0] > 0))
+    return Equilibrium(q, positive_definite(stiffness))
 
 
 def _newton(

@@ -21,6 +21,7 @@ from gbeam.analysis.response.simulation import (
 from gbeam.analysis.response.steps.stepping import scheme_of
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
+from gbeam.integrate.driver import Trajectory
 from gbeam.integrate.steps import fitted
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
@@ -119,7 +120,7 @@ def _posed(
 
     structure.require_damping("the response")
     motion = motion.over(settings.start, settings.start + settings.duration)
-    if holds_jax(structure, motion):
+    if structure.holds_jax or holds_jax(motion):
         raise InputError("simulate_batch", "is given what JAX traces", "map simulate over it with jax.vmap")
     coarse, step, before, after = planned_steps(structure, motion, settings)
     if before or after:
@@ -142,10 +143,17 @@ def _together(queue: list[_Case], settings: ResponseSettings, together: int) -> 
     filling = [queue[-1].run] * (together - len(queue))
     trajectories = integrate_together([case.run for case in queue] + filling)
     for case, trajectory in zip(queue, trajectories, strict=False):
-        structure, motion, problem = case.structure, case.motion, case.problem
-        # One that leaves what its model can mean stops there.
-        if trajectory is None or steps_within(structure, trajectory.q[:, problem.first :]) is not None:
-            yield case.index, simulate(structure, motion, settings)
-            continue
-        runs, step = (None, trajectory, None), settings.duration / (len(trajectory.time) - 1)
-        yield case.index, response_of(structure, motion, settings, problem, runs, "", step, StepErrors(), 1)
+        yield case.index, _response(case, trajectory, settings)
+
+
+def _response(case: _Case, trajectory: Trajectory | None, settings: ResponseSettings) -> Response:
+    structure, motion, problem = case.structure, case.motion, case.problem
+    if trajectory is not None:
+        moved = np.asarray(structure.displacement(trajectory.q[:, problem.first :]))
+        if steps_within(structure, moved) is None:
+            base, _ = (case.run.at_times if structure.linear and not motion.free else None) or (None, None)
+            runs, step = (None, trajectory, None), settings.duration / (len(trajectory.time) - 1)
+            given = structure, motion, settings, problem, runs, "", step, StepErrors(), 1
+            return response_of(*given, base=base, moved=moved)
+    # One that leaves what its model can mean stops there.
+    return simulate(structure, motion, settings)

@@ -71,7 +71,7 @@ def problem_of(structure: Structure, motion: Motion, start: float, initial: Init
             now, loads = inputs
             return c.features(now.a_WO_B, now.w_WB_B, now.alpha_WB_B, loads)
 
-        return Problem(LinearEquations(c.mass, matrices, drive, c.terms, features), q, qd, 0, stable)
+        return Problem(LinearEquations(c.mass, matrices, drive, lambda: c.terms, features), q, qd, 0, stable)
     return Problem(NonlinearEquations(OnBase(structure.equations), drive), q, qd, 0, stable)
 
 

@@ -23,6 +23,7 @@ from gbeam.mechanics.influence import influence
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
+from gbeam.motion.bases.base import Base
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
 from gbeam.results.machine import AxesResult
@@ -46,26 +47,33 @@ def response_of(
     stride: int,
     *,
     axes_of: Callable[[Any, Floats], AxesResult | None] = axes_result,
+    base: Base | None = None,
+    moved: Array | None = None,
 ) -> Response:
-    """Sample spin-up, flight and spin-down on the coarse grid and describe them; peaks are of the flight's times."""
+    """Sample spin-up, flight and spin-down on the coarse grid and describe them; peaks are of the flight's times.
+
+    Of a flight alone, sampled at every step, the `base` and the stations' displacement, `moved`, may be known before.
+    """
     up, trajectory, down = runs
     every, flight = joined(up, trajectory, down, stride)
     last = trajectory if down is None else down
     traced = is_jax(trajectory.q)
     beam = slice(problem.first, None)
-    fine = structure.displacement(trajectory.q[:, beam])
+    fine = structure.displacement(trajectory.q[:, beam]) if moved is None else moved
     peaks = displacement_peaks(structure, trajectory, problem.first, fine, settings.residual_from)
 
-    def at(of: Trajectory, steps: Any) -> tuple[tuple[Any, ...], BaseMotion, HubResult | None, Loads | None]:
+    def at(
+        of: Trajectory, steps: Any, known: Base | None = None
+    ) -> tuple[tuple[Any, ...], BaseMotion, HubResult | None, Loads | None]:
         """Coordinates, base, hub and loads at some of the steps."""
         time, q, qd, qdd = (x[steps] for x in (of.time, of.q, of.qd, of.qdd))
-        base, hub = moving(motion, time, q, qd, qdd)
+        base, hub = moving(motion, time, q, qd, qdd, known)
         loads = None
         if settings.loads:
             loads = section_forces(structure, base, q[:, beam], qd[:, beam], qdd[:, beam], time, motion=motion)
         return (time, q, qd, qdd), base, hub, loads
 
-    (time, q, qd, qdd), base, hub, loads = at(every, slice(None))
+    (time, q, qd, qdd), over_time, hub, loads = at(every, slice(None), base)
     if loads is not None and not traced:
         of_flight = load_peaks(loads.during(flight), lambda steps: at(trajectory, steps)[3], trajectory.time, stride)
         peaks = replace(peaks, loads=of_flight)
@@ -76,7 +84,7 @@ def response_of(
     displacement = fine[::stride] if up is None and down is None else structure.displacement(q[:, beam])
     errors = Errors()
     if not traced:
-        outcome, message, own = describe(structure, problem, last, base, peaks, time, q[:, beam])
+        outcome, message, own = describe(structure, problem, last, over_time, peaks, time, q[:, beam])
         if outcome == "done":
             solution = Solution(time[flight], q[flight], qd[flight], qdd[flight])
             during = None if loads is None else loads.during(flight)
@@ -88,7 +96,7 @@ def response_of(
                 alone = [ErrorEstimate(step=step) for step in steps]
                 errors = Errors(alone[0], alone[1], alone[2], NOT_ESTIMATED)
             own += inaccuracies(structure, errors, settings) + effort(settings, len(trajectory.time) - 1, stride)
-        given = input_warnings(structure, motion, name=name, span=(time[0], time[-1]), base=base)
+        given = input_warnings(structure, motion, name=name, span=(time[0], time[-1]), base=over_time)
         warnings = given + settings.warnings + own + (() if axes is None else axes.warnings) + warnings
     return Response(
         name=name,
@@ -102,7 +110,7 @@ def response_of(
         displacement=displacement,
         q=q[:, beam],
         qd=qd[:, beam],
-        base=base,
+        base=over_time,
         peaks=peaks,
         integrator=settings.integrator,
         step=step,
@@ -122,15 +130,17 @@ def response_of(
     )
 
 
-def moving(motion: Any, time: Floats, y: Array, yd: Array, ydd: Array) -> tuple[BaseMotion, HubResult | None]:
-    """Motion of the root over time, and of the hub if there is one."""
+def moving(
+    motion: Any, time: Floats, y: Array, yd: Array, ydd: Array, base: Base | None = None
+) -> tuple[BaseMotion, HubResult | None]:
+    """Motion of the root over time, and of the hub if there is one; the `base` where it is known."""
     hub = None
     if motion.free:
         angle, rate, acceleration = y[:, 0], yd[:, 0], ydd[:, 0]
         base = motion.mount.base(angle, rate, acceleration)
         hub = HubResult(angle, rate, acceleration, motion.torque(time), free=True)
     else:
-        base = motion.base(time)
+        base = motion.base(time) if base is None else base
         if motion.kind == "hub":
             axis = motion.mount.R_HB[2]
             hub = HubResult(motion.angle(time), base.w_WB_B @ axis, base.alpha_WB_B @ axis)

@@ -85,14 +85,14 @@ def simulate(
     settings = settings_of("simulate", settings, options)
     structure.require_damping("the response")
     motion = motion.over(settings.start, settings.start + settings.duration)
-    if holds_jax(structure, motion):
+    if structure.holds_jax or holds_jax(motion):
         return _traced(structure, motion, settings, name)
     coarse, given, before, after = planned_steps(structure, motion, settings)
     kept = given or coarse
     problem = problem_of(structure, motion, settings.start - before * kept, settings.begin)
 
     def too_far(y: Floats) -> int | None:
-        return steps_within(structure, y[:, problem.first :])
+        return steps_within(structure, structure.displacement(y[:, problem.first :]))
 
     def how(what: str) -> dict[str, Any]:
         return {"stop": too_far, "progress": None if progress is None else lambda share: progress(what, share)}
@@ -204,9 +204,16 @@ def felt_corners(
     return Corners.of(times, drive, settings.start, end)
 
 
-def steps_within(structure: Structure, q: Floats) -> int | None:
-    """After how many steps of coordinates (t, n) a projected field moved by the beam's length, and means nothing."""
+def steps_within(structure: Structure, displacement: Floats) -> int | None:
+    """After how many steps a projected field moved by the beam's length, and means nothing.
+
+    Parameters
+    ----------
+    structure : Structure
+    displacement : (t, s, 3)
+        Of its stations, m.
+    """
     if structure.kind == "exact":
         return None
-    moved = np.abs(structure.displacement(q)).max(axis=(1, 2))
-    return int(np.argmax(moved > structure.length)) + 1 if moved.max() > structure.length else None
+    largest = np.abs(displacement).max(axis=(1, 2))
+    return int(np.argmax(largest > structure.length)) + 1 if largest.max() > structure.length else None

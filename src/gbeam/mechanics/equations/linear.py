@@ -13,6 +13,7 @@ and in place of the second ones its geometric stiffness under unit inertial load
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 from typing import Any
 
 from gbeam.arrays.namespace import namespace
@@ -123,6 +124,7 @@ class Coefficients:
             force = force + term(load_values, self.loads.constant[:, :, 6:], 2)
         return velocity, stiffness, force
 
+    @cached_property
     def terms(self) -> LinearTerms:
         """What :meth:`at` sums over :meth:`features`."""
         xp, n = namespace(self.mass), self.size

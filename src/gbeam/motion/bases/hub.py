@@ -118,6 +118,9 @@ class Hub:
 
     def angle(self, t: Any) -> Any:
         """Angle of a hub with a prescribed rate at times `t` (s, any shape), rad."""
+        whole = self._prescribed().integral(t)
+        if whole is not None:
+            return whole - self._prescribed().integral(0.0)
         times, angles = (self.times, self.angles) if self.mount.gravity is not None else self._angles()
         now = as_array(t)
         xp = namespace(now, times, angles)

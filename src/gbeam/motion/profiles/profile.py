@@ -37,6 +37,10 @@ class Profile(ABC):
         """Value and time derivatives up to `order` at times `t` (s), each like the value."""
         return self.series(t, order).derivatives()
 
+    def integral(self, t: Any) -> Any | None:
+        """Integral over time up to times `t` (s), but for a constant; None where it has no closed form here."""
+        return None
+
     @property
     @abstractmethod
     def breaks(self) -> Any:

@@ -54,6 +54,11 @@ class SmoothStep(Profile):
         orders = hann_orders(1, 1 + order, phase - 0.5)
         return Series.of([self.level * h / self.duration**k for k, h in enumerate(orders)], order)
 
+    def integral(self, t: Any) -> Any:
+        """Integral from before the start to times `t` (s)."""
+        phase = (as_array(t) - self.start) / self.duration
+        return self.level * self.duration * hann_orders(0, 0, phase - 0.5)[0]
+
     @property
     def breaks(self) -> Any:
         """Start and end, s, shape (2,): the third derivative jumps there."""
