@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.reference import Sampled
 from gbeam.integrate.driver import integrate
@@ -79,27 +80,68 @@ def _hub_operator(hub: FreeHub, at: Sampled, velocity: Floats, stiffness: Floats
     return Operator(mass, c, k)
 
 
-def correction(of: Operator, time: Floats, residual: Floats, start: Floats | None) -> Correction:
+class Vibration(NamedTuple):
+    """Modes about a solution's mean stiffness, and which of them its samples resolve.
+
+    Parameters
+    ----------
+    square : (n,) rad²/s²
+        Of the circular frequencies.
+    modes : (n, n)
+        In columns, of unit length in M.
+    resolved : (n,) bool
+    """
+
+    square: Floats
+    modes: Floats
+    resolved: NDArray[np.bool_]
+
+    @staticmethod
+    def of(equations: Operator, time: Floats) -> Vibration:
+        """Modes of equations at equal intervals of time (t,) s."""
+        mean = equations.stiffness.mean(axis=0)
+        square, modes = symmetric_modes((mean + mean.T) / 2, equations.mass)
+        if square[0] < -1e-9 * square[-1]:
+            rest = equations.stiffness[0]
+            square, modes = symmetric_modes((rest + rest.T) / 2, equations.mass)
+        resolved = np.sqrt(np.maximum(square, 0)) * _interval(time) < RESOLVED
+        resolved[:2] = True
+        return Vibration(square, modes, resolved)
+
+    def shaken(self, residual: Floats) -> tuple[Floats, Floats]:
+        """How far corners and jumps of a residual (t, n) may make the unresolved modes ring.
+
+        Samples that show no vibration show what excites it: beside a corner or a jump the second difference of the
+        force on a mode is larger than the force that its ring has.
+
+        Returns
+        -------
+        rate : (k,) rad/s
+            Circular frequencies of the modes.
+        amplitude : (n, k)
+            Coordinates of their largest rings.
+        """
+        fast = ~self.resolved
+        sudden = np.abs(np.diff(residual @ self.modes[:, fast], n=2, axis=0)).max(axis=0)
+        return np.sqrt(self.square[fast]), self.modes[:, fast] * (sudden / self.square[fast])
+
+
+def correction(of: Operator, vibration: Vibration, time: Floats, residual: Floats, start: Floats | None) -> Correction:
     """Linear response to −R, (t, n) each.
 
     Parameters
     ----------
     of : Operator
+    vibration : Vibration
+        Of the same.
     time : (t,) s
     residual : (t, n)
         R.
     start : (beam's n,) or None
         Residual of the beam at rest at the first time, where it is in equilibrium; None where the first state is given.
     """
-    mean = of.stiffness.mean(axis=0)
-    mean = (mean + mean.T) / 2
-    square, modes = symmetric_modes(mean, of.mass)
-    if square[0] < -1e-9 * square[-1]:
-        rest = of.stiffness[0]
-        square, modes = symmetric_modes((rest + rest.T) / 2, of.mass)
-    step = (time[-1] - time[0]) / (len(time) - 1)
-    kept = np.sqrt(np.maximum(square, 0)) * step < RESOLVED
-    kept[: min(2, len(kept))] = True
+    square, modes, kept = vibration
+    step = _interval(time)
     phi, stiff = modes[:, kept], modes[:, ~kept]
     flexibility = stiff / square[~kept] @ stiff.T
     c, k = (np.einsum("ia,tij,jb->tab", phi, x, phi, optimize=True) for x in (of.velocity, of.stiffness))
@@ -127,3 +169,7 @@ def correction(of: Operator, time: Floats, residual: Floats, start: Floats | Non
     made = integrate(equations, gauss(), first, 0 * first, step=step, count=len(time) - 1, start=float(time[0]))
     static = -residual @ flexibility
     return Correction(made.q @ phi.T + static, made.qd @ phi.T, made.qdd @ phi.T)
+
+
+def _interval(time: Floats) -> float:
+    return float(time[-1] - time[0]) / (len(time) - 1)

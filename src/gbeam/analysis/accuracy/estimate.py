@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from gbeam.analysis.accuracy.response_errors import Quantities, Solution, lacking
+from gbeam.analysis.accuracy.correction import RESOLVED
+from gbeam.analysis.accuracy.response_errors import Quantities, Rings, Solution, lacking
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.results.parts.errors import ErrorEstimate, Errors
@@ -14,6 +15,7 @@ from gbeam.results.parts.section_forces import Loads
 from gbeam.results.result import Floats
 
 FEWEST, PER_PERIOD = 500, 6  # samples looked at, in all and in a period of the lowest mode
+MOST = 20_000  # samples where fast modes may ring
 LARGEST = 2.0  # times (v/L)²: error of a second-order model, up to what a beam that points inward on a hub has
 BEYOND = "the solution is too far from the exact model's for an estimate; it is the bound 2 (v/L)² of its class"
 UNKNOWN = "shapes and model are not judged: the structure was not made of a beam"
@@ -27,6 +29,7 @@ def response_errors(
     loads: Loads | None,
     steps: tuple[float, float, float],
     *,
+    stride: int = 1,
     settled: bool = True,
 ) -> Errors:
     """Estimated errors of a response, as fractions of the largest displacement, load and stress.
@@ -36,37 +39,61 @@ def response_errors(
     structure : Structure
     motion : Motion
     solution : Solution
-        At equal intervals.
+        At every step.
     tip : (t, 3) m
+        At the times of the results, and
     loads : Loads or None
+        likewise.
     steps : (3,)
         Errors of displacement, loads and stress from the time step, fractions.
+    stride : int
+        Steps to each of the results.
     settled : bool
         Whether it begins in relative equilibrium; a given state has no error.
     """
-    if structure.source is None or loads is None or len(solution.time) < 3:
+    if structure.source is None or loads is None or len(tip) < 3:
         alone = [ErrorEstimate(step=step, total=step) for step in steps]
         return Errors(alone[0], alone[1], alone[2], UNKNOWN)
-    period = 2 * math.pi / float(structure.rest[0][0])
-    interval = float(solution.time[1] - solution.time[0])
-    stride = max(1, min(int(period / PER_PERIOD / interval), len(solution.time) // FEWEST))
-    few = slice(None, None, stride)
     every = tip, loads.force[:, 0], loads.moment[:, 0], loads.stress.max(axis=1)
-    own, sizes = Quantities(*(x[few] for x in every)), dict(zip(Quantities._fields, map(_largest, every), strict=True))
-    with np.errstate(all="ignore"):
-        parts = lacking(structure, motion, solution.some(few), own, settled=settled)
-    if not np.isfinite(parts.total.tip).all():
-        return _bounded(structure, sizes["tip"], steps[0])
+    sizes = dict(zip(Quantities._fields, map(_largest, every), strict=True))
 
-    def fractions(name: str, step: float) -> ErrorEstimate:
-        size = sizes[name] or _largest(getattr(parts.total, name))
-        shares = (_largest(getattr(part, name)) / size if size else 0.0 for part in parts)
-        shapes, model, total = shares
-        return ErrorEstimate(step, shapes, 0.0 if structure.kind == "exact" else model, step + total)
+    def judged(stride: int, own: Quantities | None = None) -> tuple[Errors, float]:
+        """Errors by every so many steps, and the rate of the fastest mode that these may have missed, rad/s."""
+        few = solution.some(slice(None, None, stride))
+        with np.errstate(all="ignore"):
+            parts, rings = lacking(structure, motion, few, own, settled=settled)
+        if not np.isfinite(parts.total.tip).all():
+            return _bounded(structure, sizes["tip"], steps[0]), 0.0
 
-    force, moment = fractions("force", steps[1]), fractions("moment", steps[1])
-    worst = max(force, moment, key=lambda each: each.total)
-    return Errors(fractions("tip", steps[0]), worst, fractions("stress", steps[2]))
+        def fractions(name: str, step: float) -> ErrorEstimate:
+            size = sizes[name] or _largest(getattr(parts.total, name))
+            shares = (_largest(getattr(part, name)) / size if size else 0.0 for part in parts)
+            shapes, model, total = shares
+            return ErrorEstimate(step, shapes, 0.0 if structure.kind == "exact" else model, step + total)
+
+        force, moment = fractions("force", steps[1]), fractions("moment", steps[1])
+        worst = max(force, moment, key=lambda each: each.total)
+        errors = Errors(fractions("tip", steps[0]), worst, fractions("stress", steps[2]))
+        return errors, _missed(rings, sizes, errors)
+
+    period = 2 * math.pi / float(structure.rest[0][0])
+    step = float(solution.time[1] - solution.time[0])
+    few = max(1, min(int(period / PER_PERIOD / (stride * step)), len(tip) // FEWEST))
+    stride *= few
+    errors, rate = judged(stride, Quantities(*(each[::few] for each in every)))
+    if rate == 0:
+        return errors
+    finer = max(math.ceil(len(solution.time) / MOST), int(RESOLVED / (rate * step)))
+    return judged(finer)[0] if finer < stride else errors
+
+
+def _missed(rings: Rings, sizes: dict[str, float], errors: Errors) -> float:
+    """Circular frequency of the fastest mode that may ring by more than the error stated, rad/s; zero if none may."""
+    limits = zip(("tip", "force", "moment"), (errors.displacement, errors.loads, errors.loads), strict=True)
+    visible = np.zeros(len(rings.rate), dtype=bool)
+    for name, stated in limits:
+        visible |= getattr(rings, name) > stated.total * sizes[name]
+    return float(rings.rate[visible].max(initial=0.0))
 
 
 def _largest(values: Floats) -> float:

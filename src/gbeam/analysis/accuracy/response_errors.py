@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.analysis.accuracy.correction import correction, operator
+from gbeam.analysis.accuracy.correction import Vibration, correction, operator
 from gbeam.analysis.accuracy.reference import Sampled, complete_residual, linear_residual
 from gbeam.mechanics.enrichment import Enrichment, enrichment
 from gbeam.mechanics.section_forces import sections
@@ -42,6 +42,15 @@ class Parts(NamedTuple):
     total: Quantities
 
 
+class Rings(NamedTuple):
+    """How far modes that the samples do not resolve may ring unseen, (k,) each: rad/s, m, N, N m."""
+
+    rate: Floats
+    tip: Floats
+    force: Floats
+    moment: Floats
+
+
 @dataclass(frozen=True, eq=False)
 class Solution:
     """A solution at equal intervals.
@@ -64,9 +73,9 @@ class Solution:
 
 
 def lacking(
-    structure: Structure, motion: Motion, solution: Solution, own: Quantities, *, settled: bool = True
-) -> Parts:
-    """What a solution lacks, quantity by quantity, over time.
+    structure: Structure, motion: Motion, solution: Solution, own: Quantities | None = None, *, settled: bool = True
+) -> tuple[Parts, Rings]:
+    """What a solution lacks, quantity by quantity, over time, and what its samples may hide.
 
     Parameters
     ----------
@@ -74,8 +83,8 @@ def lacking(
         With a source.
     motion : Motion
     solution : Solution
-    own : Quantities
-        Of the solution.
+    own : Quantities, optional
+        Of the solution, where they are known.
     settled : bool
         Whether the first state is the relative equilibrium, which the truth has its own of; else it is given.
     """
@@ -85,23 +94,35 @@ def lacking(
     exact, index = more.model("exact", directions=driven(more, lambda rich, at: _lifted(rich, at, motion, few)))
     at = _lifted(exact, index, motion, solution)
     of = operator(exact, at)
+    vibration = Vibration.of(of, solution.time)
     residual = complete_residual(exact, at)
     start = _start(exact, at) if settled else np.zeros(exact.size)
-    total = correction(of, solution.time, residual, start)
+    total = correction(of, vibration, solution.time, residual, start)
     # In its own coordinates the solution leaves what its model leaves out, in the new ones what its shapes do.
     first = residual.shape[1] - exact.size
     own_rows = np.append(np.arange(first), first + index)
     new, at_start = residual.copy(), start.copy()
     new[:, own_rows] = at_start[index] = 0.0
+    if own is None:
+        own = quantities(structure, _lifted(structure, np.arange(structure.size), motion, solution))
     truth, same_shapes = quantities(exact, at.moved(*total)), own
     if structure.kind != "exact":
-        shapes = correction(of, solution.time, new, at_start)
+        shapes = correction(of, vibration, solution.time, new, at_start)
         same_shapes = quantities(exact, at.moved(*(a - b for a, b in zip(total, shapes, strict=True))))
-    return Parts(
+    parts = Parts(
         Quantities(*(a - b for a, b in zip(truth, same_shapes, strict=True))),
         Quantities(*(a - b for a, b in zip(same_shapes, own, strict=True))),
         Quantities(*(a - b for a, b in zip(truth, own, strict=True))),
     )
+    return parts, _rings(exact, *vibration.shaken(residual))
+
+
+def _rings(exact: Structure, rate: Floats, amplitude: Floats) -> Rings:
+    """What modes with amplitudes (first + n, k) do at the tip and, by the elastic forces, at the root."""
+    c, q = exact.coefficients, amplitude[-exact.size :]
+    inertia = np.linalg.solve(c.mass, c.stiffness @ q)
+    at = exact.displacement(q.T)[:, -1], (c.f_a @ inertia).T, (c.f_al @ inertia).T
+    return Rings(rate, *(np.linalg.norm(each, axis=1) for each in at))
 
 
 def quantities(structure: Structure, at: Sampled) -> Quantities:

@@ -86,12 +86,14 @@ def response_of(
     if not traced:
         outcome, message, own = describe(structure, problem, last, over_time, peaks, time, q[:, beam])
         if outcome == "done":
-            solution = Solution(time[flight], q[flight], qd[flight], qdd[flight])
+            solution = Solution(trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd)
             during = None if loads is None else loads.during(flight)
             settled, tip = up is not None or settings.begin.settled, np.asarray(displacement[flight, -1])
             steps = step_errors.displacement, step_errors.loads, step_errors.stress
             if settings.estimate:
-                errors = response_errors(structure, motion, solution, tip, during, steps, settled=settled)
+                errors = response_errors(
+                    structure, motion, solution, tip, during, steps, stride=stride, settled=settled
+                )
             else:
                 alone = [ErrorEstimate(step=step) for step in steps]
                 errors = Errors(alone[0], alone[1], alone[2], NOT_ESTIMATED)
