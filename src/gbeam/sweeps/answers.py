@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from gbeam.errors import InputError
@@ -17,10 +17,40 @@ if TYPE_CHECKING:
 Facts = Mapping[str, Any]
 
 
-def _run(case: Case, motion: str | None, at: float | None, judged: bool) -> Facts:
+@dataclass(frozen=True)
+class Needs:
+    """Which costly parts of an answer a measure is among; the others need not be computed.
+
+    Parameters
+    ----------
+    errors : bool
+        What the answer says of its own errors: most of the time of a steady state.
+    loads : bool
+        What the sections carry.
+    """
+
+    errors: bool = True
+    loads: bool = True
+
+
+def _run(case: Case, motion: str | None, at: float | None, needs: Needs) -> Facts:
     from gbeam.analysis.study.study import study
 
-    return study_facts(study(case))
+    return study_facts(study(reduced(case, needs)))
+
+
+def reduced(case: Case, needs: Needs) -> Case:
+    """The case whose responses have what is needed, to the last digit as before.
+
+    Automatic numbers of shapes follow from the errors, and an automatic step from the loads.
+    """
+    if needs.errors or case.model.automatic:
+        return case
+    response = replace(case.response, estimate=False)
+    fixed = response.step is not None and response.integrator != "adaptive"
+    if fixed and not needs.loads and not case.tracks:  # a comparison is of loads too
+        response = replace(response, loads=False)
+    return replace(case, response=response)
 
 
 def study_facts(answer: Study) -> Facts:
@@ -54,34 +84,34 @@ def _accepted(accepted: bool | None) -> Facts:
     return {} if accepted is None else {"accepted": accepted}
 
 
-def _static(case: Case, motion: str | None, at: float | None, judged: bool) -> Facts:
+def _static(case: Case, motion: str | None, at: float | None, needs: Needs) -> Facts:
     from gbeam.analysis.equilibrium.static import static
     from gbeam.report.steady import deflection
 
-    structure, time = _structure(case, judged), _time(case, at)
+    structure, time = _structure(case, needs), _time(case, at)
     names = list(case.motions) if motion is None else [motion]
     return deflection.to_json(case.title, [static(structure, _prepared(case, name), time, name=name) for name in names])
 
 
-def _modes(case: Case, motion: str | None, at: float | None, judged: bool) -> Facts:
+def _modes(case: Case, motion: str | None, at: float | None, needs: Needs) -> Facts:
     from gbeam.analysis.vibration import modal
     from gbeam.report.steady import modes
 
     name = _only(case, motion, "")
-    return modes.to_json(modal.modes(_structure(case, judged), _prepared(case, name), _time(case, at), name=name))
+    return modes.to_json(modal.modes(_structure(case, needs), _prepared(case, name), _time(case, at), name=name))
 
 
-def _critical_speed(case: Case, motion: str | None, at: float | None, judged: bool) -> Facts:
+def _critical_speed(case: Case, motion: str | None, at: float | None, needs: Needs) -> Facts:
     from gbeam.analysis.vibration import stability
     from gbeam.report.steady import critical
 
     name = _only(case, motion, "hub")
-    structure = _structure(case, judged).at_time(_time(case, at))
+    structure = _structure(case, needs).at_time(_time(case, at))
     found = stability.critical_speed(structure, _prepared(case, name), name=name)
     return critical.to_json(found, name)
 
 
-def _plan(case: Case, motion: str | None, at: float | None, judged: bool) -> Facts:
+def _plan(case: Case, motion: str | None, at: float | None, needs: Needs) -> Facts:
     from gbeam.analysis.imitation.plan import plan
     from gbeam.report.machine import plan as report
 
@@ -95,7 +125,7 @@ def _plan(case: Case, motion: str | None, at: float | None, judged: bool) -> Fac
     return {**facts, "motions": {name: _limits_by_name(each) for name, each in facts["motions"].items()}}
 
 
-def _place(case: Case, motion: str | None, at: float | None, judged: bool) -> Facts:
+def _place(case: Case, motion: str | None, at: float | None, needs: Needs) -> Facts:
     from gbeam.analysis.imitation.choice import choice_of
     from gbeam.analysis.imitation.place import place
     from gbeam.motion import Centrifuge
@@ -113,8 +143,8 @@ def _place(case: Case, motion: str | None, at: float | None, judged: bool) -> Fa
     return placement.to_json(found)
 
 
-# Of a case, a motion's name, the time at which it is frozen, and whether errors are estimated.
-VERBS: Mapping[str, Callable[[Case, str | None, float | None, bool], Facts]] = {
+# Of a case, a motion's name, the time at which it is frozen, and what is needed.
+VERBS: Mapping[str, Callable[[Case, str | None, float | None, Needs], Facts]] = {
     "run": _run,
     "static": _static,
     "modes": _modes,
@@ -124,13 +154,10 @@ VERBS: Mapping[str, Callable[[Case, str | None, float | None, bool], Facts]] = {
 }
 
 
-def _structure(case: Case, judged: bool) -> Structure:
-    """The case's structure; one that is not judged does not know what it was made of, and states no errors.
-
-    They take most of the time of a steady state.
-    """
+def _structure(case: Case, needs: Needs) -> Structure:
+    """The case's structure; where no errors are needed it does not know what it was made of, and states none."""
     structure = case.assemble()
-    return structure if judged else replace(structure, source=None)
+    return structure if needs.errors else replace(structure, source=None)
 
 
 def _prepared(case: Case, name: str) -> Motion:

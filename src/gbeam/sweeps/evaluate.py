@@ -16,12 +16,13 @@ from gbeam.scenario.build import build
 from gbeam.scenario.load import change
 from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.text.source import Source
-from gbeam.sweeps.answers import VERBS, Facts
+from gbeam.sweeps.answers import VERBS, Facts, Needs
 from gbeam.sweeps.histories import History
 from gbeam.sweeps.measures import Keys, value_at
 
 Function = Callable[[Case], float]
 NO_FACTS: Facts = {"outcome": "done"}  # where functions measure the case, no verb answers
+_WITHOUT_LOADS = ("tip", "stations", "hub", "step", "steps", "damping_ratio")  # of a motion's figures
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,8 @@ class Question:
         Further figures, one for each of `times`.
     times : (t,)
         s.
+    together : bool
+        Whether cases that can be are integrated together.
     """
 
     source: Source
@@ -64,11 +67,21 @@ class Question:
     functions: tuple[Function, ...] = ()
     histories: tuple[History, ...] = ()
     times: Floats = field(default_factory=lambda: np.empty(0))
+    together: bool = False
 
     @cached_property
     def width(self) -> int:
         """How many figures a case has."""
         return len(self.keys) + len(self.functions) + len(self.histories) * len(self.times)
+
+    @cached_property
+    def needs(self) -> Needs:
+        """What the figures are taken from; before their keys are known, anything."""
+        if not self.keys and not self.histories:
+            return Needs()
+        errors = any("error" in str(key) for keys in self.keys for key in keys)
+        loads = any(keys[0] != "motions" or len(keys) < 3 or keys[2] not in _WITHOUT_LOADS for keys in self.keys)
+        return Needs(errors, loads or any(each.quantity != "tip" for each in self.histories))
 
     @property
     def needs_facts(self) -> bool:
@@ -91,9 +104,7 @@ class Question:
 
     def facts(self, case: Case) -> Facts:
         """What the verb answers, as JSON."""
-        # Before the keys are known any figure may be meant.
-        judged = not self.keys or any("error" in str(key) for keys in self.keys for key in keys)
-        return VERBS[self.verb](case, self.motion, self.at, judged)
+        return VERBS[self.verb](case, self.motion, self.at, self.needs)
 
     def row(self, number: int, overrides: Sequence[str]) -> Row:
         """Compute one case. What goes wrong in it is part of the row: the other cases go on."""
@@ -128,11 +139,6 @@ def without_figures(number: int, width: int, error: Exception) -> Row:
     if isinstance(error, GbeamError):
         return Row(number, nothing, "refused", _line(error))
     return Row(number, nothing, "failed", f"{type(error).__name__}: {_line(error)}")  # a defect, or a measure's own
-
-
-def rows(question: Question, tasks: Sequence[tuple[int, tuple[str, ...]]]) -> list[Row]:
-    """Compute some cases: a number and its changes each."""
-    return [question.row(number, overrides) for number, overrides in tasks]
 
 
 def _line(error: Exception) -> str:

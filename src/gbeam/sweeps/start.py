@@ -16,6 +16,8 @@ from gbeam.analysis.study.case import Case
 from gbeam.errors import GbeamError, InputError
 from gbeam.scenario.build import build
 from gbeam.scenario.schema.scenario import Scenario
+from gbeam.sweeps.batches import rows as computed
+from gbeam.sweeps.batches import width
 from gbeam.sweeps.cases import Cases
 from gbeam.sweeps.evaluate import NO_FACTS, Question, Row, ended, without_figures
 from gbeam.sweeps.histories import read_history
@@ -106,7 +108,7 @@ def start(
     """
     reason: GbeamError | None = None
     rows: list[Row] = []
-    width = len(names) + len(histories.names) * histories.count
+    figures = len(names) + len(histories.names) * histories.count
     for index in np.unique(np.linspace(0, len(missing) - 1, TRIED).astype(int)):
         number, begin = missing[index], time.perf_counter()
         try:
@@ -116,7 +118,7 @@ def start(
             facts = question.facts(case) if needed else NO_FACTS
         except GbeamError as error:
             reason = reason or error
-            rows.append(without_figures(number, width, error))
+            rows.append(without_figures(number, figures, error))
             continue
         units, truths = ("",) * len(names), (False,) * len(names)
         if not question.functions:
@@ -126,18 +128,20 @@ def start(
                 if facts["outcome"] == "done":
                     raise
                 reason = reason or error
-                rows.append(Row(number, (math.nan,) * width, *ended(facts)))
+                rows.append(Row(number, (math.nan,) * figures, *ended(facts)))
                 continue
             question = replace(question, keys=keys)
             units = tuple(unit_at(facts, each) for each in keys)
             truths = tuple(is_truth(facts, each) for each in keys)
         question = histories.of(question, case)
-        rows.append(question.measured(number, case, facts))
+        own = (number, cases.overrides(number))
+        rows += computed(question, [own]) if question.together else [question.measured(number, case, facts)]
         seconds = time.perf_counter() - begin
-        after = missing[index + 1] if index + 1 < len(missing) else missing[0]
-        if seconds < _IMPORTS and all(after != row.case for row in rows):
-            row, seconds = _timed(question, cases, after)
-            rows.append(row)
+        after = missing[index + 1 : index + 1 + width(question)] or missing[:1]
+        after = [each for each in after if all(each != row.case for row in rows)]
+        if after and (seconds < _IMPORTS or question.together):
+            more, seconds = _timed(question, cases, after)
+            rows += more
         return Start(question, units, truths, scenario, tuple(rows), seconds)
     assert reason is not None
     raise reason
@@ -156,17 +160,20 @@ def go_on(
     possible = [row for row in done if row.outcome != "refused"] or done
     scenario = question.scenario(cases.overrides(possible[0].case))
     question = histories.of(question, build(scenario)) if histories.names else question
-    rows, seconds = [], 0.0
-    for number in missing[:2]:
-        row, seconds = _timed(question, cases, number)
-        rows.append(row)
+    rows: list[Row] = []
+    seconds = 0.0
+    for first in (0, width(question)):  # what is imported and compiled once comes with the first
+        if chosen := missing[first : first + width(question)]:
+            more, seconds = _timed(question, cases, chosen)
+            rows += more
         if seconds >= _IMPORTS:
             break
     units, truths = tuple(unit for _, unit, _ in figures), tuple(truth for *_, truth in figures)
     return Start(question, units, truths, scenario, tuple(rows), seconds)
 
 
-def _timed(question: Question, cases: Cases, number: int) -> tuple[Row, float]:
+def _timed(question: Question, cases: Cases, numbers: Sequence[int]) -> tuple[list[Row], float]:
+    """Rows of some cases, and the time that one of them takes, s."""
     begin = time.perf_counter()
-    row = question.row(number, cases.overrides(number))
-    return row, time.perf_counter() - begin
+    rows = computed(question, [(number, cases.overrides(number)) for number in numbers])
+    return rows, (time.perf_counter() - begin) / len(numbers)

@@ -17,6 +17,7 @@ from gbeam.scenario.load import load
 from gbeam.scenario.origin import provenance
 from gbeam.scenario.values.suggest import advise
 from gbeam.sweeps.answers import VERBS
+from gbeam.sweeps.batches import Task, may_share, width
 from gbeam.sweeps.cases import read_cases
 from gbeam.sweeps.cluster import on_scheduler
 from gbeam.sweeps.evaluate import Function, Question, Row
@@ -25,7 +26,7 @@ from gbeam.sweeps.histories import TIMES
 from gbeam.sweeps.journal import Journal, identity, opened
 from gbeam.sweeps.result import assembled
 from gbeam.sweeps.start import NO_HISTORIES, OverTime, go_on, start
-from gbeam.sweeps.workers import Task, in_processes, serially
+from gbeam.sweeps.workers import in_processes, serially
 
 MANY = 100_000  # cases beyond which a sweep is begun only when that is confirmed
 _BATCH = 0.5  # s: what is lost at most when a process ends, and how often the store is synchronised
@@ -134,7 +135,8 @@ def sweep(
     size = len(over_time.names) * over_time.count * len(cases)
     refuse_more("--times", "values of histories", size, HISTORY_BYTES // 8, 8.0, "give fewer times, or fewer cases")
     functions = tuple(measure.values()) if isinstance(measure, Mapping) else ()
-    question = Question(base.source, verb, motion, at, functions=functions)
+    share = not functions and may_share(verb, [each.path for each in cases.variations])
+    question = Question(base.source, verb, motion, at, functions=functions, together=share)
     journal, done = opened(store, resume, identity(question, cases, names, [over_time.names, over_time.count]))
     known = {row.case for row in done}
     missing = [number for number in range(len(cases)) if number not in known] if known else range(len(cases))
@@ -148,7 +150,7 @@ def sweep(
     left = len(missing) - len(tried)
     size = int(min(_LONGEST, _BATCH / max(begun.seconds, 1e-4), left / (4 * workers)))
     tasks = ((number, cases.overrides(number)) for number in missing if number not in tried)
-    batches = _batches(tasks, max(1, size))
+    batches = _batches(tasks, max(1, size // width(question)) * width(question))
     if scheduler is not None:
         found = on_scheduler(question, batches, scheduler)
     else:

@@ -14,9 +14,9 @@ from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wai
 from concurrent.futures.process import BrokenProcessPool
 
 from gbeam.errors import InputError
-from gbeam.sweeps.evaluate import Question, Row, rows
+from gbeam.sweeps.batches import Task, rows
+from gbeam.sweeps.evaluate import Question, Row
 
-Task = tuple[int, tuple[str, ...]]  # number of the case, and its changes
 AHEAD = 3  # batches per worker that wait, so that none idles
 
 

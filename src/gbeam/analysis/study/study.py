@@ -50,18 +50,24 @@ def study(case: Case, progress: Callable[[str, float], None] | None = None) -> S
             break
         case = replace(case, model=richer)
         responses, failures = _answers(case, progress)
-    if not responses:
-        first = next(iter(failures.values()))
-        raise ComputationError(
-            first.outcome, "; ".join(f"motion.{n}: {failure.message}" for n, failure in failures.items())
-        )
     return study_of(case, responses, failures)
 
 
 def study_of(
     case: Case, responses: Mapping[str, Response], failures: Mapping[str, Failure] = MappingProxyType({})
 ) -> Study:
-    """The study of responses that are computed: those of a centrifuge and its flight are compared."""
+    """The study of responses that are computed: those of a centrifuge and its flight are compared.
+
+    Raises
+    ------
+    ComputationError
+        If there is none, only failures.
+    """
+    if not responses:
+        first = next(iter(failures.values()))
+        raise ComputationError(
+            first.outcome, "; ".join(f"motion.{n}: {failure.message}" for n, failure in failures.items())
+        )
     comparisons = tuple(
         replace(_compared(responses[flight], responses[name], case.accept.get(name, {})), provenance=case.provenance)
         for name, flight in case.tracks.items()

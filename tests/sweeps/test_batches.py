@@ -1,0 +1,71 @@
+"""Cases integrated together: the answers of one case alone, and the same bytes in any company."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+from gbeam.scenario.load import load
+from gbeam.sweeps.batches import may_share, rows
+from gbeam.sweeps.evaluate import Question
+
+LEVEL = "motion.flight.acceleration.z.level"
+MEASURES = ["flight.tip.z.max_abs", "spin.tip.z.max_abs", "verdict.tip", "flight.loads.root_moment.y.max_abs"]
+FIXED = ("response.step=2 ms",)
+
+
+def test_a_case_has_the_figures_of_its_own_run(fast: Path) -> None:
+    found = gb.sweep(fast, {LEVEL: ["3 g", "6 g", "8 g"]}, MEASURES, overrides=FIXED)
+    for k, level in enumerate(("3 g", "6 g", "8 g")):
+        study = gb.study(gb.read_scenario(fast, [*FIXED, f"{LEVEL}={level}"]))
+        flight, spin = study.responses["flight"], study.responses["spin"]
+        assert flight.peaks.loads is not None
+        alone = [
+            flight.peaks.max_abs[2],
+            spin.peaks.max_abs[2],
+            study.comparisons[0].peaks["tip"].ratio - 1,
+            flight.peaks.loads.moment[0].components.value[1],
+        ]
+        assert [found.measures[name][k] for name in MEASURES] == pytest.approx(alone, rel=1e-9)
+
+
+def test_bytes_depend_neither_on_the_company_nor_on_the_workers_nor_on_the_store(fast: Path) -> None:
+    over = {LEVEL: "2 g:8 g:40"}  # more than stand together
+
+    def bytes_of(found: gb.Sweep) -> list[bytes]:
+        return [found.measures[name].tobytes() for name in MEASURES]
+
+    whole = gb.sweep(fast, over, MEASURES, overrides=FIXED, store="there")
+    lines = Path("there/cases.jsonl").read_text(encoding="utf-8").splitlines(keepends=True)
+    kept = np.random.default_rng(1).choice(np.arange(1, 41), 17, replace=False)
+    Path("there/cases.jsonl").write_text(lines[0] + "".join(lines[k] for k in kept), encoding="utf-8")
+    resumed = gb.sweep(fast, over, MEASURES, overrides=FIXED, store="there", resume=True)
+    two = gb.sweep(fast, over, MEASURES, overrides=FIXED, workers=2)
+    assert bytes_of(whole) == bytes_of(resumed) == bytes_of(two)
+
+
+def test_a_case_that_fails_leaves_its_batch_as_it_is(fast: Path) -> None:
+    over = {"motion.spin.control_point": ["100 mm", "400 mm", "200 mm"], LEVEL: ["4 g", "600 g"]}
+    found = gb.sweep(fast, over, MEASURES, overrides=FIXED)
+    fine = gb.sweep(fast, {**over, "motion.spin.control_point": ["100 mm"]}, MEASURES, overrides=FIXED)
+    assert found.outcome[:, 0].tolist() == ["done", "refused", "done"] and set(found.outcome[:, 1]) != {"done"}
+    assert all(found.measures[name][0, 0] == fine.measures[name][0, 0] for name in MEASURES)
+
+
+def test_what_no_measure_needs_changes_no_digit(fast: Path) -> None:
+    source = load(fast).source
+    assert source is not None
+    tip, error = ("motions", "flight", "tip", "z", "max_abs"), ("motions", "flight", "error_estimate")
+    plain = Question(source, "run", None, keys=(tip,))
+    judged = replace(plain, keys=(tip, error))
+    (bare,), (whole,) = (rows(each, [(0, ())]) for each in (plain, judged))
+    assert bare.values[0] == whole.values[0] and whole.values[1] > 0
+    assert not plain.needs.errors and judged.needs.errors
+
+
+def test_cases_with_other_steps_stay_apart() -> None:
+    assert may_share("run", [LEVEL]) and not may_share("run", ["response.duration"]) and not may_share("modes", [LEVEL])
