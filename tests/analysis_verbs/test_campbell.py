@@ -10,6 +10,7 @@ from gbeam.analysis.vibration.campbell import campbell
 from gbeam.analysis.vibration.modal import modes
 from gbeam.analysis.vibration.stability import critical_speed_map
 from gbeam.motion import Flight, Hub, constant
+from gbeam.report.steady.campbell import to_json
 
 from .beams import HUB, HUB_2009, beam_2009, slender
 
@@ -40,11 +41,34 @@ def test_engine_orders():
         assert np.abs(there.frequency / it.frequency - 1).min() < 1e-8
 
 
+@pytest.mark.parametrize(("kind", "counts"), [("FOAM", (0, 2, 2)), ("TLAM", (0, 3, 3))])
+def test_crossings_state_their_errors(kind, counts):
+    """Against 20 shapes of FOAM, which is the exact model's linearisation about a beam that turns straight."""
+
+    def speeds(model, shapes):
+        structure = assemble(slender(1e3, chord=2.0), Model(model, *shapes))
+        found = campbell(structure, HUB, end=6.0, count=12, modes=3, orders=(1, 2))
+        return found, {(each.direction, each.order): each for each in found.crossings}
+
+    found, few = speeds(kind, counts)
+    _, many = speeds("FOAM", (0, 20, 20))
+    alike = few.keys() & many.keys()
+    assert len(alike) >= 3
+    for key in alike:
+        errors, true = few[key].errors, abs(few[key].speed / many[key].speed - 1)
+        assert errors.total == pytest.approx(true, rel=0.05, abs=1e-5)  # and the stretch
+        assert (errors.model > errors.shapes) == (kind == "TLAM")
+    assert any("the speed at which mode" in each for each in found.warnings) == (kind == "TLAM")
+
+
 def test_it_ends_at_the_critical_speed():
     structure = assemble(beam_2009(), Model("TLAM", 0, 3, 0))
     found = campbell(structure, HUB_2009, end=5.0, count=10, modes=2)
     assert found.critical is not None and found.critical.value == pytest.approx(2.91074, abs=1e-5)
     assert found.speed[-1] < found.critical.value and found.frequency[-1, 0] < 1e-2
+    assert found.critical.errors.shapes < 1e-8  # without a mass the first shape is the mode
+    assert to_json(found)["critical_speed_errors"]["shapes"] == found.critical.errors.shapes
+    assert sum("TLAM's own" in each for each in found.warnings) == 1
 
 
 def test_a_flight_has_none():
@@ -58,3 +82,6 @@ def test_map_falls_with_mass_and_towards_the_tip():
     found = critical_speed_map(beam_2009(), Model("TLAM", 0, 5, 0), HUB_2009, (0.1, 0.5), (2.0, 5.0, 8.0), 4.0)
     assert found.speed[:, -1] == pytest.approx([2.6043, 1.9366], abs=1e-4)
     assert (np.diff(found.speed, axis=1) < 0).all() and (np.diff(found.speed, axis=0) < 0).all()
+    many = critical_speed_map(beam_2009(), Model("TLAM", 0, 14, 0), HUB_2009, (0.1, 0.5), (2.0, 5.0, 8.0), 4.0)
+    np.testing.assert_allclose(found.errors.shapes, found.speed / many.speed - 1, rtol=0.1, atol=1e-6)
+    assert np.isinf(found.errors.total).all()

@@ -49,7 +49,9 @@ def test_map(call):
     assert status == 0 and speed.shape == (3, 2)
     assert speed[:, 1] == pytest.approx([2.9107, 2.6043, 1.9366], abs=1e-4)
     listed = np.loadtxt("there/critical_speed.csv", delimiter=",", skiprows=1)
-    np.testing.assert_allclose(listed, np.column_stack([[4.0, 8.0], speed.T]))
+    assert np.array(facts["errors"]["shapes"])[2, 1] == pytest.approx(speed[2, 1] / 1.93645 - 1, abs=1e-5)
+    assert facts["errors"]["total"] == [[None, None]] * 3 and any("TLAM's own" in each for each in facts["warnings"])
+    np.testing.assert_allclose(listed, np.column_stack([[4.0, 8.0], speed.T, np.full((2, 3), np.inf)]))
     assert {file.suffix for file in Path("there").iterdir()} == {".csv", ".json", ".png", ".svg"}
     status, facts, _ = call("--set", "model.kind=FOAM", "--masses", "0.5 kg", "--positions", "8 m", "--to", "10 rad/s")
     assert status == 0 and facts["critical_speed"] == [[None]]

@@ -16,6 +16,8 @@ from gbeam.analysis.equilibrium.operating_point import operating_point
 from gbeam.analysis.equilibrium.point import linear_matrices, on_base
 from gbeam.analysis.vibration.modal import modes
 from gbeam.motion import Base, Hub, constant
+from gbeam.report.steady.state_space import text, to_json
+from gbeam.results.steady.state_space import Signal, StateSpace
 
 from .beams import ALUMINIUM, BOX, FREE_2009, HUB_2009, beam_2009, structure_2009
 
@@ -112,6 +114,44 @@ def test_reductions():
         assert error <= 2 * hankel[4:].sum() + 1e-9
     with pytest.raises(InputError, match="damping_ratio"):
         balanced_truncation(linearize(structure_2009("SFOAM", 0, 3), FREE_2009), 2)
+
+
+def test_truncations_state_what_they_leave_out():
+    """Two undamped oscillators, by hand; then that no gain anywhere is wrong by more than is stated."""
+    rates, gains = np.array([2.0, 10.0]), np.array([1.0, 3.0])
+    signals = [tuple(Signal(f"{name}_{k}", unit) for k in range(n)) for name, unit, n in (("x", "1", 4), ("u", "N", 1))]
+    system = StateSpace(
+        a=np.block([[np.zeros((2, 2)), np.eye(2)], [-np.diag(rates**2), np.zeros((2, 2))]]),
+        b=np.array([[0.0, 0.0, 1.0, 1.0]]).T,
+        c=np.array([[*gains, 0.0, 0.0]]),
+        d=np.zeros((1, 1)),
+        states=signals[0],
+        inputs=signals[1],
+        outputs=(Signal("y", "m"),),
+        state=np.zeros(4),
+        input=np.zeros(1),
+        output=np.zeros(1),
+        frequency=rates / (2 * np.pi),
+    )
+    left_out = modal_truncation(system, 1).truncation
+    assert (left_out.method, left_out.states) == ("modal", 2) and left_out.end == pytest.approx(2.0 / (2 * np.pi))
+    assert left_out.error[0, 0] == pytest.approx(3.0 / (100.0 - 4.0) - 3.0 / 100.0, rel=1e-9)
+    damped = linearize(SOFT, FREE_2009).select(outputs=("tip_y", "root_moment_z"))
+    for small in (modal_truncation(damped, 2), balanced_truncation(damped, 2)[0]):
+        left_out = small.truncation
+        for rate in np.geomspace(0.1, 2 * np.pi * left_out.end, 300):
+            apart = transfer(small, rate) - transfer(damped, rate)
+            assert (np.abs(apart) <= left_out.error * 1.01 + 1e-12).all()
+            assert not np.linalg.norm(apart, 2) > left_out.bound
+        assert 0 < left_out.share.max() < 1
+        kept = small.select(outputs=("root_moment_z",))
+        assert kept.truncation.share == pytest.approx(left_out.share[1:])
+        assert f"{left_out.method} truncation" in repr(small) and f"{left_out.method} truncation" in text(small)
+        assert to_json(small)["truncation"]["states_left_out"] == left_out.states
+        held = small.to_xarray()
+        assert held["truncation_error"].values == pytest.approx(left_out.error)
+    assert left_out.bound == 2 * left_out.hankel[2:].sum()
+    assert damped.truncation is None and to_json(damped)["truncation"] is None
 
 
 def test_exports(tmp_path):

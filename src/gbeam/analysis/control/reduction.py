@@ -10,10 +10,11 @@ import scipy.linalg
 
 from gbeam.errors import InputError
 from gbeam.results.result import Floats
-from gbeam.results.steady.state_space import Signal, StateSpace
+from gbeam.results.steady.state_space import Signal, StateSpace, Truncation
 
 Parts = tuple[StateSpace, StateSpace]
 RIGID = 1e-7  # of the largest eigenvalue: what is slower has none, as a free hub's angle
+POINTS = 200  # frequencies at which gains are compared
 DECAYS = 1e-9  # of the largest eigenvalue: what decays more slowly counts as undamped
 
 
@@ -66,8 +67,10 @@ def modal_truncation(system: StateSpace, modes: int) -> StateSpace:
     slow, fast = _split(system, lambda value: abs(value) < limit)
     kept = 2 * np.pi * system.frequency < limit
     errors = None if system.errors is None else system.errors[kept]
-    through = slow.d - fast.c @ np.linalg.solve(fast.a, fast.b)
-    return replace(slow, d=through, frequency=system.frequency[kept], errors=errors)
+    static = -fast.c @ np.linalg.solve(fast.a, fast.b)
+    band = levels[1] / 2, levels[modes]
+    left_out = truncation("modal", system, replace(fast, d=-static), len(fast.a), np.zeros(0), band)
+    return replace(slow, d=slow.d + static, frequency=system.frequency[kept], errors=errors, truncation=left_out)
 
 
 def balanced_truncation(system: StateSpace, order: int) -> tuple[StateSpace, Floats]:
@@ -83,7 +86,7 @@ def balanced_truncation(system: StateSpace, order: int) -> tuple[StateSpace, Flo
     Returns
     -------
     StateSpace, (k,) Hankel singular values of the decaying part
-        The error's largest gain is at most twice the sum of those left out.
+        Its :class:`Truncation` has the bound of the error: twice the sum of the values left out.
 
     Raises
     ------
@@ -110,4 +113,34 @@ def balanced_truncation(system: StateSpace, order: int) -> tuple[StateSpace, Flo
     a = scipy.linalg.block_diag(kept.a, into @ decaying.a @ out)
     b, c = np.concatenate([kept.b, into @ decaying.b]), np.concatenate([kept.c, decaying.c @ out], axis=1)
     small = _named(system, a, b, c, system.d, "balanced")
-    return replace(small, frequency=np.zeros(0), errors=None), hankel
+    apart = replace(
+        system,
+        a=scipy.linalg.block_diag(decaying.a, a[len(kept.a) :, len(kept.a) :]),
+        b=np.concatenate([decaying.b, b[len(kept.a) :]]),
+        c=np.concatenate([decaying.c, -c[:, len(kept.a) :]], axis=1),
+        d=0 * system.d,
+    )
+    size = np.abs(scipy.linalg.eigvals(system.a))
+    band = size[size > RIGID * size.max()].min() / 2, 2 * size.max()
+    left_out = truncation("balanced", system, apart, k - order, hankel, band)
+    return replace(small, frequency=np.zeros(0), errors=None, truncation=left_out), hankel
+
+
+def truncation(
+    method: str, system: StateSpace, apart: StateSpace, states: int, hankel: Floats, band: tuple[float, float]
+) -> Truncation:
+    """What a truncation leaves out, by the system that the difference is; the band in rad/s."""
+    start, end = band
+    poles = np.abs(scipy.linalg.eigvals(apart.a))  # where its gain has peaks
+    over = np.geomspace(start, end, POINTS, endpoint=False)  # short of the last pole kept, which may be undamped
+    error = _largest_gains(apart, np.concatenate([[0.0, end], over, poles[poles <= end]]))
+    own = _largest_gains(system, over)
+    to, of = (np.array([each.unit for each in signals]) for signals in (system.outputs, system.inputs))
+    gain = np.array([[own[np.ix_(to == a, of == b)].max() for b in of] for a in to]).reshape(own.shape)
+    return Truncation(method, states, hankel, start / (2 * np.pi), end / (2 * np.pi), error, gain)
+
+
+def _largest_gains(system: StateSpace, rates: Floats) -> Floats:
+    """Largest gains (p, m) at circular frequencies, rad/s."""
+    response = [system.c @ np.linalg.solve(1j * w * np.eye(len(system.a)) - system.a, system.b) for w in rates]
+    return np.abs(np.array(response) + system.d).max(axis=0)

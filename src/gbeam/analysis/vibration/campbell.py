@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from gbeam.analysis.equilibrium.hub_point import on_hub
 from gbeam.analysis.equilibrium.point import OperatingPoint, linear_matrices, on_base, steady_base
+from gbeam.analysis.vibration.crossing_errors import crossing_errors, doubtful_crossings
 from gbeam.analysis.vibration.eigenvalues import mac
 from gbeam.analysis.vibration.errors import Richer, doubtful
 from gbeam.analysis.vibration.modal import modes_at
@@ -148,13 +150,13 @@ def campbell(
         frequency[i, there], damping[i, there] = here.frequency[track[there]], here.damping_ratio[track[there]]
         alike[i] = value
     rates = np.array([speed.rate for speed in followed])
-    crossings = [
-        crossing
+    met = [
+        each
         for k in range(kept)
         for order in orders
-        for crossing in _crossings(at, followed, index, rates, frequency[:, k], k, order)
+        for each in _crossings(at, followed, index, rates, frequency[:, k], k, order)
     ]
-    errors = None
+    crossings, errors = [crossing for crossing, _, _ in met], None
     if structure.source is not None:
         until = len(rates) - 1 if lost.value is None else int(np.searchsorted(rates, SURE * last, "right")) - 1
         richer = Richer(structure, point_at(float(rates[until])).base)
@@ -162,6 +164,14 @@ def campbell(
             _errors(richer, point_at(followed[i].rate), followed[i], index[i]) for i in sorted({0, until // 2, until})
         ]
         errors = FrequencyErrors(*(np.fmax.reduce([getattr(e, part) for e in looked]) for part in PARTS))
+        crossings = [
+            replace(crossing, errors=crossing_errors(crossing, mode, slope, richer, point_at))
+            for crossing, mode, slope in met
+        ]
+    warnings = input_warnings(structure, motion, name=name) + (() if errors is None else doubtful(errors))
+    warnings += doubtful_crossings(crossings)
+    if lost.value is not None:
+        warnings += tuple(each for each in lost.warnings if each not in warnings)
     return Campbell(
         motion=name,
         model=structure.kind,
@@ -174,7 +184,7 @@ def campbell(
         crossings=tuple(sorted(crossings, key=lambda crossing: crossing.speed)),
         critical=lost if lost.value is not None else None,
         errors=errors,
-        warnings=input_warnings(structure, motion, name=name) + (() if errors is None else doubtful(errors)),
+        warnings=warnings,
     )
 
 
@@ -197,8 +207,11 @@ def _crossings(
     frequency: Floats,
     track: int,
     order: int,
-) -> list[Crossing]:
-    """Speeds at which a followed mode meets an engine order: roots on the modes themselves."""
+) -> list[tuple[Crossing, Complex, float]]:
+    """Speeds at which a followed mode meets an engine order: roots on the modes themselves.
+
+    With the mode there, and the slope of its circular frequency with the speed.
+    """
     gap = frequency - order * rates / (2 * np.pi)
     found = []
     for i in np.flatnonzero((gap[:-1] > 0) & (gap[1:] <= 0) | (gap[:-1] < 0) & (gap[1:] >= 0)):
@@ -216,5 +229,7 @@ def _crossings(
             rate = rates[i] - gap[i] * (rates[i + 1] - rates[i]) / (gap[i + 1] - gap[i])
         here = at(rate)
         like = int(mac(mode, here.coordinates, here.mass)[0].argmax())
-        found.append(Crossing(track, order, float(rate), order * float(rate) / (2 * np.pi), here.direction[like]))
+        crossing = Crossing(track, order, float(rate), order * float(rate) / (2 * np.pi), here.direction[like])
+        slope = 2 * np.pi * (frequency[i + 1] - frequency[i]) / (rates[i + 1] - rates[i])
+        found.append((crossing, here.coordinates[like], float(slope)))
     return found

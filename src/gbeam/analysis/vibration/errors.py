@@ -68,16 +68,25 @@ class Richer:
         gyroscopic : bool
         """
         own = np.abs(eigenvalue)
+        same, exact = self.references(point, coordinates, gyroscopic=gyroscopic)
+        return FrequencyErrors(np.abs(own / same - 1), np.abs(same / exact - 1), np.abs(own / exact - 1))
+
+    def references(
+        self, point: OperatingPoint, coordinates: Complex, *, gyroscopic: bool = True
+    ) -> tuple[Floats, Floats]:
+        """Circular frequencies of these modes by the same model with more shapes and by the exact one, (k,) rad/s each.
+
+        NaN where there is no equilibrium. The arguments are those of :meth:`errors`.
+        """
 
         def reference(richer: tuple[Structure, NDArray[np.int_]]) -> Floats:
             try:
                 return _frequencies(*richer, point, coordinates, gyroscopic=gyroscopic)
             except (ComputationError, np.linalg.LinAlgError):
-                return np.full(len(own), np.nan)
+                return np.full(len(coordinates), np.nan)
 
         exact = reference(self.exact)
-        same = exact if self.same is self.exact else reference(self.same)
-        return FrequencyErrors(np.abs(own / same - 1), np.abs(same / exact - 1), np.abs(own / exact - 1))
+        return exact if self.same is self.exact else reference(self.same), exact
 
 
 def pole_errors(structure: Structure, point: OperatingPoint, linear: Linear) -> tuple[Floats, FrequencyErrors]:

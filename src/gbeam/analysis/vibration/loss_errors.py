@@ -48,7 +48,7 @@ def judged(found: Critical, path: Path) -> Critical:
     shapes = abs(at / same - 1)
     model, total = (math.inf, math.inf) if math.isinf(exact) else (abs(same / exact - 1), abs(at / exact - 1))
     errors = ErrorEstimate(0.0, shapes, model, total)
-    return replace(found, errors=errors, warnings=found.warnings + _doubtful(found, errors))
+    return replace(found, errors=errors, warnings=found.warnings + doubtful_loss(found.quantity, found.model, errors))
 
 
 def _lost(rich: Structure, path: Path, near: float) -> float:
@@ -69,15 +69,16 @@ def _lost(rich: Structure, path: Path, near: float) -> float:
     return math.inf
 
 
-def _doubtful(found: Critical, errors: ErrorEstimate) -> tuple[str, ...]:
+def doubtful_loss(quantity: str, model: str, errors: ErrorEstimate) -> tuple[str, ...]:
+    """What to say of a critical value with errors above one in a hundred, or that the exact model does not have."""
     if math.isinf(errors.total):
         return (
-            f"it is {found.model}'s own: the exact model keeps its equilibrium to {SHARES[-1]:g} times that "
-            f"{found.quantity} at least",
+            f"the critical {quantity} is {model}'s own: the exact model keeps its equilibrium to {SHARES[-1]:g} times "
+            "that at least",
         )
     if not errors.total > LIMIT:
         return ()
     cause, cure = "too few shapes", "raise model.modes or leave them out"
     if errors.model > errors.shapes:
         cause, cure = "the model", 'check with model.kind = "exact"'
-    return (f"it is wrong by an estimated {100 * errors.total:.2g} %: {cause}; {cure}",)
+    return (f"the critical {quantity} is wrong by an estimated {100 * errors.total:.2g} %: {cause}; {cure}",)

@@ -16,7 +16,7 @@ import numpy as np
 
 from gbeam.analysis.equilibrium.point import REST, steady_base
 from gbeam.analysis.vibration.loss import first_loss_along
-from gbeam.analysis.vibration.loss_errors import Path, judged
+from gbeam.analysis.vibration.loss_errors import Path, doubtful_loss, judged
 from gbeam.errors import InputError
 from gbeam.guards.checks import positive
 from gbeam.mechanics.assembly import assemble
@@ -26,12 +26,14 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.protocol import Motion
-from gbeam.results.steady.stability import Critical, CriticalMap
+from gbeam.results.parts.errors import ErrorEstimate
+from gbeam.results.steady.stability import Critical, CriticalMap, MapErrors
 from gbeam.structure.beam import Beam
 from gbeam.structure.bodies import PointMass
 
 SEARCH_FACTOR = 10.0  # of the lowest natural frequency: how far a search goes by default
 INSTEAD = "ask `gbeam modes` for its frequencies at a time, or `gbeam static` for its shape"
+MAP_PARTS = "shapes", "model", "total"
 NOTHING = 1e-12  # of the beam's stiffness: loads that bring less are rounding about none
 
 
@@ -121,15 +123,21 @@ def critical_speed_map(
     hub, unloaded = hub_of(motion, "a critical speed", INSTEAD, name), assemble(beam, model)
     limit = SEARCH_FACTOR * lowest_frequency(unloaded) if upper is None else upper
     speed = np.full((len(masses), len(positions)), np.nan)
+    errors = MapErrors(*np.full((3, *speed.shape), np.nan))
+    worst = ErrorEstimate(total=0.0)
     for i, mass in enumerate(masses):
         for j, at in enumerate(positions):
             loaded = replace(beam, masses=(*beam.masses, PointMass(at, mass)))
             turning = _turning(assemble(loaded, model), hub)
-            value = first_loss_along(turning, limit, "hub rate", "rad/s").value
-            speed[i, j] = np.nan if value is None else value
+            found = judged(first_loss_along(turning, limit, "hub rate", "rad/s"), turning)
+            speed[i, j] = np.nan if found.value is None else found.value
+            for part in MAP_PARTS:
+                getattr(errors, part)[i, j] = getattr(found.errors, part)
+            if found.errors.total > worst.total:
+                worst = found.errors
     heavy, where = np.asarray(masses, dtype=float), np.asarray(positions, dtype=float)
-    warnings = input_warnings(unloaded, motion, name=name)
-    return CriticalMap(name, model.kind, heavy, where, speed, limit, warnings=warnings)
+    warnings = input_warnings(unloaded, motion, name=name) + doubtful_loss("hub rate, at worst,", model.kind, worst)
+    return CriticalMap(name, model.kind, heavy, where, speed, limit, errors, warnings=warnings)
 
 
 def buckling_acceleration(structure: Structure, *, upper: float | None = None) -> Critical:

@@ -12,6 +12,8 @@ from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.steady.modal import Campbell, Modes
 from gbeam.results.steady.stability import Critical, CriticalMap
 
+CAUSES = {"shapes": "from too few shapes", "model": "of the model against exact", "total": "in all"}
+
 
 def deflection_group(deflection: Deflection) -> Group:
     """Return what a file holds of a static deflection."""
@@ -69,10 +71,9 @@ def modes_group(modes: Modes) -> Group:
 def _errors(errors: FrequencyErrors | None) -> dict[str, Variable]:
     if errors is None:
         return {}
-    causes = {"shapes": "from too few shapes", "model": "of the model against exact", "total": "in all"}
     return {
         f"frequency_error_{name}": variable(("mode",), getattr(errors, name), "1", f"estimated error {cause}")
-        for name, cause in causes.items()
+        for name, cause in CAUSES.items()
     }
 
 
@@ -95,6 +96,11 @@ def campbell_group(diagram: Campbell) -> Group:
         }
         for name, (values, unit, long_name) in numbers.items():
             data[f"crossing_{name}"] = variable(c, values, unit, f"{long_name} at which a mode meets a multiple")
+        for name, cause in CAUSES.items():
+            values = [getattr(each.errors, name) for each in diagram.crossings]
+            data[f"crossing_error_{name}"] = variable(c, values, "1", f"estimated error of the speed {cause}")
+    if diagram.critical is not None:
+        data |= {f"critical_{name}": each for name, each in critical_group(diagram.critical).variables.items()}
     coordinates = coordinate("speed", diagram.speed, "rad s-1", "hub rate")
     coordinates |= coordinate("mode", np.arange(1, len(diagram.direction) + 1), "1", "number of the mode")
     attrs = {"motion": diagram.motion, "model": diagram.model, "orders": np.array(diagram.orders, dtype=np.int64)}
@@ -109,8 +115,7 @@ def critical_group(critical: Critical) -> Group:
         "value": variable((), value, critical.unit, f"critical {critical.quantity}; missing where it is not reached"),
         "searched_to": variable((), critical.searched_to, critical.unit, "end of the search"),
     }
-    causes = {"shapes": "from too few shapes", "model": "of the model against exact", "total": "in all"}
-    for name, cause in causes.items():
+    for name, cause in CAUSES.items():
         if np.isfinite(value := getattr(critical.errors, name)):
             data[f"error_{name}"] = variable((), value, "1", f"estimated error {cause}, a fraction")
     return Group(data, {}, _critical(critical))
@@ -122,7 +127,12 @@ def critical_map_group(critical: CriticalMap) -> Group:
     coordinates = coordinate("mass", critical.mass, "kg", "mass on the beam")
     coordinates |= coordinate("position", critical.position, "m", "its position from the root")
     attrs = {"motion": critical.motion, "model": critical.model, "searched_to": critical.searched_to}
-    return Group({"speed": variable(("mass", "position"), critical.speed, "rad s-1", long_name)}, coordinates, attrs)
+    data = {"speed": variable(("mass", "position"), critical.speed, "rad s-1", long_name)}
+    if critical.errors is not None:
+        for name, cause in CAUSES.items():
+            values = getattr(critical.errors, name)
+            data[f"speed_error_{name}"] = variable(("mass", "position"), values, "1", f"estimated error {cause}")
+    return Group(data, coordinates, attrs)
 
 
 def _critical(critical: Critical) -> dict[str, str]:

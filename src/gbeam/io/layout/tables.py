@@ -81,4 +81,16 @@ def state_space_group(system: StateSpace) -> Group:
         value = np.asarray(getattr(system, kind))
         data[f"{kind}_value"] = variable((kind,), value, "mixed", f"{kind} at the operating point")
         data[f"{kind}_unit"] = words((kind,), [each.unit for each in every], f"unit of the {kind}")
-    return Group(data, coordinates, {"model": system.model, "motion": system.motion, "time": system.time})
+    if system.errors is not None:
+        data["pole_frequency"] = variable(("pole",), system.frequency, "Hz", "frequency of a pole that oscillates")
+        data["pole_error"] = variable(("pole",), system.errors.total, "1", "its estimated error, a fraction")
+    attrs = {"model": system.model, "motion": system.motion, "time": system.time}
+    if (left_out := system.truncation) is not None:
+        dims, up_to = ("output", "input"), f"up to {left_out.end:.6g} Hz"
+        data["truncation_error"] = variable(dims, left_out.error, "mixed", f"largest gain of what is left out {up_to}")
+        data["truncation_gain"] = variable(dims, left_out.gain, "mixed", f"largest gain of the larger model {up_to}")
+        attrs |= {"truncation": left_out.method, "states_left_out": left_out.states}
+        if left_out.method == "balanced":
+            data["hankel_singular_value"] = variable(("hankel",), left_out.hankel, "mixed", "of what decays")
+            attrs |= {"truncation_bound": left_out.bound}
+    return Group(data, coordinates, attrs)

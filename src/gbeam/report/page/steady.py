@@ -106,14 +106,17 @@ def crossings_table(facts: Facts) -> str:
             each["speed"],
             60 * each["speed"] / (2 * np.pi),
             each["frequency"],
+            _error(each),
         ]
         for each in facts["crossings"]
     ]
-    return table(("mode", "multiple", "speed, rad/s", "speed, rpm", "frequency, Hz"), rows)
+    heads = "mode", "multiple", "speed, rad/s", "speed, rpm", "frequency, Hz", "estimated error"
+    return table(heads, rows)
 
 
-def _error(mode: Facts) -> str:
-    return percent(np.nan if mode["error_estimate"] is None else mode["error_estimate"])
+def _error(facts: Facts) -> str:
+    error = facts.get("error_estimate")
+    return percent(np.nan if error is None else error)
 
 
 def shapes(facts: Facts, numbers: Numbers) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from gbeam.report.steady.critical import answer
 from gbeam.report.words import frequency_errors, percent, warning_lines
 from gbeam.results.steady.modal import Campbell
 
@@ -30,8 +31,9 @@ def to_json(diagram: Campbell) -> dict[str, Any]:
             for d, f, z, m, e in zip(*columns, errors, strict=True)
         ],
         "orders": list(diagram.orders),
-        "crossings": [asdict(crossing) for crossing in diagram.crossings],
+        "crossings": [asdict(crossing) | {"error_estimate": crossing.errors.total} for crossing in diagram.crossings],
         "critical_speed": None if diagram.critical is None else diagram.critical.value,
+        "critical_speed_errors": None if diagram.critical is None else asdict(diagram.critical.errors),
         "warnings": list(diagram.warnings),
     }
 
@@ -54,9 +56,10 @@ def text(diagram: Campbell, unit: str = "rad/s", size: float = 1.0) -> str:
     rows = enumerate(zip(diagram.direction, diagram.frequency[0], diagram.frequency[-1], errors, strict=True), 1)
     lines += [f"  {i:>4} {d:>5} {first:17.6g} {last:12.6g} {percent(error):>14}" for i, (d, first, last, error) in rows]
     lines += [
-        f"  mode {each.track + 1} meets {each.order} × speed at {each.speed / size:.6g} {unit}, {each.frequency:.6g} Hz"
+        f"  mode {each.track + 1} meets {each.order} × speed at {each.speed / size:.6g} {unit}, "
+        f"{each.frequency:.6g} Hz; error {percent(each.errors.total)}"
         for each in diagram.crossings
     ]
     if diagram.critical is not None:
-        lines.append(f"  {diagram.critical.reason}")
+        lines.append(f"  {answer(diagram.critical)}")
     return "\n".join([*lines, *warning_lines(diagram)])

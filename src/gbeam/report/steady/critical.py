@@ -43,17 +43,22 @@ def to_json(critical: Critical, motion: str, varied: str = "rate") -> dict[str, 
 
 
 def text(critical: Critical, motion: str) -> str:
-    """The answer as one sentence."""
+    """The answer as one sentence, and warnings."""
+    return "\n".join([f"{motion}: {answer(critical)}", *warning_lines(critical)])
+
+
+def answer(critical: Critical) -> str:
+    """The answer as one sentence, with its error."""
     errors, error = critical.errors, ""
     if math.isfinite(errors.total):
         error = f"; estimated error {error_words(errors)}"
     elif math.isfinite(errors.shapes):
         error = f"; estimated error from too few shapes {percent(errors.shapes)}"
-    return "\n".join([f"{motion}: {critical.reason}{error}", *warning_lines(critical)])
+    return f"{critical.reason}{error}"
 
 
 def map_json(critical: CriticalMap) -> dict[str, Any]:
-    """Map as JSON: critical_speed[i][j] with mass i at position j; rad/s, null where there is none."""
+    """Map as JSON: critical_speed[i][j] with mass i at position j; rad/s, null where there is none; errors likewise."""
     return {
         "outcome": "done",
         "motion": critical.motion,
@@ -62,6 +67,9 @@ def map_json(critical: CriticalMap) -> dict[str, Any]:
         "position": critical.position.tolist(),
         "critical_speed": [[None if np.isnan(v) else float(v) for v in row] for row in critical.speed],
         "searched_to": critical.searched_to,
+        "errors": None
+        if critical.errors is None
+        else {name: values.tolist() for name, values in asdict(critical.errors).items()},
         "warnings": list(critical.warnings),
     }
 
@@ -74,11 +82,19 @@ def map_text(critical: CriticalMap) -> str:
         lines.append(f"  {place:<9.4g}" + "".join("           –" if np.isnan(v) else f"{v:12.5f}" for v in speeds))
     if np.isnan(critical.speed).any():
         lines.append(f"  –: none up to {critical.searched_to:.4g} rad/s")
+    if critical.errors is not None and not np.isnan(critical.speed).all():
+        shapes, total = (float(np.nanmax(each)) for each in (critical.errors.shapes, critical.errors.total))
+        every = f", {percent(total)} in all" if math.isfinite(total) else ""
+        lines.append(f"  estimated errors up to {percent(shapes)} from too few shapes{every}")
     return "\n".join([*lines, *warning_lines(critical)])
 
 
 def map_csv(critical: CriticalMap) -> str:
-    """Map as comma-separated values: a row per position, a column per mass, nan where there is none."""
-    head = ",".join(["position_m", *(f"critical_rad_per_s_with_{m:g}_kg" for m in critical.mass)])
-    rows = np.column_stack([critical.position, critical.speed.T])
-    return "\n".join([head, *(",".join(f"{value:.12g}" for value in row) for row in rows), ""])
+    """Map as comma-separated values: a row per position, a column per mass, nan where there is none; then errors."""
+    heads = ["position_m", *(f"critical_rad_per_s_with_{m:g}_kg" for m in critical.mass)]
+    columns = [critical.position, *critical.speed]
+    if critical.errors is not None:
+        heads += [f"error_with_{m:g}_kg" for m in critical.mass]
+        columns += [*critical.errors.total]
+    rows = (",".join(f"{value:.12g}" for value in row) for row in zip(*columns, strict=True))
+    return "\n".join([",".join(heads), *rows, ""])

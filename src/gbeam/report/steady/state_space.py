@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from gbeam.report.words import frequency_errors, percent, warning_lines
-from gbeam.results.steady.state_space import ACCURATE, Gauge, StateSpace
+from gbeam.results.steady.state_space import ACCURATE, Gauge, StateSpace, Truncation
 
 WIDTH = 100  # columns of the text
 
 
-def to_json(system: StateSpace, gauges: Iterable[Gauge] = (), hankel: Iterable[float] = ()) -> dict[str, Any]:
+def to_json(system: StateSpace, gauges: Iterable[Gauge] = ()) -> dict[str, Any]:
     """State space as JSON.
 
     Parameters
@@ -23,14 +23,13 @@ def to_json(system: StateSpace, gauges: Iterable[Gauge] = (), hankel: Iterable[f
     system : StateSpace
     gauges : iterable of Gauge
         Strain gauges among the outputs, in the order of their names.
-    hankel : iterable of float
-        Hankel singular values of the system before its truncation, if it was balanced.
     """
 
     def signals(listed: Any, values: Any) -> list[dict[str, Any]]:
         pairs = zip(listed, values, strict=True)
         return [{"name": signal.name, "unit": signal.unit, "value": float(value)} for signal, value in pairs]
 
+    left_out = system.truncation
     return {
         "outcome": "done",
         "motion": system.motion,
@@ -41,7 +40,8 @@ def to_json(system: StateSpace, gauges: Iterable[Gauge] = (), hankel: Iterable[f
         "outputs": signals(system.outputs, system.output),
         **{key: getattr(system, key.lower()).tolist() for key in "ABCD"},
         "gauges": [asdict(gauge) for gauge in gauges],
-        "hankel_singular_values": [float(value) for value in hankel],
+        "hankel_singular_values": [] if left_out is None else left_out.hankel.tolist(),
+        "truncation": None if left_out is None else _truncation_json(left_out),
         "poles": [
             {"frequency": float(frequency), "errors": error}
             for frequency, error in zip(
@@ -53,7 +53,7 @@ def to_json(system: StateSpace, gauges: Iterable[Gauge] = (), hankel: Iterable[f
     }
 
 
-def text(system: StateSpace, gauges: Iterable[Gauge] = (), hankel: Iterable[float] = ()) -> str:
+def text(system: StateSpace, gauges: Iterable[Gauge] = ()) -> str:
     """Names and units of the signals; the arguments are those of :func:`to_json`."""
     lines = [f"{system.motion}: {system.model}, {len(system.a)} states"]
     for what in ("states", "inputs", "outputs"):
@@ -69,9 +69,38 @@ def text(system: StateSpace, gauges: Iterable[Gauge] = (), hankel: Iterable[floa
             fibre = f"fibre y {1e3 * gauge.y:g} mm, z {1e3 * gauge.z:g} mm"
             lines.append(f"  strain_{k} at {gauge.at:g} m, {fibre}")
     lines += _accuracy(system)
-    if values := list(hankel):
-        lines.append("  Hankel singular values " + " ".join(f"{value:.3g}" for value in values))
+    if system.truncation is not None:
+        lines += _left_out(system, system.truncation)
     return "\n".join([*lines, *warning_lines(system), "--json prints the matrices, --out writes them for MATLAB too."])
+
+
+def _truncation_json(left_out: Truncation) -> dict[str, Any]:
+    """What a smaller model leaves out; gains by output and input."""
+    return {
+        "method": left_out.method,
+        "states_left_out": left_out.states,
+        "bound": left_out.bound,
+        "from": left_out.start,
+        "to": left_out.end,
+        **{name: getattr(left_out, name).tolist() for name in ("error", "gain", "share")},
+    }
+
+
+def _left_out(system: StateSpace, left_out: Truncation) -> list[str]:
+    """How many states, what their share is, and of a balanced truncation the bound of the error."""
+    share = left_out.share
+    worst = np.unravel_index(int(share.argmax()), share.shape) if share.size else (0, 0)
+    count = f"{left_out.states} of {left_out.states + len(system.a)} states"
+    words = f"  {left_out.method} truncation leaves out {count}"
+    if share.size:
+        to, by = system.outputs[worst[0]].name, system.inputs[worst[1]].name
+        words += f": up to {left_out.end:.5g} Hz at most {percent(float(share[worst]))} of the largest gain"
+        words += f" ({to} by {by})" if share.size > 1 else ""
+    lines = [words]
+    if left_out.method == "balanced":
+        lines.append(f"  no gain is wrong by more than {left_out.bound:.3g}, twice the sum of the values left out, of")
+        lines.append("  Hankel singular values " + " ".join(f"{value:.3g}" for value in left_out.hankel))
+    return lines
 
 
 def _accuracy(system: StateSpace) -> list[str]:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from gbeam.results.parts.errors import FrequencyErrors
+from gbeam.results.parts.errors import ErrorEstimate, FrequencyErrors
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Complex, Figured, Floats
 from gbeam.results.steady.stability import Critical
@@ -125,6 +125,8 @@ class Crossing:
     frequency : float
         Hz.
     direction : str
+    errors : ErrorEstimate
+        Of the speed; infinite where the exact model has no such crossing.
     """
 
     track: int
@@ -132,6 +134,7 @@ class Crossing:
     speed: float
     frequency: float
     direction: str
+    errors: ErrorEstimate = field(default_factory=ErrorEstimate)
 
 
 @dataclass(frozen=True, repr=False, eq=False)

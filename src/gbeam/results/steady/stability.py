@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from gbeam.results.parts.errors import ErrorEstimate
-from gbeam.results.result import Figured, Floats, Result, brief
+from gbeam.results.result import Figured, Floats, Part, Result, brief
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -52,6 +52,22 @@ class Critical(Result):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
+class MapErrors(Part):
+    """Estimated errors of the speeds of a map, as fractions, (m, p) each; NaN where there is none.
+
+    Parameters
+    ----------
+    shapes, model, total : (m, p)
+        From too few shapes, of the model against exact, and of both; infinite where the exact model keeps its
+        equilibrium to three times the speed.
+    """
+
+    shapes: Floats
+    model: Floats
+    total: Floats
+
+
+@dataclass(frozen=True, repr=False, eq=False)
 class CriticalMap(Figured):
     """Critical hub rates against a mass on the beam and its position.
 
@@ -63,6 +79,8 @@ class CriticalMap(Figured):
     speed : (m, p) rad/s; NaN where it is not reached
     searched_to : float
         rad/s.
+    errors : MapErrors or None
+        Of the speeds; None where there is no estimate.
     """
 
     motion: str
@@ -71,6 +89,7 @@ class CriticalMap(Figured):
     position: Floats
     speed: Floats
     searched_to: float
+    errors: MapErrors | None = None
 
     def __repr__(self) -> str:
         return brief(self)

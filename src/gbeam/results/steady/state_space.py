@@ -11,7 +11,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.results.parts.errors import FrequencyErrors
-from gbeam.results.result import Floats, Result
+from gbeam.results.result import Floats, Part, Result
 
 ACCURATE = 0.01  # error of a frequency that is within what a design takes for accurate
 
@@ -41,6 +41,49 @@ class Gauge:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
+class Truncation(Part):
+    """What a smaller model leaves out of the one that it is made from.
+
+    Gains are those from an input to an output, (p, m) in the unit of the output by that of the input.
+
+    Parameters
+    ----------
+    method : str
+        ``modal`` or ``balanced``.
+    states : int
+        How many are left out.
+    hankel : (k,)
+        Hankel singular values of what decays, of a balanced truncation; they tell how much each state matters.
+    start, end : float
+        Frequencies between which gains are compared, Hz: from half the lowest that oscillates to the highest that is
+        kept; of a balanced truncation to twice the highest there is.
+    error : (p, m)
+        Largest gain of the difference up to `end`.
+    gain : (p, m)
+        Largest gain of the larger model from `start` to `end`, among the inputs and outputs of the same units.
+    """
+
+    method: str
+    states: int
+    hankel: Floats
+    start: float
+    end: float
+    error: Floats
+    gain: Floats
+
+    @property
+    def bound(self) -> float:
+        """Twice the sum of the Hankel singular values left out, which the difference's largest singular value never
+        exceeds at any frequency (Glover 1984); NaN of a modal truncation."""
+        return float(2 * self.hankel[len(self.hankel) - self.states :].sum()) if self.method == "balanced" else math.nan
+
+    @property
+    def share(self) -> Floats:
+        """The error over the gain, (p, m); zero where there is no gain at all."""
+        return np.divide(self.error, self.gain, out=np.zeros_like(self.error), where=self.gain > 0)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
 class StateSpace(Result):
     """ẋ = Ax + Bu, y = Cx + Du; all are departures from the operating point.
 
@@ -57,6 +100,8 @@ class StateSpace(Result):
         |λ|/2π of the poles that oscillate, ascending; none of a balanced truncation, whose poles are no beam's.
     errors : FrequencyErrors or None
         Of these frequencies; None where there is no estimate.
+    truncation : Truncation or None
+        What a smaller model leaves out.
     """
 
     a: Floats
@@ -74,6 +119,7 @@ class StateSpace(Result):
     time: float = float("nan")
     frequency: Floats = field(default_factory=lambda: np.zeros(0))
     errors: FrequencyErrors | None = None
+    truncation: Truncation | None = None
 
     @property
     def accurate_to(self) -> float:
@@ -108,6 +154,9 @@ class StateSpace(Result):
             return list(range(len(names))) if chosen is None else [names.index(name) for name in chosen]
 
         i, o = places(inputs, self.inputs, "inputs"), places(outputs, self.outputs, "outputs")
+        left_out = self.truncation
+        if left_out is not None:
+            left_out = replace(left_out, error=left_out.error[np.ix_(o, i)], gain=left_out.gain[np.ix_(o, i)])
         return replace(
             self,
             b=self.b[:, i],
@@ -117,6 +166,7 @@ class StateSpace(Result):
             outputs=tuple(self.outputs[k] for k in o),
             input=self.input[i],
             output=self.output[o],
+            truncation=left_out,
         )
 
     def to_scipy(self) -> Any:
@@ -165,6 +215,8 @@ class StateSpace(Result):
         points = {"x0": self.state, "u0": self.input, "y0": self.output}
         if self.errors is not None:
             points |= {"frequency_Hz": self.frequency, "frequency_error": self.errors.total}
+        if self.truncation is not None:
+            points |= {"truncation_error": self.truncation.error, "truncation_bound": np.array(self.truncation.bound)}
         scipy.io.savemat(
             os.fspath(path),
             {"A": self.a, "B": self.b, "C": self.c, "D": self.d, **points, **words},
@@ -181,6 +233,12 @@ class StateSpace(Result):
         if not math.isnan(self.accurate_to):
             counts.append(
                 f"frequencies within {100 * ACCURATE:g} % of the exact model's up to {self.accurate_to:.4g} Hz"
+            )
+        if self.truncation is not None:
+            share = float(self.truncation.share.max(initial=0.0))
+            counts.append(
+                f"{self.truncation.method} truncation: {self.truncation.states} states left out, at most "
+                f"{100 * share:.2g} % of the largest gain up to {self.truncation.end:.4g} Hz"
             )
         return self._with_warnings(f"StateSpace{of}{f' on {self.motion!r}' if self.motion else ''}", *counts)
 

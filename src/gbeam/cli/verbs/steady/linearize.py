@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -65,7 +64,6 @@ def linearize(
 
     with naming("--strain-at"):
         gauges = surface_gauges(given.case.beam, stations)
-    hankel: Iterable[float] = ()
     options = {"order": "--balanced", "modes": "--modes", "inputs": "--inputs", "outputs": "--outputs"}
     with Watch(), given.placing(**options):
         system = linearize(given.case.assemble(), chosen, time, rate=steady, gauges=gauges, name=name)
@@ -76,9 +74,9 @@ def linearize(
             if modes is not None:
                 system = reduction.modal_truncation(system, modes)
             elif balanced is not None:
-                system, hankel = reduction.balanced_truncation(system, balanced)
+                system, _ = reduction.balanced_truncation(system, balanced)
     system = replace(system, provenance=given.case.provenance)
-    facts = given.signed(report.to_json(system, gauges, hankel))
+    facts = given.signed(report.to_json(system, gauges))
 
     def make(hidden: Path) -> None:
         system.to_mat(hidden / "linear.mat")
@@ -86,7 +84,7 @@ def linearize(
 
     if out is not None:
         publish(out, make)
-    show(report.text(system, gauges, hankel), facts, json)
+    show(report.text(system, gauges), facts, json)
     return 0
 
 

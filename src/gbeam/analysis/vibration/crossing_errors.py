@@ -1,0 +1,86 @@
+"""Errors of the speeds at which modes meet multiples of the speed: from too few shapes, and of the model."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+from gbeam.analysis.equilibrium.point import OperatingPoint
+from gbeam.analysis.vibration.errors import LIMIT, Richer
+from gbeam.errors import ComputationError
+from gbeam.results.parts.errors import ErrorEstimate
+from gbeam.results.result import Complex
+from gbeam.results.steady.modal import Crossing
+
+
+def crossing_errors(
+    crossing: Crossing, mode: Complex, slope: float, richer: Richer, point_at: Callable[[float], OperatingPoint]
+) -> ErrorEstimate:
+    """Errors of a crossing's speed: where the mode of richer models meets the same multiple.
+
+    Parameters
+    ----------
+    crossing : Crossing
+    mode : (n,)
+        Coordinates of the beam.
+    slope : float
+        Of the mode's circular frequency with the speed.
+    richer : Richer
+    point_at : callable
+        Of the hub's rate: the operating point there.
+
+    Returns
+    -------
+    ErrorEstimate
+        Infinite where a richer model has no such crossing nearby.
+    """
+    own, order = crossing.speed, crossing.order
+
+    def gaps(rate: float) -> tuple[float, float]:
+        """Of the same model with more shapes, and of the exact one, rad/s."""
+        same, exact = richer.references(point_at(rate), mode[None])
+        return float(same[0]) - order * rate, float(exact[0]) - order * rate
+
+    first = gaps(own)
+
+    def root(which: int) -> float:
+        """By a step of Newton's with the model's own slope; where that is a long one, one of the secant method more."""
+        near = own - first[which] / (slope - order)
+        if not 0 < near < math.inf or abs(near / own - 1) < LIMIT:
+            return near if near > 0 else math.inf
+        try:
+            second = gaps(near)[which]
+        except ComputationError:
+            return math.inf
+        better = near - second * (near - own) / (second - first[which])
+        return better if 0 < better < math.inf else math.inf
+
+    exact = root(1)
+    same = exact if richer.same is richer.exact else root(0)
+    return ErrorEstimate(0.0, _apart(own, same), _apart(same, exact), _apart(own, exact))
+
+
+def _apart(value: float, reference: float) -> float:
+    if math.isinf(reference):
+        return 0.0 if value == reference else math.inf
+    return math.inf if math.isinf(value) else abs(value / reference - 1)
+
+
+def doubtful_crossings(crossings: Sequence[Crossing]) -> tuple[str, ...]:
+    """What to say where speeds of crossings are wrong by more than one in a hundred."""
+    above = [each for each in crossings if each.errors.total > LIMIT]
+    if not above:
+        return ()
+    worst = max(above, key=lambda each: each.errors.total)
+    where = f"mode {worst.track + 1} meets {worst.order} × speed"
+    if len(above) > 1:
+        where += f", and {len(above) - 1} more where modes meet multiples,"
+    if math.isinf(worst.errors.total):
+        return (
+            f"the speed at which {where} is {'not' if len(above) == 1 else 'in part not'} one of the exact model's",
+        )
+    cause, cure = "too few shapes", "raise model.modes or leave them out"
+    if worst.errors.model > worst.errors.shapes:
+        cause, cure = "the model", 'check with model.kind = "exact"'
+    size = f"{100 * worst.errors.total:.2g} %{' at most' if len(above) > 1 else ''}"
+    return (f"the speed at which {where} is wrong by an estimated {size}: {cause}; {cure}",)
