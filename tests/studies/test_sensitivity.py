@@ -165,3 +165,23 @@ def test_values_may_be_others_than_the_scenarios(fast: Path) -> None:
     about = Neighbourhood(Question(base.source, "static", "flight"), physical_values(base, [LENGTH]), [0.2])
     found = about.slopes(lambda _, facts: np.array([facts["motions"]["flight"]["tip"]["z"]]))
     assert found.slopes[0, 0] * 0.2 / found.values[0] == pytest.approx(4, abs=1e-9)
+
+
+def test_a_case_stands_for_its_file_until_it_is_changed(fast: Path) -> None:
+    case = gb.read_scenario(fast, ["beam.length=250 mm"])
+    by_case = gb.sensitivity(case, ["flight.tip.z"], [E], verb="static", overrides=["model.modes.z=3"])
+    changes = ["beam.length=250 mm", "model.modes.z=3"]
+    by_file = gb.sensitivity(fast, ["flight.tip.z"], [E], verb="static", overrides=changes)
+    assert by_case.figures == by_file.figures and by_case.derivatives == by_file.derivatives
+    assert by_case.provenance is not None and by_case.provenance.overrides == tuple(changes)
+    swept = gb.sweep(case, {"beam.material.density": [2700]}, ["flight.tip.z"], verb="static")
+    assert swept.provenance is not None and swept.provenance.overrides == tuple(changes[:1])
+    with pytest.raises(gb.InputError, match="not read from a file, or was changed since"):
+        gb.sensitivity(replace(case, title="another"), ["flight.tip.z"], [E], verb="static")
+
+
+def test_exact_derivatives_come_with_the_error_of_their_run(fast: Path) -> None:
+    found = gb.sensitivity(fast, ["flight.tip.z.max_abs"], [E])
+    errors = gb.study(gb.read_scenario(fast)).responses["flight"].errors
+    assert found.methods == ("exact",) and found.run_error == max(errors.displacement.total, errors.loads.total) > 0
+    assert np.isnan(gb.sensitivity(fast, ["flight.tip.z"], [E], verb="static").run_error)

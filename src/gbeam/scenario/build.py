@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from gbeam.errors import InputError
 from gbeam.scenario import schema
-from gbeam.scenario.load import load
+from gbeam.scenario.load import change, load
 from gbeam.scenario.origin import provenance
 from gbeam.scenario.placing import Collector, placed
 
@@ -76,7 +76,7 @@ def build(scenario: schema.Scenario, *, ahead: bool = False) -> Case:
         motions |= centrifuges(parts, scenario, motions, span, ahead=ahead)
     if parts.errors or beam is None or model is None or response is None:
         raise placed(scenario, parts.errors)
-    return Case(
+    case = Case(
         title=scenario.title,
         beam=beam,
         model=model,
@@ -91,6 +91,34 @@ def build(scenario: schema.Scenario, *, ahead: bool = False) -> Case:
         },
         provenance=provenance(scenario),
     )
+    object.__setattr__(case, "scenario", scenario)
+    return case
+
+
+def scenario_of(
+    given: str | os.PathLike[str] | Case, overrides: Iterable[str] = (), *, distributions: bool = False
+) -> schema.Scenario:
+    """The scenario of a file, or that which a case was read from, validated with changes.
+
+    Parameters
+    ----------
+    given : path or Case
+    overrides, distributions
+        As for :func:`gbeam.scenario.load.load`.
+
+    Raises
+    ------
+    InputError
+        If a case was made, or changed, by hand: other cases of it have no text to be read from.
+    ScenarioError
+        As :func:`gbeam.scenario.load.load` does.
+    """
+    if isinstance(given, (str, os.PathLike)):
+        return load(given, overrides, distributions=distributions)
+    if given.scenario is None or given.scenario.source is None:
+        fix = "give the file, or what read_scenario makes of it; changes as overrides"
+        raise InputError("scenario", "is a case that was not read from a file, or was changed since", fix)
+    return change(given.scenario.source, overrides)
 
 
 def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:

@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.analysis.study.case import Case
 from gbeam.errors import InputError
 from gbeam.results.result import Floats
 from gbeam.results.studies.fit import Fit, FittedColumn
-from gbeam.scenario.load import load
+from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
 from gbeam.studies.bounds import Bounds, bounds_of, named
 from gbeam.studies.derivatives import Progress
@@ -28,7 +29,7 @@ _VISIBLE = 1e-5  # of the largest datum: residuals that are less are rounding
 
 
 def fit(
-    scenario: str | os.PathLike[str],
+    scenario: str | os.PathLike[str] | Case,
     data: str | os.PathLike[str],
     free: Sequence[str],
     *,
@@ -45,8 +46,8 @@ def fit(
 
     Parameters
     ----------
-    scenario : path
-        Of the scenario file; its values are where the search starts.
+    scenario : path or Case
+        The scenario's file, or what :func:`gbeam.read_scenario` makes of it; its values are where the search starts.
     data : path
         A text file with a header. Columns ``time`` and any of ``tip.z``, ``root_moment.y``, ``root_force.z``,
         ``hub.angle``, ``hub.rate``, ``strain.z@10 mm``, with a unit in brackets or SI, after the motion's name where
@@ -75,7 +76,7 @@ def fit(
     ComputationError
         If the data cannot tell two values apart, or do not depend on one; or a run is not done.
     """
-    base = load(scenario, overrides)
+    base = scenario_of(scenario, overrides)
     assert base.source is not None  # it was read from a file
     if isinstance(free, str) or not free:
         raise InputError(OPTION, "is missing", 'name values: --free "beam.material.youngs_modulus"')

@@ -18,7 +18,7 @@ from gbeam.mechanics.models import Model
 from gbeam.results.result import Floats
 from gbeam.results.studies.optimum import BROKEN, Optimum, Requirement
 from gbeam.results.study import Study
-from gbeam.scenario.load import load
+from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
 from gbeam.scenario.values.kinds import KINDS
 from gbeam.scenario.values.units import UnitError, argument
@@ -52,7 +52,7 @@ class Goal:
 
 
 def optimise(
-    scenario: str | os.PathLike[str],
+    scenario: str | os.PathLike[str] | Case,
     minimise: str,
     over: Sequence[str],
     *,
@@ -72,8 +72,8 @@ def optimise(
 
     Parameters
     ----------
-    scenario : path
-        Of the scenario file.
+    scenario : path or Case
+        The scenario's file, or what :func:`gbeam.read_scenario` makes of it.
     minimise : str
         A figure of the verb's JSON by the end of its path, such as ``tip.y.residual_amplitude``. Of a figure without a
         unit, such as ``verdict.root_moment``, the size is minimised.
@@ -102,7 +102,7 @@ def optimise(
     ComputationError
         If the scenario's own run is not done.
     """
-    base = load(scenario, overrides)
+    base = scenario_of(scenario, overrides)
     assert base.source is not None  # it was read from a file
     if isinstance(over, str) or not over:
         raise InputError("--over", "is missing", 'name values: --over "motion.centrifuge.control_point"')

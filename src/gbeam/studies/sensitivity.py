@@ -10,11 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.analysis.study.case import Case
 from gbeam.errors import GbeamError, InputError
 from gbeam.results.result import Flags, Floats
 from gbeam.results.studies.sensitivity import Sensitivity
 from gbeam.results.study import Study
-from gbeam.scenario.load import load
+from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
 from gbeam.scenario.values.paths import path_text
 from gbeam.scenario.values.suggest import advise
@@ -32,7 +33,7 @@ _NOT_PHYSICAL = re.compile(r"(^|\.)(steps|step|errors|error_estimate|accepted|pa
 
 
 def sensitivity(
-    scenario: str | os.PathLike[str],
+    scenario: str | os.PathLike[str] | Case,
     of: Sequence[str],
     parameters: Sequence[str] = (),
     *,
@@ -50,8 +51,8 @@ def sensitivity(
 
     Parameters
     ----------
-    scenario : path
-        Of the scenario file.
+    scenario : path or Case
+        The scenario's file, or what :func:`gbeam.read_scenario` makes of it.
     of : sequence of str
         Figures of the verb's JSON by the end of their path, such as ``tip.z.max_abs`` or ``verdict.tip``.
     parameters : sequence of str
@@ -79,7 +80,7 @@ def sensitivity(
     ComputationError
         If a run whose figures are differentiated is not done.
     """
-    base = load(scenario, overrides)
+    base = scenario_of(scenario, overrides)
     assert base.source is not None  # it was read from a file
     if verb not in VERBS:
         raise InputError("--verb", f"is {verb!r}", advise(verb, VERBS))
@@ -114,9 +115,20 @@ def sensitivity(
         errors=slopes.errors,
         methods=slopes.methods,
         kinks=kinks,
+        run_error=_run_error(about.answer, motions),
         not_varied=tuple(refused),
         warnings=tuple(kinked),
         provenance=provenance(base),
+    )
+
+
+def _run_error(answer: Any, motions: Sequence[str]) -> float:
+    """Largest estimated error of the runs in some environments; NaN where there are none."""
+    if not isinstance(answer, Study):
+        return math.nan
+    errors = [answer.responses[name].errors for name in motions]
+    return max(
+        (total for e in errors for total in (e.displacement.total, e.loads.total) if total == total), default=math.nan
     )
 
 

@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.analysis.study.case import Case
 from gbeam.errors import InputError
 from gbeam.guards.limits import HISTORY_BYTES, WORKERS, refuse_more
 from gbeam.results.studies.sweep import Sweep
-from gbeam.scenario.load import load
+from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
 from gbeam.scenario.values.suggest import advise
 from gbeam.sweeps.answers import VERBS
@@ -35,7 +36,7 @@ Progress = Callable[[int, int, int], None]
 
 
 def sweep(
-    scenario: str | os.PathLike[str],
+    scenario: str | os.PathLike[str] | Case,
     over: Mapping[str, Any] | Sequence[str] = (),
     measure: Sequence[str] | Mapping[str, Function] = (),
     *,
@@ -59,8 +60,8 @@ def sweep(
 
     Parameters
     ----------
-    scenario : path
-        Of the scenario file.
+    scenario : path or Case
+        The scenario's file, or what :func:`gbeam.read_scenario` makes of it.
     over : mapping of str to values, or sequence of str
         What varies: values by the key's path, ``{"motion.centrifuge.arm": ["1 m", "3.3 m"]}``, numbers in SI; or texts
         such as ``"motion.centrifuge.arm=1 m:12 m:12"`` (a range: from, to, how many), ``"model.kind=FOAM, exact"`` (a
@@ -115,7 +116,7 @@ def sweep(
     ComputationError
         If the scheduler is lost; the store keeps what is done.
     """
-    base = load(scenario, overrides, distributions=True)
+    base = scenario_of(scenario, overrides, distributions=True)
     assert base.source is not None  # it was read from a file
     table = base.sweep
     if table is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
@@ -15,6 +16,9 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.results.provenance import Provenance
 from gbeam.structure.beam import Beam
+
+if TYPE_CHECKING:
+    from gbeam.scenario.schema.scenario import Scenario
 
 
 @dataclass(frozen=True)
@@ -38,6 +42,11 @@ class Case:
         :func:`gbeam.compare`.
     provenance : Provenance, optional
         Of the scenario; results of the whole case have it.
+
+    Attributes
+    ----------
+    scenario : Scenario or None
+        What the case was read from, of which studies make others; None of one that is made, or changed, by hand.
     """
 
     title: str
@@ -49,6 +58,8 @@ class Case:
     stations: tuple[float, ...] = ()
     accept: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     provenance: Provenance | None = None
+    # Not an argument, so that dataclasses.replace leaves it behind.
+    scenario: Scenario | None = field(default=None, init=False, repr=False, compare=False)
 
     def assemble(self, stations: ArrayLike | None = None) -> Structure:
         """Put the beam into its model.

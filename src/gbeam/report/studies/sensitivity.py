@@ -39,6 +39,7 @@ def to_json(sensitivity: Sensitivity, files: Iterable[Path] = ()) -> dict[str, A
             }
             for k, name in enumerate(s.measures)
         },
+        "run_error": s.run_error,
         "not_varied": list(s.not_varied),
         "warnings": list(s.warnings),
         "files": [str(file) for file in files],
@@ -57,8 +58,9 @@ def text(sensitivity: Sensitivity) -> str:
         ] + [""]
     exact = s.methods.count("exact")
     if exact:
+        own = "" if np.isnan(s.run_error) else f"; the run's own estimated error: {percent(s.run_error)}"
         lines.append(
-            f"{exact} of {len(s.methods)} parameters by the exact derivative of the run, its steps held fixed."
+            f"{exact} of {len(s.methods)} parameters by the exact derivative of the run, its steps held fixed{own}."
         )
     if exact < len(s.methods):
         lines.append("± is how far the differences of second and fourth order are apart.")

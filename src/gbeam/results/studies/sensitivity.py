@@ -40,6 +40,9 @@ class Sensitivity(Figured):
         Of each parameter: ``exact``, the derivative of the discrete solution, or ``difference``.
     kinks : (m, p) of bool
         Whether the slopes on either side differ, so that the derivative is their mean.
+    run_error : float
+        Estimated error of the runs that the figures are read from, the largest of displacement and loads, relative to
+        their largest; NaN of other verbs. Exact derivatives are those of these runs and have no error of their own.
     not_varied : tuple of str
         Values of the scenario that may not be a little more or less, and why; they have no derivative.
     """
@@ -56,6 +59,7 @@ class Sensitivity(Figured):
     errors: Floats
     methods: tuple[str, ...]
     kinks: Flags
+    run_error: float = np.nan
     not_varied: tuple[str, ...] = ()
 
     @property

@@ -23,5 +23,5 @@ def sensitivity_group(s: Sensitivity) -> Group:
         "kink": flags(both, s.kinks, "whether the slopes on either side differ", "smooth", "kink"),
     }
     coordinates = labels("measure", s.measures) | labels("parameter", s.parameters)
-    attrs = {"title": s.title, "verb": s.verb, "not_varied": "\n".join(s.not_varied)}
+    attrs = {"title": s.title, "verb": s.verb, "not_varied": "\n".join(s.not_varied), "run_error": s.run_error}
     return Group(data, coordinates, attrs)
