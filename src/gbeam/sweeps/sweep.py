@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from itertools import islice
 from typing import Any
@@ -27,7 +28,7 @@ from gbeam.sweeps.histories import TIMES
 from gbeam.sweeps.journal import Journal, identity, opened
 from gbeam.sweeps.result import assembled
 from gbeam.sweeps.start import NO_HISTORIES, OverTime, go_on, start
-from gbeam.sweeps.workers import in_processes, serially
+from gbeam.sweeps.workers import in_processes, processes, serially
 
 MANY = 100_000  # cases beyond which a sweep is begun only when that is confirmed
 _BATCH = 0.5  # s: what is lost at most when a process ends, and how often the store is synchronised
@@ -141,29 +142,31 @@ def sweep(
     journal, done = opened(store, resume, identity(question, cases, names, [over_time.names, over_time.count]))
     known = {row.case for row in done}
     missing = [number for number in range(len(cases)) if number not in known] if known else range(len(cases))
-    if journal is not None and done:
-        begun = go_on(question, cases, missing, done, journal.figures, over_time)
-    else:
-        begun = start(question, cases, missing, names, over_time)
-    question = begun.question
-    _confirm(len(missing), begun.seconds / workers, confirmed)
-    tried = {row.case for row in begun.rows}
-    left = len(missing) - len(tried)
-    size = int(min(_LONGEST, _BATCH / max(begun.seconds, 1e-4), left / (4 * workers)))
-    tasks = ((number, cases.overrides(number)) for number in missing if number not in tried)
-    batches = _batches(tasks, max(1, size // width(question)) * width(question))
-    if scheduler is not None:
-        found = on_scheduler(question, batches, scheduler)
-    else:
-        found = serially(question, batches) if workers == 1 else in_processes(question, batches, workers)
-    rows = [*done, *begun.rows]
-    if journal is None:
-        rows += _collected(found, rows, len(cases), progress)
-    else:
-        journal.figures = begun.figures
-        with journal.writing(new=not done):
-            journal.add(begun.rows)
-            rows += _collected(found, rows, len(cases), progress, journal)
+    several = workers > 1 and scheduler is None and len(missing) > 1
+    with processes(workers) if several else nullcontext() as pool:
+        if journal is not None and done:
+            begun = go_on(question, cases, missing, done, journal.figures, over_time)
+        else:
+            begun = start(question, cases, missing, names, over_time)
+        question = begun.question
+        _confirm(len(missing), begun.seconds / workers, confirmed)
+        tried = {row.case for row in begun.rows}
+        left = len(missing) - len(tried)
+        size = int(min(_LONGEST, _BATCH / max(begun.seconds, 1e-4), left / (4 * workers)))
+        tasks = ((number, cases.overrides(number)) for number in missing if number not in tried)
+        batches = _batches(tasks, max(1, size // width(question)) * width(question))
+        if scheduler is not None:
+            found = on_scheduler(question, batches, scheduler)
+        else:
+            found = serially(question, batches) if pool is None else in_processes(question, batches, workers, pool)
+        rows = [*done, *begun.rows]
+        if journal is None:
+            rows += _collected(found, rows, len(cases), progress)
+        else:
+            journal.figures = begun.figures
+            with journal.writing(new=not done):
+                journal.add(begun.rows)
+                rows += _collected(found, rows, len(cases), progress, journal)
     made = assembled(base.title, cases, names, begun, rows, seed)
     return replace(made, provenance=provenance(base))
 

@@ -8,15 +8,19 @@ from __future__ import annotations
 
 import math
 import multiprocessing
+import os
 import pickle
+import sys
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 
 from gbeam.errors import InputError
 from gbeam.sweeps.batches import Task, rows
 from gbeam.sweeps.evaluate import Question, Row
 
+_THREADS = "OPENBLAS_NUM_THREADS"  # of each worker one: those of several wait for one another
 AHEAD = 3  # batches per worker that wait, so that none idles
 
 
@@ -26,8 +30,32 @@ def serially(question: Question, batches: Iterable[Sequence[Task]]) -> Iterator[
         yield rows(question, batch)
 
 
-def in_processes(question: Question, batches: Iterable[Sequence[Task]], workers: int) -> Iterator[list[Row]]:
-    """Compute the batches in processes of this machine.
+@contextmanager
+def processes(workers: int) -> Iterator[ProcessPoolExecutor]:
+    """Processes that start, and import, while this one goes on."""
+    given = os.environ.get(_THREADS)
+    os.environ.setdefault(_THREADS, "1")  # inherited
+    pool = _pool(workers)
+    try:
+        for _ in range(workers):
+            pool.submit(_import)
+        yield pool
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+        if given is None:
+            os.environ.pop(_THREADS, None)
+
+
+def _import() -> None:
+    """Import what is imported where a case needs it."""
+    import gbeam.report.study.summary_json  # noqa: F401
+    import gbeam.scenario.build_motion  # noqa: F401
+
+
+def in_processes(
+    question: Question, batches: Iterable[Sequence[Task]], workers: int, first: ProcessPoolExecutor
+) -> Iterator[list[Row]]:
+    """Compute the batches in processes of this machine, the `first` of which have started.
 
     A worker that dies takes its pool along: what was under way begins again in a new pool, with its cases one by one,
     and a case that ends its worker alone is recorded as failed.
@@ -42,10 +70,9 @@ def in_processes(question: Question, batches: Iterable[Sequence[Task]], workers:
     except (pickle.PicklingError, AttributeError, TypeError) as error:
         problem = f"has a function that cannot be sent to another process ({error})"
         raise InputError("measure", problem, "define it in a module, at the top level") from None
-    left = iter(batches)
+    left, pool = iter(batches), first
     while True:
         under_way: dict[Future[list[Row]], Sequence[Task]] = {}
-        pool = _pool(workers)
         try:
             while True:
                 while len(under_way) < AHEAD * workers and (batch := next(left, None)) is not None:
@@ -62,11 +89,15 @@ def in_processes(question: Question, batches: Iterable[Sequence[Task]], workers:
                 yield [_alone(question, task) for task in batch]
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
+        pool = _pool(workers)
 
 
 def _pool(workers: int) -> ProcessPoolExecutor:
-    # Spawned, not forked: JAX has threads.
-    return ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn"))
+    # Not forked from this process: JAX has threads. On Linux from one that has none, and has imported what they need.
+    if sys.platform != "linux":
+        return ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn"))
+    multiprocessing.set_forkserver_preload([__name__])
+    return ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("forkserver"))
 
 
 def _alone(question: Question, task: Task) -> Row:
