@@ -85,6 +85,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.studies.fit import fit as fit
     from gbeam.studies.optimise import optimise as optimise
     from gbeam.studies.sensitivity import sensitivity as sensitivity
+    from gbeam.studies.shape import shape as shape
     from gbeam.sweeps.sweep import sweep as sweep
 
 __version__ = "0.2.0"
@@ -152,6 +153,7 @@ _HOME = {
     "read_scenario": "scenario.build",
     "rerun": "scenario.rerun",
     "sensitivity": "studies.sensitivity",
+    "shape": "studies.shape",
     "shape_command": "analysis.control.shaping",
     "simulate": "analysis.response.simulation",
     "simulate_batch": "analysis.response.batch",

@@ -33,6 +33,7 @@ VERBS = {
     "sensitivity": ("verbs.studies", "Which values of a scenario a figure depends on, and how much."),
     "report": ("verbs.runs", "Write a result as one page of HTML: tables, plots that zoom, and the beam in motion."),
     "optimize": ("verbs.studies", "Values of a scenario at which a figure is least, within limits."),
+    "shape": ("verbs.studies", "The rate or torque of a hub that leaves the least vibration of its beam."),
     "fit": ("verbs.studies", "Values of a scenario from a measurement, by least squares."),
     "rerun": ("verbs.runs", "Compute a result again from what its file says, and compare every number."),
     "app": ("verbs", "Edit, run and compare scenarios in a browser, on this computer only."),

@@ -11,6 +11,7 @@ from gbeam.arrays.tree import assign
 from gbeam.errors import InputError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.hub import Hub
+from gbeam.motion.profiles.profile import Profile
 from gbeam.motion.profiles.spline import SplineProfile, through
 from gbeam.numerics.bspline import DEGREE, Spline
 from gbeam.results.result import Complex, Floats
@@ -99,7 +100,7 @@ class Commands:
         return SplineProfile(self.goal.duration, coefficients)
 
 
-def driven(hub: Hub, profile: SplineProfile) -> Hub:
+def driven(hub: Hub, profile: Profile) -> Hub:
     """The hub under a command, mounted as it is."""
     if hub.free:
         springs = {"stiffness": hub.stiffness, "damping": hub.damping}

@@ -69,6 +69,8 @@ class ShapedCommand(Figured):
         The shaped command's first.
     design, check : str
         Models that it was designed on, and that the runs are of.
+    motion : str
+        Name of the scenario's hub, where there is one.
     """
 
     kind: str
@@ -84,11 +86,17 @@ class ShapedCommand(Figured):
     runs: tuple[CommandRun, ...]
     design: str
     check: str
+    motion: str = ""
 
     @property
     def unit(self) -> str:
         """Of the command."""
         return "N m" if self.kind == "torque" else "rad/s"
+
+    @property
+    def outcome(self) -> str:
+        """``done`` where every command's run is, else the first other outcome."""
+        return next((run.outcome for run in self.runs if run.outcome != "done"), "done")
 
     @property
     def residual(self) -> float:

@@ -1,0 +1,52 @@
+"""A shaped command in words, and as one JSON object."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from gbeam.report.words import columns, number, percent, warning_lines
+from gbeam.results.studies.shaping import ShapedCommand
+
+
+def to_json(command: ShapedCommand, files: Iterable[Path] = ()) -> dict[str, Any]:
+    """Shaped command as JSON; SI."""
+    c = command
+    return {
+        "outcome": c.outcome,
+        "motion": c.motion,
+        "kind": c.kind,
+        "unit": c.unit,
+        "goal": {"rate" if c.to_rate else "angle": c.goal},
+        "duration": c.duration,
+        "limit": c.limit if math.isfinite(c.limit) else None,
+        "robust": c.robust,
+        "frequencies": c.frequency.tolist(),
+        "design": c.design,
+        "check": c.check,
+        "commands": {
+            run.name: {"residual_amplitude": run.residual, "largest": run.largest, "outcome": run.outcome}
+            for run in c.runs
+        },
+        "coefficients": c.coefficients.tolist(),
+        "warnings": list(c.warnings),
+        "files": [str(file) for file in files],
+    }
+
+
+def text(command: ShapedCommand) -> str:
+    """What each command leaves, the shaped one first."""
+    c = command
+    aim = f"to {number(c.goal)} rad/s" if c.to_rate else f"by {number(c.goal)} rad"
+    drive = "largest, N m" if c.kind == "torque" else "largest, rad/s^2"
+    rows = [
+        [run.name, f"{number(1e3 * run.residual, 3)} mm" if run.outcome == "done" else run.outcome, number(run.largest)]
+        for run in c.runs
+    ]
+    known = f"designed on {c.design}, run on {c.check}"
+    span = f", for frequencies wrong by up to {percent(c.robust)}" if c.robust else ""
+    lines = [f"{c.kind} {aim} in {number(c.duration)} s, {known}{span}"]
+    lines += ["  " + line for line in columns(["command", "leaves", drive], rows)]
+    return "\n".join([*lines, *warning_lines(c)])

@@ -1,0 +1,158 @@
+"""Command shaping of a scenario: what its slew does, by the rate or torque that leaves the least vibration."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from gbeam.analysis.control.commands import driven
+from gbeam.analysis.control.shaping import profile_of, shape_command
+from gbeam.analysis.study.case import Case
+from gbeam.analysis.study.model_study import counterpart
+from gbeam.errors import InputError
+from gbeam.mechanics.models import KINDS
+from gbeam.motion.bases.hub import Hub
+from gbeam.motion.profiles.piecewise import constant
+from gbeam.results.studies.shaping import ShapedCommand
+from gbeam.scenario.build import build, scenario_of
+from gbeam.scenario.values.suggest import advise
+
+_REST = 1e-9  # of the largest rate: a hub that turns slower at its end is to turn by an angle
+_POINTS = 401  # of a table: straight lines between them are off by 1e-4 of a smooth step
+_AFTER = 1.25  # times the command: how long a scenario of it lasts at least
+
+
+def shape(
+    scenario: str | os.PathLike[str] | Case,
+    *,
+    angle: float | None = None,
+    rate: float | None = None,
+    duration: float | None = None,
+    limit: float = np.inf,
+    robust: float = 0.0,
+    check: str = "",
+    motion: str | None = None,
+    overrides: Sequence[str] = (),
+    progress: Callable[[str, float], None] | None = None,
+) -> ShapedCommand:
+    """Find the command of a scenario's hub that leaves the least vibration: see :func:`gbeam.shape_command`.
+
+    Parameters
+    ----------
+    scenario : path or Case
+        The scenario's file, or what :func:`gbeam.read_scenario` makes of it.
+    angle, rate : float, optional
+        To turn by, rad, or to reach, rad/s; by default what the scenario's own rate does. A free hub needs one of them.
+    duration : float, optional
+        Of the command, s; by default that of the scenario's own.
+    limit : float
+        On the torque, N m, or the angular acceleration, rad/s².
+    robust : float
+        Share by which all frequencies may be wrong.
+    check : str
+        Kind of model that the commands are run on, such as exact; by default the scenario's.
+    motion : str, optional
+        Which hub, where there are several.
+    overrides : sequence of str
+        Changes of the scenario, such as ``beam.length=250 mm``.
+    progress : callable, optional
+        Called with what is being done and the fraction of it done.
+
+    Returns
+    -------
+    ShapedCommand
+
+    Raises
+    ------
+    InputError, ScenarioError
+        If the scenario is wrong, has no such hub or leaves the numbers of shapes out; or as
+        :func:`gbeam.shape_command` does.
+    ComputationError
+        If no command within the limit does it in that time, or a run diverges.
+    """
+    case = build(scenario_of(scenario, overrides))
+    name, hub = hub_of(case, motion)
+    if case.model.automatic:
+        raise InputError("model.modes", "is left out, and a command knows the modes of given shapes", "give it")
+    if check and check not in KINDS:
+        raise InputError("--check", f"is {check!r}", advise(check, KINDS))
+    if angle is None and rate is None:
+        angle, rate = _goal(hub, name)
+    if duration is None:
+        duration = _end(hub, name)
+    structure = case.assemble(())
+    tested = replace(case, model=counterpart(case.model, check)).assemble(()) if check else None
+    try:
+        made = shape_command(
+            structure, _at_rest(hub), angle=angle, rate=rate, duration=duration, limit=limit, robust=robust,
+            check=tested, progress=progress,
+        )  # fmt: skip
+    except InputError as error:
+        raise error.within(f"motion.{name}") if error.where == "gravity" else error from None
+    return replace(made, motion=name, provenance=case.provenance)
+
+
+def hub_of(case: Case, name: str | None) -> tuple[str, Hub]:
+    """The hub of a case, by its name where there are several; InputError if there is none."""
+    hubs = {each: motion for each, motion in case.motions.items() if isinstance(motion, Hub)}
+    if name is None and len(hubs) == 1:
+        return next(iter(hubs.items()))
+    if name not in hubs:
+        fix = f"name one of {', '.join(hubs)}" if hubs else "add a motion of kind hub"
+        problem = "is missing" if name is None and hubs else "has no hub" if not hubs else f"is {name!r}"
+        raise InputError("--motion" if hubs else "motion", problem, fix)
+    return name, hubs[name]
+
+
+def _at_rest(hub: Hub) -> Hub:
+    """The hub without its command, mounted as it is: free, or at rate zero."""
+    return driven(hub, constant(0.0))
+
+
+def _end(hub: Hub, name: str) -> float:
+    """When the scenario's own command has its last corner, s."""
+    last = float(np.max(hub.corners(np.inf), initial=0.0))
+    if not last > 0:
+        raise InputError("--duration", f"is missing, and motion.{name} has no end of its own", "give it, in s")
+    return last
+
+
+def _goal(hub: Hub, name: str) -> tuple[float | None, float | None]:
+    """Angle to turn by or rate to reach: what the scenario's own rate does."""
+    if hub.free or hub.rate is None:
+        fix = "give --angle or --rate"
+        raise InputError("--angle", f"is missing, and the torque of motion.{name} says of no angle or rate", fix)
+    end = _end(hub, name)
+    rates = np.asarray(hub.rate(np.linspace(0.0, end, _POINTS)))
+    if abs(rates[-1]) > _REST * np.abs(rates).max():
+        return None, float(rates[-1])
+    return float(hub.angle(end)), None
+
+
+def scenario_with(
+    command: ShapedCommand, scenario: str | os.PathLike[str] | Case, overrides: Sequence[str] = ()
+) -> str:
+    """A scenario, as JSON, in which a table of the shaped command drives the hub; it lasts beyond it.
+
+    Parameters
+    ----------
+    command : ShapedCommand
+        Of :func:`shape`.
+    scenario, overrides
+        As it was called.
+    """
+    base = scenario_of(scenario, overrides)
+    assert base.source is not None  # it was read from a file
+    data: dict[str, Any] = json.loads(json.dumps(base.source.data))
+    times = np.linspace(0.0, command.duration, _POINTS)
+    table = {"profile": "table", "times": times.tolist(), "values": np.asarray(profile_of(command)(times)).tolist()}
+    data["motion"] = {command.motion: {**data["motion"][command.motion], command.kind: table}}
+    lasting = max(base.response.duration or 0.0, _AFTER * command.duration)
+    data["response"] = {**data.get("response", {}), "duration": lasting, "residual_from": command.duration}
+    data.pop("sweep", None)
+    return json.dumps(data, indent=1)

@@ -1,0 +1,70 @@
+"""Commands of scenarios: what they must do is what the scenario's own slew does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+
+from ..scenarios import APPENDAGE, FREE_HUB, SLEW, model, response
+
+Call = Callable[..., Any]
+QUICK = SLEW.replace("60 rpm", "1 rad/s").replace('"2 s"', '"6 s"')
+SLEWING = APPENDAGE + model("FOAM", 0, 2, 0) + QUICK + response("7 s")
+
+
+@pytest.fixture
+def slewing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "slewing.toml"
+    file.write_text(SLEWING, encoding="utf-8")
+    return file
+
+
+def test_a_command_does_what_the_slew_does_and_its_scenario_leaves_what_it_says(slewing: Path, gbeam: Call) -> None:
+    answer = gbeam("shape", slewing, "--out", "shaped", "--json").json
+    assert answer["goal"] == {"rate": 1.0} and answer["duration"] == 6.0 and answer["motion"] == "slew"
+    left = {name: each["residual_amplitude"] for name, each in answer["commands"].items()}
+    assert left["shaped"] < 0.1 * left["smooth-step"]
+    names = {file.name for file in Path("shaped").iterdir()}
+    plots = {f"{name}.{kind}" for name in ("shaping", "robustness") for kind in ("png", "svg")}
+    assert names == {"shaping.nc", "command.json"} | plots
+    # The smooth step of the scenario is that of the comparison, and its table the command.
+    own, shaped = (gb.study(gb.read_scenario(each)).responses["slew"] for each in (slewing, "shaped/command.json"))
+    after = own.time >= 6.0
+    amplitude = np.ptp(own.tip[after, 1]) / 2
+    assert amplitude > 0.3 * left["smooth-step"] and shaped.residual_from == 6.0
+    assert shaped.peaks.residual_amplitude[1] < left["shaped"] + 1e-3 * left["smooth-step"]
+
+
+def test_other_goals_and_times(slewing: Path) -> None:
+    case = gb.read_scenario(slewing)
+    angle = gb.shape(case, angle=0.5, duration=8.0)
+    assert not angle.to_rate and angle.goal == 0.5 and angle.duration == 8.0
+    turned = gb.Hub(radius=0.5, rate=gb.SplineProfile(angle.duration, angle.coefficients)).angle(9.0)
+    assert turned == pytest.approx(0.5, abs=1e-9)
+    same = gb.shape_command(case.assemble(()), gb.Hub(radius=0.5), angle=0.5, duration=8.0)
+    assert np.array_equal(same.coefficients, angle.coefficients)
+
+
+def test_what_it_refuses(slewing: Path, gbeam: Call) -> None:
+    free = Path("free.toml")
+    free.write_text(FREE_HUB, encoding="utf-8")
+    answer = gbeam("shape", free, "--duration", "6 s")
+    assert (
+        answer.status == 2
+        and "the torque of motion.slew says of no angle or rate; give --angle or --rate" in answer.err
+    )
+    answer = gbeam("shape", slewing, "--motion", "spin")
+    assert answer.status == 2 and "--motion is 'spin'; name one of slew" in answer.err
+    answer = gbeam("shape", slewing, "--limit", "1 N")
+    assert answer.status == 2 and "--limit" in answer.err
+    answer = gbeam("shape", slewing, "--limit", "0.01 rad/s^2")
+    assert answer.status == 1 and "no command of angular acceleration 0.01 or less" in answer.err
+    answer = gbeam("shape", slewing, "--set", 'motion.slew.gravity=[0, "-1 g", 0]')
+    assert answer.status == 2 and "motion.slew.gravity bends the beam" in answer.err
