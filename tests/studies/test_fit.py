@@ -12,6 +12,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 import gbeam as gb
+from gbeam.report.studies.fit import text
 
 from ..scenarios import FLIGHT, SPECIMEN, model, response
 
@@ -173,3 +174,20 @@ def test_the_command_writes_a_scenario_with_the_values(released: Path, gbeam: Ca
     assert gb.read_scenario("fitted.toml").beam.material.youngs_modulus == pytest.approx(TRUE[E], rel=1e-6)
     assert sorted(path.name for path in Path("found").iterdir()) == ["fit.nc", "fit.png", "fit.svg"]
     assert gbeam(*words, "--write", "x.toml", "--set", "beam.length=0.2").status == 2
+
+
+def test_several_starts_find_a_valley_that_one_does_not(released: Path) -> None:
+    tip, *_ = histories(released)
+    early = TIME <= 0.1  # three periods
+    noise = np.random.default_rng(5).normal(0.0, 1e-5, early.sum())
+    data = written("early.csv", "time,tip.z", TIME[early], tip[early] + noise)
+    begun = ["beam.damping_ratio=0.013", "beam.material.youngs_modulus=35 GPa"]
+    one, several = (
+        gb.fit(released, data, [E], bounds={E: ("30 GPa", "150 GPa")}, overrides=begun, starts=n) for n in (1, 6)
+    )
+    assert abs(one.values[0] / TRUE[E] - 1) > 0.1 and (one.starts, one.agreed) == (1, 1)
+    assert abs(several.values[0] - TRUE[E]) < 4 * several.errors[0] < 0.01 * TRUE[E]
+    assert several.starts == 6 and 1 <= several.agreed < 6 and several.before[0] == 35e9
+    assert "of 6 searches end at these values" in text(several)
+    with pytest.raises(gb.InputError, match="--starts is 0"):
+        gb.fit(released, data, [E], overrides=begun, starts=0)

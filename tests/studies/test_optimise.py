@@ -12,6 +12,8 @@ import pytest
 
 import gbeam as gb
 
+from ..scenarios import APPENDAGE, SLEW, model, response
+
 Call = Callable[..., Any]
 THICKNESS, POINT = "beam.section.thickness", "motion.spin.control_point"
 
@@ -71,3 +73,24 @@ def test_the_command_writes_a_scenario_a_file_and_a_plot(fast: Path, gbeam: Call
     assert done.status == 0 and "on its bound" in done.out
     assert 'thickness = "3 mm"' in Path("best.toml").read_text(encoding="utf-8")
     assert sorted(path.name for path in Path("best").iterdir()) == ["optimum.nc", "optimum.png", "optimum.svg"]
+
+
+def test_all_searches_of_a_figure_with_one_valley_agree(fast: Path, gbeam: Call) -> None:
+    words = ("optimize", fast, "--verb", "static", "--minimise", "flight.loads.root_force.z", "--over", THICKNESS)
+    bound = ("--bounds", f"{THICKNESS}=3 mm:8 mm", "--subject-to", "flight.tip.z >= -2 mm", "--starts", "3")
+    done = gbeam(*words, *bound)
+    assert done.status == 0 and "3 of 3 searches end at these values" in done.out
+
+
+def test_several_starts_find_the_least_of_many_valleys(tmp_path: Path) -> None:
+    file = tmp_path / "slewing.toml"
+    slew = SLEW.replace("60 rpm", "1 rad/s").replace('"2 s"', '"4 s"')
+    file.write_text(
+        APPENDAGE + model("FOAM", 0, 1, 0) + slew + response("12 s", residual_from="10 s"), encoding="utf-8"
+    )
+    duration, left = "motion.slew.rate.duration", "tip.y.residual_amplitude"
+    one, several = (gb.optimise(file, left, [duration], bounds={duration: (2.0, 10.0)}, starts=n) for n in (1, 4))
+    tried = gb.sweep(file, {duration: "2 s:10 s:33"}, [left])
+    assert several.figure <= one.figure and several.figure <= tried.measures[left].min()
+    assert several.starts == 4 and 1 <= several.agreed <= 4
+    assert several.evaluations > one.evaluations

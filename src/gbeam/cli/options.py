@@ -92,6 +92,7 @@ SearchBounds = Annotated[
     tuple[str, ...],
     option("--bounds", 'Of a value, "beam.damping_ratio=0.1 %:5 %"; by default a tenth to ten times the scenario\'s.'),
 ]
+Starts = Annotated[int, Parameter(help="Searches: one from the scenario's values, the others spread over the bounds.")]
 WriteTo = Annotated[
     Path | None, Parameter(name="--write", help="A scenario to write, with the values found and its comments.")
 ]

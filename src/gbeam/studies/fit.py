@@ -17,9 +17,10 @@ from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
 from gbeam.studies.bounds import Bounds, bounds_of, named
 from gbeam.studies.derivatives import Progress
-from gbeam.studies.least_squares import Fitted, Solution, search, tell_apart
+from gbeam.studies.least_squares import Fitted, Solution, search_from, tell_apart
 from gbeam.studies.measurement import Measurement, read_measurement
 from gbeam.studies.parameters import PhysicalValue
+from gbeam.studies.starts import agreeing, starting_points
 from gbeam.sweeps.evaluate import Question
 
 OPTION = "--free"
@@ -36,6 +37,7 @@ def fit(
     bounds: Bounds | None = None,
     motion: str | None = None,
     at: float | None = None,
+    starts: int = 1,
     overrides: Sequence[str] = (),
     progress: Progress | None = None,
 ) -> Fit:
@@ -60,6 +62,9 @@ def fit(
         Of columns that name none, and of modes.
     at : float, optional
         Time at which that motion is frozen for modes, s; the start of the response by default.
+    starts : int
+        Searches: one from the scenario's values, the others from values spread over the bounds. The likeliest is given,
+        with how many of them agree.
     overrides : sequence of str
         Changes of the scenario, such as ``beam.length=250 mm``.
     progress : callable, optional
@@ -91,8 +96,11 @@ def fit(
     model = Fitted(
         replace(question, verb="modes") if measurement.modal else question, parameters, measurement, progress
     )
-    found = search(model, np.array([each.value for each in parameters]), limits)
-    return replace(_described(model, parameters, limits, found), title=base.title, provenance=provenance(base))
+    points = starting_points(np.array([each.value for each in parameters]), limits, starts)
+    found, ends = search_from(model, points, limits)
+    described = _described(model, parameters, limits, found)
+    agreed = agreeing(ends, found.values, limits)
+    return replace(described, title=base.title, starts=starts, agreed=agreed, provenance=provenance(base))
 
 
 def _described(model: Fitted, parameters: Sequence[PhysicalValue], limits: Floats, found: Solution) -> Fit:

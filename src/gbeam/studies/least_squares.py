@@ -9,7 +9,7 @@ import numpy as np
 
 from gbeam.analysis.response.tangents.differentiated import Grid
 from gbeam.analysis.study.case import Case
-from gbeam.errors import ComputationError, InputError
+from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.mechanics.models import Model
 from gbeam.results.result import Floats
 from gbeam.studies.derivatives import Neighbourhood, Progress
@@ -82,6 +82,19 @@ class Solution:
     values: Floats
     weights: Floats
     jacobian: Floats
+
+
+def search_from(model: Fitted, starts: Sequence[Floats], limits: Floats) -> tuple[Solution, list[Floats]]:
+    """The best of searches from several values, the scenario's own first, and the values at which each ended."""
+    found = [search(model, starts[0], limits)]
+    for start in starts[1:]:
+        try:
+            found.append(search(model, start, limits))
+        except GbeamError:  # values that the scenario does not allow, or at which the data say nothing
+            continue
+    # Of noise that is not known, the likelihood is a product of the weights.
+    best = max(found, key=lambda each: float(np.log(each.weights).sum()))
+    return replace(best, before=found[0].before), [each.values for each in found]
 
 
 def search(model: Fitted, start: Floats, limits: Floats) -> Solution:

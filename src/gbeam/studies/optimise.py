@@ -5,17 +5,13 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.response.tangents.differentiated import Grid
 from gbeam.analysis.study.case import Case
-from gbeam.errors import ComputationError, InputError
-from gbeam.mechanics.models import Model
-from gbeam.results.result import Floats
+from gbeam.errors import InputError
 from gbeam.results.studies.optimum import BROKEN, Optimum, Requirement
 from gbeam.results.study import Study
 from gbeam.scenario.build import scenario_of
@@ -24,8 +20,9 @@ from gbeam.scenario.values.kinds import KINDS
 from gbeam.scenario.values.units import UnitError, argument
 from gbeam.studies.bounds import Bounds, bounds_of, named
 from gbeam.studies.derivatives import Neighbourhood, Progress
-from gbeam.studies.parameters import PhysicalValue
+from gbeam.studies.descent import Goal, Search
 from gbeam.studies.sensitivity import facts_of, figure, needed, values_at
+from gbeam.studies.starts import agreeing
 from gbeam.sweeps.answers import Facts
 from gbeam.sweeps.evaluate import Question
 from gbeam.sweeps.measures import Keys, unit_at
@@ -33,22 +30,6 @@ from gbeam.sweeps.measures import Keys, unit_at
 OPTION, SUBJECT = "--minimise", "--subject-to"
 LIMITS = "limits"
 _BOUND = re.compile(r"\s*(\S+)\s*(<=|>=)\s*(.+?)\s*")
-_PRECISE, _EVALUATIONS = 1e-7, 40
-_FEASIBLE = 1e-4  # of a bound: less is no excess
-
-
-@dataclass(frozen=True)
-class Goal:
-    """What is minimised, and what is required."""
-
-    objective: Keys
-    required: tuple[tuple[str, Keys, float, float], ...]
-    unit: str
-
-    @property
-    def keys(self) -> tuple[Keys, ...]:
-        """Of all figures, the objective first."""
-        return (self.objective, *(keys for _, keys, _, _ in self.required))
 
 
 def optimise(
@@ -61,14 +42,16 @@ def optimise(
     verb: str = "run",
     motion: str | None = None,
     at: float | None = None,
+    starts: int = 1,
     overrides: Sequence[str] = (),
     progress: Progress | None = None,
 ) -> Optimum:
     """Find the values of a scenario at which a figure is least.
 
     The search (sequential least squares programming) goes from the scenario's values along exact derivatives, by the
-    steps that the scenario's own run needs; the figures of the answer come from a run with its own. It finds the
-    nearest valley: begin elsewhere to find others.
+    steps that the scenario's own run needs; the figures of the answer come from a run with its own. One
+    start finds the nearest valley; several, spread over the bounds, find others, and the answer says how many of them
+    agree.
 
     Parameters
     ----------
@@ -85,6 +68,8 @@ def optimise(
         By path, in SI or as text with a unit; a tenth to ten times the scenario's value where not given.
     verb, motion, at
         As for :func:`gbeam.sensitivity`.
+    starts : int
+        Searches: one from the scenario's values, the others from values spread over the bounds.
     overrides : sequence of str
         Changes of the scenario, such as ``beam.length=250 mm``.
     progress : callable, optional
@@ -111,8 +96,8 @@ def optimise(
     question = Question(base.source, verb, motion, at)
     first = Neighbourhood(question, parameters, progress=progress)
     goal = _goal(facts_of(first.answer), first.case, minimise, subject_to)
-    search = _Search(question, parameters, goal, first, progress)
-    values = search.best(limits)
+    search = Search(question, parameters, goal, first, progress)
+    values, ends = search.best(limits, starts)
     last = Neighbourhood(question, parameters, values.tolist(), progress=progress)
     before, after = (values_at(facts_of(each.answer), goal.keys) for each in (first, last))
     if verb == "run":
@@ -141,6 +126,8 @@ def optimise(
         path=np.array([x for x, _ in search.tried]),
         history=np.array([f for _, f in search.tried]),
         evaluations=search.evaluations,
+        starts=starts,
+        agreed=agreeing(ends, values, limits),
         outcome=BROKEN if broken else "done",
         warnings=search.warnings,
         provenance=provenance(base),
@@ -188,121 +175,3 @@ def _bound(text: str, unit: str, name: str) -> float:
         return argument(text, kind)
     except UnitError as error:
         raise InputError(SUBJECT, f"of {name}: {error.problem}", error.hint) from None
-
-
-class _Enough(Exception):
-    """A search that has evaluated the scenario so often that it will not end."""
-
-
-@dataclass
-class _Search:
-    """The search, which keeps what it has tried."""
-
-    question: Question
-    parameters: Sequence[PhysicalValue]
-    goal: Goal
-    first: Neighbourhood
-    progress: Progress | None
-    evaluations: int = 0
-    tried: list[tuple[Floats, float]] = field(default_factory=list)
-    warnings: tuple[str, ...] = ()
-    _last: tuple[Floats, Floats, Neighbourhood] | None = None
-
-    def __post_init__(self) -> None:
-        self.motions, self.parts = needed(self.goal.keys, self.first.case.tracks)
-        self.shapes: Model = self.first.case.model
-        self.grids: Mapping[str, Grid] | None = None
-        if self.question.verb == "run":
-            self.grids = {name: self.first.grid(name) for name in self.motions}
-
-    def best(self, limits: Floats) -> Floats:
-        """The best values within bounds (p, 2)."""
-        from scipy.optimize import minimize
-
-        low, width = limits[:, 0], limits[:, 1] - limits[:, 0]
-        start = np.array([each.value for each in self.parameters])
-        sizes = self._sizes(self.figures(start))
-        power = 1 if self.goal.unit else 2  # of what has no unit, the size: its square is smooth at zero
-        best: tuple[float, float, Floats] | None = None
-
-        def objective(x: Floats) -> float:
-            nonlocal best
-            if self.evaluations >= _EVALUATIONS:
-                raise _Enough
-            values = low + x * width
-            figures = self.figures(values)
-            excess = float(max(0.0, *(-self._slack(figures) / sizes[1:]))) if self.goal.required else 0.0
-            rank = (0.0 if excess <= _FEASIBLE else excess, abs(float(figures[0])) if power == 2 else float(figures[0]))
-            if best is None or rank < best[:2]:
-                best = (*rank, values)
-                self.tried.append((values, float(figures[0])))
-            return float((figures[0] / sizes[0]) ** power)
-
-        def gradient(x: Floats) -> Floats:
-            values = low + x * width
-            slope = self.slopes(values)[0] * width / sizes[0]
-            return slope if power == 1 else 2 * self.figures(values)[0] / sizes[0] * slope
-
-        constraints: Any = ()
-        if self.goal.required:
-            constraints = {
-                "type": "ineq",
-                "fun": lambda x: self._slack(self.figures(low + x * width)) / sizes[1:],
-                "jac": lambda x: self._signs[:, None] * self.slopes(low + x * width)[1:] * width / sizes[1:, None],
-            }
-        try:
-            found = minimize(
-                objective, (start - low) / width, jac=gradient, method="SLSQP", bounds=[(0.0, 1.0)] * len(start),
-                constraints=constraints, options={"ftol": _PRECISE},
-            )  # fmt: skip
-            end = "" if found.success else found.message.lower()
-        except _Enough:
-            end = f"after {self.evaluations} evaluations"
-        if end:
-            self.warnings = (f"the search ended early ({end}); the best values tried are given",)
-        assert best is not None
-        return best[2]
-
-    @property
-    def _signs(self) -> Floats:
-        return np.array([1.0 if math.isinf(high) else -1.0 for _, _, _, high in self.goal.required])
-
-    def _slack(self, figures: Floats) -> Floats:
-        """By how much every requirement is kept; negative where it is not."""
-        ends = np.array([low if math.isinf(high) else high for _, _, low, high in self.goal.required])
-        return np.asarray(self._signs * (figures[1:] - ends))
-
-    def _sizes(self, figures: Floats) -> Floats:
-        """Sizes of the figures: the objective's own, the bounds of the others."""
-        ends = [abs(low if math.isinf(high) else high) for _, _, low, high in self.goal.required]
-        others = [end or abs(value) or 1.0 for end, value in zip(ends, figures[1:], strict=True)]
-        return np.array([abs(figures[0]) or 1.0, *others])
-
-    def figures(self, values: Floats) -> Floats:
-        """Objective and required figures at some values."""
-        if self._last is None or not np.array_equal(self._last[0], values):
-            self.evaluations += 1
-            about = Neighbourhood(
-                self.question, self.parameters, values.tolist(), grids=self.grids, parts=self.parts,
-                adapt=self._shaped, progress=self.progress,
-            )  # fmt: skip
-            for name in self.motions if self.grids is not None else ():
-                about.done(name)
-            found = values_at(facts_of(about.answer), self.goal.keys)
-            if not np.isfinite(found).all():
-                raise ComputationError("not converged", "a figure of the search has no value")
-            self._last = values.copy(), found, about
-        return self._last[1]
-
-    def slopes(self, values: Floats) -> Floats:
-        """Their derivatives, (figures, p)."""
-        self.figures(values)
-        assert self._last is not None
-
-        def read(_: Case, answer: Any) -> Floats:
-            return values_at(facts_of(answer), self.goal.keys)
-
-        return self._last[2].slopes(read, self.motions).slopes
-
-    def _shaped(self, case: Case) -> Case:
-        return replace(case, model=self.shapes)

@@ -36,6 +36,7 @@ def to_json(fit: Fit, files: Iterable[Path] = ()) -> dict[str, Any]:
             for each in fit.columns
         },
         "evaluations": fit.evaluations,
+        "starts": {"tried": fit.starts, "agreed": fit.agreed},
         "warnings": list(fit.warnings),
         "files": [str(file) for file in files],
     }
@@ -64,5 +65,7 @@ def text(fit: Fit) -> str:
     for each in fit.columns:
         size = f"{number(each.noise)} {each.unit}".rstrip()
         lines.append(f"  residual of {each.name}: {size} ({len(each.measured)} data)")
+    if fit.starts > 1:
+        lines.append(f"{fit.agreed} of {fit.starts} searches end at these values")
     lines.append(f"{fit.evaluations} evaluations of the scenario")
     return "\n".join([*lines, *warning_lines(fit)])

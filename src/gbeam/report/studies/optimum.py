@@ -37,6 +37,7 @@ def to_json(optimum: Optimum, files: Iterable[Path] = ()) -> dict[str, Any]:
         ],
         "error_estimate": o.error,
         "evaluations": o.evaluations,
+        "starts": {"tried": o.starts, "agreed": o.agreed},
         "warnings": list(o.warnings),
         "files": [str(file) for file in files],
     }  # fmt: skip
@@ -57,6 +58,8 @@ def text(optimum: Optimum) -> str:
     if o.requirements:
         lines.append(f"  {len(kept)} of {len(o.requirements)} requirements kept")
     proved = "" if math.isnan(o.error) else f"; the last run's estimated error is {percent(o.error)}"
+    if o.starts > 1:
+        lines.append(f"{o.agreed} of {o.starts} searches end at these values")
     lines.append(f"{o.evaluations} evaluations of the scenario{proved}")
     return "\n".join([*lines, *warning_lines(o)])
 

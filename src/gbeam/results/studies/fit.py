@@ -67,6 +67,8 @@ class Fit(Figured):
     modal : bool
     evaluations : int
         Of the scenario.
+    starts, agreed : int
+        Searches, and how many of them ended at these values.
     condition : float
         Of the derivatives, each parameter's of unit length: 1 where the data tell them apart perfectly.
     """
@@ -88,6 +90,8 @@ class Fit(Figured):
     modal: bool
     evaluations: int
     condition: float
+    starts: int = 1
+    agreed: int = 1
 
     def __repr__(self) -> str:
         rows = [

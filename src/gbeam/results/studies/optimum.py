@@ -76,6 +76,8 @@ class Optimum(Figured):
     history : (k,)
         The figure there.
     evaluations : int
+    starts, agreed : int
+        Searches, and how many of them ended at these values.
     outcome : str
         done, or ``limits exceeded`` where no values within the bounds keep the requirements.
     """
@@ -97,6 +99,8 @@ class Optimum(Figured):
     history: Floats
     evaluations: int
     outcome: str = "done"
+    starts: int = 1
+    agreed: int = 1
 
     def __repr__(self) -> str:
         rows = [

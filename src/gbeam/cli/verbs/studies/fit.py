@@ -8,7 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from gbeam.cli.inputs import names, number, search_bounds
-from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile, SearchBounds, WriteTo, option
+from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile, SearchBounds, Starts, WriteTo, option
 from gbeam.cli.outputs import refuse_changes, show_found
 from gbeam.cli.publication import refuse_unwritable
 from gbeam.cli.terminal.console import Watch
@@ -32,6 +32,7 @@ def fit(
     bounds: SearchBounds = (),
     motion: MotionName = None,
     at: At = None,
+    starts: Starts = 1,
     write: WriteTo = None,
     overrides: Overrides = (),
     out: Out = None,
@@ -52,7 +53,15 @@ def fit(
     with Watch() as watch:
         time = None if at is None else number("--at", at, "time")
         answer = compute(
-            scenario, data, names(free), bounds=limits, motion=motion, at=time, overrides=overrides, progress=watch
+            scenario,
+            data,
+            names(free),
+            bounds=limits,
+            motion=motion,
+            at=time,
+            starts=starts,
+            overrides=overrides,
+            progress=watch,
         )
 
     from gbeam.report.studies import fit as report

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from gbeam.cli.inputs import names, number, search_bounds
-from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile, SearchBounds, WriteTo, option
+from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile, SearchBounds, Starts, WriteTo, option
 from gbeam.cli.outputs import refuse_changes, show_found
 from gbeam.cli.publication import refuse_unwritable
 from gbeam.cli.terminal.console import Watch
@@ -38,6 +38,7 @@ def optimize(
     verb: Annotated[Verb, Parameter(help="Whose figures.")] = "run",
     motion: MotionName = None,
     at: At = None,
+    starts: Starts = 1,
     write: WriteTo = None,
     overrides: Overrides = (),
     out: Out = None,
@@ -45,8 +46,9 @@ def optimize(
 ) -> int:
     """Find the values of a scenario at which a figure is least, within bounds and limits, by exact derivatives.
 
-    The search finds the nearest valley, from the scenario's values. With --out also writes optimum.nc and a plot of the
-    way. Exit status: 0 done, 1 no values within the bounds keep the requirements, 2 the input is wrong.
+    One search finds the nearest valley, from the scenario's values; --starts 5 tries others. With --out also writes
+    optimum.nc and a plot of the way. Exit status: 0 done, 1 no values within the bounds keep the requirements, 2 the
+    input is wrong.
     """
     if out is not None:
         refuse_unwritable(out)
@@ -65,6 +67,7 @@ def optimize(
             verb=verb,
             motion=motion,
             at=None if at is None else number("--at", at, "time"),
+            starts=starts,
             overrides=overrides,
             progress=watch,
         )

@@ -29,4 +29,5 @@ def fit_group(fit: Fit) -> Group:
     names = labels("parameter", fit.parameters) | labels("other", fit.parameters)
     names |= labels("column", [each.name for each in fit.columns]) | labels("side", ["low", "high"])
     names[at] = variable((at,), fit.at, "1" if fit.modal else "s", "number of the mode" if fit.modal else "time")
-    return Group(data, names, {"title": fit.title, "data": fit.data, "condition": fit.condition})
+    attrs = {"title": fit.title, "data": fit.data, "condition": fit.condition}
+    return Group(data, names, attrs | {"starts": fit.starts, "agreed": fit.agreed})

@@ -24,4 +24,8 @@ def optimum_group(o: Optimum) -> Group:
         data["bound"] = variable(r, [each.bound for each in o.requirements], "1", "bound of the figure")
         names |= labels("requirement", [each.name for each in o.requirements])
     attrs = {"title": o.title, "minimise": o.minimise, "outcome": o.outcome}
-    return Group(data, names, attrs | {"figure_before": o.figure_before, "figure": o.figure})
+    return Group(
+        data,
+        names,
+        attrs | {"figure_before": o.figure_before, "figure": o.figure, "starts": o.starts, "agreed": o.agreed},
+    )
