@@ -113,7 +113,7 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> Non
     page.get_by_label("measure").fill("flight.tip.size.max_abs")
     command = page.locator(".verbs code").inner_text()
     words = ["sweep", "scenario.toml", "--over=beam.length=300 mm, 310 mm", "--measure=flight.tip.size.max_abs"]
-    assert shlex.split(command) == ["gbeam", *words]
+    assert shlex.split(command) == ["gbeam", *words, "--report"]
     context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.locator(".verbs").get_by_role("button", name="Copy").click()
     page.locator(".verbs").get_by_role("button", name="Copied").wait_for()

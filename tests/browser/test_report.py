@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import math
 import re
 import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+
+import gbeam as gb
 
 from .axe import violations
 
+F16 = Path(__file__).parents[2] / "examples" / "f16_8g_turn.toml"
 CANVAS = ".gbeam-canvas"
 TIME = "window.gbeam.viewer.clock.time"
 
@@ -97,6 +102,33 @@ def test_small_windows_hold_the_page(opened: Any, report: Path, scheme: str) -> 
     assert page.evaluate("document.documentElement.scrollWidth") <= 360
     ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
     assert (max(map(int, re.findall(r"\d+", ground))) < 60) == (scheme == "dark")
+
+
+def test_the_f16_turn_of_sixteen_seconds_opens_whole(opened: Any, tmp_path: Path) -> None:
+    file = tmp_path / "report.html"
+    gb.study(gb.read_scenario(F16)).report(file)
+    assert file.stat().st_size < 3e6
+    page = opened(file, width=360, height=740)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 360
+    assert page.locator(".uplot").count() >= 12 and page.evaluate("window.gbeam.viewer.clock.end") > 16
+    assert _seek(page, 4.9) != _seek(page, 12.0)
+    assert "axes are drawn without turning" in page.locator(".gbeam-label").first.inner_text()
+
+
+def test_axes_turn_where_a_flight_has_rates(opened: Any, tmp_path: Path) -> None:
+    beam = gb.Beam(0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9), damping_ratio=0.01)
+    roll = gb.Flight(z=10.0, rates=gb.constant(np.array([2.0, 0.0, 0.0])))
+    response = gb.simulate(gb.assemble(beam, "FOAM", y=1, z=1), roll, duration=0.5, name="roll")
+    response.report(tmp_path / "report.html")
+    page = opened(tmp_path / "report.html")
+    assert page.locator(".gbeam-label strong").all_inner_texts() == [
+        "roll (flight), base axes",
+        "roll (flight), turning",
+    ]
+    assert "attitude at the start, heading too, not known" in page.locator(".gbeam-label").nth(1).inner_text()
+    page.evaluate("window.gbeam.viewer.clock.seek(0.5); window.gbeam.viewer.draw()")
+    x, _, _, w = page.evaluate("window.gbeam.viewer.panels[1].carrier.base.quaternion.toArray()")
+    assert [w, x] == pytest.approx([math.cos(0.5), math.sin(0.5)], abs=1e-3)  # half of 1 rad
 
 
 def test_words_are_painted_before_the_views_are_made(opened: Any, report: Path) -> None:

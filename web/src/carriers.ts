@@ -37,8 +37,8 @@ export interface Carrier {
   readonly middle: [number, number, number];
   /** What is said of it below its name. */
   readonly note: string;
-  /** Turn to angles, rad: of axes 1, 2, 3, or of the hub. */
-  turn(angles: ArrayLike<number>): void;
+  /** Turn to angles, rad, of axes 1, 2, 3 or of the hub; or to a quaternion. */
+  turn(angles: number[]): void;
 }
 
 function part(geometry: BoxGeometry | CylinderGeometry | TorusGeometry, colour: number): Mesh {
@@ -127,12 +127,34 @@ export function hub(radius: number, length: number, mounting: number[]): Carrier
   };
 }
 
+/** Axes that turn in flight: those of the first time stay, faint. */
+export function flying(length: number): Carrier {
+  const [world, base] = [new Group(), new Group()];
+  const first = triad(0.5 * length);
+  for (const each of first.children) {
+    const { line, cone } = each as ArrowHelper;
+    for (const { material } of [line, cone]) Object.assign(material, { transparent: true, opacity: 0.35 });
+  }
+  base.add(triad(0.22 * length));
+  world.add(first, base);
+  return {
+    world,
+    base,
+    size: 1.05 * length,
+    middle: [0, 0, 0],
+    note: "turned by the rates given; attitude at the start, heading too, not known",
+    turn: ([w, x, y, z]) => {
+      base.quaternion.set(x!, y!, z!, w!).normalize();
+    },
+  };
+}
+
 /** The base's own axes: what somebody sees who moves with it. */
-export function axesOnly(length: number): Carrier {
+export function axesOnly(length: number, note = ""): Carrier {
   const [world, base] = [new Group(), new Group()];
   world.add(base, triad(0.22 * length));
   const clamp = part(new BoxGeometry(0.03 * length, 0.14 * length, 0.14 * length), 0x8a8f98);
   clamp.position.x = -0.015 * length;
   world.add(clamp);
-  return { world, base, size: 0.58 * length, middle: [0.5 * length, 0, 0.06 * length], note: "", turn: () => undefined };
+  return { world, base, size: 0.6 * length, middle: [0.5 * length, 0, 0.11 * length], note, turn: () => undefined };
 }

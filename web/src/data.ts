@@ -37,6 +37,8 @@ export interface Motion {
   radius?: number;
   mounting?: number[];
   angle?: Ref;
+  /** Quaternions w, x, y, z of base axes that turn in flight. */
+  attitude?: Ref;
 }
 
 /** Complex mode shapes of one beam. */

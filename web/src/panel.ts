@@ -14,7 +14,7 @@ import {
   type WebGLRenderer,
 } from "three";
 import { BeamMesh } from "./beam";
-import { axesOnly, type Carrier, centrifuge, hub } from "./carriers";
+import { axesOnly, type Carrier, centrifuge, flying, hub } from "./carriers";
 import { interpolate, locate, type Motion, view } from "./data";
 import { lineColour } from "./colours";
 import type { Orbit } from "./orbit";
@@ -90,7 +90,8 @@ export class Panel {
   get title(): string {
     const of = this.motion.name === this.motion.environment ? "" : ` (${this.motion.environment})`;
     if (!this.whole) return `${this.motion.name}${of}, base axes`;
-    return `${this.motion.name}${of}, ${this.motion.environment === "hub" ? "hub" : "machine"}`;
+    const whole = { hub: "hub", flight: "turning" }[this.motion.environment] ?? "machine";
+    return `${this.motion.name}${of}, ${whole}`;
   }
 
   get note(): string {
@@ -117,10 +118,10 @@ export class Panel {
     const coloured = this.colour(settings, place);
     this.beam.move(this.now, settings.factor, coloured ? this.shares : null, dark ? 0.75 : 0.55);
     this.ghost.group.visible = settings.ghost;
-    const angles = motion.axes ?? motion.angle;
+    const angles = motion.axes ?? motion.angle ?? motion.attitude;
     if (this.whole && angles) {
-      const width = motion.axes ? 3 : 1;
-      this.carrier.turn(interpolate(view(numbers, angles), width, place, new Float32Array(width)));
+      const width = angles.shape[1] ?? 1;
+      this.carrier.turn([...interpolate(view(numbers, angles), width, place, new Float32Array(width))]);
     }
     this.point(settings, place, dark);
     this.scene.background = new Color(dark ? 0x14171c : 0xf4f5f7);
@@ -152,7 +153,9 @@ export class Panel {
     if (this.whole && motion.angle && motion.radius !== undefined) {
       return hub(motion.radius, length, motion.mounting ?? [1, 0, 0, 0, 1, 0, 0, 0, 1]);
     }
-    return axesOnly(length);
+    if (this.whole && motion.attitude) return flying(length);
+    const still = motion.environment === "flight" && !motion.attitude;
+    return axesOnly(length, still ? "no rates are given: its axes are drawn without turning" : "");
   }
 
   private colour(settings: Settings, place: [number, number]): boolean {

@@ -84,7 +84,8 @@ export class Plots {
     return {
       ...size(root),
       scales: {
-        x: { time: false, distr: spec.logX ? 3 : 1 },
+        // Logarithmic ones would go on to the next power of ten.
+        x: { time: false, distr: spec.logX ? 3 : 1, ...(spec.logX ? { range: (_, low, high) => [low, high] } : {}) },
         y: { distr: spec.logY ? 3 : 1, range: (_, low, high) => range(low, high, spec) },
       },
       axes: [
@@ -142,9 +143,12 @@ function size(root: HTMLElement): { width: number; height: number } {
   return { width: Math.max(240, root.clientWidth), height: 230 };
 }
 
-/** Of logarithmic axes the powers of ten only, as plain numbers. */
-function sparse(_: uPlot, splits: (number | null)[]): string[] {
-  return splits.map((x) => (x !== null && x > 0 && Number.isInteger(+Math.log10(x).toFixed(6)) ? String(x) : ""));
+/** Of logarithmic axes the powers of ten as plain numbers; twice and five times those too where few are in sight. */
+export function sparse(_: unknown, splits: (number | null)[]): string[] {
+  const first = (x: number): number => +(x / 10 ** Math.floor(Math.log10(x) + 1e-9)).toPrecision(6);
+  const powers = splits.filter((x) => x !== null && x > 0 && first(x) === 1).length;
+  const shown = powers > 1 ? [1] : [1, 2, 5];
+  return splits.map((x) => (x !== null && x > 0 && shown.includes(first(x)) ? String(+x.toPrecision(6)) : ""));
 }
 
 /** From the least to the largest with some air, and with zero where that is near; levels are in it if they are near. */

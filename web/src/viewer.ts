@@ -30,6 +30,7 @@ export class Viewer {
   private readonly orbit: Orbit;
   private readonly settings: Settings;
   private readonly released: (() => void)[] = [];
+  private readonly onPaper = window.matchMedia("print");
   private dirty = true;
   private handle = 0;
 
@@ -55,7 +56,7 @@ export class Viewer {
     );
     this.panels = motions.flatMap((motion) => {
       const views = [new Panel(motion, data.numbers, false)];
-      return motion.axes || motion.angle ? [...views, new Panel(motion, data.numbers, true)] : views;
+      return motion.axes || motion.angle || motion.attitude ? [...views, new Panel(motion, data.numbers, true)] : views;
     });
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute("role", "img");
@@ -117,7 +118,7 @@ export class Viewer {
 
   private frame(now: number): void {
     this.clock.frame(now);
-    if (this.dirty) this.draw();
+    if (this.dirty && !this.onPaper.matches) this.draw(); // there the picture is one of before, and so are its labels
     this.handle = requestAnimationFrame((next) => this.frame(next));
   }
 

@@ -2,7 +2,7 @@ import { expect, it } from "vitest";
 import { quoted } from "../src/app/command";
 
 it("quotes words so that a shell has them back", () => {
-  expect(quoted(["gbeam", "run", "scenario.toml", "--report"])).toBe("gbeam run scenario.toml --report");
-  expect(quoted(["--over", "beam.length=1 m, 2 m"])).toBe("--over 'beam.length=1 m, 2 m'");
-  expect(quoted(["$HOME", "tip's", ""])).toBe("'$HOME' 'tip'\\''s' ''");
+  expect(quoted(["gbeam", "run", "scenario.toml", "--report"]).join(" ")).toBe("gbeam run scenario.toml --report");
+  expect(quoted(["--over", "beam.length=1 m, 2 m"]).join(" ")).toBe("--over 'beam.length=1 m, 2 m'");
+  expect(quoted(["$HOME", "tip's", ""]).join(" ")).toBe("'$HOME' 'tip'\\''s' ''");
 });

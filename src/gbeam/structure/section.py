@@ -263,3 +263,11 @@ class SectionValues:
     extreme_fibre_y: Array
     extreme_fibre_z: Array
     round: bool = static(default=False)
+
+    def extents(self) -> tuple[Array, Array]:
+        """Extents along y and z, m; without extreme fibres those of the rectangle with the same second moments."""
+        xp = namespace(self.area, self.inertia_y, self.inertia_z)
+        rectangle = [xp.sqrt(12 * each / self.area) for each in (self.inertia_z, self.inertia_y)]
+        fibres = (2 * self.extreme_fibre_y, 2 * self.extreme_fibre_z)
+        width, thickness = (xp.where(xp.isfinite(a), a, b) for a, b in zip(fibres, rectangle, strict=True))
+        return width, thickness

@@ -49,6 +49,7 @@ export interface Option {
 export interface Verb {
   about: string;
   options: Option[];
+  report: boolean;
 }
 
 export interface Run {

@@ -3,12 +3,12 @@
 import { button, element } from "../controls";
 
 /** Words as a POSIX shell takes them. */
-export function quoted(words: string[]): string {
-  return words.map((each) => (/^[\w.,:=/@%+-]+$/.test(each) ? each : `'${each.replaceAll("'", "'\\''")}'`)).join(" ");
+export function quoted(words: string[]): string[] {
+  return words.map((each) => (/^[\w.,:=/@%+-]+$/.test(each) ? each : `'${each.replaceAll("'", "'\\''")}'`));
 }
 
 export class Command {
-  readonly root = element("div", "gbeam-row");
+  readonly root = element("div", "gbeam-row command");
   private readonly line = element("code");
   private readonly copy = button("Copy", () => void this.put());
 
@@ -18,7 +18,8 @@ export class Command {
   }
 
   say(words: string[]): void {
-    this.line.textContent = quoted(words);
+    // Lines break between words.
+    this.line.replaceChildren(...quoted(words).flatMap((each, i) => [...(i ? [" "] : []), element("span", "", each)]));
     this.copy.textContent = "Copy";
   }
 

@@ -17,6 +17,11 @@ interface Field {
   value: string;
 }
 
+/** A unit as it is printed: kg/m³. */
+export function raised(unit: string): string {
+  return unit.replace(/\^([234])/g, (_, power: string) => "²³⁴"["234".indexOf(power)]!);
+}
+
 export class Form {
   readonly root = element("div", "form");
   private readonly entries = element("div");
@@ -164,7 +169,7 @@ export class Form {
     const place = element("div", "field");
     const label = element("label");
     const name = element("span", "", entry.key);
-    const facts = [entry.unit, entry.required && !entry.written ? "required" : ""].filter(Boolean);
+    const facts = [raised(entry.unit ?? ""), entry.required && !entry.written ? "required" : ""].filter(Boolean);
     if (facts.length) name.append(element("span", "faint", `, ${facts.join(", ")}`));
     const input = entry.options.length ? this.select(entry) : this.typed(entry);
     input.dataset["path"] = entry.path;

@@ -65,7 +65,9 @@ export class Runs {
     open.classList.add("open");
     open.dataset["key"] = `open-${run.id}`;
     open.setAttribute("aria-pressed", String(run.id === this.selected));
-    row.append(open, element("span", kind, run.verb === "run" ? run.state : `${run.verb} ${run.state}`));
+    const [date, time] = [run.id.slice(0, 8), run.id.slice(9, 15)].map((each) => each.match(/../g)!); // in its id
+    row.append(open, element("span", "faint", `${date!.slice(2).join("-")} ${time!.slice(0, 2).join(":")}`));
+    row.append(element("span", kind, run.verb === "run" ? run.state : `${run.verb} ${run.state}`));
     if (ACTIVE.includes(run.state)) {
       row.append(element("span", "faint", run.progress.replace(/^gbeam: /, "")));
       const cancel = button("Cancel", () => void api.cancel(run.id).then(() => this.watch()));

@@ -24,7 +24,7 @@ export class Verbs {
   private entries: Entry[] = [];
   private offered = "";
   private readonly about = element("p", "faint");
-  private readonly place = element("div");
+  private readonly place = element("div", "values");
   private readonly problems = element("p", "bad");
   private readonly run = button("Run", () => void this.submit());
   private readonly head = element("div", "gbeam-row");
@@ -80,9 +80,10 @@ export class Verbs {
     this.say();
   }
 
+  /** One option as a field; of a value that varies its path and its values. */
   private line(given: Given): HTMLElement {
     const { option } = given;
-    const row = element("div", "gbeam-row");
+    const place = element("div", "field");
     const put = (value: string): void => {
       given.value = value;
       this.say();
@@ -90,29 +91,29 @@ export class Verbs {
     const words = option.of === "motion" ? this.motions() : option.choices;
     if (words.length) {
       if (!words.includes(given.value)) given.value = "";
-      row.append(choice(option.name, [["", "left out"], ...words.map((each) => [each, each] as const)], given.value, put));
+      place.append(choice(option.name, [["", "left out"], ...words.map((each) => [each, each] as const)], given.value, put));
     } else {
-      const label = element("label", "", `${option.name} `);
-      const input = element("input");
-      input.value = given.value;
-      input.placeholder = `such as ${option.example.slice(option.of === "values" ? option.example.indexOf("=") + 1 : 0)}`;
-      input.addEventListener("input", () => put(input.value));
-      label.append(input);
       if (option.of === "values") {
         const paths = this.paths();
         if (!paths.includes(given.path)) given.path = "";
         const offered = [["", "nothing"] as const, ...paths.map((path) => [path, path] as const)];
-        row.append(
+        place.append(
           choice("vary", offered, given.path, (path) => {
             given.path = path;
             this.say();
           }),
         );
       }
-      row.append(label);
+      const label = element("label", "", `${option.name} `);
+      const input = element("input");
+      input.value = given.value;
+      input.placeholder = `such as ${option.example.slice(option.of === "values" ? option.example.indexOf("=") + 1 : 0)}`;
+      input.addEventListener("input", () => put(input.value));
+      label.append(input);
+      place.append(label);
     }
-    row.append(element("span", "faint", option.help));
-    return row;
+    place.append(element("span", "faint", option.help));
+    return place;
   }
 
   /** The options that are given, as the command line has them. */
@@ -122,7 +123,8 @@ export class Verbs {
   }
 
   private say(): void {
-    this.command.say(["gbeam", this.verb, "scenario.toml", ...this.options().map((each) => `--${each}`)]);
+    const report = this.verbs[this.verb]?.report ? ["--report"] : [];
+    this.command.say(["gbeam", this.verb, "scenario.toml", ...this.options().map((each) => `--${each}`), ...report]);
   }
 
   private async submit(): Promise<void> {

@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 
 from gbeam.mechanics.structure import Structure
+from gbeam.motion.bases.flight import Flight
 from gbeam.motion.protocol import Motion
+from gbeam.numerics.attitude import attitude
 from gbeam.results.parts.outline import Outline
 from gbeam.results.result import Floats
 
@@ -34,25 +36,26 @@ def outline_of(structure: Structure, motion: Motion, time: Floats, q: Floats) ->
     if not structure.source.beam.root.springs:
         root = np.zeros_like(root)
     points = np.concatenate([[0.0], rest])
-    width, thickness, is_round = _size(beam.section.at(points))
+    section = beam.section.at(points)
+    width, thickness = section.extents()
     return Outline(
         points=points,
         width=width,
         thickness=thickness,
-        round=is_round,
+        round=section.round,
         bodies=np.array([(body.at, body.mass) for body in beam.masses], dtype=float).reshape(-1, 2),
         time=time[some],
         displacement=np.concatenate([root[:, None], moved], axis=1),
         **_carrier(motion),
+        attitude=_attitude(motion, time, some),
     )
 
 
-def _size(section: Any) -> tuple[Floats, Floats, bool]:
-    """Extents along y and z; of a section given by its moments those of the rectangle with the same."""
-    rectangle = [np.sqrt(12 * np.asarray(each) / section.area) for each in (section.inertia_z, section.inertia_y)]
-    fibres = [2 * np.asarray(each) for each in (section.extreme_fibre_y, section.extreme_fibre_z)]
-    width, thickness = (np.where(np.isfinite(a), a, b) for a, b in zip(fibres, rectangle, strict=True))
-    return width, thickness, section.round
+def _attitude(motion: Any, time: Floats, some: Any) -> Floats | None:
+    """Of a flight whose rates are given: integrated over all times, at some of them."""
+    if not isinstance(motion, Flight) or motion.rates is None:
+        return None
+    return attitude(time, np.asarray(motion.base(time).w_WB_B))[some]
 
 
 def _carrier(motion: Any) -> dict[str, Any]:

@@ -129,4 +129,13 @@ def modes(
     if structure.source is not None and not structure.traced:
         errors = Richer(structure, point.base).errors(point, found.eigenvalue, found.coordinates, gyroscopic=gyroscopic)
         warnings += doubtful(errors)
-    return replace(found, errors=errors, warnings=warnings)
+    return replace(found, errors=errors, warnings=warnings, **_drawn(structure))
+
+
+def _drawn(structure: Structure) -> dict[str, Any]:
+    """What a picture of the shapes needs of the beam."""
+    if structure.source is None or structure.traced:
+        return {}
+    section = structure.source.beam.section.at(structure.stations)
+    width, thickness = section.extents()
+    return {"width": width, "thickness": thickness, "round": section.round}

@@ -34,4 +34,7 @@ def outline_variables(outline: Outline) -> dict[str, Variable]:
         made["hub_radius"] = v((), outline.radius, "m", "from the hub's axis to the root")
         rotation = "rotation from base axes (columns) to hub axes (rows)"
         made["hub_mounting"] = v(("hub_axis", "axis"), outline.R_HB, "1", rotation)
+    if outline.attitude is not None:
+        rotation = "rotation (w, x, y, z) of the base axes since the first time, by the angular velocity given"
+        made["attitude"] = v(("outline_time", "quaternion"), outline.attitude, "1", rotation)
     return made

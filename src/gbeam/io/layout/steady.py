@@ -53,6 +53,7 @@ def modes_group(modes: Modes) -> Group:
         ),
         **_base(modes.base),
         **_errors(modes.errors),
+        **_section(modes),
     }
     coordinates = {
         **coordinate("mode", np.arange(1, len(modes.frequency) + 1), "1", "number of the mode"),
@@ -66,6 +67,16 @@ def modes_group(modes: Modes) -> Group:
         "stable": int(modes.stable),
     }
     return Group(data, coordinates, {**_where(modes), **attrs})
+
+
+def _section(modes: Modes) -> dict[str, Variable]:
+    if not len(modes.width):
+        return {}
+    return {
+        "section_width": variable(("station",), modes.width, "m", "extent of the section along y"),
+        "section_thickness": variable(("station",), modes.thickness, "m", "extent of the section along z"),
+        "section_round": variable((), int(modes.round), "1", "whether the section is round"),
+    }
 
 
 def _errors(errors: FrequencyErrors | None) -> dict[str, Variable]:

@@ -67,6 +67,8 @@ def motion(name: str, environment: str, variables: Variables, numbers: Numbers) 
         made["controlPoint"] = float(of("control_point"))
         made["axes"], made["arm"] = numbers.add(of("axis_angle")[index]), float(of("arm"))
         made["span"] = [max(float(of("flight_from")), float(time[0])), min(float(of("flight_to")), float(time[-1]))]
+    if of("attitude") is not None:
+        made["attitude"] = numbers.add(of("attitude"))
     if of("hub_radius") is not None:
         made["radius"], made["mounting"] = float(of("hub_radius")), np.ravel(of("hub_mounting")).tolist()
         made["angle"] = numbers.add(of("hub_angle")[index])

@@ -16,7 +16,7 @@ from gbeam.report.words import number, percent
 Facts = Mapping[str, Any]
 
 SHOWN = 33  # points of a mode shape in the viewer
-_SIZES = 0.03, 0.012  # of the length: width and thickness of a beam whose section a result does not hold
+_SIZES = {"width": 0.03, "thickness": 0.012}  # of the length: of a beam whose section a result does not hold
 
 
 def modes_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plots, header: dict[str, Any]) -> str:
@@ -37,13 +37,14 @@ def modes_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plot
     if facts["modes"]:
         header["modes"] = shapes(facts, numbers)
         parts += [heading("Shapes"), '<div id="gbeam-viewer"></div>']
-        parts.append(paragraph("largest displacement 15 % of the length; the section is not drawn to scale", "faint"))
+        scale = "to scale" if facts.get("section", {}).get("width") else "not to scale: the result does not hold it"
+        parts.append(paragraph(f"largest displacement 15 % of the length; the section is drawn {scale}", "faint"))
         x = np.array(facts["stations"])
         lines = [
             {"label": f"mode {i}, {number(each['frequency'])} Hz", "x": x, "y": _main(each), "colour": i - 1}
             for i, each in enumerate(facts["modes"][:6], 1)
         ]
-        name = plots.add("Shapes", "displacement, largest component 1", lines, x="position along the beam, m")
+        name = plots.add("Shapes", "displacement, largest 1", lines, x="position along the beam, m")
         parts.append(plot_places([(name, "Shapes along their main direction")]))
     return "".join(parts)
 
@@ -123,13 +124,16 @@ def shapes(facts: Facts, numbers: Numbers) -> dict[str, Any]:
     """Shapes of every mode at some of the stations."""
     x = np.array(facts["stations"])
     some = np.unique(np.linspace(0, len(x) - 1, SHOWN).round().astype(int))
-    size = np.ones(len(some)) * x[-1]
+    section = facts.get("section", {})
+    width, thickness = (
+        np.array(section.get(key) or x[-1] * part * np.ones(len(x)))[some] for key, part in _SIZES.items()
+    )
     parts = [
         np.array([[each[key][axis] for axis in "xyz"] for each in facts["modes"]])[:, :, some].transpose(0, 2, 1)
         for key in ("shape", "shape_imaginary")
     ]
     return {
-        **shape(x[some], _SIZES[0] * size, _SIZES[1] * size, is_round=False),
+        **shape(x[some], width, thickness, is_round=section.get("round", False)),
         "labels": [
             f"{i}: {number(each['frequency'])} Hz, {each['direction']}" for i, each in enumerate(facts["modes"], 1)
         ],

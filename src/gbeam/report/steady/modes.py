@@ -37,6 +37,7 @@ def to_json(modes: Modes) -> dict[str, Any]:
             for (frequency, ratio, direction, shape), error in zip(columns, errors, strict=True)
         ],
         "stations": modes.stations.tolist(),
+        "section": {"width": modes.width.tolist(), "thickness": modes.thickness.tolist(), "round": modes.round},
         "instabilities": [
             {
                 "kind": growing.kind,

@@ -34,6 +34,9 @@ class Outline(Part):
         From a hub's axis to the root, m; NaN where there is none.
     R_HB : (3, 3)
         Rotation from base to hub axes.
+    attitude : (u, 4) or None
+        Of base axes that turn in flight: quaternions w, x, y, z of the rotation to the axes at the first time, by the
+        angular velocity given. The attitude at the first time, heading too, is not known. None without rates.
     """
 
     points: Floats
@@ -46,3 +49,4 @@ class Outline(Part):
     arm: float = math.nan
     radius: float = math.nan
     R_HB: Floats = field(default_factory=lambda: np.eye(3))
+    attitude: Floats | None = None

@@ -68,6 +68,10 @@ class Modes(Figured):
         Whether the beam has a damping ratio, be it zero; without one it is undamped.
     errors : FrequencyErrors or None
         Of the frequencies; None where there is no estimate.
+    width, thickness : (s,) m
+        Extent of the section along y and z at the stations, for pictures; empty without a beam.
+    round : bool
+        Whether the section is round.
     """
 
     motion: str
@@ -86,6 +90,9 @@ class Modes(Figured):
     overdamped: Floats
     damping_given: bool = True
     errors: FrequencyErrors | None = None
+    width: Floats = field(default_factory=lambda: np.empty(0))
+    thickness: Floats = field(default_factory=lambda: np.empty(0))
+    round: bool = False
 
     @property
     def frequency(self) -> Floats:
