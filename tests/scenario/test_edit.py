@@ -32,6 +32,7 @@ LAYOUTS = {
     "dotted keys": '[motion]\nspin.kind = "x" # é\nspin.control_point = 0.1\nspin.smoothing = 0\n',
     "inline": '[motion]\nspin = { kind = "x", control_point = "1 m" } # inline\n',
     "no control point": '[motion.spin]\nkind = "x" # comment\n\n[response]\n',
+    "lines": '[motion.spin]\nkind = "x"\ncontrol_point = """\n1 m"""\n',
     "json": json.dumps({"motion": {"spin": {"control_point": 1, "kind": "x"}}, "title": "t"}, indent=2),
     "json on a line": '{"motion": {"spin": {"kind": "x"}}}',
 }
@@ -57,7 +58,7 @@ def test_the_scenarios_of_the_tests(tmp_path: Path) -> None:
     assert tomllib.loads(changed)["motion"]["spin"]["control_point"] == "1 mm"
 
 
-@pytest.mark.parametrize("text", ['title = "x"\n', '[motion.spin]\ncontrol_point = """\n1 m"""\n'])
+@pytest.mark.parametrize("text", ['title = "x"\n', "[motion]\nspin = 3\n"])
 def test_what_cannot_be_changed_is_refused_with_what_to_write(text: str) -> None:
     with pytest.raises(InputError, match=r"write it yourself: motion\.spin\.control_point=217\.94 mm"):
         edited(Source("s", text, Path(), {}), ("motion", "spin"), CHANGES)

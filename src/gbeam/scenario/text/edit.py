@@ -1,20 +1,15 @@
-"""Change entries of a scenario's text and leave all else as it was, comments too."""
+"""Write what a verb has found into a scenario's text, and leave all else as it was, comments too."""
 
 from __future__ import annotations
 
-import json
-import re
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 from gbeam.errors import InputError
-from gbeam.scenario.text.diagnostics import ScenarioError
-from gbeam.scenario.text.source import Source, is_json, parse
-from gbeam.scenario.values.paths import Path, Place, parse_path, path_text
+from gbeam.scenario.text.revise import with_entry
+from gbeam.scenario.text.source import Source, parse
+from gbeam.scenario.values.paths import Path, parse_path, path_text, written_at
 from gbeam.scenario.values.units import unit_of
-
-_OWN_LINE = re.compile(r"""\s*([\w"'-]+\s*\.\s*)*""")  # what stands before a key that has a line of its own
 
 
 def edited(source: Source, table: Path, changes: Mapping[str, str | float]) -> str:
@@ -27,40 +22,24 @@ def edited(source: Source, table: Path, changes: Mapping[str, str | float]) -> s
     table : tuple
         Path of the table, such as ``("motion", "centrifuge")``.
     changes : mapping of str to (str or float)
-        By key. One that the table lacks is added after the first of the others, or else after its first entry.
+        By key. One that the table lacks is added to its end.
 
     Raises
     ------
     InputError
-        If the table is written in a way that this cannot follow, such as over several lines.
+        If the table is not written, or in a way that this cannot follow.
     """
-    lines, expected = source.text.split("\n"), parse(source.name, source.text)
-    node: Any = expected
-    for step in table:
-        node = node.setdefault(step, {})
-    node |= changes
-    inside = {path[-1]: place for path, place in source.places.items() if path[:-1] == table}
-    edits = []  # line, first column, last column, what stands there then
+    text = source.text
+    given = ", ".join(f"{path_text((*table, key))}={value}" for key, value in changes.items())
+    refusal = InputError(source.name, "is written in a way that cannot be changed here", f"write it yourself: {given}")
+    if written_at(parse(source.name, text), table) is None:
+        raise refusal
     for key, value in changes.items():
-        text = json.dumps(value, ensure_ascii=False)  # a string of TOML too
-        if key in inside:
-            span = inside[key].value
-            edits.append((span.line, span.column, span.end, text))
-        elif inside:
-            anchor = next((inside[other] for other in changes if other in inside), next(iter(inside.values())))
-            edits.append(_added(lines[anchor.value.line - 1], anchor, key, text, is_json(source.text)))
-    for number, first, last, text in sorted(edits, reverse=True):
-        line = lines[number - 1]
-        lines[number - 1] = line[: first - 1] + text + line[last - 1 :]
-    changed = "\n".join(lines)
-    try:
-        sound = parse(source.name, changed) == expected
-    except ScenarioError:
-        sound = False
-    if not sound:
-        given = ", ".join(f"{path_text((*table, key))}={value}" for key, value in changes.items())
-        raise InputError(source.name, "is written in a way that cannot be changed here", f"write it yourself: {given}")
-    return changed
+        try:
+            text = with_entry(text, (*table, key), value)
+        except InputError:
+            raise refusal from None
+    return text
 
 
 def with_quantities(source: Source, changes: Mapping[str, tuple[float, str]]) -> str:
@@ -89,14 +68,3 @@ def with_quantities(source: Source, changes: Mapping[str, tuple[float, str]]) ->
         written: str | float = f"{number} {unit}" if unit else float(number)
         text = edited(replace(source, text=text, overrides=()), tuple(table), {key: written})
     return text
-
-
-def _added(line: str, anchor: Place, key: str, text: str, json: bool) -> tuple[int, int, int, str]:
-    """The edit that writes an entry after another: on a line of its own if that has one."""
-    before, span = line[: anchor.key.column - 1], anchor.value
-    if json:
-        return span.line, span.end, span.end, f', "{key}": {text}'
-    if _OWN_LINE.fullmatch(before):
-        end = len(line.rstrip("\r")) + 1
-        return span.line, end, end, f"{line[end - 1 :]}\n{before}{key} = {text}"
-    return span.line, span.end, span.end, f", {key} = {text}"
