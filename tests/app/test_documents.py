@@ -245,6 +245,18 @@ def test_verbs_take_their_own_options_only(site: Site, verb: str, options: list[
     assert answer.status_code == 422 and not (site.folder / "runs").exists()
 
 
+def test_values_that_are_distributions_are_swept_only(site: Site) -> None:
+    text = FAST.replace('"70 GPa"', '{ normal = ["70 GPa", "2 GPa"] }')
+    made = site.call("POST", "/api/document", site.opened, json={"text": text}).json()
+    assert made["errors"] == []
+    field = next(each for each in _entries(made["form"]) if each["path"] == "beam.material.youngs_modulus")
+    assert tomllib.loads(f"x = {field['value']}")["x"] == {"normal": ["70 GPa", "2 GPa"]}
+    answer = site.call("POST", "/api/runs", site.opened, json={"text": text})
+    assert answer.status_code == 422 and "this needs one value" in answer.json()["errors"][0]["message"]
+    body = {"text": text, "verb": "sweep", "options": ["measure=tip.size.max_abs", "samples=4"]}
+    assert site.call("POST", "/api/runs", site.opened, json=body).status_code == 200
+
+
 @pytest.mark.parametrize("verb", VERBS)
 def test_options_are_the_command_lines(verb: str) -> None:
     data = tomllib.loads(FAST.replace("[beam]", "[beam]  # with a value to vary\n"))

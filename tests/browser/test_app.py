@@ -44,8 +44,6 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> Non
     page.wait_for_selector("html[data-gbeam]")
     assert page.url == f"{home}/"
 
-    assert _violations(page) == []
-
     # An example, a wrong value at its field, and the right one; both views show it.
     page.get_by_label("Start from").select_option("Hub")
     page.locator('input[data-path="motion.slew.radius"]').wait_for()

@@ -35,7 +35,7 @@ class Unfit(GbeamError):
         super().__init__("; ".join(str(each["message"]) for each in problems))
 
 
-def described(text: str, folder: Path) -> dict[str, Any]:
+def described(text: str, folder: Path, *, distributions: bool = True) -> dict[str, Any]:
     """What a document holds: its form, what is wrong with it, and what it means where nothing is.
 
     Parameters
@@ -43,6 +43,8 @@ def described(text: str, folder: Path) -> dict[str, Any]:
     text : str
     folder : Path
         Of the records that it may name.
+    distributions : bool
+        Whether its values may be distributions, which sweeps draw from.
     """
     made: dict[str, Any] = {"text": text, "form": [], "errors": [], "meaning": ""}
     try:
@@ -52,7 +54,7 @@ def described(text: str, folder: Path) -> dict[str, Any]:
         from gbeam.analysis.study.describe import describe
         from gbeam.report.description import text as in_words
 
-        made["meaning"] = in_words(describe(build(loads(text, NAME, folder=folder))))
+        made["meaning"] = in_words(describe(build(loads(text, NAME, folder=folder, distributions=distributions))))
     except GbeamError as error:
         made["errors"] = problems(error)
     return made

@@ -118,7 +118,7 @@ def create_app(folder: Path) -> FastAPI:
         case: Annotated[str, Body(embed=True, max_length=100)] = "",
     ) -> dict[str, str]:
         """Queue a verb on a scenario; of a sweep's case the run that is there."""
-        found = await run_in_threadpool(documents.described, text, records)
+        found = await run_in_threadpool(documents.described, text, records, distributions=verb == "sweep")
         if found["errors"]:
             raise documents.Unfit(found["errors"])
         data = parse(documents.NAME, text)

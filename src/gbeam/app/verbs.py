@@ -8,6 +8,7 @@ from typing import Any
 
 from gbeam.errors import InputError
 from gbeam.printable import unprintable
+from gbeam.scenario.values.distributions import find_distributions
 from gbeam.scenario.values.paths import parse_path, written_at
 
 PLAIN = 'give text such as "2 s" or "tip.z.max_abs"'
@@ -185,7 +186,7 @@ def arguments(verb: str, options: Sequence[str], data: Mapping[str, Any]) -> lis
         inside = over if isinstance(over, dict) else {}
         for path in inside:
             _refuse_file(path, data)
-        if not inside and "over" not in counts:
+        if not inside and "over" not in counts and not any(find_distributions(data)):
             raise InputError("over", "is missing", "say what varies over which values")
     return made
 

@@ -7,6 +7,7 @@ import { api } from "./api";
 
 interface Parameter {
   path: string;
+  distribution: unknown;
   unit: string;
   values: (number | string)[];
 }
@@ -20,6 +21,8 @@ interface Sweep {
 export async function sweepMap(id: string, opened: (id: string) => void): Promise<HTMLElement> {
   const sweep = JSON.parse(await api.text(id, "answer.json")) as Sweep;
   const scenario = await api.text(id, "scenario.toml");
+  // Of more parameters, or of values that are drawn, there is no grid: the report shows them.
+  if (sweep.parameters.length > 2 || sweep.parameters.some((each) => each.distribution)) return element("div");
   const [rows, columns] = [sweep.parameters[0]!, sweep.parameters[1]];
   const [name, figure] = Object.entries(sweep.measures)[0]!;
   const at = (i: number, j: number): number | null => {
