@@ -7,9 +7,9 @@ import json
 from typing import Any
 
 from gbeam.report.facts import facts_text
-from gbeam.report.page import study
+from gbeam.report.page.bodies import study
+from gbeam.report.page.bodies.steady import crossings_table, modes_table, tracks_table
 from gbeam.report.page.parts import Value, badge, heading, listed, paragraph, table
-from gbeam.report.page.steady import crossings_table, modes_table, tracks_table
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.response import Response
 from gbeam.results.result import Result

@@ -12,7 +12,7 @@ from typing import Any
 
 from gbeam.errors import InputError
 from gbeam.printable import json_printable
-from gbeam.report.page import cases, machine, rest, steady, study
+from gbeam.report.page.bodies import cases, machine, rest, steady, study
 from gbeam.report.page.parts import badge, escaped, folded, heading, listed, paragraph, table, verbatim
 from gbeam.report.page.series import Numbers, Plots
 from gbeam.report.words import as_json

@@ -13,10 +13,10 @@ from gbeam.guards.limits import BINARY_BYTES, refuse_large_file
 from gbeam.io.netcdf import FACTS, groups_of
 from gbeam.io.stored import read_stored
 from gbeam.report.facts import facts, facts_text, whole
+from gbeam.report.page.bodies.steady import shapes
 from gbeam.report.page.document import html
 from gbeam.report.page.scene import scene
 from gbeam.report.page.series import Numbers
-from gbeam.report.page.steady import shapes
 from gbeam.report.provenance import to_json as origin_json
 from gbeam.results.machine import MachinePlan
 from gbeam.results.provenance import Provenance

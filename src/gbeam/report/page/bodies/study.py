@@ -9,7 +9,7 @@ from typing import Any
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.report import words
 from gbeam.report.page import curves
-from gbeam.report.page.machine import machine_section
+from gbeam.report.page.bodies.machine import machine_section
 from gbeam.report.page.parts import Cell, Value, folded, heading, known, listed, paragraph, plot_places, table
 from gbeam.report.page.scene import scene
 from gbeam.report.page.series import Numbers, Plots
