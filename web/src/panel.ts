@@ -51,6 +51,7 @@ export class Panel {
   private readonly length: number;
   private readonly now: Float32Array;
   private readonly shares: Float32Array;
+  private deflection = 0; // the largest as it is drawn
 
   constructor(
     readonly motion: Motion,
@@ -113,6 +114,7 @@ export class Panel {
   /** Everything as it is at a time, s. */
   update(t: number, settings: Settings, dark: boolean): void {
     const { motion, numbers } = this;
+    this.deflection = settings.factor * motion.largest;
     const place = locate(view(numbers, motion.time), t);
     interpolate(view(numbers, motion.displacement), this.now.length, place, this.now);
     const coloured = this.colour(settings, place);
@@ -133,7 +135,9 @@ export class Panel {
     if (width < 2 || height < 2) return;
     const aspect = width / height;
     const half = Math.tan((this.camera.fov * Math.PI) / 360);
-    const away = (this.carrier.size / (half * Math.min(1, aspect))) * orbit.distance;
+    // Bent farther than the beam is long, it is seen from farther away.
+    const size = Math.max(this.carrier.size, this.whole ? 0 : this.deflection);
+    const away = (size / (half * Math.min(1, aspect))) * orbit.distance;
     const [x, y, z] = this.carrier.middle;
     const [a, b, c] = orbit.direction;
     this.camera.aspect = aspect;

@@ -19,7 +19,7 @@ def plan_body(facts: Facts, variables: Mapping[str, Any], _: Numbers, plots: Plo
     parts = []
     for name, each in facts["motions"].items():
         if each["outcome"] != "done":
-            parts.append(paragraph(f"{name} {each['outcome']}: {each['message']}", "bad"))
+            parts.append(paragraph(f"motion {name} {each['outcome']}: {each['message']}", "bad"))
         parts.append(machine_section(name, each))
         rows = [[f"{part['start']:.3f}", f"{part['end']:.3f}", part["reason"]] for part in each["not_followed"]]
         held = table(("from, s", "to, s", "why"), rows, "The flight is not followed", words=(2,))

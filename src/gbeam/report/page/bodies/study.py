@@ -73,7 +73,7 @@ def _verdict(facts: Facts) -> str:
     parts = []
     for name, each in facts["motions"].items():
         if each["outcome"] != "done":
-            parts.append(paragraph(f"{name} {each['outcome']}: {each['message']}", "bad"))
+            parts.append(paragraph(f"motion {name} {each['outcome']}: {each['message']}", "bad"))
     for compared in facts["comparisons"]:
         parts.append(paragraph(compared["verdict"], "verdict"))
         tables = _criteria(compared), _peaks(compared), _load_peaks(compared), _not_followed(compared)
