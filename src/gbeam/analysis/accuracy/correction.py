@@ -19,6 +19,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.numerics.solvers.eigen import symmetric_modes
 from gbeam.results.result import Floats
 
+State = tuple[Floats, Floats]  # coordinates and rates of the beam, (n,) each
 RESOLVED = 2.5  # rad between two samples: a mode that turns faster follows statically
 
 
@@ -108,11 +109,12 @@ class Vibration(NamedTuple):
         resolved[:2] = True
         return Vibration(square, modes, resolved)
 
-    def shaken(self, residual: Floats) -> tuple[Floats, Floats]:
-        """How far corners and jumps of a residual (t, n) may make the unresolved modes ring.
+    def shaken(self, of: Operator, residual: Floats, start: State) -> tuple[Floats, Floats]:
+        """How far the start, and corners and jumps of a residual (t, n), may make the unresolved modes ring.
 
         Samples that show no vibration show what excites it: beside a corner or a jump the second difference of the
-        force on a mode is larger than the force that its ring has.
+        force on a mode is larger than the force that its ring has. At the start it rings by as much as it is away from
+        where that force would hold it.
 
         Returns
         -------
@@ -122,11 +124,19 @@ class Vibration(NamedTuple):
             Coordinates of their largest rings.
         """
         fast = ~self.resolved
-        sudden = np.abs(np.diff(residual @ self.modes[:, fast], n=2, axis=0)).max(axis=0)
-        return np.sqrt(self.square[fast]), self.modes[:, fast] * (sudden / self.square[fast])
+        rate, force = np.sqrt(self.square[fast]), residual @ self.modes[:, fast]
+        displaced, moving = (each[fast] for each in self.of_state(of, start))
+        away = np.abs(displaced + force[0] / rate**2) + np.abs(moving) / rate
+        return rate, self.modes[:, fast] * (np.abs(np.diff(force, n=2, axis=0)).max(axis=0) / rate**2 + away)
+
+    def of_state(self, of: Operator, start: State) -> State:
+        """A state of the beam in all modes; a free hub is held."""
+        beam = slice(len(self.modes) - len(start[0]), None)
+        displaced, moving = (self.modes.T @ of.mass[:, beam] @ each for each in start)
+        return displaced, moving
 
 
-def correction(of: Operator, vibration: Vibration, time: Floats, residual: Floats, start: Floats | None) -> Correction:
+def correction(of: Operator, vibration: Vibration, time: Floats, residual: Floats, start: State) -> Correction:
     """Linear response to −R, (t, n) each.
 
     Parameters
@@ -137,8 +147,8 @@ def correction(of: Operator, vibration: Vibration, time: Floats, residual: Float
     time : (t,) s
     residual : (t, n)
         R.
-    start : (beam's n,) or None
-        Residual of the beam at rest at the first time, where it is in equilibrium; None where the first state is given.
+    start : ((n,), (n,))
+        Where the beam begins and how fast.
     """
     square, modes, kept = vibration
     step = _interval(time)
@@ -146,10 +156,7 @@ def correction(of: Operator, vibration: Vibration, time: Floats, residual: Float
     flexibility = stiff / square[~kept] @ stiff.T
     c, k = (np.einsum("ia,tij,jb->tab", phi, x, phi, optimize=True) for x in (of.velocity, of.stiffness))
     force = -residual @ phi
-    first = np.zeros(phi.shape[1])
-    if start is not None:
-        beam = slice(len(modes) - len(start), None)  # a free hub is held
-        first = phi.T @ of.mass[:, beam] @ np.linalg.solve(of.stiffness[0][beam, beam], -start)
+    first, moving = (each[kept] for each in vibration.of_state(of, start))
 
     def drive(t: Any) -> Any:
         place = np.clip((t - time[0]) / step, 0, len(time) - 1)
@@ -166,7 +173,7 @@ def correction(of: Operator, vibration: Vibration, time: Floats, residual: Float
         return between(c), between(k), between(force)
 
     equations = LinearEquations(np.eye(phi.shape[1]), matrices, drive)
-    made = integrate(equations, gauss(), first, 0 * first, step=step, count=len(time) - 1, start=float(time[0]))
+    made = integrate(equations, gauss(), first, moving, step=step, count=len(time) - 1, start=float(time[0]))
     static = -residual @ flexibility
     return Correction(made.q @ phi.T + static, made.qd @ phi.T, made.qdd @ phi.T)
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from gbeam.analysis.accuracy.correction import RESOLVED
-from gbeam.analysis.accuracy.response_errors import Quantities, Rings, Solution, lacking
+from gbeam.analysis.accuracy.response_errors import Begin, Quantities, Rings, Solution, lacking
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.results.parts.errors import ErrorEstimate, Errors
@@ -30,7 +30,7 @@ def response_errors(
     steps: tuple[float, float, float],
     *,
     stride: int = 1,
-    settled: bool = True,
+    begin: Begin | None = None,
 ) -> Errors:
     """Estimated errors of a response, as fractions of the largest displacement, load and stress.
 
@@ -48,8 +48,8 @@ def response_errors(
         Errors of displacement, loads and stress from the time step, fractions.
     stride : int
         Steps to each of the results.
-    settled : bool
-        Whether it begins in relative equilibrium; a given state has no error.
+    begin : callable, optional
+        Of a structure with more shapes: its coordinates and rates at the start; left out, it begins in equilibrium.
     """
     if structure.source is None or loads is None or len(tip) < 3:
         alone = [ErrorEstimate(step=step, total=step) for step in steps]
@@ -61,7 +61,7 @@ def response_errors(
         """Errors by every so many steps, and the rate of the fastest mode that these may have missed, rad/s."""
         few = solution.some(slice(None, None, stride))
         with np.errstate(all="ignore"):
-            parts, rings = lacking(structure, motion, few, own, settled=settled)
+            parts, rings = lacking(structure, motion, few, own, begin=begin)
         if not np.isfinite(parts.total.tip).all():
             return _bounded(structure, sizes["tip"], steps[0]), 0.0
 

@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.analysis.accuracy.correction import Vibration, correction, operator
+from gbeam.analysis.accuracy.correction import Operator, State, Vibration, correction, operator
 from gbeam.analysis.accuracy.reference import Sampled, complete_residual, linear_residual
+from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import Enrichment, enrichment
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Structure
@@ -21,6 +22,7 @@ from gbeam.results.result import Floats
 from gbeam.structure.stress import extreme_stresses
 
 IntArray = NDArray[np.int_]
+Begin = Callable[[Structure], tuple[Floats, Floats]]
 SCAN = 200  # samples at which to look for that
 IDLE = 1e-9  # of the largest force: a direction that feels less stays out
 
@@ -73,7 +75,12 @@ class Solution:
 
 
 def lacking(
-    structure: Structure, motion: Motion, solution: Solution, own: Quantities | None = None, *, settled: bool = True
+    structure: Structure,
+    motion: Motion,
+    solution: Solution,
+    own: Quantities | None = None,
+    *,
+    begin: Begin | None = None,
 ) -> tuple[Parts, Rings]:
     """What a solution lacks, quantity by quantity, over time, and what its samples may hide.
 
@@ -85,36 +92,43 @@ def lacking(
     solution : Solution
     own : Quantities, optional
         Of the solution, where they are known.
-    settled : bool
-        Whether the first state is the relative equilibrium, which the truth has its own of; else it is given.
+    begin : callable, optional
+        Coordinates and rates (n,) of a beam with more shapes at the start; left out, it begins in its equilibrium.
     """
     more = enrichment(structure, _base(motion, solution)[0])
     count = len(solution.time)
     few = solution.some(np.linspace(0, count - 1, min(count, SCAN)).astype(int))
-    exact, index = more.model("exact", directions=driven(more, lambda rich, at: _lifted(rich, at, motion, few)))
+    directions = driven(more, lambda rich, at: _lifted(rich, at, motion, few))
+    exact, index = more.model("exact", directions=directions)
     at = _lifted(exact, index, motion, solution)
     of = operator(exact, at)
     vibration = Vibration.of(of, solution.time)
     residual = complete_residual(exact, at)
-    start = _start(exact, at) if settled else np.zeros(exact.size)
-    total = correction(of, vibration, solution.time, residual, start)
     # In its own coordinates the solution leaves what its model leaves out, in the new ones what its shapes do.
     first = residual.shape[1] - exact.size
-    own_rows = np.append(np.arange(first), first + index)
-    new, at_start = residual.copy(), start.copy()
-    new[:, own_rows] = at_start[index] = 0.0
+    new = residual.copy()
+    new[:, np.append(np.arange(first), first + index)] = 0.0
+    if begin is None:
+        at_rest = _start(exact, at)
+        new_at_rest = at_rest.copy()
+        new_at_rest[index] = 0.0
+        start, start_of_shapes = (_settled(of, each) for each in (at_rest, new_at_rest))
+    else:
+        same = exact if structure.kind == "exact" else more.model(structure.kind, directions=directions)[0]
+        start, start_of_shapes = (_departure(begin, each, at) for each in (exact, same))
+    total = correction(of, vibration, solution.time, residual, start)
     if own is None:
         own = quantities(structure, _lifted(structure, np.arange(structure.size), motion, solution))
     truth, same_shapes = quantities(exact, at.moved(*total)), own
     if structure.kind != "exact":
-        shapes = correction(of, vibration, solution.time, new, at_start)
+        shapes = correction(of, vibration, solution.time, new, start_of_shapes)
         same_shapes = quantities(exact, at.moved(*(a - b for a, b in zip(total, shapes, strict=True))))
     parts = Parts(
         Quantities(*(a - b for a, b in zip(truth, same_shapes, strict=True))),
         Quantities(*(a - b for a, b in zip(same_shapes, own, strict=True))),
         Quantities(*(a - b for a, b in zip(truth, own, strict=True))),
     )
-    return parts, _rings(exact, *vibration.shaken(residual))
+    return parts, _rings(exact, *vibration.shaken(of, residual, start))
 
 
 def _rings(exact: Structure, rate: Floats, amplitude: Floats) -> Rings:
@@ -179,6 +193,25 @@ def _base(motion: Any, solution: Solution) -> tuple[Base, Floats | None]:
         hub = np.stack([x[:, 0] for x in (solution.y, solution.yd, solution.ydd)], axis=1)
     base = motion.base(solution.time) if hub is None else motion.mount.base(*hub.T)
     return Base(*(np.asarray(x) for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B))), hub
+
+
+def _settled(of: Operator, at_rest: Floats) -> State:
+    """Departure from the first state of the equilibrium, by the residual there at rest; a free hub is held."""
+    beam = slice(of.mass.shape[0] - len(at_rest), None)
+    return np.linalg.solve(of.stiffness[0][beam, beam], -at_rest), np.zeros_like(at_rest)
+
+
+def _departure(begin: Begin, richer: Structure, at: Sampled) -> State:
+    """Departure from the first state of that in which a richer structure begins; NaN where there is none."""
+    departure = np.zeros((2, at.p.shape[1]))
+    try:
+        state = begin(richer)
+    except ComputationError:
+        departure[:] = np.nan
+        return departure[0], departure[1]
+    for each, begun, own in zip(departure, state, (at.p[0], at.pd[0]), strict=True):
+        each[-richer.size :] = begun - own[-richer.size :]  # the axial shapes, which SFOAM lacks, come first
+    return departure[0], departure[1]
 
 
 def _start(exact: Structure, at: Sampled) -> Floats:

@@ -57,9 +57,7 @@ def problem_of(structure: Structure, motion: Motion, start: float, initial: Init
     def drive(t: Array) -> tuple[Base, Any]:
         return motion.base(t), None if structure.history is None else structure.history(t)
 
-    base = motion.base(np.array([start]))
-    first = Base(*(x[0] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
-    q, qd, stable = initial_state(structure, first, start, initial)
+    q, qd, stable = start_of(structure, motion, start, initial)
     if structure.linear:
         c = structure.coefficients
 
@@ -79,8 +77,20 @@ def _on_free_hub(structure: Structure, hub: Any, start: float, initial: Initial)
     def drive(t: Array) -> tuple[Array, Any]:
         return hub.torque(t), None if structure.history is None else structure.history(t)
 
-    pulled, o = hub.mount.gravity is not None or structure.history is not None, np.zeros(())
-    q, qd, stable = initial_state(structure, hub.mount.base(o, o, o) if pulled else None, start, initial)
+    q, qd, stable = start_of(structure, hub, start, initial)
     residual = OnHub(structure.on_free_hub(hub), hub.mount)
     q, qd = (namespace(x).append(0.0, x) for x in (q, qd))
     return Problem(NonlinearEquations(residual, drive), q, qd, 1, stable)
+
+
+def start_of(structure: Structure, motion: Any, start: float, initial: Initial) -> tuple[Array, Array, bool]:
+    """The beam's coordinates and rates (n,) at the start, and whether they are those of no equilibrium that is lost.
+
+    Raises are those of :func:`problem_of`.
+    """
+    if motion.free:
+        pulled, o = motion.mount.gravity is not None or structure.history is not None, np.zeros(())
+        return initial_state(structure, motion.mount.base(o, o, o) if pulled else None, start, initial)
+    base = motion.base(np.array([start]))
+    first = Base(*(x[0] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
+    return initial_state(structure, first, start, initial)

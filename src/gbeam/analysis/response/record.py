@@ -14,7 +14,7 @@ from gbeam.analysis.accuracy.response_errors import Solution
 from gbeam.analysis.response.outcome import describe, effort, inaccuracies
 from gbeam.analysis.response.outline import outline_of
 from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
-from gbeam.analysis.response.problem import Problem
+from gbeam.analysis.response.problem import Problem, start_of
 from gbeam.analysis.response.settings import NOT_ESTIMATED, ResponseSettings
 from gbeam.analysis.response.steps.trajectories import joined
 from gbeam.arrays.namespace import is_jax
@@ -89,11 +89,14 @@ def response_of(
             solution = Solution(trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd)
             during = None if loads is None else loads.during(flight)
             settled, tip = up is not None or settings.begin.settled, np.asarray(displacement[flight, -1])
+
+            def begin(richer: Structure) -> tuple[Floats, Floats]:
+                return start_of(richer, motion, settings.start, settings.begin)[:2]
+
             steps = step_errors.displacement, step_errors.loads, step_errors.stress
             if settings.estimate:
-                errors = response_errors(
-                    structure, motion, solution, tip, during, steps, stride=stride, settled=settled
-                )
+                begun = None if settled else begin
+                errors = response_errors(structure, motion, solution, tip, during, steps, stride=stride, begin=begun)
             else:
                 alone = [ErrorEstimate(step=step) for step in steps]
                 errors = Errors(alone[0], alone[1], alone[2], NOT_ESTIMATED)
