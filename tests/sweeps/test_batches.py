@@ -67,5 +67,13 @@ def test_what_no_measure_needs_changes_no_digit(fast: Path) -> None:
     assert not plain.needs.errors and judged.needs.errors
 
 
+def test_loads_that_are_not_measured_change_no_digit(fast: Path) -> None:
+    over, tips = {LEVEL: ["3 g", "6 g"]}, [*MEASURES[:3], "verdict.followed", "spin.axes.1.rate.max_abs"]
+    lean = gb.sweep(fast, over, tips, overrides=FIXED)
+    whole = gb.sweep(fast, over, [*tips, MEASURES[3]], overrides=FIXED)
+    assert all(np.array_equal(lean.measures[name], whole.measures[name]) for name in tips)
+    assert np.isfinite([lean.measures[name] for name in tips]).all()
+
+
 def test_cases_with_other_steps_stay_apart() -> None:
     assert may_share("run", [LEVEL]) and not may_share("run", ["response.duration"]) and not may_share("modes", [LEVEL])

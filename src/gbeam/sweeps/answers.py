@@ -48,7 +48,7 @@ def reduced(case: Case, needs: Needs) -> Case:
         return case
     response = replace(case.response, estimate=False)
     fixed = response.step is not None and response.integrator != "adaptive"
-    if fixed and not needs.loads and not case.tracks:  # a comparison is of loads too
+    if fixed and not needs.loads:
         response = replace(response, loads=False)
     return replace(case, response=response)
 

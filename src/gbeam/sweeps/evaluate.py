@@ -22,7 +22,9 @@ from gbeam.sweeps.measures import Keys, value_at
 
 Function = Callable[[Case], float]
 NO_FACTS: Facts = {"outcome": "done"}  # where functions measure the case, no verb answers
-_WITHOUT_LOADS = ("tip", "stations", "hub", "step", "steps", "damping_ratio")  # of a motion's figures
+# Figures of a motion, and of a comparison, which are the same to the last digit where no loads are computed.
+_WITHOUT_LOADS = ("tip", "stations", "hub", "step", "steps", "damping_ratio", "axes", "limits", "tracking_error")
+_VERDICT_WITHOUT_LOADS = (("verdict", "tip"), ("verdict", "followed"))
 
 
 @dataclass(frozen=True)
@@ -80,8 +82,8 @@ class Question:
         if not self.keys and not self.histories:
             return Needs()
         errors = any("error" in str(key) for keys in self.keys for key in keys)
-        loads = any(keys[0] != "motions" or len(keys) < 3 or keys[2] not in _WITHOUT_LOADS for keys in self.keys)
-        return Needs(errors, loads or any(each.quantity != "tip" for each in self.histories))
+        loads = any(map(_of_loads, self.keys)) or any(each.quantity != "tip" for each in self.histories)
+        return Needs(errors, loads)
 
     @property
     def needs_facts(self) -> bool:
@@ -124,6 +126,16 @@ class Question:
         except Exception as error:
             return without_figures(number, self.width, error)
         return Row(number, tuple(values), *ended(facts))
+
+
+def _of_loads(keys: Keys) -> bool:
+    """Whether a figure may be one of loads."""
+    match keys[0]:
+        case "motions":
+            return len(keys) < 3 or keys[2] not in _WITHOUT_LOADS
+        case "comparisons":
+            return keys[2:] not in _VERDICT_WITHOUT_LOADS
+    return True
 
 
 def ended(facts: Facts) -> tuple[str, str]:
