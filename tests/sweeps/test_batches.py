@@ -10,7 +10,7 @@ import pytest
 
 import gbeam as gb
 from gbeam.scenario.load import load
-from gbeam.sweeps.batches import may_share, rows
+from gbeam.sweeps.batches import may_share, rows, settled
 from gbeam.sweeps.evaluate import Question
 
 LEVEL = "motion.flight.acceleration.z.level"
@@ -75,5 +75,13 @@ def test_loads_that_are_not_measured_change_no_digit(fast: Path) -> None:
     assert np.isfinite([lean.measures[name] for name in tips]).all()
 
 
+def test_cases_of_an_automatic_step_are_computed_one_by_one(fast: Path) -> None:
+    for given, together in (((), False), (FIXED, True)):
+        source = load(fast, given).source
+        assert source is not None
+        question = Question(source, "run", None, keys=(("motions", "flight", "tip", "z", "max_abs"),), together=True)
+        assert settled(question, question.case(())).together == together
+
+
 def test_cases_with_other_steps_stay_apart() -> None:
-    assert may_share("run", [LEVEL]) and not may_share("run", ["response.duration"]) and not may_share("modes", [LEVEL])
+    assert may_share("run", [LEVEL]) and not may_share("run", ["response"]) and not may_share("modes", [LEVEL])

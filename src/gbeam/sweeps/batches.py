@@ -22,7 +22,7 @@ from gbeam.sweeps.evaluate import Question, Row, without_figures
 
 Task = tuple[int, tuple[str, ...]]  # number of the case, and its changes
 Posed = tuple[int, Case, Structure]
-_ALONE = ("response.", "model.")  # cases in which these differ have few steps or sizes in common
+_ALONE = ("response", "model")  # tables: cases in which they differ have few steps or sizes in common
 
 
 def width(question: Question) -> int:
@@ -32,7 +32,14 @@ def width(question: Question) -> int:
 
 def may_share(verb: str, paths: Sequence[str]) -> bool:
     """Whether cases that differ at these paths are worth integrating together."""
-    return verb == "run" and not any(path.startswith(_ALONE) for path in paths)
+    return verb == "run" and not any(path.partition(".")[0] in _ALONE for path in paths)
+
+
+def settled(question: Question, case: Case) -> Question:
+    """The question, its figures known, with whether this case's step, and so every one's, lets them stand together."""
+    settings = reduced(case, question.needs).response
+    fixed = settings.step is not None and settings.integrator != "adaptive" and not settings.estimate
+    return replace(question, together=question.together and fixed)
 
 
 def rows(question: Question, tasks: Sequence[Task]) -> list[Row]:
@@ -53,10 +60,6 @@ def _together(question: Question, tasks: Sequence[Task]) -> list[Row]:
     for number, overrides in tasks:
         try:
             case = question.case(overrides)
-            settings = reduced(case, question.needs).response
-            if settings.estimate or settings.step is None or settings.integrator == "adaptive":
-                made.append(question.row(number, overrides))
-                continue
             of_beam = tuple(each for each in overrides if not each.startswith("motion."))
             structure = structures[of_beam] = structures.get(of_beam) or case.assemble()
             posed.append((number, case, structure))

@@ -17,12 +17,13 @@ from gbeam.errors import GbeamError, InputError
 from gbeam.scenario.build import build
 from gbeam.scenario.schema.scenario import Scenario
 from gbeam.sweeps.batches import rows as computed
-from gbeam.sweeps.batches import width
+from gbeam.sweeps.batches import settled, width
 from gbeam.sweeps.cases import Cases
 from gbeam.sweeps.evaluate import NO_FACTS, Question, Row, ended, without_figures
 from gbeam.sweeps.histories import read_history
 from gbeam.sweeps.measures import find, is_truth, unit_at
 
+_FEW = 8  # cases that stand together in the computation that is timed
 TRIED = 20  # cases, all over the sweep, of which one must be possible
 _IMPORTS = 2.0  # s: a first case that takes less may be imports and compilation above all; another one is timed
 
@@ -133,11 +134,11 @@ def start(
             question = replace(question, keys=keys)
             units = tuple(unit_at(facts, each) for each in keys)
             truths = tuple(is_truth(facts, each) for each in keys)
-        question = histories.of(question, case)
+        question = settled(histories.of(question, case), case)
         own = (number, cases.overrides(number))
         rows += computed(question, [own]) if question.together else [question.measured(number, case, facts)]
         seconds = time.perf_counter() - begin
-        after = missing[index + 1 : index + 1 + width(question)] or missing[:1]
+        after = missing[index + 1 : index + 1 + min(_FEW, width(question))] or missing[:1]
         after = [each for each in after if all(each != row.case for row in rows)]
         if after and (seconds < _IMPORTS or question.together):
             more, seconds = _timed(question, cases, after)
@@ -159,11 +160,14 @@ def go_on(
     question = replace(question, keys=tuple(tuple(keys) for keys, *_ in figures if keys))
     possible = [row for row in done if row.outcome != "refused"] or done
     scenario = question.scenario(cases.overrides(possible[0].case))
-    question = histories.of(question, build(scenario)) if histories.names else question
+    if histories.names or question.together:
+        case = build(scenario)
+        question = settled(histories.of(question, case), case)
     rows: list[Row] = []
     seconds = 0.0
-    for first in (0, width(question)):  # what is imported and compiled once comes with the first
-        if chosen := missing[first : first + width(question)]:
+    few = min(_FEW, width(question))
+    for first in (0, few):  # what is imported and compiled once comes with the first
+        if chosen := missing[first : first + few]:
             more, seconds = _timed(question, cases, chosen)
             rows += more
         if seconds >= _IMPORTS:
