@@ -11,11 +11,14 @@ handing out the cases costs is seen on a machine that is busy too.
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import time
 from pathlib import Path
 from typing import Any
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command line and Dask's workers do
 
 import gbeam as gb
 
