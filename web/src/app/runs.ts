@@ -14,6 +14,12 @@ interface Answer {
   comparisons?: { verdict: string; accepted: boolean | null }[];
 }
 
+/** When a run was started, month, day and time, as its id has it. */
+function when(id: string): string {
+  const [, , month, day, , hour, minute] = id.match(/\d\d|-/g)!;
+  return `${month}-${day} ${hour}:${minute}`;
+}
+
 export class Runs {
   readonly root = element("section");
   private readonly list = element("div", "runs");
@@ -65,8 +71,7 @@ export class Runs {
     open.classList.add("open");
     open.dataset["key"] = `open-${run.id}`;
     open.setAttribute("aria-pressed", String(run.id === this.selected));
-    const [date, time] = [run.id.slice(0, 8), run.id.slice(9, 15)].map((each) => each.match(/../g)!); // in its id
-    row.append(open, element("span", "faint", `${date!.slice(2).join("-")} ${time!.slice(0, 2).join(":")}`));
+    row.append(open, element("span", "faint", when(run.id)));
     row.append(element("span", kind, run.verb === "run" ? run.state : `${run.verb} ${run.state}`));
     if (ACTIVE.includes(run.state)) {
       row.append(element("span", "faint", run.progress.replace(/^gbeam: /, "")));
@@ -146,9 +151,11 @@ export class Runs {
         put("verdict", i, each.verdict);
       }
     });
-    const table = element("table");
+    const table = element("table", "compared");
     const head = element("tr");
-    head.append(element("td"), ...ids.map((id) => element("th", "", id)));
+    const runs = (JSON.parse(this.drawn) as [Run[]])[0];
+    const titles = ids.map((id) => runs.find((each) => each.id === id)?.title ?? "");
+    head.append(element("td"), ...ids.map((id, i) => element("th", "", `${titles[i]} (${when(id)})`)));
     table.append(head);
     for (const [name, values] of rows) {
       const line = element("tr");
