@@ -231,6 +231,8 @@ def test_a_case_of_a_sweep_is_run_once(site: Site) -> None:
         ("app", []),
         ("run", ["set=beam.length=1"]),
         ("fit", ["data=/etc/passwd"]),
+        ("fit", ["data=../secret.csv"]),
+        ("fit", ["data=not-there.csv"]),
         ("modes", ["at=--out"]),
         ("modes", ["at=1 s", "at=2 s"]),
         ("modes", ["at= "]),
@@ -257,20 +259,23 @@ def test_values_that_are_distributions_are_swept_only(site: Site) -> None:
     assert site.call("POST", "/api/runs", site.opened, json=body).status_code == 200
 
 
+def test_a_fit_reads_a_file_that_was_dropped(site: Site) -> None:
+    site.call("PUT", "/api/records/measured.csv", site.opened, content=b"time,tip.z [mm]\n0,0\n1,1\n")
+    body = {"text": FAST, "verb": "fit", "options": ["data=measured.csv", "free=beam.damping_ratio"]}
+    number = site.call("POST", "/api/runs", site.opened, json=body).json()["id"]
+    assert (site.folder / "runs" / number / "measured.csv").read_text().startswith("time,tip.z")
+
+
 @pytest.mark.parametrize("verb", VERBS)
 def test_options_are_the_command_lines(verb: str) -> None:
-    data = tomllib.loads(FAST.replace("[beam]", "[beam]  # with a value to vary\n"))
-    every = [(each.name, value) for each in VERBS[verb].options for value in each.choices or [each.example or "flight"]]
-    for name, value in every:
-        options = [f"{name}={value}", *(["over=beam.length=1 m"] if verb == "sweep" and name != "over" else [])]
-        chosen = [*(["--minimise=tip"] if verb == "optimize" and name != "minimise" else [])]
-        function, bound = parsed([verb, "x.toml", *chosen, *arguments(verb, options, data)])
-        assert (function.__name__ == verb.replace("-", "_") and value in repr(bound.arguments)) or value in (
-            "true",
-            "false",
-        )
-    report = VERBS[verb].report
-    assert report == (
-        "report"
-        in inspect.signature(parsed([verb, "x.toml", "--minimise=a"][: 3 if verb == "optimize" else 2])[0]).parameters
-    )
+    data = tomllib.loads(FAST)
+    needed = {"optimize": "minimise=tip", "fit": "data=a.csv", "sweep": "over=beam.length=1 m"}.get(verb, "")
+    for option in VERBS[verb].options:
+        for value in option.choices or [option.example or "flight"]:
+            other = [needed] if needed and not needed.startswith(f"{option.name}=") else []
+            given = arguments(verb, [f"{option.name}={value}", *other], data)
+            function, bound = parsed([verb, "x.toml", *given])
+            assert function.__name__ == verb.replace("-", "_")
+            assert value in repr(bound.arguments) or value in ("true", "false")
+    function, _ = parsed([verb, "x.toml", *([f"--{needed}"] if needed else [])])
+    assert VERBS[verb].report == ("report" in inspect.signature(function).parameters)

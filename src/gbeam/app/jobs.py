@@ -90,9 +90,9 @@ class Jobs:
         number = f"{datetime.now():%Y%m%d-%H%M%S}-{secrets.token_hex(4)}"
         place = self.folder / number
         place.mkdir(parents=True)
-        (place / "scenario.toml").write_text(text, encoding="utf-8")
         for record in records:
             shutil.copyfile(record, place / record.name, follow_symlinks=False)
+        (place / "scenario.toml").write_text(text, encoding="utf-8")  # whatever the records are called
         self._note(number, state="queued", title=title, verb=verb, case=case, arguments=list(arguments))
         self._queue.put_nowait(number)
         return number

@@ -124,7 +124,8 @@ def create_app(folder: Path) -> FastAPI:
         data = parse(documents.NAME, text)
         arguments = verbs.arguments(verb, options, data)
         title = str(data.get("title", ""))[:200]
-        return {"id": jobs.submit(text, title, documents.records(data, records), verb, arguments, case)}
+        named = [files.regular(records, name) for name in verbs.records(verb, options)]
+        return {"id": jobs.submit(text, title, [*documents.records(data, records), *named], verb, arguments, case)}
 
     @app.delete("/api/runs/{number}")
     async def cancel(number: str) -> dict[str, Any]:

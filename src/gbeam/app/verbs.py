@@ -29,7 +29,8 @@ class Option:
     many : int
         How often it may be given.
     of : str
-        What its value begins with: ``motion`` for the name of one, ``values`` for paths of values of the scenario.
+        What it names: a ``motion``, a ``record`` that is kept, or, before "=", a value of the scenario that varies,
+        ``values``.
     """
 
     name: str
@@ -120,6 +121,17 @@ VERBS = {
         ),
         report=False,
     ),
+    "fit": Verb(
+        "the values of the scenario that a measurement shows",
+        (
+            Option("data", "a file that was dropped on the page, with measured columns", "measured.csv", of="record"),
+            Option("free", "values to find", "beam.damping_ratio, beam.material.youngs_modulus"),
+            Option("bounds", "of a value", "beam.damping_ratio=0.1 %:5 %", many=2),
+            _MOTION,
+            _AT,
+        ),
+        report=False,
+    ),
     "models": Verb("the same by every model, compared with the exact one", report=False),
     "linearize": Verb(
         "a state-space model at one time of a motion",
@@ -189,6 +201,12 @@ def arguments(verb: str, options: Sequence[str], data: Mapping[str, Any]) -> lis
         if not inside and "over" not in counts and not any(find_distributions(data)):
             raise InputError("over", "is missing", "say what varies over which values")
     return made
+
+
+def records(verb: str, options: Sequence[str]) -> list[str]:
+    """The names of files among a verb's options."""
+    named = {option.name for option in VERBS[verb].options if option.of == "record"}
+    return [value for name, _, value in (each.partition("=") for each in options) if name in named]
 
 
 def _refuse_file(path: str, data: Mapping[str, Any]) -> None:

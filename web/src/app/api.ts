@@ -105,6 +105,7 @@ export const api = {
       `/api/records/${encodeURIComponent(file.name)}`, "PUT", file, "application/octet-stream",
     ),
   runs: () => call<Run[]>("/api/runs", "GET"),
+  records: () => call<string[]>("/api/records", "GET"),
   verbs: () => call<Record<string, Verb>>("/api/verbs", "GET"),
   submit: (text: string, verb = "run", options: string[] = [], of = "") =>
     post<{ id: string }>("/api/runs", { text, verb, options, case: of }),

@@ -64,6 +64,7 @@ export class Editor {
   /** Take up the document of the last visit, or the first example. */
   async begin(examples: Record<string, string>, verbs: Record<string, Verb>): Promise<void> {
     this.verbs.begin(verbs);
+    await this.verbs.refresh();
     await this.read(sessionStorage.getItem(KEPT) ?? Object.values(examples)[0] ?? "");
     const options = [["", "choose"], ...Object.keys(examples).map((name) => [name, name])] as [string, string][];
     const select = choice("Start from", options, "", (name) => {
@@ -156,7 +157,10 @@ export class Editor {
     for (const file of files ?? []) {
       try {
         if (/\.(toml|json)$/i.test(file.name)) await this.read(await file.text());
-        else this.map(await api.upload(file));
+        else {
+          this.map(await api.upload(file));
+          await this.verbs.refresh();
+        }
       } catch (error) {
         this.complain(error);
       }

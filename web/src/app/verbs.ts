@@ -22,6 +22,7 @@ export class Verbs {
   private verb = "run";
   private given: Given[] = [];
   private entries: Entry[] = [];
+  private records: string[] = [];
   private offered = "";
   private readonly about = element("p", "faint");
   private readonly place = element("div", "values");
@@ -45,6 +46,12 @@ export class Verbs {
     const names = Object.keys(verbs).map((each) => [each, each] as const);
     this.head.prepend(choice("Compute", names, this.verb, (verb) => this.choose(verb)));
     this.choose(this.verb);
+  }
+
+  /** Offer the files that are kept. */
+  async refresh(): Promise<void> {
+    this.records = await api.records();
+    this.draw();
   }
 
   /** Offer the motions and the values of a document; nothing is run while it is wrong. */
@@ -88,8 +95,8 @@ export class Verbs {
       given.value = value;
       this.say();
     };
-    const words = option.of === "motion" ? this.motions() : option.choices;
-    if (words.length) {
+    const words = option.of === "motion" ? this.motions() : option.of === "record" ? this.records : option.choices;
+    if (words.length || option.of === "record") {
       if (!words.includes(given.value)) given.value = "";
       place.append(choice(option.name, [["", "left out"], ...words.map((each) => [each, each] as const)], given.value, put));
     } else {
