@@ -14,6 +14,7 @@ import pytest
 
 from gbeam.app import jobs as module
 from gbeam.app.jobs import Jobs
+from gbeam.errors import InputError
 
 from ..scenarios import FAST
 
@@ -64,6 +65,24 @@ def test_runs_are_kept_and_wrong_ones_say_why(tmp_path: Path) -> None:
     assert run["id"] == numbers[0] and run["title"] == "wrong" and "answer.json" in run["files"]
     assert '"300 kg" is a mass' in again.file(numbers[0], "messages.txt").read_text()
     assert json.loads(again.file(numbers[0], "answer.json").read_text())["error"]
+
+
+def test_files_of_a_run_are_known_kinds_in_its_folder(tmp_path: Path) -> None:
+    jobs = Jobs(tmp_path)
+    number = jobs.submit(FAST, "a", [], "fit")
+    out = tmp_path / number / "out"
+    out.mkdir()
+    for name in ("fit.nc", "fit.png", "fit.svg", "fit.json"):
+        (out / name).write_text(name)
+    (out / "link.nc").symlink_to(tmp_path / "elsewhere.nc")
+    (out / "folder.nc").mkdir()
+    assert set(jobs.state(number)["files"]) == {"scenario.toml", "fit.nc", "fit.png"}
+    (out / "fit.html").write_text("whatever the verb is called")
+    assert set(jobs.state(number)["files"]) == {"scenario.toml", "fit.nc", "report.html"}
+    assert jobs.file(number, "report.html") == out / "fit.html"
+    for name in ("link.nc", "folder.nc", "fit.svg", "state.json", "../scenario.toml", "fit.html"):
+        with pytest.raises(InputError):
+            jobs.file(number, name)
 
 
 @POSIX

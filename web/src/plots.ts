@@ -77,9 +77,7 @@ export class Plots {
 
   private options(root: HTMLElement, spec: Plot): uPlot.Options {
     const dark = prefersDark();
-    const ink = dark ? "#d7dbe2" : "#2c3138";
-    const grid = { stroke: dark ? "#333a44" : "#e3e5e9", width: 1 };
-    const axis: uPlot.Axis = { stroke: ink, grid, ticks: grid, font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif" };
+    const axis = axisStyle(dark);
     const clock = spec.time ? this.clock : null;
     return {
       ...size(root),
@@ -89,8 +87,8 @@ export class Plots {
         y: { distr: spec.logY ? 3 : 1, range: (_, low, high) => range(low, high, spec) },
       },
       axes: [
-        { ...axis, label: spec.x, labelSize: 20, size: 34, ...(spec.logX ? { values: sparse } : {}) },
-        { ...axis, label: spec.y, labelSize: 20, size: 62, ...(spec.logY ? { values: sparse } : {}) },
+        { ...axis, label: spec.x, size: 34, ...(spec.logX ? { values: sparse } : {}) },
+        { ...axis, label: spec.y, size: 62, ...(spec.logY ? { values: sparse } : {}) },
       ],
       cursor: {
         ...(spec.time ? { sync: { key: "gbeam-time" } } : {}),
@@ -112,7 +110,7 @@ export class Plots {
       ],
       hooks: {
         drawClear: [(plot) => bands(plot, spec, dark)],
-        draw: [(plot) => levels(plot, spec, ink), (plot) => clock && this.mark(plot)],
+        draw: [(plot) => levels(plot, spec, ink(dark)), (plot) => clock && this.mark(plot)],
         setScale: [
           (plot, key) => {
             if (key !== "x" || !spec.time) return;
@@ -141,6 +139,23 @@ export class Plots {
 
 function size(root: HTMLElement): { width: number; height: number } {
   return { width: Math.max(240, root.clientWidth), height: 230 };
+}
+
+function ink(dark: boolean): string {
+  return dark ? "#d7dbe2" : "#2c3138";
+}
+
+/** How an axis looks, and its numbers: uPlot's own have three decimals at most. */
+export function axisStyle(dark: boolean): uPlot.Axis {
+  const grid = { stroke: dark ? "#333a44" : "#e3e5e9", width: 1 };
+  const font = "12px system-ui, sans-serif";
+  return { stroke: ink(dark), grid, ticks: grid, font, labelFont: font, labelSize: 20, values: (_, splits) => plain(splits) };
+}
+
+/** Numbers of an axis without the rounding of their sums. */
+export function plain(splits: (number | null)[]): string[] {
+  const largest = Math.max(...splits.map((x) => Math.abs(x ?? 0)));
+  return splits.map((x) => (x === null ? "" : Math.abs(x) < 1e-9 * largest ? "0" : String(+x.toPrecision(8))));
 }
 
 /** Of logarithmic axes the powers of ten as plain numbers; twice and five times those too where few are in sight. */

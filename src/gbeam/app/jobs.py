@@ -209,7 +209,8 @@ def _files(place: Path) -> dict[str, Path]:
     written = {name: out / name for name in names(out)}
     report = next((file for name, file in written.items() if name.endswith(".html")), None)
     made = fixed if report is None else fixed | {"report.html": report}
-    return made | {name: file for name, file in written.items() if name.endswith(KINDS)}
+    kinds = KINDS if report else (*KINDS, ".png")  # a report has the figures
+    return made | {name: file for name, file in written.items() if name.endswith(kinds)}
 
 
 def _end(process: asyncio.subprocess.Process) -> None:

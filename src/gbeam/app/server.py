@@ -27,6 +27,7 @@ from gbeam.scenario.template import template
 from gbeam.scenario.text.source import parse
 
 _KINDS = {".js": "text/javascript", ".css": "text/css", ".html": "text/html; charset=utf-8"}
+_BINARY = {".nc": "application/octet-stream", ".mat": "application/octet-stream", ".png": "image/png"}
 Text = Annotated[str, Body(embed=True, max_length=SCENARIO_BYTES)]
 Line = Annotated[str, Field(max_length=1000)]
 Short = Annotated[str, Body(embed=True, max_length=1000)]
@@ -147,7 +148,7 @@ def create_app(folder: Path) -> FastAPI:
         headers = {"content-security-policy": REPORT_POLICY}
         if file.suffix == ".html":
             return FileResponse(file, media_type="text/html; charset=utf-8", headers=headers)
-        kind = "application/octet-stream" if file.suffix == ".nc" else "text/plain; charset=utf-8"
+        kind = _BINARY.get(file.suffix, "text/plain; charset=utf-8")
         return FileResponse(file, media_type=kind, filename=f"{number}-{name}", headers=headers)
 
     return app

@@ -3,6 +3,7 @@
 import uPlot from "uplot";
 import { lineColour, prefersDark } from "../colours";
 import { button, choice, element } from "../controls";
+import { axisStyle } from "../plots";
 import { api, type Document, type Problem, problem, Refusal, type Verb } from "./api";
 import { Form } from "./form";
 import { Verbs } from "./verbs";
@@ -203,14 +204,14 @@ export class Editor {
         const place = element("div");
         this.curves.append(place);
         const dark = prefersDark();
-        const axis: uPlot.Axis = { stroke: dark ? "#d7dbe2" : "#2c3138", grid: { stroke: dark ? "#333a44" : "#e3e5e9" } };
+        const axis = axisStyle(dark);
         const series = COMPONENTS.map((label, i) => ({ label, stroke: lineColour(i, dark), width: 1.3 }));
         new uPlot(
           {
             width: Math.max(280, this.root.clientWidth),
             height: 200,
             scales: { x: { time: false } },
-            axes: [{ ...axis, label: "time, s" }, { ...axis, label: "load, g" }],
+            axes: [{ ...axis, label: "time, s", size: 34 }, { ...axis, label: "load, g", size: 62 }],
             series: [{ label: "time, s" }, ...series],
           },
           [time, ...parts] as uPlot.AlignedData,
