@@ -67,11 +67,12 @@ def heavy_beam(counts: tuple[int, int, int]) -> Structure:
     return assemble(beam, Model("exact", *counts))
 
 
-def heavy_elastica(load: float) -> np.ndarray:
-    """Tip (x, y) under a dead uniform load along +y: θ'' = −w(1 − s) cos θ, θ(0) = 0, θ'(1) = 0."""
+def heavy_elastica(load: float, inwards: float = 0.0) -> np.ndarray:
+    """Tip (x, y) under dead loads, w along +y, p along −x: θ'' = −(1 − s)(w cos θ + p sin θ), θ(0) = 0 = θ'(1)."""
 
     def right(s: np.ndarray, y: np.ndarray) -> np.ndarray:
-        return np.stack([y[1], -load * (1 - s) * np.cos(y[0]), np.cos(y[0]), np.sin(y[0])])
+        across = load * np.cos(y[0]) + inwards * np.sin(y[0])
+        return np.stack([y[1], -(1 - s) * across, np.cos(y[0]), np.sin(y[0])])
 
     def ends(a: np.ndarray, b: np.ndarray) -> np.ndarray:
         return np.array([a[0], b[1], a[2], a[3]])
@@ -88,6 +89,15 @@ def test_exact_model_is_the_heavy_elastica(load: float) -> None:
     """At 40 the tip has all but turned into the load."""
     x, y = heavy_elastica(load)
     np.testing.assert_allclose(tip(heavy_beam((1, 10, 0)), translating(y=-load)), [x - 1, y, 0], atol=ELASTICA)
+
+
+def test_a_beam_that_is_pressed_and_bent_over_rests_where_it_is_stable() -> None:
+    """Newton's method in one stride comes to a coiled beam that cannot stand; along the path the tip turns over."""
+    x, y = heavy_elastica(400.0, 160.0)
+    beam = heavy_beam((1, 10, 0))
+    resting = solve_equilibrium(beam, translating(x=160.0, y=-400.0))
+    assert x < -0.2 and resting.stable
+    np.testing.assert_allclose(beam.displacement(resting.q)[-1], [x - 1, y, 0], atol=2e-3)
 
 
 def test_beam_hangs_straight_and_stretched() -> None:
@@ -140,12 +150,13 @@ def test_an_equilibrium_states_its_error(seed: int) -> None:
     assert f"estimated error {100 * found.errors.displacement.total:.2g} %" in repr(found)
 
 
-def test_an_equilibrium_that_the_exact_model_has_not_is_doubted() -> None:
-    """Of a material as soft as 200 Pa: FOAM has a place for it, hundreds of lengths away."""
-    beam = Beam(LENGTH, Section.rectangle(0.02, 0.004), Material(2700.0, 200.0))
-    found = static(assemble(beam, Model("FOAM", 0, 1, 1)), acceleration=(0, 0, 9.81))
-    assert np.isnan(found.errors.displacement.total)
-    assert any("has no equilibrium there" in each for each in found.warnings)
+def test_an_equilibrium_that_the_exact_model_does_not_reach_is_doubted() -> None:
+    """Of a material softer than 1 Pa; at 200 Pa the exact beam hangs down, FOAM's lies millions of lengths away."""
+    soft = [Beam(LENGTH, Section.rectangle(0.02, 0.004), Material(2700.0, modulus)) for modulus in (0.2, 200.0)]
+    lost, wrong = (static(assemble(beam, Model("FOAM", 0, 1, 1)), acceleration=(0, 0, 9.81)) for beam in soft)
+    assert np.isnan(lost.errors.displacement.total)
+    assert any("comes to no equilibrium there" in each for each in lost.warnings)
+    assert wrong.errors.displacement.total == pytest.approx(1.0, abs=1e-3)
 
 
 def test_a_moment_that_twists_is_warned_of() -> None:

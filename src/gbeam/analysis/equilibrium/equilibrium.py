@@ -14,6 +14,8 @@ from gbeam.numerics.solvers.eigen import positive_definite, symmetric_modes
 
 Array = Any
 _ITERATIONS, _TRACED = 30, 8  # of Newton's method; where no number says that it has converged
+_LOCATED, _SHORTEST = 1e-4, 1e-6  # strides, shares of the load: within which stability is lost, that are tried
+_NOISE = 1e-8  # of the coordinates: smaller corrections may stand still by rounding
 
 
 class Equilibrium(NamedTuple):
@@ -76,31 +78,39 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
 
 
 def _along_a_path(structure: Structure, base: Base, values: Array | None) -> Equilibrium:
-    """Newton's method from the straight beam; where one stride fails, along a path of growing load."""
+    """Newton's method from the straight beam; where one stride fails, along a path of growing load.
+
+    A beam that is stable stays so along the path until its stability is lost at one share of the load. Where a stride
+    ends at a beam that is not, Newton's method may have left the path: shorter ones say whether it has.
+    """
     straight = np.zeros(structure.size)
     if structure.traced:
         return Equilibrium(_newton(structure, base, values, 1.0, straight)[0], True)
-    q, stiffness, reached, stride = straight, structure.coefficients.stiffness, 0.0, 1.0
+    q, slope, stable, reached, stride = straight, straight, True, 0.0, 1.0
     while reached < 1.0:
         attempt = min(reached + stride, 1.0)
-        moved, tangent, ok = _newton(structure, base, values, attempt, q)
-        if ok:
-            q, stiffness, reached = moved, tangent, attempt
+        moved, stiffness, ok = _newton(structure, base, values, attempt, q + (attempt - reached) * slope)
+        definite = ok and positive_definite(stiffness)
+        if definite or (ok and (not stable or stride < _LOCATED)):
+            slope = (moved - q) / (attempt - reached)  # along which the next stride starts
+            q, stable, reached, stride = moved, definite, attempt, 2 * stride
             continue
         stride /= 4
-        if stride < 1e-4:
+        if stride < _SHORTEST:
             raise ComputationError(
                 "not converged",
                 f"no relative equilibrium beyond {reached:.4g} of the load: the beam buckles or diverges there; "
                 f"the rate is {_rate(base):.4g} rad/s",
             )
-    return Equilibrium(q, positive_definite(stiffness))
+    return Equilibrium(q, stable)
 
 
 def _newton(
     structure: Structure, base: Base, values: Array | None, share: float, q: Array
 ) -> tuple[Array, Array, bool]:
     """Solve at a share of all loads: accelerations and what is applied by the share, rates by its root.
+
+    Corrections that do not shrink lead away from the equilibrium that is near, perhaps to one that is far: failed.
 
     Returns
     -------
@@ -110,13 +120,20 @@ def _newton(
     loads = None if values is None else share * values
     stiffness = structure.coefficients.stiffness
     xp = namespace(stiffness, q)
+    last = np.inf
     for _ in range(_TRACED if structure.traced else _ITERATIONS):
         c, elastic = structure.about(q)
         _, stiffness, force = c.at(*frozen, loads)
         correction = _solved(xp, stiffness, force - elastic)
         q = q + correction
-        if not structure.traced and not np.abs(correction).max() > 1e-13 + 1e-12 * np.abs(q).max():
+        if structure.traced:
+            continue
+        size, scale = np.abs(correction).max(), np.abs(q).max()
+        if not size > 1e-13 + 1e-12 * scale:
             return q, stiffness, bool(np.isfinite(q).all())
+        if size > last / 2 and size > _NOISE * scale:
+            break
+        last = size
     return q, stiffness, False
 
 

@@ -22,7 +22,7 @@ from gbeam.results.result import Floats
 
 LIMIT = 0.01  # an error above is warned of
 NOTHING = 1e-6  # of the other load, over a length of the beam: a force or moment that is less is none
-LOST = "shapes and model are not judged: the exact model with more shapes has no equilibrium there"
+LOST = "shapes and model are not judged: the exact model with more shapes comes to no equilibrium there"
 
 
 def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | None) -> Errors:
