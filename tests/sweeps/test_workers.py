@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -52,3 +56,25 @@ def test_a_worker_that_is_killed_loses_no_case(fast: Path, monkeypatch: pytest.M
     assert found.message[2] == "the process that computed it died"
     found = gb.sweep(fast, over, {"once": deadly.once}, workers=2)
     assert np.array_equal(found.measures["once"], np.linspace(0.2, 0.3, 5)) and found.counts == {"done": 5}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGKILL")
+def test_workers_end_with_a_driver_that_is_killed(fast: Path) -> None:
+    words = ["--over", "motion.spin.arm=1:12:5000", "--measure", "flight.tip.z.max_abs", "--workers", "2"]
+    command = [sys.executable, "-m", "gbeam", "sweep", str(fast), *words, "--out", "there"]
+    driver = subprocess.Popen(command, stderr=subprocess.DEVNULL, start_new_session=True)
+    journal, end = Path("there/cases.jsonl"), time.monotonic() + 60
+    while not (journal.exists() and journal.read_bytes().count(b"\n") > 5) and time.monotonic() < end:
+        time.sleep(0.1)
+    os.killpg(driver.pid, 0)
+    driver.send_signal(signal.SIGKILL)
+    driver.wait()
+    end = time.monotonic() + 30
+    while time.monotonic() < end:
+        try:
+            os.killpg(driver.pid, 0)
+        except ProcessLookupError:
+            return
+        time.sleep(0.1)
+    os.killpg(driver.pid, signal.SIGKILL)
+    pytest.fail("processes of the sweep are left")

@@ -11,6 +11,7 @@ import multiprocessing
 import os
 import pickle
 import sys
+import threading
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -94,10 +95,22 @@ def in_processes(
 
 def _pool(workers: int) -> ProcessPoolExecutor:
     # Not forked from this process: JAX has threads. On Linux from one that has none, and has imported what they need.
-    if sys.platform != "linux":
-        return ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn"))
-    multiprocessing.set_forkserver_preload([__name__])
-    return ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("forkserver"))
+    method = "forkserver" if sys.platform == "linux" else "spawn"
+    if method == "forkserver":
+        multiprocessing.set_forkserver_preload([__name__])
+    return ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context(method), initializer=_end_with_driver)
+
+
+def _end_with_driver() -> None:
+    """End this process with the one that it computes for, even if that is killed."""
+    driver = multiprocessing.parent_process()
+    assert driver is not None
+
+    def wait_for_end() -> None:
+        driver.join()
+        os._exit(1)
+
+    threading.Thread(target=wait_for_end, daemon=True).start()
 
 
 def _alone(question: Question, task: Task) -> Row:
