@@ -6,8 +6,13 @@ import sys
 from typing import Any
 
 
+_PLAIN = frozenset({"numpy", "builtins"})  # modules whose types JAX has no part in: most values, known at once
+
+
 def is_jax(value: Any) -> bool:
     """Whether a value is a JAX array or a tracer; never imports JAX."""
+    if type(value).__module__ in _PLAIN:
+        return False
     jax = sys.modules.get("jax")
     return jax is not None and isinstance(value, jax.Array)
 
@@ -18,12 +23,13 @@ def namespace(*values: Any) -> Any:
     Numbers, lists and None count as NumPy's. The same lines then serve plain arrays, and JAX arrays under ``grad``,
     ``vmap`` and ``jit``.
     """
-    if any(is_jax(value) for value in values):
-        import jax.numpy as jnp
+    for value in values:
+        if is_jax(value):
+            import jax.numpy as jnp
 
-        import gbeam.arrays.jax_setup  # noqa: F401
+            import gbeam.arrays.jax_setup  # noqa: F401
 
-        return jnp
+            return jnp
     import numpy as np
 
     return np

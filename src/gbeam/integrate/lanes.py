@@ -66,13 +66,14 @@ def steps(
         t = _tableau(unit, h)
         stages, (_, n, b) = len(t.c_q), z.shape
         c, k, f = ([_sum(of, at, chosen) for at in phi] for of, chosen in zip(terms.each, parts, strict=True))
+        # The compiler would compute these anew wherever they are read, and the matrix below for each of its pivots.
+        c, k, f = jax.lax.optimization_barrier((c, k, f))
         q0, v0 = _combined(t.w_q, z), _combined(t.w_v, z)
         rows = []
         for i in range(stages):
             blocks = [t.c_v[i, j] * c[i] + t.c_q[i, j] * k[i] + (mass if i == j else 0.0) for j in range(stages)]
             side = f[i] - _times(c[i], v0[i]) - _times(k[i], q0[i])
             rows.append(jnp.concatenate([*blocks, side[:, None]], axis=1))
-        # The compiler would compute the matrix anew for each of its pivots.
         x = eliminated(jax.lax.optimization_barrier(jnp.concatenate(rows))).reshape(stages, n, b)
         q, qd = _combined(t.end_z, z) + _combined(t.end_x, x)
         qdd = x[-1] if ends else _times(inverse, f[-1] - _times(k[-1], q) - _times(c[-1], qd))
@@ -129,8 +130,8 @@ def _sum(terms: Array, features: Array, chosen: tuple[int, ...]) -> Array:
 
 
 def _times(matrices: Array, vectors: Array) -> Array:
-    """Products of matrices (n, n, b) and vectors (n, b)."""
-    return (matrices * vectors).sum(axis=1)
+    """Products of matrices (n, n, b) and vectors (n, b); a compiled sum along an axis is slower."""
+    return sum(matrices[:, j] * vector for j, vector in enumerate(vectors))
 
 
 def _combined(weights: Array, vectors: Array) -> Array:

@@ -13,7 +13,7 @@ the classical scheme for linear systems and second order for configuration-depen
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -106,6 +106,7 @@ def powers_of_step(m: int, stages: int) -> dict[str, NDArray[np.int64]]:
     }
 
 
+@cache
 def _one_step(name: str, alpha_m: float, alpha_f: float, beta: float, gamma: float) -> Scheme:
     """The one-step family: weights of the old acceleration and forces (Chung and Hulbert), Newmark's parameters."""
     share = (1 - alpha_f) / (1 - alpha_m)
@@ -191,6 +192,7 @@ def generalized_alpha(rho_inf: float) -> Scheme:
     return _one_step("generalized-alpha", alpha_m, alpha_f, (gamma + 0.5) ** 2 / 4, gamma)
 
 
+@cache
 def gauss() -> Scheme:
     """The two-stage Gauss method: order 4, no damping, unconditionally stable (Hairer, Nørsett and Wanner, II.7)."""
     root = 3**0.5 / 6
