@@ -48,7 +48,7 @@ def main() -> None:
     counts = [64 * 4**k for k in range(8) if 64 * 4**k <= options.most]
     won = None
     for count in counts:
-        on_processor = seconds(structure, count, processor, TOGETHER[True])
+        on_processor = seconds(structure, count, processor, TOGETHER)
         line = f"{count} cases: {count / on_processor:.4g} cases/s on the processor"
         if graphics is not None:
             on_graphics = seconds(structure, count, graphics, count)
