@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from typing import Any
 
-
 _PLAIN = frozenset({"numpy", "builtins"})  # modules whose types JAX has no part in: most values, known at once
 
 
