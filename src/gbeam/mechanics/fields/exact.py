@@ -18,6 +18,7 @@ from gbeam.mechanics.fields.rotation import (
     exponential_of,
     one_minus_sinc,
     rotation_matrix,
+    sine_cosine,
 )
 from gbeam.mechanics.fields.taylor import Places, Turns, exponential
 
@@ -62,11 +63,11 @@ class ExactField:
         return namespace(self.cumulative, strain).stack(self._tangents(strain, y, z), axis=-1)
 
     def _tangents(self, strain: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:
-        xp = namespace(self.cumulative, strain)
         stretch = 1 + strain
         if self.planar:  # one of the angles is zero, and one sine is enough
-            across = stretch * xp.sin(y + z)
-            return stretch * xp.cos(y + z), self.plane[0] * across, -self.plane[1] * across
+            sine, cosine = sine_cosine(y + z)
+            across = stretch * sine
+            return stretch * cosine, self.plane[0] * across, -self.plane[1] * across
         sinc, _, cosine = exponential_of(y**2 + z**2)
         return stretch * cosine, stretch * sinc * z, -stretch * sinc * y
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.mechanics.fields.taylor import Places, Turns
 
 Array = Any
@@ -83,6 +84,35 @@ def rotation_matrix(angle: Array) -> Array:
     o = xp.zeros_like(x)
     skew = xp.stack([xp.stack([o, -z, y], -1), xp.stack([z, o, -x], -1), xp.stack([-y, x, o], -1)], -2)
     return xp.eye(3) + sinc[..., None, None] * skew + versine[..., None, None] * (skew @ skew)
+
+
+def sine_cosine(angle: Array) -> tuple[Array, Array]:
+    """Sines and cosines of angles (..., g)."""
+    return _compiled()(angle) if is_jax(angle) else (np.sin(angle), np.cos(angle))
+
+
+@cache
+def _compiled() -> Any:
+    """The same for JAX. XLA takes sine and cosine for cheap, and computes them anew wherever they are read.
+
+    A product, with the unit matrix, it computes once; the derivatives read its result.
+    """
+    import jax
+    import jax.numpy as jnp
+
+    import gbeam.arrays.jax_setup  # noqa: F401
+
+    @jax.custom_jvp
+    def both(angle: Array) -> tuple[Array, Array]:
+        unit = jnp.eye(angle.shape[-1])
+        return jnp.sin(angle) @ unit, jnp.cos(angle) @ unit
+
+    @both.defjvp
+    def _(primals: Any, tangents: Any) -> Any:
+        sine, cosine = both(primals[0])
+        return (sine, cosine), (cosine * tangents[0], -sine * tangents[0])
+
+    return both
 
 
 _SERIES = 0.1  # of φ²: below, six terms of the series are all digits
