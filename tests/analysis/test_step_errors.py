@@ -16,7 +16,10 @@ from scipy.integrate import solve_ivp
 
 from gbeam import Flight, Hub, Response, Sine, SmoothStep, Structure, simulate, smoothed, tabulated, trapezoid
 from gbeam.analysis.response.problem import problem_of
-from gbeam.analysis.response.steps.step_errors import observed_order
+from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.steps.step_errors import Readings, Run, observed_order
+from gbeam.analysis.response.steps.stepping import refine
+from gbeam.integrate import Trajectory
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.results.response import BaseMotion
 from validation.accuracy import integrators
@@ -130,14 +133,16 @@ def test_a_given_step_has_an_honest_error(name: str, integrator: str) -> None:
         judge(simulate(structure, motion, duration=duration, integrator=integrator, step=duration / share), name)
 
 
-@pytest.mark.parametrize("name", ["sine of a hub's rate", "kick"])
+@pytest.mark.parametrize("name", ["short slew", "kick", "sine of a hub's rate"])
 def test_steps_that_end_at_corners_keep_the_order_of_gauss(name: str) -> None:
+    """Fitted to the vibration at rest they leave so little of the sine that it falls faster."""
     structure, motion, duration, _ = CASES[name]
     errors = []
     for count in (1600, 3200):
         found = simulate(structure, motion, duration=duration, integrator="gauss", step=duration / count)
         errors.append(apart(found.tip, truth(name, found.time)[0]))
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.2)
+    order = np.log2(errors[0] / errors[1])
+    assert order > 3.8 and (order < 4.2 or name == "sine of a hub's rate")
 
 
 def test_loads_that_a_jump_excites_are_followed_or_the_run_says_what_follows_them() -> None:
@@ -165,6 +170,26 @@ def test_a_run_of_very_many_steps_says_why_and_what_needs_fewer() -> None:
     assert many.steps > 10 * few.steps and max(each.errors.displacement.step for each in (many, few)) <= 1e-4
     assert any(f"took {many.steps} steps" in each and "gauss" in each for each in many.warnings)
     assert not any("steps" in each for each in few.warnings)
+
+
+def test_a_step_found_by_a_large_jump_is_checked() -> None:
+    """Of a mode that coarse steps do not resolve at all, they do not show how its error falls."""
+    settings, slow, fast, resolved = ResponseSettings(duration=10.0), 9.0, 4e-4, 0.005
+
+    def error(step: float) -> float:
+        return slow * step**2 + fast * min(1.0, step / resolved) ** 2
+
+    def run(step: float, _: str) -> Run:
+        time = step * np.arange(round(10 / step) + 1)
+        q, qd = ((1 + error(step)) * wave(time)[:, None] for wave in (np.sin, np.cos))
+        return Run(Trajectory(time, q, qd, -q), step, Readings(vector, vector, lambda *_: []))
+
+    def vector(q: np.ndarray) -> np.ndarray:
+        return np.asarray(q * np.array([0.0, 0.0, 1.0]))
+
+    assert error(0.0025) > 1.5 * settings.aim  # the step that the order promises to be enough
+    found, errors = refine(run, 0.02, 2, settings)
+    assert error(found.step) <= min(settings.aim, BOUND * errors.displacement)
 
 
 @pytest.mark.parametrize(("ratios", "order"), [((2, 2), 2.0), ((2, 16), 1.3), ((4, 4), 4.0), ((2, 8), 1.0)])

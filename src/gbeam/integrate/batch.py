@@ -18,6 +18,7 @@ import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.integrate import lanes, newton
 from gbeam.integrate.driver import Trajectory, chunks
 from gbeam.integrate.equations import LinearEquations, LinearTerms, NonlinearEquations
+from gbeam.integrate.fitting import added
 from gbeam.integrate.schemes import Scheme
 from gbeam.integrate.steps import Steps
 
@@ -128,6 +129,9 @@ def _linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     terms = _stacked([run.alive for run in runs], axis=-1)
     equations: list[Any] = [run.equations for run in runs]
     mass, q, qd = _stacked([(e.mass, run.q, run.qd) for e, run in zip(equations, runs, strict=True)], axis=-1)
+    of_mass, damping = _stacked(
+        [added(e, scheme, run.steps.longest) for e, run in zip(equations, runs, strict=True)], -1
+    )
     inverse = np.moveaxis(np.linalg.inv(np.moveaxis(mass, -1, 0)), 0, -1)
     qdd = lanes.accelerations(inverse, terms, features[0], parts, q, qd)
     z = np.einsum("bmk,knb->mnb", scheme.tableau(lengths[0]).first, np.stack([q, qd, qdd]))
@@ -137,7 +141,7 @@ def _linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     for begin in range(0, count, lanes.STEPS):
         # The last piece is filled, so that one program serves every duration.
         chosen, those = np.minimum(np.arange(begin, begin + lanes.STEPS), count - 1), min(lanes.STEPS, count - begin)
-        given = mass, inverse, terms, scheme.unit, z, lengths[chosen], features[chosen], those
+        given = mass + of_mass, damping, inverse, terms, scheme.unit, z, lengths[chosen], features[chosen], those
         z, piece = lanes.steps(*given, parts=parts, ends=scheme.ends)
         for whole, part in zip(histories, piece, strict=True):
             whole[:, begin + 1 : begin + 1 + those] = np.asarray(part)[:, :those]

@@ -12,6 +12,7 @@ import numpy as np
 from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.integrate import linear
 from gbeam.integrate.equations import Drive, LinearEquations, NonlinearEquations
+from gbeam.integrate.fitting import added
 from gbeam.integrate.schemes import Scheme
 from gbeam.integrate.steps import Corners, Floats, Steps, fitted
 
@@ -129,10 +130,10 @@ def through(
 
 def _linear(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:
     z, qdd = linear.start(equations, scheme, steps, q, qd)
-    size = len(steps) if is_jax(qdd) else _LINEAR_CHUNK
+    size, fit = len(steps) if is_jax(qdd) else _LINEAR_CHUNK, added(equations, scheme, steps.longest)
     yield *(namespace(qdd).asarray(x)[None] for x in (q, qd, qdd)), np.array([True])
     for done in range(0, len(steps), size):
-        z, piece = linear.chunk(equations, scheme, z, steps[done : done + size])
+        z, piece = linear.chunk(equations, scheme, z, steps[done : done + size], fit)
         yield *piece, np.ones(len(piece[0]), dtype=bool)
 
 

@@ -54,6 +54,8 @@ class LinearEquations:
         Times (t,) s -> inputs.
     terms, features : callable, optional
         The same matrices as sums: their terms, and inputs at times (t,) -> features (t, k).
+    rest : tuple of (n, n), optional
+        C and K, symmetric, of the vibration to which steps are fitted: :mod:`gbeam.integrate.fitting`.
     """
 
     mass: Array
@@ -61,6 +63,7 @@ class LinearEquations:
     drive: Drive
     terms: Callable[[], LinearTerms] | None = None
     features: Callable[[Any], Array] | None = None
+    rest: tuple[Array, Array] | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,6 +25,7 @@ STEPS = 256  # per compiled call at most
 @partial(jax.jit, static_argnames=("parts", "ends"))
 def steps(
     mass: Array,
+    damping: Array,
     inverse: Array,
     terms: LinearTerms,
     unit: Tableau,
@@ -40,8 +41,10 @@ def steps(
 
     Parameters
     ----------
-    mass, inverse : (n, n, b)
-        M and its inverse, which is read where the last stage is no end of the step.
+    mass, damping : (n, n, b)
+        M with what steps add to it, and what they add to C: :mod:`gbeam.integrate.fitting`.
+    inverse : (n, n, b)
+        Of M, read where the last stage is no end of the step.
     terms : LinearTerms
         With the runs as last axis, (k, n, n, b) and (k, n, b); of C, K and F only those that are not zero.
     unit : Tableau
@@ -69,10 +72,10 @@ def steps(
         # The compiler would compute these anew wherever they are read, and the matrix below for each of its pivots.
         c, k, f = jax.lax.optimization_barrier((c, k, f))
         q0, v0 = _combined(t.w_q, z), _combined(t.w_v, z)
-        rows = []
+        rows, within = [], [at + damping for at in c[:stages]]
         for i in range(stages):
-            blocks = [t.c_v[i, j] * c[i] + t.c_q[i, j] * k[i] + (mass if i == j else 0.0) for j in range(stages)]
-            side = f[i] - _times(c[i], v0[i]) - _times(k[i], q0[i])
+            blocks = [t.c_v[i, j] * within[i] + t.c_q[i, j] * k[i] + (mass if i == j else 0.0) for j in range(stages)]
+            side = f[i] - _times(within[i], v0[i]) - _times(k[i], q0[i])
             rows.append(jnp.concatenate([*blocks, side[:, None]], axis=1))
         x = eliminated(jax.lax.optimization_barrier(jnp.concatenate(rows))).reshape(stages, n, b)
         q, qd = _combined(t.end_z, z) + _combined(t.end_x, x)

@@ -44,17 +44,25 @@ def _sum(weights: Array, values: Array) -> Array:
 
 
 def chunk(
-    equations: LinearEquations, scheme: Scheme, z: Array, steps: Steps
+    equations: LinearEquations,
+    scheme: Scheme,
+    z: Array,
+    steps: Steps,
+    added: tuple[Array | float, Array | float] = (0.0, 0.0),
 ) -> tuple[Array, tuple[Array, Array, Array]]:
-    """Take steps from z (m, n); returns the next z, and q, q̇, q̈ at the ends of those that are kept, (k, n) each."""
+    """Take steps from z (m, n); returns the next z, and q, q̇, q̈ at the ends of those that are kept, (k, n) each.
+
+    The steps have what is `added` to M and C, each (n, n); see :mod:`gbeam.integrate.fitting`.
+    """
     t = scheme.tableau(steps.length[:1] if steps.equal else steps.length)
     count, stages, (m, n) = len(steps), len(scheme.offsets), z.shape
     at = [equations.matrices(equations.drive(steps.times(offset))) for offset in scheme.offsets]
-    xp, mass = namespace(equations.mass, z, *at[0]), equations.mass
+    xp, mass = namespace(equations.mass, z, *at[0]), equations.mass + added[0]
     # S x = F − L z at all stages together.
     c_v, c_q, w_v, w_q = (weights[..., None, None] for weights in (t.c_v, t.c_q, t.w_v, t.w_q))
     rows, sides = [], []
     for i, (c, k, f) in enumerate(at):
+        c = c + added[1]
         blocks = [c_v[:, i, j] * c + c_q[:, i, j] * k + (mass if i == j else 0) for j in range(stages)]
         onto = [-(w_v[:, i, a] * c + w_q[:, i, a] * k) for a in range(m)]
         rows.append(xp.concatenate(blocks, axis=-1) if stages > 1 else blocks[0])
@@ -76,7 +84,7 @@ def chunk(
     if again.size:
         c, k, f = equations.matrices(equations.drive(steps.end[steps.kept][again]))
         force = f - (k * q[again, None] + c * qd[again, None]).sum(axis=-1)
-        there = xp.linalg.solve(mass, force.T).T
+        there = xp.linalg.solve(equations.mass, force.T).T
         if scheme.ends:
             qdd[again] = there
         else:

@@ -12,6 +12,7 @@ the classical scheme for linear systems and second order for configuration-depen
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Any
@@ -64,12 +65,16 @@ class Scheme:
         Times of the stages in a step, in steps.
     unit : Tableau
         At a step of one second.
+    exponent : callable, optional
+        z -> μ with R(μ) = e^z, R being what a step of q̇ = λ q multiplies q by at λh. Steps of a scheme that has it are
+        fitted to the vibration of linear equations at rest: :mod:`gbeam.integrate.fitting`.
     """
 
     name: str
     order: int
     offsets: tuple[float, ...]
     unit: Tableau
+    exponent: Callable[[NDArray[np.complex128]], NDArray[np.complex128]] | None = None
 
     @property
     def ends(self) -> bool:
@@ -211,4 +216,10 @@ def gauss() -> Scheme:
         end_x=d,
         first=np.eye(2, 3),
     )
-    return Scheme("gauss", 4, (float(c[0]), float(c[1])), unit)
+    return Scheme("gauss", 4, (float(c[0]), float(c[1])), unit, _gauss_exponent)
+
+
+def _gauss_exponent(z: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """Solve R(μ) = (12 + 6μ + μ²)/(12 − 6μ + μ²) = e^z."""
+    half = np.tanh(z / 2)
+    return 12 * half / (3 + np.sqrt(9 - 12 * half**2))

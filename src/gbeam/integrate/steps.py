@@ -108,6 +108,11 @@ class Steps:
         return np.clip(self.begin + offset * self.length, self.first, self.last)
 
     @property
+    def longest(self) -> float:
+        """Length of the longest, s: of those that are not split."""
+        return float(self.length.max())
+
+    @property
     def equal(self) -> bool:
         """Whether all have one length, and the scheme starts anew after none."""
         return bool((self.length == self.length[0]).all() and not self.anew.any())

@@ -27,7 +27,14 @@ _CHUNK = 256  # steps whose systems are solved at once
 
 
 def tangent(
-    system: System, scheme: Scheme, steps: Steps, run: Trajectory, q: Floats, qd: Floats
+    system: System,
+    scheme: Scheme,
+    steps: Steps,
+    run: Trajectory,
+    q: Floats,
+    qd: Floats,
+    *,
+    within: System | None = None,
 ) -> tuple[Floats, Floats, Floats]:
     """Derivatives of a run with respect to p parameters.
 
@@ -42,6 +49,8 @@ def tangent(
         At the start and at the ends of all steps, split ones too, (t + 1,).
     q, qd : (n, p)
         Derivatives of the initial state.
+    within : callable, optional
+        The same of the equations that the steps solve, where these are fitted; `system` by default.
 
     Returns
     -------
@@ -59,7 +68,7 @@ def tangent(
     for end in ends:
         for first in range(begin, end, _CHUNK):
             part = slice(first, min(first + _CHUNK, end))
-            z, piece = _chunk(system, scheme, z, steps[part], _part(run, part))
+            z, piece = _chunk(system, within or system, scheme, z, steps[part], _part(run, part))
             for history, values in zip(made, piece, strict=True):
                 history[part.start + 1 : part.stop + 1] = values
         if end < len(steps):
@@ -82,13 +91,13 @@ def _accelerations(system: System, time: Floats, run: Trajectory, at: Any, q: Fl
 
 
 def _chunk(
-    system: System, scheme: Scheme, z: Floats, steps: Steps, run: Trajectory
+    system: System, within: System, scheme: Scheme, z: Floats, steps: Steps, run: Trajectory
 ) -> tuple[Floats, tuple[Floats, Floats, Floats]]:
     """Take steps from z (m, n, p): the next z, and δq, δq̇, δq̈ at their ends."""
     t = scheme.tableau(steps.length)
     stages, (m, n, p) = len(scheme.offsets), z.shape
     states = _states(run, scheme, t)
-    at = [system(steps.times(offset), *state) for offset, state in zip(scheme.offsets, states, strict=True)]
+    at = [within(steps.times(offset), *state) for offset, state in zip(scheme.offsets, states, strict=True)]
     c_v, c_q, w_v, w_q = (weights[..., None, None] for weights in (t.c_v, t.c_q, t.w_v, t.w_q))
     rows, sides = [], []
     for i, (mass, c, k, f) in enumerate(at):

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.response.initial import Initial, initial_state
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations
 from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.structure import Structure
@@ -69,7 +69,10 @@ def problem_of(structure: Structure, motion: Motion, start: float, initial: Init
             now, loads = inputs
             return c.features(now.a_WO_B, now.w_WB_B, now.alpha_WB_B, loads)
 
-        return Problem(LinearEquations(c.mass, matrices, drive, lambda: c.terms, features), q, qd, 0, stable)
+        # No derivative is taken through the modes: those of equal frequencies have none.
+        rest = None if any(map(is_jax, (c.mass, c.damping, c.stiffness))) else (c.damping, c.stiffness)
+        equations = LinearEquations(c.mass, matrices, drive, lambda: c.terms, features, rest)
+        return Problem(equations, q, qd, 0, stable)
     return Problem(NonlinearEquations(OnBase(structure.equations), drive), q, qd, 0, stable)
 
 

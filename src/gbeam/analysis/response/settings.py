@@ -88,5 +88,10 @@ class ResponseSettings:
 
     @property
     def aim(self) -> float:
-        """Error that an automatic step and automatic shapes aim at, each: a third of the tolerance, at most 1e-4."""
+        """Error of the tip's history that an automatic step aims at: a third of the tolerance, at most 1e-4."""
         return min(self.tolerance / 3, FINE)
+
+    @property
+    def aim_of_peaks(self) -> float:
+        """Error of the peaks of tip and root moment that it aims at: a tenth of the tolerance, at most 1e-4."""
+        return min(self.tolerance / 10, FINE)

@@ -21,7 +21,6 @@ LOADS_STEPS = 50_000  # at most, where it is the loads that need them
 ONE_CORNER = 1e-6  # of the duration: corners nearer to one another are one
 JUMPS = 2, 3, 4, 6, 8, 12, 16  # into how many a step is divided; a check takes four, three or two of the new ones
 SPARE = 1.05  # how much finer a step is than the order promises to be enough
-PEAKS = 10  # how many times more accurate than the histories the peaks are
 
 
 def scheme_of(settings: ResponseSettings) -> Scheme:
@@ -75,24 +74,23 @@ def refine(
 ) -> tuple[Run, StepErrors]:
     """Divide the step, from twice the results', until the errors estimated from the runs are what they aim at.
 
-    Most of the error of the tip's history is a delay, and peaks are better: those of the tip and of the root's moment
-    are refined until they are within a tenth of its aim. The histories of the root's loads, in which high modes that a
-    jump excites may be large, are to be within a third of the tolerance, as far as LOADS_STEPS bring them there.
+    The tip's history is to be within its aim, the peaks of the tip and of the root's moment within theirs. The
+    histories of the root's loads, in which high modes that a jump excites may be large, are to be within a third of the
+    tolerance, as far as LOADS_STEPS bring them there.
     """
-    aim = settings.aim
 
     def refined(step: float) -> Run:
         return run(step, f"refining the step to {1e3 * step:.3g} ms")
 
     runs = [run(2 * coarse, "integrating"), refined(coarse)]
     while True:
-        left, promised = _left(runs, order)
+        left, promised = _left(runs, order, settings)
         both = runs[-2].whole and runs[-1].whole
-        if both and promised <= aim and (more := _check_needed(runs, left, aim)):
+        if both and promised <= 1 and (more := _check_needed(runs, left)):
             runs = sorted([*runs[-2:], run(more, f"checking with {1e3 * more:.3g} ms")], key=lambda each: -each.step)
-            left, _ = _left(runs, order)
-        far, most = promised / aim, MAX_STEPS
-        if both and left <= aim:
+            left, _ = _left(runs, order, settings)
+        far, most = promised, MAX_STEPS
+        if both and left <= 1:
             errors = of_everything(runs, order)
             far, most = 3 * errors.loads / settings.tolerance, LOADS_STEPS
             if not far > 1:  # as NaN is not
@@ -111,20 +109,20 @@ def _finer(far: float, order: int) -> int:
     return next((jump for jump in JUMPS if jump >= times), JUMPS[-1])
 
 
-def _left(runs: list[Run], order: int) -> tuple[float, float]:
-    """What is to come within the tolerance, by the order observed and by the scheme's own."""
-    found = Estimate.of(runs, order)
-    return max(found.tip, PEAKS * found.peaks), max(found.promised_tip, PEAKS * found.promised_peaks)
+def _left(runs: list[Run], order: int, settings: ResponseSettings) -> tuple[float, float]:
+    """How many times its aim the error of tip or peaks is, by the order observed and by the scheme's own."""
+    found, tip, peaks = Estimate.of(runs, order), settings.aim, settings.aim_of_peaks
+    return max(found.tip / tip, found.peaks / peaks), max(found.promised_tip / tip, found.promised_peaks / peaks)
 
 
-def _check_needed(runs: list[Run], left: float, tolerance: float) -> float | None:
+def _check_needed(runs: list[Run], left: float) -> float | None:
     """Step of a cheaper run that tells whether an error is what the order promises, s; None where that is known.
 
     After a jump it is not: of modes that the coarse steps do not resolve the difference is what they have at all, less
     than the order makes of it, and the peaks on a free hub were promised seven times too well.
     """
     jump, new = ratio(*runs[-2:]), runs[-1]
-    if left <= tolerance and jump <= 4:
+    if left <= 1 and jump <= 4:
         return None
     if jump > 3:
         return (4 if jump > 6 else jump // 2) * new.step

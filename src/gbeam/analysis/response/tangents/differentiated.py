@@ -162,7 +162,8 @@ class Differentiated:
             if run is None:
                 slopes.append(None)
                 continue
-            made = tangent(system, self.scheme, steps, run, q, qd)
+            within = linearised(self.nominal, pairs, width, (self.scheme, steps.longest))
+            made = tangent(system, self.scheme, steps, run, q, qd, within=within)
             q, qd = made[0][-1], made[1][-1]
             kept = np.append(True, steps.kept)
             slopes.append(tuple(x[kept] for x in made))

@@ -8,13 +8,15 @@ the run's states for either of a pair, and its Jacobians are JAX's.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from gbeam.analysis.response.problem import Problem
 from gbeam.integrate.equations import LinearEquations
+from gbeam.integrate.fitting import added
+from gbeam.integrate.schemes import Scheme
 from gbeam.integrate.tangent import System
 from gbeam.mechanics.equations.terms import coefficient_matrix, terms
 from gbeam.mechanics.structure import Structure
@@ -33,7 +35,9 @@ class Posed:
 Pair = tuple[Posed, Posed]  # of less and of more of a parameter
 
 
-def linearised(nominal: Posed, pairs: Sequence[Pair], width: Floats) -> System:
+def linearised(
+    nominal: Posed, pairs: Sequence[Pair], width: Floats, within: tuple[Scheme, float] | None = None
+) -> System:
     """Return the equations linearised about states of the nominal problem.
 
     Parameters
@@ -43,20 +47,28 @@ def linearised(nominal: Posed, pairs: Sequence[Pair], width: Floats) -> System:
         One for each parameter.
     width : (p,)
         By how much the parameter differs between the two of a pair.
+    within : tuple of Scheme and float, optional
+        Of steps of a length, s: the equations that these solve.
     """
     if isinstance(nominal.problem.equations, LinearEquations):
-        return _linear(nominal, pairs, width)
+        return _linear(nominal, pairs, width, within)
     return _nonlinear(nominal, pairs, width)
 
 
-def _linear(nominal: Posed, pairs: Sequence[Pair], width: Floats) -> System:
+def _linear(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: tuple[Scheme, float] | None) -> System:
     equations: Any = nominal.problem.equations
     loaded = nominal.structure.history is not None
     n = nominal.structure.size
 
-    def matrix(posed: Posed) -> Floats:
-        return coefficient_matrix(posed.structure.coefficients, loaded=loaded)
+    def fit(posed: Posed) -> tuple[Floats, Floats]:
+        return (np.zeros((n, n)),) * 2 if within is None else added(_equations(posed), *within)
 
+    def matrix(posed: Posed) -> Floats:
+        c, (mass, damping) = posed.structure.coefficients, fit(posed)
+        return coefficient_matrix(replace(c, mass=c.mass + mass, damping=c.damping + damping), loaded=loaded)
+
+    more_mass, more_damping = fit(nominal)
+    mass_of_steps = equations.mass + more_mass
     own = matrix(nominal)
     by_beam = np.stack([(matrix(more) - matrix(less)) / w for (less, more), w in zip(pairs, width, strict=True)], 1)
     flat = by_beam.reshape(len(own), -1)
@@ -66,12 +78,13 @@ def _linear(nominal: Posed, pairs: Sequence[Pair], width: Floats) -> System:
     def system(time: Floats, q: Floats, qd: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         inputs = equations.drive(time)
         c, k, f = equations.matrices(inputs)
-        qdd = np.linalg.solve(equations.mass, (f - (k @ q[..., None] + c @ qd[..., None])[..., 0]).T).T
+        c = c + more_damping
+        qdd = np.linalg.solve(mass_of_steps, (f - (k @ q[..., None] + c @ qd[..., None])[..., 0]).T).T
         forces = -(terms(q, qd, qdd, *inputs) @ flat).reshape(len(time), -1, n)
         for j in moving:
             less, more = (terms(q, qd, qdd, *posed.problem.equations.drive(time)) for posed in pairs[j])
             forces[:, j] -= (more - less) / width[j] @ own
-        return np.broadcast_to(equations.mass, k.shape), c, k, np.swapaxes(forces, 1, 2)
+        return np.broadcast_to(mass_of_steps, k.shape), c, k, np.swapaxes(forces, 1, 2)
 
     return system
 

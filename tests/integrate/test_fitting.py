@@ -1,0 +1,90 @@
+"""Steps fitted to the vibration at rest: exact there, and of the scheme's order elsewhere."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+
+from gbeam.integrate import LinearEquations, gauss, integrate, newmark
+from gbeam.integrate.fitting import added
+
+from .systems import VARYING
+
+MASS = np.array([[2.0, 0.3], [0.3, 1.0]])
+STIFFNESS = np.array([[5.0, -1.0], [-1.0, 9.0]])
+SQUARE, SHAPES = eigh(STIFFNESS, MASS)  # of unit length in M
+FREQUENCY = np.sqrt(SQUARE)
+STEP = 0.6  # s: the faster mode turns by nearly 2 rad in it
+
+
+def vibrating(ratio: float) -> LinearEquations:
+    """Two modes of one damping ratio, undriven."""
+    damping = MASS @ SHAPES * (2 * ratio * FREQUENCY) @ SHAPES.T @ MASS
+
+    def matrices(t: Any) -> Any:
+        return *(np.broadcast_to(x, (len(t), 2, 2)) for x in (damping, STIFFNESS)), np.zeros((len(t), 2))
+
+    return LinearEquations(MASS, matrices, lambda t: t, rest=(damping, STIFFNESS))
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.01, 0.3])
+def test_free_vibration_keeps_its_phase_and_decay(ratio: float) -> None:
+    """From rest in a displaced state, 100 steps of a third of a period: the classical steps lose their time."""
+    equations, start = vibrating(ratio), np.array([0.3, -0.2])
+    every = equations, replace(equations, rest=None)
+    fitted, classical = (integrate(each, gauss(), start, np.zeros(2), step=STEP, count=100) for each in every)
+    decay, turning = -ratio * FREQUENCY, FREQUENCY * np.sqrt(1 - ratio**2)
+    assert 1.6 < turning.max() * STEP < 2.0
+
+    # A mode's two states a and b with q = e^(decay t) (a cos + b sin): from two steps all others follow.
+    def extrapolated(q: np.ndarray) -> np.ndarray:
+        modal, t = q @ MASS @ SHAPES, STEP * np.arange(len(q))[:, None]
+        wave = np.exp(decay * t) * np.stack([np.cos(turning * t), np.sin(turning * t)])
+        b = (modal[1] - modal[0] * wave[0, 1]) / wave[1, 1]
+        return np.asarray((modal[0] * wave[0] + b * wave[1]) @ SHAPES.T)
+
+    size = np.abs(start).max()
+    np.testing.assert_allclose(fitted.q, extrapolated(fitted.q), atol=1e-11 * size)
+    t = STEP * np.arange(101)[:, None]
+    wave = np.exp(decay * t) * (np.cos(turning * t) - decay / turning * np.sin(turning * t))
+    exact = (start @ MASS @ SHAPES * wave) @ SHAPES.T
+    np.testing.assert_allclose(fitted.q, exact, atol=(1e-11 if ratio == 0 else 0.03) * size)
+    assert ratio > 0.1 or np.abs(classical.q - exact).max() > 0.3 * size
+
+
+def test_the_deflection_under_a_steady_load_is_the_elastic_one() -> None:
+    equations, force = vibrating(0.01), np.array([1.0, 2.0])
+    rest = np.linalg.solve(STIFFNESS, force)
+    loaded = replace(equations, matrices=lambda t: (*equations.matrices(t)[:2], np.broadcast_to(force, (len(t), 2))))
+    run = integrate(loaded, gauss(), rest, np.zeros(2), step=STEP, count=50)
+    np.testing.assert_allclose(run.q, np.broadcast_to(rest, run.q.shape), rtol=1e-12)
+
+
+def test_fitted_steps_have_the_order_of_the_scheme_where_the_matrices_vary() -> None:
+    """Fitted to a symmetric part of what is neither symmetric nor constant."""
+    fitted, start = (
+        replace(VARYING, rest=(0.1 * np.eye(2), np.diag([4.0, 9.0]))),
+        (np.array([1.0, -0.5]), np.array([0.3, 0.2])),
+    )
+    truth = integrate(VARYING, gauss(), *start, step=4 / 2560, count=2560).q[-1]
+    errors = [
+        np.abs(integrate(fitted, gauss(), *start, step=4 / count, count=count).q[-1] - truth).max()
+        for count in (40, 80, 160)
+    ]
+    assert np.log2(np.array(errors[:-1]) / errors[1:]) == pytest.approx((4, 4), abs=0.2)
+
+
+def test_a_scheme_that_does_not_fit_and_a_mode_without_vibration_add_nothing() -> None:
+    equations = vibrating(0.01)
+    none = np.zeros((2, 2))
+    for each, scheme in ((equations, newmark()), (replace(equations, rest=None), gauss())):
+        np.testing.assert_array_equal(added(each, scheme, STEP), (none, none))
+    creeping = vibrating(1.2)
+    np.testing.assert_array_equal(added(creeping, gauss(), STEP), (none, none))
+    small = added(equations, gauss(), STEP / 100), added(equations, gauss(), STEP / 50)
+    for few, twice in zip(*small, strict=True):
+        assert np.abs(twice).max() == pytest.approx(16 * np.abs(few).max(), rel=1e-2)
