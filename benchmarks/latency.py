@@ -4,7 +4,8 @@
 
 Processor time is user and system time of the command with all its threads and children. Each repetition runs every
 command once, so that a machine that slows down slows all of them; medians are shown. "warm" finds its compiled
-programs in the cache, "cold" starts with an empty cache folder.
+programs in the cache, "cold" starts with an empty cache folder. Python keeps its bytecode, as of an installed package,
+also where the environment tells it not to.
 """
 
 from __future__ import annotations
@@ -60,12 +61,14 @@ def commands(out: Path) -> list[Command]:
 def measure(command: Command, cache: str, folder: Path) -> tuple[float, float]:
     """Processor and wall time of one run, s."""
     words = ["-c", "import jax"] if command.name == UNIT else ["-m", "gbeam", *command.words]
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    environment |= {"JAX_COMPILATION_CACHE_DIR": cache, "PYTHONPYCACHEPREFIX": str(folder / "bytecode")}
     with (folder / "stderr").open("w+") as errors:
         began = time.perf_counter()
         child = subprocess.Popen(
             [sys.executable, *words],
             cwd=folder,
-            env=os.environ | {"JAX_COMPILATION_CACHE_DIR": cache},
+            env=environment,
             stdout=subprocess.DEVNULL,
             stderr=errors,
         )
