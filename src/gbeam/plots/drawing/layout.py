@@ -39,6 +39,8 @@ def arrange(figure: Figure) -> None:
     for panel, gap, height in zip(axes, above, heights, strict=True):
         top -= gap + height
         panel.set_position((left / WIDTH, top / total, (WIDTH - left - _RIGHT) / WIDTH, height / total))
+        if _lifted(panel):
+            panel.set_title(panel.get_title(loc="left"), loc="left", fontsize=9, y=1 + _LINE / height)
         panel.yaxis.set_label_coords(-ticks / (WIDTH - left - _RIGHT), 0.5)
     for text in figure.texts:
         text.set_position((_EDGE / WIDTH, 1 - _TITLE / total))
@@ -48,13 +50,17 @@ def _above(panel: Axes) -> float:
     """Height above a panel, inches, once its ticks are known."""
     legend: Any = panel.get_legend()
     titled = bool(panel.get_title(loc="left"))
-    # A title moves up where the axis has a power of ten below it.
     height = _GAP if legend is None and not titled else _HEADED
-    if titled and panel.yaxis.get_major_formatter().get_offset():
+    if _lifted(panel):
         height += _LINE
     if legend is None or len(legend.get_texts()) <= legend._ncols:
         return height
     return max(height, float(legend.get_window_extent().height) / legend.figure.dpi + _GAP)  # rows are measured
+
+
+def _lifted(panel: Axes) -> bool:
+    """Whether a title stands above a power of ten of the axis."""
+    return bool(panel.get_title(loc="left") and panel.yaxis.get_major_formatter().get_offset())
 
 
 def _tick_width(panel: Axes) -> float:

@@ -101,8 +101,10 @@ def panels(title: str, count: int, *, heights: Iterable[float] | None = None) ->
     ratios = [1.0] * count if heights is None else list(heights)
     figure = Shown(figsize=(WIDTH, PANEL * sum(ratios)))
     FigureCanvasAgg(figure)
-    grid = figure.subplots(count, 1, sharex=True, squeeze=False, height_ratios=ratios)
-    axes: list[Axes] = list(grid[:, 0])
+    grid, axes = figure.add_gridspec(count, 1, height_ratios=ratios), list[Axes]()
+    for row in range(count):
+        # matplotlib's own sharing makes ticks only to hide their labels.
+        axes.append(figure.add_subplot(grid[row], sharex=axes[0] if axes else None))
     figure.suptitle(printable(title), ha="left", va="top", fontsize=10.5, fontweight="bold")
     axes[-1].set_xlabel("time, s")
     for panel in axes:
@@ -186,7 +188,7 @@ def legend(panel: Axes) -> None:
 
 def subtitle(panel: Axes, text: str) -> None:
     """Say above a panel, on the left, what it shows."""
-    panel.set_title(text, loc="left", fontsize=9)
+    panel.set_title(text, loc="left", fontsize=9, y=1.0)  # or matplotlib measures all ticks to place it
 
 
 def moving(*values: Floats) -> list[int]:
