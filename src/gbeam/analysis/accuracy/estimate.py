@@ -74,26 +74,29 @@ def response_errors(
         force, moment = fractions("force", steps[1]), fractions("moment", steps[1])
         worst = max(force, moment, key=lambda each: each.total)
         errors = Errors(fractions("tip", steps[0]), worst, fractions("stress", steps[2]))
-        return errors, _missed(rings, sizes, errors)
+        return errors, _missed(rings, sizes, errors, RESOLVED / (least * step))
 
     period = 2 * math.pi / float(structure.rest[0][0])
-    step = float(solution.time[1] - solution.time[0])
+    step, least = float(solution.time[1] - solution.time[0]), math.ceil(len(solution.time) / MOST)
     few = max(1, min(int(period / PER_PERIOD / (stride * step)), len(tip) // FEWEST))
     stride *= few
     errors, rate = judged(stride, Quantities(*(each[::few] for each in every)))
     if rate == 0:
         return errors
-    finer = max(math.ceil(len(solution.time) / MOST), int(RESOLVED / (rate * step)))
+    finer = max(least, int(RESOLVED / (rate * step)))
     return judged(finer)[0] if finer < stride else errors
 
 
-def _missed(rings: Rings, sizes: dict[str, float], errors: Errors) -> float:
-    """Circular frequency of the fastest mode that may ring by more than the error stated, rad/s; zero if none may."""
+def _missed(rings: Rings, sizes: dict[str, float], errors: Errors, fastest: float) -> float:
+    """Circular frequency of the fastest mode that may ring by more than the error stated, rad/s; zero if none may.
+
+    None above the `fastest` that the steps resolve: to look at all of them would show nothing more.
+    """
     limits = zip(("tip", "force", "moment"), (errors.displacement, errors.loads, errors.loads), strict=True)
     visible = np.zeros(len(rings.rate), dtype=bool)
     for name, stated in limits:
         visible |= getattr(rings, name) > stated.total * sizes[name]
-    return float(rings.rate[visible].max(initial=0.0))
+    return float(rings.rate[visible & (rings.rate < fastest)].max(initial=0.0))
 
 
 def _largest(values: Floats) -> float:
