@@ -321,3 +321,10 @@ class Structure:
             return self.station_places.positions(q) - self.station_places.r0
         assert self.field is not None
         return self.field.position(q)[..., self.first_station :, :] - self.station_places.r0
+
+    def tip(self, q: Array) -> Array:
+        """Displacement of the tip, the last station, likewise, (..., 3) m."""
+        if self.linear:
+            last = self.station_places[-1:]
+            return (last.positions(q) - last.r0)[..., 0, :]
+        return self.displacement(q)[..., -1, :]

@@ -98,7 +98,7 @@ def simulate(
         return {"stop": too_far, "progress": None if progress is None else lambda share: progress(what, share)}
 
     def tip(y: Floats) -> Floats:
-        return np.asarray(structure.displacement(y[..., problem.first :])[..., -1, :])
+        return np.asarray(structure.tip(y[..., problem.first :]))
 
     def moment(y: Floats) -> Floats:
         """Root moment by the elastic forces K q, which the coordinates' inertia balances, of the straight beam."""

@@ -132,7 +132,8 @@ def exponential_of(square: Array) -> tuple[Array, Array, Array]:
     """sin φ/φ, (1 − cos φ)/φ² and cos φ of φ², smooth through zero."""
     xp = namespace(square)
     if xp is np and np.abs(square).max(initial=0.0) < _SERIES:  # a fifth of the time of the functions
-        return _series(square, 1.0, _SINC), _series(square, 0.5, _VERSINE), 1 - square * _series(square, 0.5, _VERSINE)
+        versine = _series(square, 0.5, _VERSINE)
+        return _series(square, 1.0, _SINC), versine, 1 - square * versine
     small = xp.abs(square) < 1e-4
     theta = xp.sqrt(xp.where(small, 1.0, square))
     sinc = xp.where(small, 1 - square / 6 * (1 - square / 20 * (1 - square / 42)), xp.sin(theta) / theta)

@@ -16,7 +16,7 @@ from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse
 from gbeam.motion.centrifuge.inverses.registry import INVERSES
 from gbeam.motion.centrifuge.machine.kinematics import Axes, control_point_load
 from gbeam.motion.centrifuge.machine.limits import Limits, usage
-from gbeam.motion.centrifuge.target.reachability import TOO_SHARP, shortfalls
+from gbeam.motion.centrifuge.target.reachability import shortfalls
 from gbeam.motion.centrifuge.target.target import Episode, Target
 from gbeam.motion.profiles.profile import sampled
 from gbeam.results.machine import LimitUse, Shortfall
@@ -119,6 +119,5 @@ class AxisMotion:
 
     def shortfalls(self) -> tuple[Shortfall, ...]:
         """Where no such machine can make the flight's load, and what would help."""
-        found = shortfalls(self.target, float(self.geometry.arm))
         # A plan keeps the limits at corners too, and what it misses there is its tracking error.
-        return tuple(each for each in found if not (INVERSES[self.method].plans and each.reason == TOO_SHARP))
+        return shortfalls(self.target, float(self.geometry.arm), turns=not INVERSES[self.method].plans)

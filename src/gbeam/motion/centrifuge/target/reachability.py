@@ -25,7 +25,7 @@ _ROUNDING = 1e-6
 Floats = NDArray[np.float64]
 
 
-def shortfalls(target: Target, arm: float) -> tuple[Shortfall, ...]:
+def shortfalls(target: Target, arm: float, *, turns: bool = True) -> tuple[Shortfall, ...]:
     """List where the flight's load is below idle, across the beam below gravity, or turns too sharply.
 
     Parameters
@@ -33,11 +33,13 @@ def shortfalls(target: Target, arm: float) -> tuple[Shortfall, ...]:
     target : Target
     arm : float
         R, m.
+    turns : bool
+        Whether what turns too sharply is listed.
     """
     time = _times(target)
     flight = np.asarray(target.flight(time))
     idle, gravity = float(target.idle), float(target.gravity)
-    stretches = [shortfall for shortfall, _ in sharp_turns(target, arm)]
+    stretches = [shortfall for shortfall, _ in sharp_turns(target, arm)] if turns else []
     total, across = np.linalg.norm(flight, axis=-1), np.linalg.norm(flight[:, 1:], axis=-1)
     stretches += _below(time, total, idle, "below idle", lambda run: _idle_remedy(total[run], across[run], gravity))
     if gravity:
