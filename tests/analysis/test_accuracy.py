@@ -71,14 +71,17 @@ def test_error_of_too_few_shapes_is_stated(shapes: int) -> None:
     assert any("too few shapes" in warning for warning in found.warnings) == (found.error_estimate > 0.01)
 
 
-@pytest.mark.parametrize("integrator", ["newmark", "gauss"])
-def test_error_of_a_mode_that_the_results_do_not_resolve_is_stated(integrator: str) -> None:
-    """A corner makes the third mode ring, which two shapes leave out: 1.5 % of the loads; 0.11, 0.03 % were stated."""
+@pytest.mark.parametrize(("integrator", "tolerance"), [("newmark", 1e-2), ("gauss", 5e-4)])
+def test_error_of_a_mode_that_the_results_do_not_resolve_is_stated(integrator: str, tolerance: float) -> None:
+    """A corner makes the third mode ring, which two shapes leave out: 1.5 % of the loads; 0.11, 0.03 % were stated.
+
+    The estimate sees no more than the run's own steps, of which Gauss's method needs few.
+    """
     specimen = gb.Beam(0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9), damping_ratio=0.0)
     period = 2 * np.pi / 229.69
     load = gb.Flight(z=gb.trapezoid(30.0, jerk=600.0 / period, start=0.5 * period, hold=5 * period))
     few, many = (gb.assemble(specimen, "FOAM", z=n, shapes="adapted") for n in (2, 8))
-    found = gb.simulate(few, load, duration=12 * period, integrator=integrator)
+    found = gb.simulate(few, load, duration=12 * period, integrator=integrator, tolerance=tolerance)
     interval = found.time[1] - found.time[0]
     assert 17.55 * 229.69 * interval > RESOLVED  # of the third mode
     finer = 36

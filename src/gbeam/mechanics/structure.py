@@ -323,7 +323,7 @@ class Structure:
         return self.field.position(q)[..., self.first_station :, :] - self.station_places.r0
 
     def tip(self, q: Array) -> Array:
-        """Displacement of the tip, the last station, likewise, (..., 3) m."""
+        """Displacement of the tip, the last station, likewise at coordinates `q` (..., n), (..., 3) m."""
         if self.linear:
             last = self.station_places[-1:]
             return (last.positions(q) - last.r0)[..., 0, :]

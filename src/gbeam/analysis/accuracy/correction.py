@@ -172,7 +172,9 @@ def correction(of: Operator, vibration: Vibration, time: Floats, residual: Float
 
         return between(c), between(k), between(force)
 
-    equations = LinearEquations(np.eye(phi.shape[1]), matrices, drive)
+    damping = c.mean(axis=0)
+    rest = (damping + damping.T) / 2, np.diag(square[kept])
+    equations = LinearEquations(np.eye(phi.shape[1]), matrices, drive, rest=rest)
     made = integrate(equations, gauss(), first, moving, step=step, count=len(time) - 1, start=float(time[0]))
     static = -residual @ flexibility
     return Correction(made.q @ phi.T + static, made.qd @ phi.T, made.qdd @ phi.T)

@@ -2,8 +2,8 @@
 
 Where the error goes as C hᵖ, runs with three steps give p and C. An order that has not been observed is taken as one.
 None of a history is believed above two: the first mode shows the order of Gauss's method at steps at which higher modes
-do not yet, and their error would be underestimated fivefold. Of the loads, which have most of the modes that no run
-resolves and all follow alike, none is believed above one.
+do not yet, and their error would be underestimated fivefold. Of its loads, which have most of the modes that steps so
+long do not resolve, none is believed above one.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from gbeam.results.parts.errors import StepErrors
 from gbeam.results.result import Floats
 
 # Believed of a history; runs that hardly converge differ by less than their error.
-LOWEST_ORDER, HIGHEST_ORDER, OF_LOADS = 0.5, 2.0, 1.0
+LOWEST_ORDER, HIGHEST_ORDER = 0.5, 2.0
 _SAMPLES = 2000  # times at most at which the loads of two runs are compared
 
 
@@ -157,7 +157,7 @@ def of_everything(runs: Sequence[Run], order: int) -> StepErrors:
     if not all(run.whole for run in runs[-2:]):
         return StepErrors(displacement)
     runs = runs if runs[0].whole else runs[-2:]
-    return StepErrors(displacement, *_of_loads(runs, lambda differences: share(runs, differences, OF_LOADS)))
+    return StepErrors(displacement, *_of_loads(runs, lambda differences: share(runs, differences, 4 / order)))
 
 
 def of_two_tolerances(loose: Run, tight: Run) -> StepErrors:
