@@ -11,7 +11,19 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import jv
 
-from gbeam import Beam, InputError, Load, Material, Model, Section, assemble, critical_load
+from gbeam import (
+    Beam,
+    InputError,
+    Load,
+    Material,
+    Model,
+    Section,
+    assemble,
+    critical_load,
+    linearize,
+    simulate,
+    static,
+)
 from gbeam.analysis.vibration.modal import modes
 from gbeam.analysis.vibration.stability import buckling_acceleration, critical_speed
 from gbeam.motion import Flight, Hub, SmoothStep, constant, vector
@@ -130,3 +142,24 @@ def test_a_beam_pointing_inward_diverges(kind, counts):
     )
     assert found.value == pytest.approx(np.sqrt(square), rel=2e-5)
     assert (found.kind, found.direction) == ("divergence", "y")
+
+
+@pytest.mark.parametrize(("load", "kept"), [(15.0, True), (21.0, False)])
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_a_column_under_a_follower_force_is_stable_up_to_becks_load(kind, load, kept):
+    """It was called unstable where the symmetric part of its stiffness, which decides nothing, is indefinite."""
+    structure = column(MODELS[kind], Load(1.0, force=(-load, 0.0, 0.0), follower=True))
+    resting = static(structure)
+    assert resting.stable == kept
+    system = linearize(structure, Flight(z=constant(0.0)))
+    assert any("not stable: flutter along z" in each for each in system.warnings) == (not kept)
+    assert modes(structure, Flight(z=constant(0.0))).stable == kept
+
+
+def test_a_run_under_a_follower_force_below_becks_load_is_not_warned_of():
+    structure = column(MODELS["FOAM"], Load(1.0, force=(-15.0, 0.0, 0.0), follower=True))
+    found = simulate(structure, Flight(z=constant(1e-3)), duration=0.1, step=1e-3, estimate=False)
+    assert not any("not stable" in each for each in found.warnings)
+    beyond = column(MODELS["FOAM"], Load(1.0, force=(-21.0, 0.0, 0.0), follower=True))
+    found = simulate(beyond, Flight(z=constant(1e-3)), duration=0.1, step=1e-3, estimate=False)
+    assert any("equilibrium that is not stable" in each for each in found.warnings)

@@ -12,6 +12,7 @@ from gbeam.analysis.equilibrium.hub_point import on_hub
 from gbeam.analysis.equilibrium.operating_point import operating_point
 from gbeam.analysis.equilibrium.point import OperatingPoint, linear_matrices, on_base, steady_base
 from gbeam.analysis.vibration.errors import doubtful, pole_errors
+from gbeam.analysis.vibration.modal import modes_at
 from gbeam.analysis.vibration.stability import hub_of
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
@@ -232,6 +233,11 @@ def linearize(
     if q is None and qd is None and structure.source is not None:
         frequency, errors = pole_errors(structure, point, linear)
         warnings += doubtful(errors) if errors.within(ACCURATE) == 0 else ()
+        warnings += tuple(
+            f"the operating point is not stable: {each.kind} along {each.direction}, growing with "
+            f"{each.growth_rate:.4g} 1/s"
+            for each in modes_at(structure, point, linear).instabilities
+        )
     return StateSpace(
         a=a,
         b=drive,

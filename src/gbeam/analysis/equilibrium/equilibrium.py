@@ -11,6 +11,7 @@ from gbeam.errors import ComputationError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.numerics.solvers.eigen import positive_definite, symmetric_modes
+from gbeam.numerics.solvers.oscillations import stability_margin
 
 Array = Any
 _ITERATIONS, _TRACED = 30, 8  # of Newton's method; where no number says that it has converged
@@ -19,7 +20,7 @@ _NOISE = 1e-8  # of the coordinates: smaller corrections may stand still by roun
 
 
 class Equilibrium(NamedTuple):
-    """Coordinates (n,) at which the beam rests, and whether its stiffness there is positive definite."""
+    """Coordinates (n,) at which the beam rests, and whether it would stay there: see :func:`keeps`."""
 
     q: Array
     stable: bool
@@ -69,7 +70,7 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
         return Equilibrium(jnp.linalg.solve(stiffness, force), True)
     q = _solved(np, stiffness, force)
     if np.isfinite(q).all():
-        return Equilibrium(q, positive_definite(stiffness))
+        return Equilibrium(q, positive_definite(stiffness) if values is None else keeps(structure, base, values, q))
     raise ComputationError(
         "not converged",
         f"no relative equilibrium: the stiffness is singular, or the base's motion not finite; "
@@ -102,7 +103,19 @@ def _along_a_path(structure: Structure, base: Base, values: Array | None) -> Equ
                 f"no relative equilibrium beyond {reached:.4g} of the load: the beam buckles or diverges there; "
                 f"the rate is {_rate(base):.4g} rad/s",
             )
-    return Equilibrium(q, stable)
+    return Equilibrium(q, stable if values is None else keeps(structure, base, values, q))
+
+
+def keeps(structure: Structure, base: Base, values: Array | None, q: Array) -> bool:
+    """Whether a beam keeps an equilibrium: by its stiffness, and where loads follow it by what may grow.
+
+    The skew part of what the angular acceleration adds to the stiffness is no such load: it stores and feeds no energy.
+    """
+    c, _ = structure.about(q)
+    velocity, steady, _ = c.at(base.a_WO_B, base.w_WB_B, np.zeros(3), values)
+    turning = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)[1] - steady
+    matrices = c.mass, velocity, steady + (turning + turning.T) / 2
+    return stability_margin(*(np.asarray(each) for each in matrices)) > 0
 
 
 def _newton(

@@ -126,12 +126,6 @@ def _split(d: Array, n: int) -> Linear:
     return Linear(d[:, 2 * n : 3 * n], d[:, n : 2 * n], d[:, :n], -d[:, 3 * n :])
 
 
-def beam_block(point: OperatingPoint) -> tuple[Array, Array]:
-    """M and K of the beam's own coordinates about an operating point."""
-    linear, i = linear_matrices(point), point.first
-    return linear.mass[i:, i:], linear.stiffness[i:, i:]
-
-
 def frozen_base(motion: Motion, time: float) -> Base:
     """Base motion at one time, arrays (3,)."""
     base = motion.base(np.array([time]))

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gbeam.analysis.equilibrium.equilibrium import lowest_stiffness
+from gbeam.analysis.equilibrium.equilibrium import keeps
 from gbeam.analysis.equilibrium.errors import doubtful, static_errors
 from gbeam.analysis.equilibrium.operating_point import operating_point
-from gbeam.analysis.equilibrium.point import OperatingPoint, beam_block, on_base
+from gbeam.analysis.equilibrium.point import OperatingPoint, on_base
 from gbeam.errors import InputError
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import section_forces
@@ -72,7 +72,6 @@ def deflection_at(
     structure: Structure, point: OperatingPoint, motion: Motion | None, time: float, name: str = ""
 ) -> Deflection:
     """The deflection at an operating point."""
-    lowest, _ = lowest_stiffness(*beam_block(point))
     base, q = point.frozen, np.asarray(point.q)
     over_time = BaseMotion(*(x[None] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
     still = np.zeros((1, structure.size))
@@ -89,7 +88,7 @@ def deflection_at(
         displacement=displacement,
         q=q,
         strain_energy=float(structure.strain_energy(q)),
-        stable=lowest > 0,
+        stable=keeps(structure, point.base, point.residual.unpack(point.u)[1], q),
         warnings=warnings,
         loads=loads,
         errors=errors,

@@ -49,7 +49,11 @@ def describe(
     end = trajectory.time[-1]
     if trajectory.stopped:
         better = "FOAM or exact" if structure.kind == "TLAM" else "exact"
-        why = f"{lost}: the model is not valid beyond that speed; use {better}" if lost else f"use {better}"
+        why = f"use {better}"
+        if lost:
+            why = f"{lost}: the model is not valid beyond that speed; {why}"
+            if structure.kind != "TLAM":
+                why += ", and `gbeam critical-speed` to see whether the exact model loses its equilibrium as well"
         return (
             "diverged",
             f"the displacement exceeded the beam's length, {structure.length:.4g} m, at t = {end:.4g} s; {why}",
@@ -66,8 +70,8 @@ def describe(
         warnings.append(f"{lost}; the result beyond is not to be trusted")
     elif not problem.stable:
         warnings.append(
-            "the run starts from an equilibrium that is not stable, which no beam would keep: its stiffness is not "
-            "positive definite; `gbeam critical-speed` finds where that begins"
+            "the run starts from an equilibrium that is not stable, which no beam would keep; `gbeam critical-speed` "
+            "finds where that begins"
         )
     warnings += _yielding(structure, peaks)
     if (turned := turned_out_of_plane(structure, q)) > _NEAR:

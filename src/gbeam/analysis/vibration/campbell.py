@@ -12,7 +12,6 @@ import numpy as np
 from gbeam.analysis.equilibrium.hub_point import on_hub
 from gbeam.analysis.equilibrium.point import OperatingPoint, linear_matrices, on_base, steady_base
 from gbeam.analysis.vibration.crossing_errors import crossing_errors, doubtful_crossings
-from gbeam.analysis.vibration.eigenvalues import mac
 from gbeam.analysis.vibration.errors import Richer, doubtful
 from gbeam.analysis.vibration.modal import modes_at
 from gbeam.analysis.vibration.speeds import largest_rate
@@ -21,6 +20,7 @@ from gbeam.errors import InputError
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
+from gbeam.numerics.solvers.oscillations import mac
 from gbeam.numerics.solvers.roots import brent
 from gbeam.results.parts.errors import FrequencyErrors
 from gbeam.results.result import Complex, Floats

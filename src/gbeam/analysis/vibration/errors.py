@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
 from gbeam.analysis.equilibrium.point import Linear, OperatingPoint, stepped
-from gbeam.analysis.vibration.eigenvalues import ZERO, eigenvalues, mac
 from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.equations.hub import free_hub
 from gbeam.mechanics.equations.residuals import OnHub
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
+from gbeam.numerics.solvers.oscillations import ZERO, eigenvalues, mac
 from gbeam.results.parts.errors import FrequencyErrors
 from gbeam.results.result import Complex, Floats
 
@@ -91,7 +91,7 @@ class Richer:
 
 def pole_errors(structure: Structure, point: OperatingPoint, linear: Linear) -> tuple[Floats, FrequencyErrors]:
     """Frequencies (k,) Hz of the poles that oscillate about an operating point, ascending, and their errors."""
-    value, mode = eigenvalues(linear)
+    value, mode = eigenvalues(*linear[:3])
     oscillating = np.flatnonzero(value.imag > ZERO * np.abs(value).max())
     chosen = oscillating[np.argsort(np.abs(value[oscillating]), kind="stable")]
     errors = Richer(structure, point.base).errors(point, value[chosen], mode[point.first :, chosen].T)
@@ -103,7 +103,7 @@ def _frequencies(
 ) -> Floats:
     """Circular frequencies of the rich structure's modes that are most like those given, rad/s."""
     linear, first = _about_equilibrium(rich, point), point.first
-    value, mode = eigenvalues(linear, gyroscopic=gyroscopic)
+    value, mode = eigenvalues(*linear[:3], gyroscopic=gyroscopic)
     oscillating = value.imag > 0
     lifted = np.zeros((len(coordinates), rich.size), dtype=complex)
     lifted[:, index] = coordinates

@@ -7,27 +7,17 @@ from collections.abc import Callable
 import numpy as np
 
 from gbeam.analysis.equilibrium.equilibrium import lowest_stiffness
-from gbeam.analysis.equilibrium.point import Linear, OperatingPoint, linear_matrices, on_base
-from gbeam.analysis.vibration.eigenvalues import eigenvalues, growth_limit
+from gbeam.analysis.equilibrium.point import OperatingPoint, linear_matrices, on_base
 from gbeam.analysis.vibration.modal import directions, modes_at
 from gbeam.errors import ComputationError
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
+from gbeam.numerics.solvers.oscillations import stability_margin
 from gbeam.numerics.solvers.roots import brent
 from gbeam.results.steady.stability import Critical
 
 SCAN = 64  # points at which a loss is looked for before its root is closed in on
-UNSYMMETRIC = 1e-9  # of K: above it the loads follow the beam
-
-
-def stability_margin(linear: Linear) -> float:
-    """Positive while the equilibrium is stable, rad²/s²; its root is where it stops."""
-    stiffness = linear.stiffness
-    if np.abs(stiffness - stiffness.T).max() <= UNSYMMETRIC * np.abs(stiffness).max():
-        return lowest_stiffness(linear.mass, stiffness)[0]
-    value, _ = eigenvalues(linear)
-    return float((growth_limit(value, np.abs(value).max()) - value.real).min())
 
 
 def _point(structure: Structure, base: Base) -> OperatingPoint | None:
@@ -59,7 +49,7 @@ def first_loss_along(
 
     def margin(value: float) -> float:
         point = _point(*path(value))
-        return -1.0 if point is None else stability_margin(linear_matrices(point))
+        return -1.0 if point is None else stability_margin(*linear_matrices(point)[:3])
 
     def answer(value: float | None, kind: str, direction: str, reason: str) -> Critical:
         words = kind, direction, reason, structure.kind

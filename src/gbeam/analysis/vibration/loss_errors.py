@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from gbeam.analysis.vibration.errors import LIMIT, resting
-from gbeam.analysis.vibration.loss import stability_margin
 from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
+from gbeam.numerics.solvers.oscillations import stability_margin
 from gbeam.numerics.solvers.roots import brent
 from gbeam.results.parts.errors import ErrorEstimate
 from gbeam.results.steady.stability import Critical
@@ -57,7 +57,7 @@ def _lost(rich: Structure, path: Path, near: float) -> float:
     def margin(value: float) -> float:
         structure, base = path(value)
         try:
-            return stability_margin(resting(replace(rich, load_values=structure.load_values), base))
+            return stability_margin(*resting(replace(rich, load_values=structure.load_values), base)[:3])
         except (ComputationError, np.linalg.LinAlgError):
             return -1.0
 

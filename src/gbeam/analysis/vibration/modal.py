@@ -9,11 +9,11 @@ import numpy as np
 
 from gbeam.analysis.equilibrium.operating_point import operating_point
 from gbeam.analysis.equilibrium.point import Linear, OperatingPoint, linear_matrices
-from gbeam.analysis.vibration.eigenvalues import ZERO, eigenvalues, growth_limit
 from gbeam.analysis.vibration.errors import Richer, doubtful
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
+from gbeam.numerics.solvers.oscillations import ZERO, eigenvalues, growth_limit
 from gbeam.results.result import Complex, Floats
 from gbeam.results.steady.modal import Instability, Modes
 
@@ -46,7 +46,7 @@ def modes_at(
 ) -> Modes:
     """Modes about an operating point; `linear` is its :func:`linear_matrices`, if known."""
     linear = linear_matrices(point) if linear is None else linear
-    value, mode = eigenvalues(linear, gyroscopic=gyroscopic)
+    value, mode = eigenvalues(*linear[:3], gyroscopic=gyroscopic)
     _, stations = _sensitivity(structure, point.q)
     size = np.abs(value).max()
     zero, real = np.abs(value) <= ZERO * size, np.abs(value.imag) <= ZERO * size

@@ -71,7 +71,7 @@ def text(deflections: Iterable[Deflection]) -> str:
 
 def _lines(deflection: Deflection) -> str:
     x, y, z = tidy(1e3 * deflection.tip, 1e3 * float(np.abs(deflection.displacement).max()))
-    warning = "" if deflection.stable else "; UNSTABLE: the stiffness there is not positive definite"
+    warning = "" if deflection.stable else "; UNSTABLE: no beam would stay there"
     tip = f"tip x {x:.6g} mm, y {y:.6g} mm, z {z:.6g} mm"
     first = f"{deflection.motion} at {deflection.time:.4g} s: {tip} ({deflection.model}){warning}"
     loads = [] if deflection.loads is None else [f"  {_loads(deflection.loads)}"]

@@ -30,7 +30,8 @@ class Deflection(Figured):
     strain_energy : float
         J.
     stable : bool
-        Whether the stiffness about the equilibrium is positive definite.
+        Whether the stiffness about the equilibrium is positive definite; under loads that follow the beam, whether no
+        vibration about it grows.
     loads : Loads or None
         What the sections carry, of one time.
     errors : Errors
@@ -57,7 +58,7 @@ class Deflection(Figured):
     def __repr__(self) -> str:
         of = f" {self.motion!r}" if self.motion else ""
         tip = ", ".join(f"{1e3 * each:.4g}" for each in self.tip)
-        rest = "stable" if self.stable else "NOT stable: the stiffness is not positive definite"
+        rest = "stable" if self.stable else "NOT stable: no beam would stay there"
         total = self.errors.displacement.total
         error = f"; estimated error {100 * total:.2g} %" if math.isfinite(total) else ""
         return self._with_warnings(f"Deflection{of} ({self.model}) at {self.time:.4g} s: tip ({tip}) mm{error}; {rest}")

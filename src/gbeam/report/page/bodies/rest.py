@@ -18,7 +18,7 @@ def static_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plo
     """Where the beam rests in every motion, and what its sections carry."""
     motions = facts["motions"]
     parts = [
-        paragraph(f"motion {name}: unstable, the stiffness there is not positive definite", "bad")
+        paragraph(f"motion {name}: unstable, no beam would stay there", "bad")
         for name, each in motions.items()
         if not each["stable"]
     ]

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
-from gbeam.analysis.equilibrium.point import Linear
 from gbeam.numerics.solvers.eigen import symmetric_modes
-from gbeam.results.result import Complex, Floats
+
+Floats = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 ZERO = 1e-11  # of the largest eigenvalue: a smaller one is rounding about zero
 # Of a mode's frequency: a base that speeds up, once frozen, feeds or drains a mode by 1e-7, and means nothing by it.
 FLUTTER = 1e-6
+UNSYMMETRIC = 1e-9  # of K: above it the loads follow the beam
 
 
 def growth_limit(value: Complex, largest: float) -> Floats:
@@ -18,13 +21,15 @@ def growth_limit(value: Complex, largest: float) -> Floats:
     return np.maximum(np.where(value.imag != 0, FLUTTER * np.abs(value), 0.0), ZERO * largest)
 
 
-def eigenvalues(linear: Linear, *, gyroscopic: bool = True) -> tuple[Complex, Complex]:
+def eigenvalues(
+    mass: Floats, velocity: Floats, stiffness: Floats, *, gyroscopic: bool = True
+) -> tuple[Complex, Complex]:
     """Eigenvalues λ and modes of M ÿ + C ẏ + K y = 0.
 
     Parameters
     ----------
-    linear : Linear
-        NumPy arrays.
+    mass, velocity, stiffness : (n, n)
+        M, C and K.
     gyroscopic : bool
         False leaves out the skew part of C.
 
@@ -35,7 +40,6 @@ def eigenvalues(linear: Linear, *, gyroscopic: bool = True) -> tuple[Complex, Co
     mode : (n, 2n − r)
         In columns, of unit length in M.
     """
-    mass, velocity, stiffness, _ = linear
     damping = velocity if gyroscopic else (velocity + velocity.T) / 2
     # In modes of the symmetric part, each scaled by its own frequency, all blocks are of the size of the frequencies:
     # the raw companion matrix loses half the digits of the low ones.
@@ -52,6 +56,14 @@ def eigenvalues(linear: Linear, *, gyroscopic: bool = True) -> tuple[Complex, Co
     mode = basis @ vector[-n:]
     weight = np.sqrt(np.einsum("ik,ij,jk->k", mode.conj(), mass, mode).real)
     return value, mode / weight
+
+
+def stability_margin(mass: Floats, velocity: Floats, stiffness: Floats) -> float:
+    """Positive while nothing grows, rad²/s²: by K's lowest eigenvalue, or, where K is unsymmetric, by all of them."""
+    if np.abs(stiffness - stiffness.T).max() <= UNSYMMETRIC * np.abs(stiffness).max():
+        return float(symmetric_modes((stiffness + stiffness.T) / 2, (mass + mass.T) / 2)[0][0])
+    value, _ = eigenvalues(mass, velocity, stiffness)
+    return float((growth_limit(value, np.abs(value).max()) - value.real).min())
 
 
 def mac(first: Complex, second: Complex, mass: Floats) -> Floats:
