@@ -288,3 +288,12 @@ def test_a_short_pulse_in_a_long_run_is_not_missed(kind: str) -> None:
     found = run(structure, motion, 6.0, integrator="gauss", tolerance=1e-3)
     near = run(structure, motion, 0.2, start=2.95, step=2e-5, integrator="gauss")
     assert found.peaks.max_size == pytest.approx(near.peaks.max_size, rel=2e-3) and near.peaks.max_size > 1e-5
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("tolerance", -1.0), ("tolerance", 0.0), ("tolerance", np.nan), ("start", np.inf)]
+)
+def test_settings_that_no_run_can_keep_are_refused(name, value):
+    """A tolerance below zero took every step that there may be, and was said to be missed."""
+    with pytest.raises(InputError, match=name):
+        ResponseSettings(duration=1.0, **{name: value})

@@ -74,6 +74,8 @@ class Beam:
         ratios = self.damping_ratio
         if ratios is None or is_jax(ratios):
             return
+        if isinstance(ratios, str):
+            raise InputError("damping_ratio", f"is {ratios!r}", "give a number, or one for each mode")
         if not isinstance(ratios, (int, float)):
             object.__setattr__(self, "damping_ratio", tuple(float(z) for z in ratios))
         for i, ratio in enumerate(np.atleast_1d(np.asarray(ratios, dtype=float))):

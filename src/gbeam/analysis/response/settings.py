@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from gbeam.analysis.response.initial import Initial, begun
 from gbeam.errors import InputError
-from gbeam.guards.checks import positive
+from gbeam.guards.checks import finite, positive
 from gbeam.guards.limits import STEPS, refuse_more
 from gbeam.guards.plausibility import implausible, possible
 
@@ -47,7 +47,7 @@ class ResponseSettings:
     Raises
     ------
     InputError
-        If duration or step is impossible, there are too many steps, or the estimate has no loads.
+        If duration, start, step or tolerance is impossible, there are too many steps, or the estimate has no loads.
     """
 
     duration: float
@@ -64,6 +64,8 @@ class ResponseSettings:
     def __post_init__(self) -> None:
         object.__setattr__(self, "initial", self.begin)
         possible("duration", "duration", positive("duration", self.duration, "s"))
+        positive("tolerance", self.tolerance, "of the largest")
+        finite("start", self.start)
         if self.estimate and not self.loads:
             raise InputError(
                 "loads", "is false, and the error is estimated of them too", "give estimate = False as well"
