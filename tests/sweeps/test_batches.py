@@ -10,8 +10,8 @@ import pytest
 
 import gbeam as gb
 from gbeam.scenario.load import load
-from gbeam.sweeps.batches import may_share, rows, settled
-from gbeam.sweeps.evaluate import Question
+from gbeam.sweeps.computing.batches import may_share, rows, settled
+from gbeam.sweeps.computing.evaluate import Question
 
 LEVEL = "motion.flight.acceleration.z.level"
 MEASURES = ["flight.tip.z.max_abs", "spin.tip.z.max_abs", "verdict.tip", "flight.loads.root_moment.y.max_abs"]

@@ -174,14 +174,14 @@ def test_a_driver_and_a_scheduler_that_are_killed_are_resumed(
         gb.sweep(fast, LENGTHS, {"length": measures.slow}, **arguments, progress=kill)
     assert first < journal.read_bytes().count(b"\n") < 25
     with pytest.raises(InputError, match="does not answer"):
-        monkeypatch.setattr("gbeam.sweeps.cluster.CONNECTION", 0.5)
+        monkeypatch.setattr("gbeam.sweeps.computing.cluster.CONNECTION", 0.5)
         gb.sweep(fast, LENGTHS, {"length": measures.slow}, **arguments)
     found = gb.sweep(fast, LENGTHS, {"length": measures.slow}, store="there", resume=True)
     assert data(found).identical(data(whole))
 
 
 def test_a_scheduler_without_workers(fast: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("gbeam.sweeps.cluster.CONNECTION", 1.0)
+    monkeypatch.setattr("gbeam.sweeps.computing.cluster.CONNECTION", 1.0)
     cluster = ByHand(tmp_path)
     try:
         with pytest.raises(InputError, match="has no workers; start some with: dask worker"):

@@ -29,9 +29,8 @@ def _whole(fast: Path) -> Any:
 
 
 def test_a_killed_sweep_is_resumed(fast: Path, gbeam: Call) -> None:
-    slow = (
-        "import time, gbeam.sweeps.evaluate as e, gbeam.sweeps.sweep as s; from gbeam.cli import main; s._LONGEST = 1\n"
-    )
+    slow = "import time, gbeam.sweeps.computing.evaluate as e, gbeam.sweeps.sweep as s\n"
+    slow += "from gbeam.cli import main\ns._LONGEST = 1\n"
     slow += "row = e.Question.row\ndef later(*a):\n    time.sleep(0.05)\n    return row(*a)\ne.Question.row = later\n"
     slow += f"main(['sweep', {str(fast)!r}, *{ARGUMENTS!r}])"
     process = subprocess.Popen([sys.executable, "-c", slow], stdout=subprocess.DEVNULL)

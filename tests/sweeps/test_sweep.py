@@ -13,7 +13,7 @@ import pytest
 import xarray as xr
 
 import gbeam as gb
-from gbeam.sweeps.measures import find, unit_at, value_at
+from gbeam.sweeps.figures.measures import find, unit_at, value_at
 
 Call = Callable[..., Any]
 ARM = ("--over", "motion.spin.arm=1:2:2")

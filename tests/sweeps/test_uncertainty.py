@@ -13,7 +13,7 @@ from scipy import stats
 
 import gbeam as gb
 from gbeam.sweeps.cases import read_cases
-from gbeam.sweeps.statistics import indices, statistics
+from gbeam.sweeps.figures.statistics import indices, statistics
 
 Call = Callable[..., Any]
 STIFFNESS, LEVEL = "beam.material.youngs_modulus", "motion.flight.acceleration.z.level"

@@ -25,7 +25,7 @@ from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Study
 from gbeam.studies.parameters import PhysicalValue
-from gbeam.sweeps.evaluate import Question
+from gbeam.sweeps.computing.evaluate import Question
 
 # Of a case and its answer, a Study of run or another verb's facts: what is differentiated, (m,).
 Read = Callable[[Case, Any], Floats]

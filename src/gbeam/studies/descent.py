@@ -18,8 +18,8 @@ from gbeam.studies.derivatives import Neighbourhood, Progress
 from gbeam.studies.parameters import PhysicalValue
 from gbeam.studies.sensitivity import facts_of, needed, values_at
 from gbeam.studies.starts import starting_points
-from gbeam.sweeps.evaluate import Question
-from gbeam.sweeps.measures import Keys
+from gbeam.sweeps.computing.evaluate import Question
+from gbeam.sweeps.figures.measures import Keys
 
 _PRECISE, _EVALUATIONS = 1e-7, 40  # of one search
 _FEASIBLE = 1e-4  # of a bound: less is no excess

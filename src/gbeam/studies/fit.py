@@ -21,7 +21,7 @@ from gbeam.studies.least_squares import Fitted, Solution, search_from, tell_apar
 from gbeam.studies.measurement import Measurement, read_measurement
 from gbeam.studies.parameters import PhysicalValue
 from gbeam.studies.starts import agreeing, starting_points
-from gbeam.sweeps.evaluate import Question
+from gbeam.sweeps.computing.evaluate import Question
 
 OPTION = "--free"
 _HARDLY = 0.99  # correlation of two values

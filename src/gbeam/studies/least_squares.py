@@ -15,7 +15,7 @@ from gbeam.results.result import Floats
 from gbeam.studies.derivatives import Neighbourhood, Progress
 from gbeam.studies.measurement import Measurement
 from gbeam.studies.parameters import PhysicalValue
-from gbeam.sweeps.evaluate import Question
+from gbeam.sweeps.computing.evaluate import Question
 
 ALIKE = "not identifiable"  # an outcome
 _ALIKE = 1e-6  # least singular value of the normalised derivatives, of the largest

@@ -23,9 +23,9 @@ from gbeam.studies.derivatives import Neighbourhood, Progress
 from gbeam.studies.descent import Goal, Search
 from gbeam.studies.sensitivity import facts_of, figure, needed, values_at
 from gbeam.studies.starts import agreeing
-from gbeam.sweeps.answers import Facts
-from gbeam.sweeps.evaluate import Question
-from gbeam.sweeps.measures import Keys, unit_at
+from gbeam.sweeps.computing.evaluate import Question
+from gbeam.sweeps.figures.answers import Facts
+from gbeam.sweeps.figures.measures import Keys, unit_at
 
 OPTION, SUBJECT = "--minimise", "--subject-to"
 LIMITS = "limits"

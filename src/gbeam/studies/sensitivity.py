@@ -21,9 +21,9 @@ from gbeam.scenario.values.paths import path_text
 from gbeam.scenario.values.suggest import advise
 from gbeam.studies.derivatives import Neighbourhood, Progress, Slopes
 from gbeam.studies.parameters import PhysicalValue, physical_values
-from gbeam.sweeps.answers import VERBS, Facts, study_facts
-from gbeam.sweeps.evaluate import Question
-from gbeam.sweeps.measures import Keys, find, unit_at, value_at
+from gbeam.sweeps.computing.evaluate import Question
+from gbeam.sweeps.figures.answers import VERBS, Facts, study_facts
+from gbeam.sweeps.figures.measures import Keys, find, unit_at, value_at
 
 OPTION = "--of"
 _SHARE = 0.05  # by which the slopes on either side may differ

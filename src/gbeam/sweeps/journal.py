@@ -18,7 +18,7 @@ from typing import Any, TextIO
 import gbeam
 from gbeam.errors import ComputationError, InputError
 from gbeam.sweeps.cases import Cases
-from gbeam.sweeps.evaluate import Question, Row
+from gbeam.sweeps.computing.evaluate import Question, Row
 
 NAME = "cases.jsonl"
 LOCK = "cases.lock"

@@ -15,9 +15,9 @@ from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.values.kinds import KINDS
 from gbeam.scenario.values.paths import parse_path
 from gbeam.sweeps.cases import Cases
-from gbeam.sweeps.evaluate import Row
+from gbeam.sweeps.computing.evaluate import Row
+from gbeam.sweeps.figures.statistics import indices, statistics
 from gbeam.sweeps.start import Start
-from gbeam.sweeps.statistics import indices, statistics
 
 
 def assembled(title: str, cases: Cases, names: Sequence[str], begun: Start, rows: Iterable[Row], seed: int) -> Sweep:

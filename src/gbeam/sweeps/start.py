@@ -16,12 +16,12 @@ from gbeam.analysis.study.case import Case
 from gbeam.errors import GbeamError, InputError
 from gbeam.scenario.build import build
 from gbeam.scenario.schema.scenario import Scenario
-from gbeam.sweeps.batches import rows as computed
-from gbeam.sweeps.batches import settled, width
 from gbeam.sweeps.cases import Cases
-from gbeam.sweeps.evaluate import NO_FACTS, Question, Row, ended, without_figures
-from gbeam.sweeps.histories import read_history
-from gbeam.sweeps.measures import find, is_truth, unit_at
+from gbeam.sweeps.computing.batches import rows as computed
+from gbeam.sweeps.computing.batches import settled, width
+from gbeam.sweeps.computing.evaluate import NO_FACTS, Question, Row, ended, without_figures
+from gbeam.sweeps.figures.histories import read_history
+from gbeam.sweeps.figures.measures import find, is_truth, unit_at
 
 _FEW = 8  # cases that stand together in the computation that is timed
 TRIED = 20  # cases, all over the sweep, of which one must be possible

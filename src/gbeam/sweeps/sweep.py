@@ -18,17 +18,17 @@ from gbeam.results.studies.sweep import Sweep
 from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
 from gbeam.scenario.values.suggest import advise
-from gbeam.sweeps.answers import VERBS
-from gbeam.sweeps.batches import Task, may_share, width
 from gbeam.sweeps.cases import read_cases
-from gbeam.sweeps.cluster import on_scheduler
-from gbeam.sweeps.evaluate import Function, Question, Row
-from gbeam.sweeps.histories import OPTION as HISTORY
-from gbeam.sweeps.histories import TIMES
+from gbeam.sweeps.computing.batches import Task, may_share, width
+from gbeam.sweeps.computing.cluster import on_scheduler
+from gbeam.sweeps.computing.evaluate import Function, Question, Row
+from gbeam.sweeps.computing.workers import in_processes, processes, serially
+from gbeam.sweeps.figures.answers import VERBS
+from gbeam.sweeps.figures.histories import OPTION as HISTORY
+from gbeam.sweeps.figures.histories import TIMES
 from gbeam.sweeps.journal import Journal, identity, opened
 from gbeam.sweeps.result import assembled
 from gbeam.sweeps.start import NO_HISTORIES, OverTime, go_on, start
-from gbeam.sweeps.workers import in_processes, processes, serially
 
 MANY = 100_000  # cases beyond which a sweep is begun only when that is confirmed
 _BATCH = 0.5  # s: what is lost at most when a process ends, and how often the store is synchronised

@@ -18,9 +18,9 @@ from typing import Any
 
 import gbeam
 from gbeam.errors import ComputationError, InputError
-from gbeam.sweeps.batches import Task, rows
-from gbeam.sweeps.evaluate import Question, Row
-from gbeam.sweeps.workers import AHEAD, died
+from gbeam.sweeps.computing.batches import Task, rows
+from gbeam.sweeps.computing.evaluate import Question, Row
+from gbeam.sweeps.computing.workers import AHEAD, died
 
 CONNECTION = 10.0  # s that a scheduler may take to answer, and its first worker to appear
 PATIENCE = 60.0  # s without any worker, after which a sweep gives up: those that a nanny restarts take a few

@@ -18,8 +18,8 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 
 from gbeam.errors import InputError
-from gbeam.sweeps.batches import Task, rows
-from gbeam.sweeps.evaluate import Question, Row
+from gbeam.sweeps.computing.batches import Task, rows
+from gbeam.sweeps.computing.evaluate import Question, Row
 
 _THREADS = "OPENBLAS_NUM_THREADS"  # of each worker one: those of several wait for one another
 AHEAD = 3  # batches per worker that wait, so that none idles

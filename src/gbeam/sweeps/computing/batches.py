@@ -17,8 +17,8 @@ from gbeam.errors import ComputationError
 from gbeam.mechanics.structure import Structure
 from gbeam.results.response import Response
 from gbeam.results.study import Failure
-from gbeam.sweeps.answers import reduced, study_facts
-from gbeam.sweeps.evaluate import Question, Row, without_figures
+from gbeam.sweeps.computing.evaluate import Question, Row, without_figures
+from gbeam.sweeps.figures.answers import reduced, study_facts
 
 Task = tuple[int, tuple[str, ...]]  # number of the case, and its changes
 Posed = tuple[int, Case, Structure]

@@ -16,9 +16,9 @@ from gbeam.scenario.build import build
 from gbeam.scenario.load import change
 from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.text.source import Source
-from gbeam.sweeps.answers import VERBS, Facts, Needs
-from gbeam.sweeps.histories import History
-from gbeam.sweeps.measures import Keys, value_at
+from gbeam.sweeps.figures.answers import VERBS, Facts, Needs
+from gbeam.sweeps.figures.histories import History
+from gbeam.sweeps.figures.measures import Keys, value_at
 
 Function = Callable[[Case], float]
 NO_FACTS: Facts = {"outcome": "done"}  # where functions measure the case, no verb answers

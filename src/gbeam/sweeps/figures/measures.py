@@ -10,7 +10,7 @@ from typing import Any
 from gbeam.errors import InputError
 from gbeam.scenario.values.paths import path_text
 from gbeam.scenario.values.suggest import closest
-from gbeam.sweeps.answers import Facts
+from gbeam.sweeps.figures.answers import Facts
 
 OPTION = "--measure"
 Keys = tuple[str | int, ...]

@@ -1,0 +1,1 @@
+"""How cases are computed: one, several together, in processes, on a scheduler."""
