@@ -16,6 +16,7 @@ from gbeam.numerics.solvers.oscillations import stability_margin
 Array = Any
 _ITERATIONS, _TRACED = 30, 8  # of Newton's method; where no number says that it has converged
 _LOCATED, _SHORTEST = 1e-4, 1e-6  # strides, shares of the load: within which stability is lost, that are tried
+_NEAR = 1e-6  # of the beam's length: a stride that ends as near to where it started has not left the path
 _NOISE = 1e-8  # of the coordinates: smaller corrections may stand still by rounding
 
 
@@ -82,18 +83,23 @@ def _along_a_path(structure: Structure, base: Base, values: Array | None) -> Equ
     """Newton's method from the straight beam; where one stride fails, along a path of growing load.
 
     A beam that is stable stays so along the path until its stability is lost at one share of the load. Where a stride
-    ends at a beam that is not, Newton's method may have left the path: shorter ones say whether it has.
+    ends at a beam that is not, elsewhere than the path led, Newton's method may have left the path: shorter strides say
+    whether it has.
     """
     straight = np.zeros(structure.size)
     if structure.traced:
         return Equilibrium(_newton(structure, base, values, 1.0, straight)[0], True)
-    q, slope, stable, reached, stride = straight, straight, True, 0.0, 1.0
+    c = structure.coefficients
+    slope = _solved(np, c.stiffness, c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)[2])
+    slope = slope if np.isfinite(slope).all() else straight  # dq/dshare, along which a stride starts
+    q, stable, reached, stride = straight, True, 0.0, 1.0
     while reached < 1.0:
         attempt = min(reached + stride, 1.0)
-        moved, stiffness, ok = _newton(structure, base, values, attempt, q + (attempt - reached) * slope)
+        ahead = q + (attempt - reached) * slope
+        moved, stiffness, ok = _newton(structure, base, values, attempt, ahead)
         definite = ok and positive_definite(stiffness)
-        if definite or (ok and (not stable or stride < _LOCATED)):
-            slope = (moved - q) / (attempt - reached)  # along which the next stride starts
+        if definite or (ok and (not stable or stride < _LOCATED or _near(structure, moved, ahead))):
+            slope = (moved - q) / (attempt - reached)
             q, stable, reached, stride = moved, definite, attempt, 2 * stride
             continue
         stride /= 4
@@ -104,6 +110,11 @@ def _along_a_path(structure: Structure, base: Base, values: Array | None) -> Equ
                 f"the rate is {_rate(base):.4g} rad/s",
             )
     return Equilibrium(q, stable if values is None else keeps(structure, base, values, q))
+
+
+def _near(structure: Structure, q: Array, other: Array) -> bool:
+    apart = structure.displacement(q) - structure.displacement(other)
+    return bool(np.abs(apart).max() < _NEAR * structure.length)
 
 
 def keeps(structure: Structure, base: Base, values: Array | None, q: Array) -> bool:
