@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.fields.rotation import Field, Strains
@@ -35,7 +37,21 @@ class Inertia:
         if self.offset is None:
             return r
         xp = namespace(r, self.offset)
-        return r + xp.einsum("...kij,kj->...ki", self.field.rotation(q), self.offset)
+        if xp is not np:
+            return r + xp.einsum("...kij,kj->...ki", self.field.rotation(q), self.offset)
+        off = self.off_axis  # few: the sections of the others need not turn
+        r[..., off, :] += self.arms(q, off)
+        return r
+
+    @property
+    def off_axis(self) -> Array:
+        """Indices of the particles off the axis."""
+        return np.flatnonzero(np.any(self.offset != 0, axis=1))
+
+    def arms(self, q: Array, at: Array) -> Array:
+        """From the axis to some particles at coordinates (..., n), base axes, (..., len(at), 3) m."""
+        offset: Any = self.offset
+        return np.einsum("...kij,kj->...ki", self.field.rotation(q, at), offset[at])
 
     def places(self) -> Places:
         """Taylor polynomial of the positions at the straight beam."""

@@ -6,6 +6,7 @@ q + iτ q̇ − ½ τ² q̈ that is the path itself at the imaginary time iτ: r
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -68,16 +69,8 @@ def inertia_forces(inertia: Inertia, q: Array, force: Array) -> Array:
     """Generalised forces (t, n) of forces (t, k, 3) on the particles."""
     if inertia.offset is None:
         return along_places(inertia.field, q, force)
-    total = along_places(inertia.field, q, force)
-    off = np.flatnonzero(np.any(inertia.offset != 0, axis=1))
-    if off.size:
-        offset, field = inertia.offset[off], inertia.field
-
-        def arms(q: Any) -> Any:
-            return np.einsum("...kij,kj->...ki", field.rotation(q, off), offset)
-
-        total = total + pulled_back(arms, q, force[:, off])
-    return total
+    total, off = along_places(inertia.field, q, force), inertia.off_axis
+    return total + pulled_back(partial(inertia.arms, at=off), q, force[:, off]) if off.size else total
 
 
 def elastic_forces(elasticity: Elasticity, q: Array, stiffness: Array) -> Array:
