@@ -65,13 +65,17 @@ def main() -> None:
 
     print(f"two copies at once: {ceiling(cases):.2f} times the cases per second of one", flush=True)
     seconds(2, measure)
+    rates: dict[str, tuple[float, float]] = {}
+
+    def timed(name: str, **options: Any) -> None:
+        short, whole = seconds(few, measure, **options), seconds(cases, measure, **options)
+        rates[name] = whole, (whole - short) / (cases - few)
+
+    timed("one process")
+    timed("--workers 2", workers=2)
+    # Started when the others are measured: its processes are never quite idle.
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster:
-        address = cluster.scheduler_address
-        ways = {"one process": {}, "--workers 2": {"workers": 2}, "--scheduler": {"scheduler": address}}
-        rates: dict[str, tuple[float, float]] = {}
-        for name, options in ways.items():
-            short, whole = seconds(few, measure, **options), seconds(cases, measure, **options)
-            rates[name] = whole, (whole - short) / (cases - few)
+        timed("--scheduler", scheduler=cluster.scheduler_address)
     print(f"{cases} cases    wall, s  ratio    s per case more  ratio")
     one, each_one = rates["one process"]
     for name, (whole, each) in rates.items():

@@ -14,6 +14,7 @@ os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 from cyclopts import App, CycloptsError
 
 import gbeam
+from gbeam.arrays.memory import keep_memory
 from gbeam.cli import invocation
 from gbeam.cli.terminal.failures import report, report_defect, report_memory, report_syntax
 from gbeam.errors import GbeamError
@@ -63,6 +64,7 @@ def run(tokens: list[str]) -> int:
         If a file or a stream cannot be read or written.
     """
     as_json = "--json" in tokens
+    keep_memory()
     invocation.begin(tokens)
     try:
         status = _app(tokens[0] if tokens else "")(

@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import gbeam
+from gbeam.arrays.memory import keep_memory
 from gbeam.errors import ComputationError, InputError
 from gbeam.sweeps.computing.batches import Task, rows
 from gbeam.sweeps.computing.evaluate import Question, Row
@@ -39,6 +40,7 @@ def compute(version: str, question: Question, batch: Sequence[Task]) -> list[Row
         from distributed import get_worker
 
         raise OtherVersion(get_worker().address, gbeam.__version__)
+    keep_memory()
     return rows(question, batch)
 
 

@@ -17,6 +17,7 @@ from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wai
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 
+from gbeam.arrays.memory import keep_memory
 from gbeam.errors import InputError
 from gbeam.sweeps.computing.batches import Task, rows
 from gbeam.sweeps.computing.evaluate import Question, Row
@@ -98,11 +99,12 @@ def _pool(workers: int) -> ProcessPoolExecutor:
     method = "forkserver" if sys.platform == "linux" else "spawn"
     if method == "forkserver":
         multiprocessing.set_forkserver_preload([__name__])
-    return ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context(method), initializer=_end_with_driver)
+    return ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context(method), initializer=_begin)
 
 
-def _end_with_driver() -> None:
-    """End this process with the one that it computes for, even if that is killed."""
+def _begin() -> None:
+    """Make this process a worker: it ends with the one that it computes for, even if that is killed."""
+    keep_memory()
     driver = multiprocessing.parent_process()
     assert driver is not None
 
