@@ -86,7 +86,7 @@ def balanced_truncation(system: StateSpace, order: int) -> tuple[StateSpace, Flo
     Returns
     -------
     StateSpace, (k,) Hankel singular values of the decaying part
-        Its :class:`Truncation` has the bound of the error: twice the sum of the values left out.
+        Its `truncation` has the bound of the error: twice the sum of the values left out.
 
     Raises
     ------
