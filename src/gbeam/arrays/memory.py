@@ -7,10 +7,8 @@ import sys
 from functools import cache
 
 _TRIM, _MMAP = -1, -3  # M_TRIM_THRESHOLD and M_MMAP_THRESHOLD of mallopt(3)
-_KEPT, _LARGEST = (
-    2**27,
-    2**25,
-)  # bytes: kept, and of one array that is made from what is kept, the most that glibc takes
+_KEPT = 2**27  # bytes that are kept
+_LARGEST = 2**25  # bytes of an array that is made from what is kept: the most that glibc takes
 
 
 @cache

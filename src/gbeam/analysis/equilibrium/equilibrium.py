@@ -10,7 +10,7 @@ from gbeam.arrays.namespace import is_traced, namespace
 from gbeam.errors import ComputationError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
-from gbeam.numerics.solvers.eigen import positive_definite, symmetric_modes
+from gbeam.numerics.solvers.eigen import positive_definite
 from gbeam.numerics.solvers.oscillations import stability_margin
 
 Array = Any
@@ -25,15 +25,6 @@ class Equilibrium(NamedTuple):
 
     q: Array
     stable: bool
-
-
-def lowest_stiffness(mass: Array, stiffness: Array) -> tuple[float, Array]:
-    """Lowest eigenvalue of the symmetric part of K in the measure of M, rad²/s², and its mode (n,).
-
-    The antisymmetric part, from an angular acceleration, stores no energy and is left out.
-    """
-    value, mode = symmetric_modes((stiffness + stiffness.T) / 2, (mass + mass.T) / 2)
-    return float(value[0]), mode[:, 0]
 
 
 def solve_equilibrium(structure: Structure, base: Base, time: float | None = None) -> Equilibrium:

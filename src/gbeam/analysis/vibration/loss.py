@@ -6,13 +6,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from gbeam.analysis.equilibrium.equilibrium import lowest_stiffness
 from gbeam.analysis.equilibrium.point import OperatingPoint, linear_matrices, on_base
 from gbeam.analysis.vibration.modal import directions, modes_at
 from gbeam.errors import ComputationError
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
+from gbeam.numerics.solvers.eigen import symmetric_modes
 from gbeam.numerics.solvers.oscillations import stability_margin
 from gbeam.numerics.solvers.roots import brent
 from gbeam.results.steady.stability import Critical
@@ -75,7 +75,8 @@ def first_loss_along(
         kind, direction = (grown[0].kind, grown[0].direction) if grown else ("divergence", "")
     if kind == "divergence":
         linear = linear_matrices(point)
-        _, mode = lowest_stiffness(linear.mass, linear.stiffness)
-        direction = directions(structure, point, mode[:, None])[0]
+        parts = ((each + each.T) / 2 for each in (linear.stiffness, linear.mass))  # the rest stores no energy
+        lowest = symmetric_modes(*parts)[1][:, :1]
+        direction = directions(structure, point, lowest)[0]
     along = f" along {direction}" if direction else ""
     return answer(root, kind, direction, f"{structure.kind}: {kind}{along} at {root:.6g} {unit}")
