@@ -23,8 +23,10 @@ from gbeam.report.page.document import html as page_of
 from gbeam.report.page.result import report_of, report_of_file
 from gbeam.report.words import as_json
 from gbeam.results.parts.outline import Outline
+from gbeam.results.result import Result
 from gbeam.results.study import Study
 
+BEAM = gb.Beam(0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9), damping_ratio=0.01)
 NASTY = "</script><script>alert(1)</script> <b>&\" '\u202e\x1b[31m"
 
 
@@ -71,8 +73,7 @@ def test_page_of_a_file_is_that_of_the_result(study: Study, tmp_path: Path) -> N
 
 
 def test_page_of_json_is_that_of_the_result(tmp_path: Path) -> None:
-    beam = gb.Beam(0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9), damping_ratio=0.01)
-    modes = gb.modes(gb.assemble(beam, "FOAM", z=3))
+    modes = gb.modes(gb.assemble(BEAM, "FOAM", z=3))
     found = facts(modes)
     assert found is not None
     (tmp_path / "modes.json").write_text(as_json(found))
@@ -95,8 +96,42 @@ def test_no_report_without_a_result(tmp_path: Path) -> None:
         report_of_file(tmp_path)
     with pytest.raises(InputError, match="no file"):
         report_of_file(tmp_path / "none.nc")
-    with pytest.raises(InputError, match="no report"):
-        report_of(gb.static(gb.assemble(gb.Beam(0.3, gb.Section.circle(0.01), gb.Material(2700, 7e10)), "FOAM", z=1)))
+    with pytest.raises(InputError, match="StateSpace has no report"):
+        report_of(gb.linearize(gb.assemble(BEAM, "FOAM", y=1), gb.Hub(radius=0.5)))
+
+
+@pytest.mark.parametrize("name", ["static", "critical", "load", "buckling", "map", "plan"])
+def test_page_of_a_result_alone_is_that_of_its_file(name: str, tmp_path: Path) -> None:
+    model = gb.Model("TLAM", y=2, z=2)
+    structure, hub = gb.assemble(BEAM, "TLAM", y=2, z=2), gb.Hub(radius=0.5)
+    pushed = gb.assemble(replace(BEAM, loads=(gb.Load(0.3, force=(-1.0, 0.0, 0.0)),)), "FOAM", y=2, z=2)
+    machine = gb.Centrifuge(gb.Flight(z=20.0), arm=3.3, control_point=0.2, span=(0.0, 0.5))
+    result: Result
+    match name:  # with a number that its page has to say
+        case "static":
+            result = gb.static(structure, acceleration=(0, 0, 78.5))
+            said = 1e3 * result.tip[2]
+        case "critical":
+            result = gb.critical_speed(structure, hub)
+            said = result.value or 0.0
+        case "load":
+            result = gb.critical_load(pushed)
+            said = result.value or 0.0
+        case "buckling":
+            result = gb.buckling_acceleration(structure, upper=1.0)
+            said = 1.0  # the end of the search
+        case "map":
+            result = gb.critical_speed_map(BEAM, model, hub, [0.1], [0.1, 0.3])
+            said = float(result.speed[0, 1])
+        case _:
+            result = gb.plan("", machine)
+            said = result.axes.limits[0].used
+    result.report(tmp_path / "page.html")
+    page = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert f"{said:#.4g}" in re.sub(r"<script.*", "", page, flags=re.DOTALL)
+    assert bool(header_of(page)["plots"]) == (name in ("static", "map", "plan"))
+    result.save(tmp_path / "result.nc")
+    assert report_of_file(tmp_path) == page
 
 
 def test_scene_has_the_motions_with_an_outline(study: Study) -> None:

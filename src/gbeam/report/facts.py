@@ -3,22 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
-from gbeam.report.machine import placement
-from gbeam.report.steady import campbell, modes
+from gbeam.report.machine import placement, plan
+from gbeam.report.steady import campbell, critical, deflection, modes
 from gbeam.report.studies import sweep
 from gbeam.report.study import summary_json
 from gbeam.report.words import as_json
 from gbeam.results.imitation.placement import Placement
+from gbeam.results.machine import MachinePlan
 from gbeam.results.response import Response
 from gbeam.results.result import Result
+from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.steady.modal import Campbell, Modes
+from gbeam.results.steady.stability import Critical, CriticalMap
 from gbeam.results.studies.sweep import Sweep
 from gbeam.results.study import Study
 
 _JSON: dict[type, Callable[[Any], dict[str, Any]]] = {
     Study: summary_json.to_json,
+    Deflection: lambda result: deflection.to_json("", [result]),
+    MachinePlan: lambda result: plan.to_json("", [result]),
+    Critical: critical.to_json,
+    CriticalMap: critical.map_json,
     Modes: modes.to_json,
     Campbell: campbell.to_json,
     Placement: placement.to_json,
@@ -27,11 +35,17 @@ _JSON: dict[type, Callable[[Any], dict[str, Any]]] = {
 
 
 def whole(result: Result) -> Result:
-    """The same result, a response alone as a study of one."""
-    if not isinstance(result, Response):
-        return result
-    name = result.name or result.environment
-    return Study("", {name: result}, (), warnings=(), provenance=result.provenance)
+    """The same result, a response alone as a study of one; what is listed by its motion has a name."""
+    match result:
+        case Response():
+            name = result.name or result.environment
+            return Study("", {name: result}, (), warnings=(), provenance=result.provenance)
+        case Deflection(motion=""):
+            return replace(result, motion="beam")
+        case MachinePlan(name=""):
+            return replace(result, name="centrifuge")
+        case _:
+            return result
 
 
 def facts(result: Result) -> dict[str, Any] | None:

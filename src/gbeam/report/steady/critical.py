@@ -11,24 +11,20 @@ import numpy as np
 from gbeam.report.words import error_words, percent, warning_lines
 from gbeam.results.steady.stability import Critical, CriticalMap
 
-KEYS = {"rate": "critical_speed", "loads": "critical_load_factor", "acceleration": "critical_acceleration"}
+# By what was raised.
+KEYS = {
+    "hub rate": "critical_speed",
+    "load factor": "critical_load_factor",
+    "acceleration along x": "critical_acceleration",
+}
 
 
-def to_json(critical: Critical, motion: str, varied: str = "rate") -> dict[str, Any]:
-    """Critical value as JSON; rad/s, m/s² or a factor, null where there is none.
-
-    Parameters
-    ----------
-    critical : Critical
-    motion : str
-        Name of the motion.
-    varied : str
-        What was varied: rate, loads or acceleration.
-    """
+def to_json(critical: Critical, motion: str = "") -> dict[str, Any]:
+    """Critical value as JSON; rad/s, m/s² or a factor, null where there is none; with the name of the motion."""
     return {
         "outcome": "done",
         "motion": motion,
-        KEYS[varied]: critical.value,
+        KEYS[critical.quantity]: critical.value,
         "quantity": critical.quantity,
         "unit": critical.unit,
         "searched_to": critical.searched_to,

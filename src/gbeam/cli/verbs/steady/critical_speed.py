@@ -59,7 +59,7 @@ def critical_speed(
             critical = stability.critical_load(structure, held_base(chosen, time), upper=upper)
         else:
             critical = stability.buckling_acceleration(structure, upper=upper)
-    facts = given.signed(words.to_json(critical, name, vary))
+    facts = given.signed(words.to_json(critical, name))
     write(folder, "critical_speed", facts, report=report)
     show(words.text(critical, name), facts, json)
     return 0

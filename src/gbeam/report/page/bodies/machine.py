@@ -17,6 +17,8 @@ Facts = Mapping[str, Any]
 def plan_body(facts: Facts, variables: Mapping[str, Any], _: Numbers, plots: Plots, header: dict[str, Any]) -> str:
     """What the axes do, what that uses of the limits, and where the load is not followed."""
     parts = []
+    if "time" in variables:  # of the file of one plan
+        variables = {f"motions/{name}/{key}": each for name in facts["motions"] for key, each in variables.items()}
     for name, each in facts["motions"].items():
         if each["outcome"] != "done":
             parts.append(paragraph(f"motion {name} {each['outcome']}: {each['message']}", "bad"))

@@ -87,7 +87,8 @@ def critical_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: P
         ["model", Cell(facts["model"])],
         ["estimated error", Cell(words.percent(known(facts["error_estimate"])))],
     ]
-    return paragraph(f"motion {facts['motion']}: {facts['reason']}", "verdict") + table(("", ""), rows)
+    motion = f"motion {facts['motion']}: " if facts["motion"] else ""
+    return paragraph(f"{motion}{facts['reason']}", "verdict") + table(("", ""), rows)
 
 
 def critical_map_body(
