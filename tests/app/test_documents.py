@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from gbeam.app.verbs import VERBS, arguments
+from gbeam.cli.program import VERBS as PROGRAM
 from gbeam.cli.program import parsed
 
 from ..calling import Answer
@@ -239,6 +240,7 @@ def test_a_case_of_a_sweep_is_run_once(site: Site) -> None:
         ("modes", ["gyroscopic=perhaps"]),
         ("modes", ["motion=\x1b[31m"]),
         ("optimize", ["write=x.toml"]),
+        ("place", ["write", "write"]),
         ("modes", ["x" * 2000]),
     ],
 )
@@ -270,12 +272,23 @@ def test_a_fit_reads_a_file_that_was_dropped(site: Site) -> None:
 def test_options_are_the_command_lines(verb: str) -> None:
     data = tomllib.loads(FAST)
     needed = {"optimize": "minimise=tip", "fit": "data=a.csv", "sweep": "over=beam.length=1 m"}.get(verb, "")
+    reached = set()
     for option in VERBS[verb].options:
         for value in option.choices or [option.example or "flight"]:
             other = [needed] if needed and not needed.startswith(f"{option.name}=") else []
-            given = arguments(verb, [f"{option.name}={value}", *other], data)
+            given = arguments(verb, [option.name if option.ticked else f"{option.name}={value}", *other], data)
             function, bound = parsed([verb, "x.toml", *given])
             assert function.__name__ == verb.replace("-", "_")
-            assert value in repr(bound.arguments) or value in ("true", "false")
+            assert value in repr(bound.arguments) or option.ticked
+            reached |= {*bound.arguments}
     function, _ = parsed([verb, "x.toml", *([f"--{needed}"] if needed else [])])
     assert VERBS[verb].report == ("report" in inspect.signature(function).parameters)
+    # None of the command line's is missing, but for those about where it writes and on which machines it runs.
+    assert {*inspect.signature(function).parameters} - reached <= {
+        "scenario", "overrides", "out", "json", "report", "times", "scheduler", "resume", "yes",
+    }  # fmt: skip
+
+
+def test_every_verb_of_a_scenario_is_on_the_page() -> None:
+    apart = {"app", "new", "check", "schema", "report", "rerun"}  # of the page itself, or of no scenario
+    assert {*PROGRAM} - {*VERBS} == apart and {*VERBS} <= {*PROGRAM}

@@ -7,6 +7,7 @@ import json
 import subprocess
 import sys
 import time
+import tomllib
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 
@@ -72,17 +73,36 @@ def test_files_of_a_run_are_known_kinds_in_its_folder(tmp_path: Path) -> None:
     number = jobs.submit(FAST, "a", [], "fit")
     out = tmp_path / number / "out"
     out.mkdir()
-    for name in ("fit.nc", "fit.png", "fit.svg", "fit.json"):
+    for name in ("fit.nc", "fit.png", "fit.svg", "fit.json", "command.json"):
         (out / name).write_text(name)
     (out / "link.nc").symlink_to(tmp_path / "elsewhere.nc")
     (out / "folder.nc").mkdir()
-    assert set(jobs.state(number)["files"]) == {"scenario.toml", "fit.nc", "fit.png"}
+    assert set(jobs.state(number)["files"]) == {"scenario.toml", "fit.nc", "fit.png", "command.json"}
     (out / "fit.html").write_text("whatever the verb is called")
-    assert set(jobs.state(number)["files"]) == {"scenario.toml", "fit.nc", "report.html"}
+    assert set(jobs.state(number)["files"]) == {"scenario.toml", "fit.nc", "report.html", "command.json"}
     assert jobs.file(number, "report.html") == out / "fit.html"
     for name in ("link.nc", "folder.nc", "fit.svg", "state.json", "../scenario.toml", "fit.html"):
         with pytest.raises(InputError):
             jobs.file(number, name)
+
+
+def test_a_scenario_that_a_verb_writes_into_stays_as_it_came_beside_what_it_becomes(tmp_path: Path) -> None:
+    text = FAST.replace('inverse = "flat"', 'inverse = "flat"  # kept')
+    numbers = []
+
+    async def act(jobs: Jobs) -> None:
+        for arguments in (["--no-proof", "--write"], ["--no-proof"]):
+            numbers.append(jobs.submit(text, "", [], "place", arguments))
+            assert await _until(jobs, numbers[-1], "done", "failed", "refused", "ended") == "done"
+
+    _with(tmp_path, act)
+    jobs = Jobs(tmp_path)
+    first, second = numbers
+    assert jobs.file(first, "scenario.toml").read_text() == jobs.file(second, "scenario.toml").read_text() == text
+    placed = jobs.file(first, "placed.toml").read_text()
+    before, after = (tomllib.loads(each)["motion"].pop("spin") for each in (text, placed))
+    assert after["control_point"] != before["control_point"] and {"arm"} <= {*before} <= {*after}
+    assert "placed.toml" not in jobs.state(second)["files"]
 
 
 @POSIX

@@ -25,8 +25,17 @@ MEMORY = 16 * 2**30  # bytes of address space, of which compiled programs reserv
 SECONDS = 3600  # of processor time, and of time altogether
 QUEUED = 100
 _STATE, _LOG, _ANSWER, _WORDS = "state.json", "progress.txt", "answer.json", "words.txt"
+_SCENARIO = "scenario.toml"
+_BEFORE = ".before"  # has the scenario as it came, of a verb that writes into it
 # What may be downloaded, by its name there, and where it is; besides, of what the verb writes, files of these kinds.
-DOWNLOADS = {"scenario.toml": "scenario.toml", _ANSWER: _ANSWER, _WORDS: _WORDS, "messages.txt": _LOG}
+DOWNLOADS = {
+    _SCENARIO: _SCENARIO,
+    _ANSWER: _ANSWER,
+    _WORDS: _WORDS,
+    "messages.txt": _LOG,
+    "found.toml": "found.toml",
+    "command.json": "out/command.json",
+}
 KINDS = (".nc", ".csv", ".mat")
 
 
@@ -92,7 +101,10 @@ class Jobs:
         place.mkdir(parents=True)
         for record in records:
             shutil.copyfile(record, place / record.name, follow_symlinks=False)
-        (place / "scenario.toml").write_text(text, encoding="utf-8")  # whatever the records are called
+        (place / _SCENARIO).write_text(text, encoding="utf-8")  # whatever the records are called
+        if "--write" in arguments:
+            (place / _BEFORE).mkdir()
+            (place / _BEFORE / _SCENARIO).write_text(text, encoding="utf-8")
         self._note(number, state="queued", title=title, verb=verb, case=case, arguments=list(arguments))
         self._queue.put_nowait(number)
         return number
@@ -194,7 +206,7 @@ class Jobs:
 def _command(state: Mapping[str, Any]) -> list[str]:
     """A verb with its result as a report and as JSON; in words where it has no report."""
     result = ["--report", "--json"] if VERBS[state["verb"]].report else []
-    arguments = [state["verb"], "scenario.toml", *state["arguments"], "--out", "out", *result]
+    arguments = [state["verb"], _SCENARIO, *state["arguments"], "--out", "out", *result]
     return [sys.executable, "-m", "gbeam.app.limited", str(MEMORY), str(SECONDS), *arguments]
 
 
@@ -205,6 +217,10 @@ def _stdout(command: Sequence[str]) -> str:
 def _files(place: Path) -> dict[str, Path]:
     """The files of a run by the names under which they are downloaded; its report has one name whatever the verb."""
     fixed = {name: place / inside for name, inside in DOWNLOADS.items() if (place / inside).is_file()}
+    before = place / _BEFORE / _SCENARIO
+    if before.is_file():
+        changed = before.read_bytes() != fixed[_SCENARIO].read_bytes()
+        fixed |= {_SCENARIO: before} | ({"placed.toml": fixed[_SCENARIO]} if changed else {})
     out = place / "out"
     written = {name: out / name for name in names(out)}
     report = next((file for name, file in written.items() if name.endswith(".html")), None)

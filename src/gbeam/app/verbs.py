@@ -31,6 +31,8 @@ class Option:
     of : str
         What it names: a ``motion``, a ``record`` that is kept, or, before "=", a value of the scenario that varies,
         ``values``.
+    ticked : str
+        What the command line has where it is chosen, of an option that has no value to give.
     """
 
     name: str
@@ -39,6 +41,7 @@ class Option:
     choices: tuple[str, ...] = ()
     many: int = 1
     of: str = ""
+    ticked: str = ""
 
 
 @dataclass(frozen=True)
@@ -53,11 +56,18 @@ class Verb:
 _MOTION = Option("motion", "which motion; may be left out where only one can answer", of="motion")
 _AT = Option("at", "time at which the motion is frozen; the start where left out", "2 s")
 _MEASURE = Option("measure", "figures of the result", "tip.size.max_abs")
+_BOUNDS = Option("bounds", "of a value", "beam.damping_ratio=0.1 %:5 %", many=2)
+_STARTS = Option("starts", "searches: one from the scenario's values, the others spread over the bounds", "5")
+_WRITE = Option("write", "make a scenario with the values found", ticked="--write=found.toml")
+_LIMITS = Option("ignore-limits", "done though a machine's limit is exceeded", ticked="--ignore-limits")
+_WHOSE = Option(
+    "verb", "whose figures; of run where left out", choices=("run", "static", "modes", "critical-speed", "plan")
+)
 VERBS = {
-    "run": Verb("the response in every motion, and how they compare"),
+    "run": Verb("the response in every motion, and how they compare", (_LIMITS,)),
     "modes": Verb(
         "frequencies, damping and shapes at one time of a motion",
-        (_MOTION, _AT, Option("gyroscopic", "whether Coriolis coupling is kept", choices=("true", "false"))),
+        (_MOTION, _AT, Option("no-gyroscopic", "leave out Coriolis coupling", ticked="--no-gyroscopic")),
     ),
     "static": Verb("where the beam rests at one time of the motions", (_MOTION, _AT)),
     "campbell": Verb(
@@ -77,10 +87,13 @@ VERBS = {
             Option("vary", "what is raised", choices=("rate", "loads", "acceleration")),
             _AT,
             Option("to", "end of the search", "20 rad/s"),
+            Option("masses", "a map instead, with one more mass", "0.1 kg, 0.5 kg"),
+            Option("positions", "where that mass sits; all along where left out", "2 m, 5 m, 8 m"),
         ),
     ),
     "plan": Verb(
-        "the machine's axis motions, without a beam", (Option("sample", "sample time of the commands", "5 ms"),)
+        "the machine's axis motions, without a beam",
+        (Option("sample", "sample time of the commands", "5 ms"), _LIMITS),
     ),
     "place": Verb(
         "the control point, mounting and smoothing that change the response least",
@@ -88,6 +101,9 @@ VERBS = {
             Option("measure", "root-shear, root-moment, vibration or tip, or a weighted sum", "tip=1, root-moment=0.5"),
             _MOTION,
             Option("smoothing", "width of the kernel to keep; twice, the ends of the search", "60 ms", many=2),
+            Option("no-proof", "without a check by simulation", ticked="--no-proof"),
+            _LIMITS,
+            Option("write", "make the scenario with the answer", ticked="--write"),
         ),
     ),
     "sweep": Verb(
@@ -95,7 +111,15 @@ VERBS = {
         (
             Option("over", "what varies: values or a range", "beam.length=250 mm:350 mm:5", many=2, of="values"),
             _MEASURE,
+            Option("verb", _WHOSE.help, choices=(*_WHOSE.choices, "place")),
+            _MOTION,
+            _AT,
             Option("samples", "how many are drawn from distributions", "64"),
+            Option("sampler", "how they are drawn", choices=("sobol", "latin", "random", "saltelli")),
+            Option("seed", "the same draws the same samples", "1"),
+            Option("workers", "processes", "2"),
+            Option("history", "of a motion, a quantity and an axis", "flight.tip.z"),
+            Option("netcdf", "sweep.nc, to download", ticked="--netcdf"),
         ),
     ),
     "sensitivity": Verb(
@@ -103,7 +127,7 @@ VERBS = {
         (
             Option("of", "figures", "tip.z.max_abs"),
             Option("with", "only these values", "beam.length, beam.damping_ratio"),
-            Option("verb", "whose figures", choices=("run", "static", "modes", "critical-speed")),
+            _WHOSE,
             _MOTION,
             _AT,
         ),
@@ -115,9 +139,12 @@ VERBS = {
             Option("minimise", "the figure", "tip.y.residual_amplitude"),
             Option("over", "values to choose", "motion.centrifuge.control_point"),
             Option("subject-to", '"limits", or a bound on a figure', "tip.z.max_abs <= 2 mm", many=2),
-            Option("bounds", "of a value", "beam.damping_ratio=0.1 %:5 %", many=2),
+            _BOUNDS,
+            _WHOSE,
             _MOTION,
             _AT,
+            _STARTS,
+            _WRITE,
         ),
         report=False,
     ),
@@ -126,9 +153,24 @@ VERBS = {
         (
             Option("data", "a file that was dropped on the page, with measured columns", "measured.csv", of="record"),
             Option("free", "values to find", "beam.damping_ratio, beam.material.youngs_modulus"),
-            Option("bounds", "of a value", "beam.damping_ratio=0.1 %:5 %", many=2),
+            _BOUNDS,
             _MOTION,
             _AT,
+            _STARTS,
+            _WRITE,
+        ),
+        report=False,
+    ),
+    "shape": Verb(
+        "the rate or torque of a hub that leaves the least vibration, and the scenario with it",
+        (
+            Option("angle", "to turn by from rest to rest; or rate", "1 rad"),
+            Option("rate", "to reach from rest; or angle", "3 rad/s"),
+            Option("duration", "of the command; the scenario's own where left out", "6 s"),
+            Option("limit", "on the torque, or on the angular acceleration of a hub without one", "45 N m"),
+            Option("robust", "share by which all frequencies may be wrong", "20 %"),
+            Option("check", "model that the commands are run on", choices=("TLAM", "FOAM", "SFOAM", "CFOAM", "exact")),
+            _MOTION,
         ),
         report=False,
     ),
@@ -140,6 +182,10 @@ VERBS = {
             _AT,
             Option("rate", "a hub's steady rate in place of a time", "2 rad/s"),
             Option("modes", "keep so many of the slowest modes", "4"),
+            Option("balanced", "keep so many states by balanced truncation", "6"),
+            Option("inputs", "only these", "torque"),
+            Option("outputs", "only these", "tip_y, hub_angle"),
+            Option("strain-at", "strain of the faces at a station", "10 mm", many=2),
         ),
         report=False,
     ),
@@ -158,7 +204,7 @@ def arguments(verb: str, options: Sequence[str], data: Mapping[str, Any]) -> lis
     ----------
     verb : str
     options : sequence of str
-        ``NAME=VALUE`` each.
+        ``NAME=VALUE`` each, NAME alone of what is ticked.
     data : mapping
         The parsed scenario.
 
@@ -182,6 +228,11 @@ def arguments(verb: str, options: Sequence[str], data: Mapping[str, Any]) -> lis
         counts[name] = counts.get(name, 0) + 1
         if counts[name] > option.many:
             raise InputError(name, f"is given {counts[name]} times", f"give it {option.many} times at most")
+        if option.ticked:
+            if value:
+                raise InputError(name, f"is {value[:100]!r}", "give it without a value")
+            made.append(option.ticked)
+            continue
         if not value.strip() or value.startswith("--") or unprintable(value):
             raise InputError(name, "holds nothing that can be read", PLAIN)
         if option.choices and value not in option.choices:

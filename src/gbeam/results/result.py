@@ -119,8 +119,8 @@ class Result:
         Raises
         ------
         InputError
-            If a result of this kind has no report; those of a study, a response, a deflection, modes, a Campbell diagram,
-            a critical value, a map of them, a plan, a placement and a sweep have.
+            If a result of this kind has no report; those of a study, a response, a deflection, modes, a Campbell
+            diagram, a critical value, a map of them, a plan, a placement and a sweep have.
         OSError
             If it cannot be written.
         """

@@ -44,6 +44,8 @@ export interface Option {
   choices: string[];
   many: number;
   of: string;
+  /** Of the command line, of an option without a value. */
+  ticked: string;
 }
 
 export interface Verb {
@@ -56,6 +58,7 @@ export interface Run {
   id: string;
   state: string;
   verb: string;
+  arguments: string[];
   title: string;
   progress: string;
   files: string[];

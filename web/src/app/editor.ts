@@ -132,7 +132,7 @@ export class Editor {
   private save(): void {
     const link = element("a");
     link.href = URL.createObjectURL(new Blob([this.document.text], { type: "text/plain" }));
-    link.download = "scenario.toml";
+    link.download = this.document.text.trimStart().startsWith("{") ? "scenario.json" : "scenario.toml";
     link.click();
     URL.revokeObjectURL(link.href);
   }

@@ -6,6 +6,8 @@ import { api, type Run } from "./api";
 import { sweepMap } from "./sweeps";
 
 const ACTIVE = ["queued", "running"];
+/** Scenarios that verbs make. */
+const MADE = ["placed.toml", "found.toml", "command.json"];
 const OFTEN = 700; // ms, while something runs
 const SELDOM = 5000;
 
@@ -102,8 +104,11 @@ export class Runs {
       return;
     }
     const links = element("div", "gbeam-row");
+    const use = (text: string, name: string): HTMLElement =>
+      button(text, () => void api.text(run.id, name).then((made) => this.reuse(made)));
     links.append(
-      button("Use this scenario", () => void api.text(run.id, "scenario.toml").then((text) => this.reuse(text))),
+      use("Use this scenario", "scenario.toml"),
+      ...run.files.filter((each) => MADE.includes(each)).map((name) => use(`Open ${name}`, name)),
       ...run.files.flatMap((name) => (name === "result.nc" ? [name, "histories.csv"] : [name])).map((name) => {
         const link = element("a", "", name);
         link.href = api.file(run.id, name);
@@ -117,7 +122,7 @@ export class Runs {
       this.shown.append(element("pre", "bad", await api.text(run.id, "messages.txt")));
     }
     if (run.verb === "sweep" && run.state === "done") {
-      this.shown.append(await sweepMap(run.id, (id) => void this.watch(id)));
+      this.shown.append(await sweepMap(run, (id) => void this.watch(id)));
     }
     if (run.files.includes("report.html")) {
       const frame = element("iframe", "report");

@@ -3,7 +3,7 @@
 import { css, shade } from "../colours";
 import { button, element } from "../controls";
 import { format } from "../data";
-import { api } from "./api";
+import { api, type Run } from "./api";
 
 interface Parameter {
   path: string;
@@ -13,12 +13,13 @@ interface Parameter {
 }
 
 interface Sweep {
+  verb: string;
   parameters: Parameter[];
   measures: Record<string, { unit: string; values: unknown }>;
 }
 
 /** A table of a sweep's cases in the colours of its first figure; a click on one opens or starts its run. */
-export async function sweepMap(id: string, opened: (id: string) => void): Promise<HTMLElement> {
+export async function sweepMap({ id, arguments: given }: Run, opened: (id: string) => void): Promise<HTMLElement> {
   const sweep = JSON.parse(await api.text(id, "answer.json")) as Sweep;
   const scenario = await api.text(id, "scenario.toml");
   // Of more parameters, or of values that are drawn, there is no grid: the report shows them.
@@ -41,7 +42,8 @@ export async function sweepMap(id: string, opened: (id: string) => void): Promis
     for (const [of, k] of [[rows, i], [columns, j]] as const) {
       if (of) made = (await api.edit(made, of.path, text(of, k))).text;
     }
-    opened((await api.submit(made, "run", [], `${id}/${i}/${j}`)).id);
+    const options = given.filter((each) => /^--(motion|at)=/.test(each)).map((each) => each.slice(2));
+    opened((await api.submit(made, sweep.verb, options, `${id}/${i}/${j}`)).id);
   };
   const table = element("table", "gbeam-map");
   const head = element("tr");

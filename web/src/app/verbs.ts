@@ -1,6 +1,6 @@
 // What to do with the scenario: a verb of the command line and its options, and the line that does the same.
 
-import { button, choice, element } from "../controls";
+import { button, choice, element, tick } from "../controls";
 import { api, type Entry, type Option, type Problem, Refusal, type Verb } from "./api";
 import { Command } from "./command";
 
@@ -95,6 +95,10 @@ export class Verbs {
       given.value = value;
       this.say();
     };
+    if (option.ticked) {
+      place.append(tick(option.name, given.value !== "", (on) => put(on ? option.ticked : "")), element("span", "faint", option.help));
+      return place;
+    }
     const words = option.of === "motion" ? this.motions() : option.of === "record" ? this.records : option.choices;
     if (words.length || option.of === "record") {
       if (!words.includes(given.value)) given.value = "";
@@ -123,21 +127,25 @@ export class Verbs {
     return place;
   }
 
-  /** The options that are given, as the command line has them. */
-  private options(): string[] {
+  /** The options that are given, each as the server takes it and as the command line has it. */
+  private options(): { name: string; line: string }[] {
     const sound = this.given.filter((each) => each.value.trim() && (each.option.of !== "values" || each.path));
-    return sound.map((each) => `${each.option.name}=${each.option.of === "values" ? `${each.path}=` : ""}${each.value}`);
+    return sound.map(({ option, path, value }) => {
+      if (option.ticked) return { name: option.name, line: option.ticked };
+      const name = `${option.name}=${option.of === "values" ? `${path}=` : ""}${value}`;
+      return { name, line: `--${name}` };
+    });
   }
 
   private say(): void {
     const report = this.verbs[this.verb]?.report ? ["--report"] : [];
-    this.command.say(["gbeam", this.verb, "scenario.toml", ...this.options().map((each) => `--${each}`), ...report]);
+    this.command.say(["gbeam", this.verb, "scenario.toml", ...this.options().map((each) => each.line), ...report]);
   }
 
   private async submit(): Promise<void> {
     this.problems.textContent = "";
     try {
-      this.submitted((await api.submit(this.text(), this.verb, this.options())).id);
+      this.submitted((await api.submit(this.text(), this.verb, this.options().map((each) => each.name))).id);
     } catch (error) {
       const found: Problem[] = error instanceof Refusal ? error.problems : [];
       const lines = found.map((each) => [each.path, each.message, each.hint && `(${each.hint})`].filter(Boolean).join(" "));
