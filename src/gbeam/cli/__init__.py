@@ -34,6 +34,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     from gbeam.cli.terminal.streams import shorten_warnings
 
     shorten_warnings()
+    from gbeam.cli.process import begin
+
+    begin()
     status = _status(sys.argv[1:])
     ignore_signals()  # all is written and printed
     return status

@@ -12,6 +12,7 @@ from gbeam.cli.inputs import number, signed
 from gbeam.cli.invocation import command
 from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, Report, ScenarioFile
 from gbeam.cli.outputs import folder_of, list_files, show, show_table
+from gbeam.cli.process import import_plots
 from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.cli.terminal.failures import FAILED, complain
 from gbeam.errors import InputError
@@ -63,6 +64,7 @@ def plan(
     }
 
     def make(hidden: Path) -> None:
+        import_plots()
         from gbeam.io.commands import write_commands
         from gbeam.plots import figures, save
 

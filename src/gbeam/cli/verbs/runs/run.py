@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from pathlib import Path
 from threading import Thread
 
 from gbeam.cli.inputs import read
 from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, Report, ScenarioFile
 from gbeam.cli.outputs import folder_of, list_files, show, show_table
+from gbeam.cli.process import import_plots
 from gbeam.cli.publication import publish
 from gbeam.cli.terminal.console import Watch
 from gbeam.cli.terminal.failures import FAILED, complain
@@ -34,7 +34,7 @@ def run(
     given = read("run", scenario, overrides, folder)
     if folder is not None:
         # A second of imports, beside the computation, which leaves a core idle.
-        Thread(target=lambda: [*map(import_module, ("gbeam.io.netcdf", "gbeam.plots"))], daemon=True).start()
+        Thread(target=_import_leaves, daemon=True).start()
 
     from gbeam.analysis.study.study import study
 
@@ -42,6 +42,7 @@ def run(
         answer = study(given.case, watch)
 
     def make(hidden: Path) -> None:
+        import_plots()
         from gbeam.plots import write_plots
 
         answer.save(hidden / "result.nc")
@@ -69,3 +70,8 @@ def run(
     for each in refused:
         complain(f"motion.{each.centrifuge} not accepted: {', '.join(str(c) for c in each.criteria if not c.passed)}")
     return 0 if answer.outcome == "done" and not refused and (ignore_limits or not any(broken.values())) else FAILED
+
+
+def _import_leaves() -> None:
+    import_plots()
+    import gbeam.io.netcdf  # noqa: F401
