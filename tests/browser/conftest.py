@@ -11,7 +11,7 @@ import pytest
 
 from gbeam.cli import main
 
-from ..scenarios import FAST
+from ..scenarios import FAST, SLEWING
 from .chromium import arguments, environment, find
 
 
@@ -45,6 +45,35 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "fast.toml").write_text(FAST)
     assert main(["run", str(folder / "fast.toml"), "--out", str(folder), "--report"]) == 0
     return folder / "report.html"
+
+
+SWEEP = ("--over", "beam.length=280 mm:320 mm:3", "--measure", "flight.tip.size.max_abs")
+POINTS = ("--over", "motion.spin.control_point=100 mm:200 mm:2")
+# Every kind of report: its scenario and the arguments of its verb.
+KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "run": (FAST, ()),
+    "static": (FAST, ("--at", "0.2 s")),
+    "modes": (FAST, ("--motion", "flight")),
+    "campbell": (SLEWING, ("--to", "20 rpm")),
+    "critical-speed": (SLEWING, ()),
+    "critical-speed of masses": (SLEWING, ("--masses", "0.1 kg, 0.5 kg", "--positions", "2 m, 5 m, 8 m")),
+    "plan": (FAST, ()),
+    "place": (FAST, ()),
+    "sweep": (FAST, SWEEP),
+    "sweep of two": (FAST, (*SWEEP, *POINTS)),
+}
+
+
+@pytest.fixture(scope="session", params=KINDS)
+def any_report(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A report of each kind, made by the command line."""
+    text, arguments = KINDS[request.param]
+    folder = tmp_path_factory.mktemp("report")
+    (folder / "scenario.toml").write_text(text)
+    verb = request.param.split()[0]
+    assert main([verb, str(folder / "scenario.toml"), *arguments, "--out", str(folder), "--report"]) == 0
+    (file,) = folder.glob("*.html")
+    return file
 
 
 @pytest.fixture

@@ -46,3 +46,19 @@ export function tick(name: string, value: boolean, act: (on: boolean) => void): 
   label.append(box, ` ${name}`);
   return label;
 }
+
+/** Boxes that scroll across are come to by the Tab key, so that arrow keys scroll them; others are not. */
+export function reachable(root: HTMLElement): void {
+  const judge = (): void => {
+    for (const box of root.querySelectorAll<HTMLElement>(".gbeam-wide")) {
+      const scrolls = box.scrollWidth > box.clientWidth;
+      if (!scrolls) for (const name of ["tabindex", "role", "aria-label"]) box.removeAttribute(name);
+      else {
+        box.tabIndex = 0;
+        box.setAttribute("role", "group");
+        box.setAttribute("aria-label", box.querySelector("caption, th")?.textContent || "table");
+      }
+    }
+  };
+  new ResizeObserver(judge).observe(root);
+}

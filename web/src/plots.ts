@@ -8,6 +8,9 @@ import { type Data, format, type Plot, view } from "./data";
 
 type Range = [number, number] | null;
 
+/** How many dots of a plot on paper stand for one of the screen's. */
+const PAPER = 3;
+
 /** What all plots over time show at once. */
 class Common {
   range: Range = null;
@@ -55,6 +58,26 @@ export class Plots {
     this.made.push({ plot, spec, root });
   }
 
+  /** Put a picture beside each plot, which paper shows in its place: whole, in ink, as wide as its column. */
+  toPaper(): void {
+    for (const { spec, root } of this.made) {
+      root.querySelector(".gbeam-paper")?.remove();
+      const alone = root.closest(".gbeam-plots")?.querySelectorAll("figure").length === 1;
+      const [width, height] = alone ? [680, 260] : [327, 180];
+      const drawing = new uPlot(
+        { ...this.options(root, spec, PAPER), width: PAPER * width, height: PAPER * height, legend: { show: false } },
+        table(this.data, spec),
+        element("div"),
+      );
+      drawing.batch(() => {}); // drawn now: before a page is printed there is no other frame
+      const picture = element("img", "gbeam-paper");
+      picture.src = drawing.ctx.canvas.toDataURL();
+      picture.alt = `${spec.title}: ${spec.y} over ${spec.x}`;
+      root.prepend(picture);
+      drawing.destroy();
+    }
+  }
+
   /** Show the clock's time as a line above the plot: to draw the plot again takes as long as all the rest. */
   private mark(plot: uPlot): void {
     const line = plot.over.querySelector<HTMLElement>(".gbeam-now");
@@ -75,10 +98,12 @@ export class Plots {
     }
   }
 
-  private options(root: HTMLElement, spec: Plot): uPlot.Options {
-    const dark = prefersDark();
-    const axis = axisStyle(dark);
-    const clock = spec.time ? this.clock : null;
+  /** As it is drawn on the screen, or on paper, larger and by itself. */
+  private options(root: HTMLElement, spec: Plot, scale = 1): uPlot.Options {
+    const screen = scale === 1;
+    const dark = screen && prefersDark();
+    const axis = axisStyle(dark, scale);
+    const clock = screen && spec.time ? this.clock : null;
     return {
       ...size(root),
       scales: {
@@ -87,11 +112,12 @@ export class Plots {
         y: { distr: spec.logY ? 3 : 1, range: (_, low, high) => range(low, high, spec) },
       },
       axes: [
-        { ...axis, label: spec.x, size: 34, ...(spec.logX ? { values: sparse } : {}) },
-        { ...axis, label: spec.y, size: 62, ...(spec.logY ? { values: sparse } : {}) },
+        { ...axis, label: spec.x, size: 34 * scale, ...(spec.logX ? { values: sparse } : {}) },
+        { ...axis, label: spec.y, size: (screen ? 62 : 46) * scale, ...(spec.logY ? { values: sparse } : {}) },
       ],
       cursor: {
-        ...(spec.time ? { sync: { key: "gbeam-time" } } : {}),
+        show: screen,
+        ...(screen && spec.time ? { sync: { key: "gbeam-time" } } : {}),
         drag: spec.time ? { x: true, y: false } : { x: true, y: true, uni: 30 },
         points: { size: 6 },
       },
@@ -101,19 +127,19 @@ export class Plots {
         ...spec.series.map((each) => ({
           label: each.label,
           stroke: lineColour(each.colour, dark),
-          width: each.points ? 0 : 1.4,
-          ...(each.dash ? { dash: [6, 4] } : {}),
-          points: { show: each.points === true, size: 5, fill: lineColour(each.colour, dark) },
+          width: each.points ? 0 : (screen ? 1.4 : 1.1) * scale,
+          ...(each.dash ? { dash: [6 * scale, 4 * scale] } : {}),
+          points: { show: each.points === true, size: 5 * scale, fill: lineColour(each.colour, dark) },
           spanGaps: true,
           value: (_: uPlot, y: number | null) => format(y),
         })),
       ],
       hooks: {
         drawClear: [(plot) => bands(plot, spec, dark)],
-        draw: [(plot) => levels(plot, spec, ink(dark)), (plot) => clock && this.mark(plot)],
+        draw: [(plot) => levels(plot, spec, ink(dark), scale), (plot) => clock && this.mark(plot)],
         setScale: [
           (plot, key) => {
-            if (key !== "x" || !spec.time) return;
+            if (key !== "x" || !spec.time || !screen) return;
             const { min, max } = plot.scales["x"]!;
             const x = plot.data[0];
             const whole = min === x[0] && max === x[x.length - 1];
@@ -146,10 +172,20 @@ function ink(dark: boolean): string {
 }
 
 /** How an axis looks, and its numbers: uPlot's own have three decimals at most. */
-export function axisStyle(dark: boolean): uPlot.Axis {
-  const grid = { stroke: dark ? "#333a44" : "#e3e5e9", width: 1 };
-  const font = "12px system-ui, sans-serif";
-  return { stroke: ink(dark), grid, ticks: grid, font, labelFont: font, labelSize: 20, values: (_, splits) => plain(splits) };
+export function axisStyle(dark: boolean, scale = 1): uPlot.Axis {
+  const grid = { stroke: dark ? "#333a44" : "#e3e5e9", width: scale };
+  const font = `${(scale === 1 ? 12 : 9) * scale}px system-ui, sans-serif`;
+  return {
+    stroke: ink(dark),
+    grid,
+    ticks: { ...grid, size: 10 * scale },
+    gap: 5 * scale,
+    space: (_, axis) => (axis === 0 ? 40 : 30) * scale,
+    font,
+    labelFont: font,
+    labelSize: 20 * scale,
+    values: (_, splits) => plain(splits),
+  };
 }
 
 /** Numbers of an axis without the rounding of their sums. */
@@ -196,15 +232,18 @@ function bands(plot: uPlot, spec: Plot, dark: boolean): void {
   plot.ctx.restore();
 }
 
-function levels(plot: uPlot, spec: Plot, ink: string): void {
+function levels(plot: uPlot, spec: Plot, ink: string, scale: number): void {
   const { left, top, width, height } = plot.bbox;
   const { ctx } = plot;
   ctx.save();
   ctx.strokeStyle = ink;
   ctx.fillStyle = ink;
-  ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
+  const dots = devicePixelRatio * scale;
+  ctx.lineWidth = dots;
+  ctx.font = `${(scale === 1 ? 11 : 9) * dots}px system-ui, sans-serif`;
   ctx.textAlign = "left";
-  ctx.setLineDash([8, 4]);
+  ctx.textBaseline = "bottom";
+  ctx.setLineDash([8 * dots, 4 * dots]);
   for (const { label, value } of spec.levels ?? []) {
     const y = plot.valToPos(value, "y", true);
     if (y < top || y > top + height) continue;
@@ -212,7 +251,7 @@ function levels(plot: uPlot, spec: Plot, ink: string): void {
     ctx.moveTo(left, y);
     ctx.lineTo(left + width, y);
     ctx.stroke();
-    ctx.fillText(label, left + 4, y - 4 * devicePixelRatio);
+    ctx.fillText(label, left + 4 * dots, y - 2 * dots);
   }
   ctx.restore();
 }

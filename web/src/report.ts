@@ -1,6 +1,6 @@
 // The page: fills the places that Python left for the viewer, the plots and the maps.
 
-import { button, choice, element } from "./controls";
+import { button, choice, element, reachable } from "./controls";
 import { type Data, decode, type Header } from "./data";
 import { heatMap } from "./maps";
 import { shapes } from "./modes";
@@ -36,7 +36,8 @@ export function showPage(data: Data): void {
     if (place) heatMap(place, data, spec);
   }
   themeSwitch();
-  printing();
+  reachable(document.body);
+  printing(plots);
   window.gbeam = { viewer };
   document.documentElement.dataset["gbeam"] = "drawn";
 }
@@ -80,12 +81,19 @@ function setTheme(theme: string): void {
   window.dispatchEvent(new Event("gbeam-theme"));
 }
 
-/** Paper is white: plots are drawn in light colours while the page is printed. */
-function printing(): void {
+/** Paper is white and cannot be clicked: all is drawn in light colours and unfolded while the page is printed. */
+function printing(plots: Plots): void {
   let before = "";
+  let folded: HTMLDetailsElement[] = [];
   window.addEventListener("beforeprint", () => {
     before = document.documentElement.dataset["theme"] ?? "";
     setTheme("light");
+    plots.toPaper();
+    folded = [...document.querySelectorAll<HTMLDetailsElement>("details:not([open])")];
+    for (const each of folded) each.open = true;
   });
-  window.addEventListener("afterprint", () => setTheme(before));
+  window.addEventListener("afterprint", () => {
+    setTheme(before);
+    for (const each of folded) each.open = false;
+  });
 }

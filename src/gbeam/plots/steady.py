@@ -14,12 +14,10 @@ from gbeam.plots.drawing.style import REFERENCE, colour, heading, judged, moving
 from gbeam.plots.drawing.units import Unit, not_drawn, unit_for
 from gbeam.results.result import Floats
 from gbeam.results.steady.equilibrium import Deflection
-from gbeam.results.steady.modal import Campbell, Modes
+from gbeam.results.steady.modal import Campbell, Modes, near_multiples
 from gbeam.results.steady.stability import CriticalMap
 
 _LINES = {"x": ":", "y": "-", "z": "--"}
-FAR = 2.0  # times the highest multiple of the speed: a mode above would press the others to the ground
-FEW = 2  # modes drawn in any case
 SHOWN = 6  # shapes drawn
 RATE = (1.0, "rad/s")
 
@@ -114,9 +112,7 @@ def plot_campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = 
         speed (1P, 2P ...), circles the crossings, a vertical line the critical speed. Modes far above all multiples
         are left out.
     """
-    highest = max(diagram.orders, default=0) * diagram.speed[-1] / (2 * np.pi)
-    far = FAR * highest if diagram.orders else np.inf
-    shown = [k for k, low in enumerate(np.nanmin(diagram.frequency, axis=0)) if low <= far or k < FEW]
+    shown = near_multiples(diagram.frequency.T, diagram.speed, diagram.orders)
     left = len(diagram.direction) - len(shown)
     subject = named(diagram.motion, f"frequencies about the equilibrium, {diagram.model}")
     if left:

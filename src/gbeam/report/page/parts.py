@@ -81,7 +81,8 @@ def table(
     )
     body = "".join(f"<tr>{''.join(row)}</tr>" for row in made)
     title = f"<caption>{escaped(caption)}</caption>" if caption else ""
-    return f'<div class="gbeam-wide"><table>{title}<thead><tr>{top}</tr></thead><tbody>{body}</tbody></table></div>'
+    top = f"<thead><tr>{top}</tr></thead>" if any(head) else ""
+    return f'<div class="gbeam-wide"><table>{title}{top}<tbody>{body}</tbody></table></div>'
 
 
 def badge(text: str, good: bool) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -12,6 +13,8 @@ from gbeam.results.result import Complex, Figured, Floats
 from gbeam.results.steady.stability import Critical
 
 SHOWN = 6  # frequencies in a short description
+FAR = 2.0  # times the highest multiple of the speed: a mode above would press the others to the ground
+FEW = 2  # modes drawn in any case
 
 
 @dataclass(frozen=True)
@@ -186,3 +189,16 @@ class Campbell(Figured):
             f"{self.speed[0]:.4g} to {self.speed[-1]:.4g} rad/s; {len(self.crossings)} crossings with multiples "
             f"{', '.join(str(order) for order in self.orders) or 'none'} of the speed{lost}"
         )
+
+
+def near_multiples(frequency: Floats, speed: Floats, orders: Sequence[int]) -> list[int]:
+    """Which modes a Campbell diagram draws: all but those far above every multiple of the speed.
+
+    Parameters
+    ----------
+    frequency : (k, v) Hz
+    speed : (v,) rad/s
+    orders : sequence of int
+    """
+    far = FAR * max(orders, default=0) * speed[-1] / (2 * np.pi) if len(orders) else np.inf
+    return [k for k, each in enumerate(frequency) if k < FEW or not np.nanmin(each, initial=np.inf) > far]

@@ -58,7 +58,7 @@ _CHECKS = {
 def _options(options: list[Facts]) -> str:
     def row(each: Facts) -> list[Value]:
         words = "; ".join(map(_use, each["exceeded"]))
-        share = f"{each['share']:.0%} of a limit" if each["share"] else ""
+        share = f"{100 * each['share']:.0f} % of a limit" if each["share"] else ""
         limits = Cell(f"exceeds {words}", "bad") if words else share
         point = 1e3 * each["control_point"]
         return [each["mounting"], 1e3 * each["smoothing"], point, _percent(each["total_error"]), limits]
@@ -82,7 +82,7 @@ def sweep_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plot
     for name, each in values.items():
         label = _labelled(name, facts["measures"][name]["unit"])
         if each.ndim == 2 and not drawn:
-            parts.append(heading(name, 3) + _map(facts, name, each, outcomes, numbers, header))
+            parts.append(heading(name) + _map(facts, name, each, outcomes, numbers, header))
         elif (each.ndim == 1 and _numeric(facts["parameters"][0])) or drawn:
             parts.append(_scatter(facts, name, label, each, plots))
     return "".join([*parts, heading("Cases"), _cases(facts, values, outcomes), _failures(facts, outcomes)])

@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.report.page.curves import REFERENCE
 from gbeam.report.page.parts import heading, listed, paragraph, plot_places, table
 from gbeam.report.page.scene import shape
 from gbeam.report.page.series import Numbers, Plots
 from gbeam.report.steady.modes import ROUNDING
 from gbeam.report.words import number, percent
+from gbeam.results.steady.modal import near_multiples
 
 Facts = Mapping[str, Any]
 
@@ -52,21 +54,31 @@ def modes_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plot
 def campbell_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plots, header: dict[str, Any]) -> str:
     """Frequencies against speed, the multiples of the speed, and where they meet."""
     speed = np.array(facts["speed"])
+    tracks = [_numbers(each["frequency"]) for each in facts["tracks"]]
+    shown = near_multiples(np.array(tracks), speed, facts["orders"])
     lines = [
-        {"label": f"mode {i}, along {each['direction']}", "x": speed, "y": _numbers(each["frequency"]), "colour": i - 1}
-        for i, each in enumerate(facts["tracks"], 1)
+        {
+            "label": f"mode {i + 1}, along {facts['tracks'][i]['direction']}",
+            "x": speed,
+            "y": tracks[i],
+            "colour": i % REFERENCE,
+            "dash": i >= REFERENCE,
+        }
+        for i in shown
     ]
     top = max((np.nanmax(line["y"]) for line in lines if np.isfinite(line["y"]).any()), default=np.inf)
     for order in facts["orders"]:
         multiple = order * speed / (2 * np.pi)
         seen = np.where(multiple <= 1.05 * top, multiple, np.nan)
-        lines.append({"label": f"{order} × speed", "x": speed, "y": seen, "colour": 6, "dash": True})
+        lines.append({"label": f"{order} × speed", "x": speed, "y": seen, "colour": REFERENCE, "dash": True})
     if facts["crossings"]:
         at = [np.array([each[key] for each in facts["crossings"]]) for key in ("speed", "frequency")]
         order = np.argsort(at[0])
         lines.append({"label": "crossings", "x": at[0][order], "y": at[1][order], "colour": 1, "points": True})
     name = plots.add("Campbell diagram", "frequency, Hz", lines, x="speed, rad/s")
     parts = [heading("Campbell diagram"), plot_places([(name, f"{facts['motion']}: {facts['model']}")])]
+    if len(shown) < len(tracks):
+        parts.append(paragraph(f"modes not drawn, far above all multiples: {len(tracks) - len(shown)}", "faint"))
     if facts["critical_speed"] is not None:
         parts.append(paragraph(f"the equilibrium is lost at {number(facts['critical_speed'])} rad/s", "bad"))
     parts += [heading("Modes"), tracks_table(facts), heading("Crossings")]

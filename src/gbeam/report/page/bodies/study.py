@@ -36,8 +36,9 @@ def body(facts: Facts, variables: Mapping[str, Any], numbers: Numbers, plots: Pl
         parts += [heading("Motion"), '<div id="gbeam-viewer"></div>']
     drawn = curves.of_run(facts, motions, variables, plots)
     if drawn:
-        hint = _HINT + (_GREY if any(each["accounting"]["not_followed"] for each in facts["comparisons"]) else "")
-        parts += [heading("Histories"), paragraph(hint, "faint"), plot_places(drawn)]
+        grey = any(each["accounting"]["not_followed"] for each in facts["comparisons"])
+        parts += [heading("Histories"), paragraph(_HINT, "faint gbeam-screen")]
+        parts += [paragraph(_GREY, "faint") if grey else "", plot_places(drawn)]
     parts += [heading("Response"), tips_table(motions), loads_table(motions)]
     parts += [machine_section(name, each) for name, each in motions.items() if "limits" in each]
     parts += [heading("Accuracy"), _errors(motions)]
@@ -46,7 +47,7 @@ def body(facts: Facts, variables: Mapping[str, Any], numbers: Numbers, plots: Pl
 
 
 _HINT = "Drag across a plot to zoom all of them, double-click to see all again, click to take the viewer to that time."
-_GREY = " Grey: the machine does not follow the flight."
+_GREY = "Grey: the machine does not follow the flight."
 
 
 def state(facts: Facts) -> tuple[str, bool]:
