@@ -6,12 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib import rc_context
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.image import imread
 
-from gbeam.plots.drawing.files import save, signature
+from gbeam.plots.drawing.files import DPI, save, signature
 from gbeam.plots.drawing.lines import BINS, COLUMNS, components, line
 from gbeam.plots.drawing.stretches import shade, stretches
-from gbeam.plots.drawing.style import ENVELOPE, limits, panels
+from gbeam.plots.drawing.style import ENVELOPE, STYLE, limits, panels, styled
 from gbeam.plots.drawing.units import unit_for
 
 
@@ -137,3 +141,31 @@ def test_signature(tmp_path: Path) -> None:
         copy.write_bytes(file.read_bytes())
         assert signature(copy) == ""  # a copy is no longer what the command made
     assert [signature(file) for file in save(figure, tmp_path, "plain")] == ["", ""]
+
+
+@styled
+def _of_all_kinds() -> Figure:
+    figure, (linear, powers, larger) = panels("A title", 3)
+    linear.plot([0.0, 2.5], [-0.3, 0.7], label="rising")
+    powers.semilogy([0.0, 2.5], [1.0, 1e3])
+    powers.minorticks_off()
+    larger.plot([0.0, 2.5], [-3e7, 0.0])  # a power of ten above the axis
+    larger.set_ylabel("two\nlines")
+    return figure
+
+
+def test_a_saved_figure_is_as_matplotlib_draws_it(tmp_path: Path) -> None:
+    figure = _of_all_kinds()
+    for changed in (False, True):
+        if changed:
+            for panel in figure.axes:
+                panel.tick_params(labelsize=13, colors="red")
+        png, svg = save(figure, tmp_path, "figure")
+        with rc_context(STYLE):
+            figure.set_dpi(DPI)
+            canvas = FigureCanvasAgg(figure)
+            canvas.draw()
+            figure.set_dpi(100)
+        expected = np.asarray(canvas.buffer_rgba())[:, :, :3]
+        np.testing.assert_array_equal(np.round(255 * imread(png)), expected)
+        assert "<!-- 2.5 -->" in svg.read_text(encoding="utf-8")

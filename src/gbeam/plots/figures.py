@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from gbeam.errors import InputError
 from gbeam.plots.comparison import moved, plot_comparison, plot_shock
 from gbeam.plots.drawing.files import save
-from gbeam.plots.drawing.style import Shown
+from gbeam.plots.drawing.style import Shown, style
 from gbeam.plots.environment import plot_base, plot_hub
 from gbeam.plots.loads import plot_loads, plot_loads_along
 from gbeam.plots.machine import plot_axes, plot_tracking
@@ -190,6 +190,7 @@ def write_plots(study: Study, folder: Path, source: str = "") -> list[Path]:
         which it moves, and ``shock_NAME``, NAME being the centrifuge's.
     """
     files: list[Path] = []
-    for name, draw in figures(study).items():
-        files += save(draw(), folder, name.replace(" ", "_", 1), source)
+    with style():
+        for name, draw in figures(study).items():
+            files += save(draw(), folder, name.replace(" ", "_", 1), source)
     return files

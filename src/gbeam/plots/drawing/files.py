@@ -10,15 +10,16 @@ from typing import Any, TextIO
 from xml.sax.saxutils import unescape
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.backend_bases import GraphicsContextBase, RendererBase
 from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg
 from matplotlib.backends.backend_svg import RendererSVG
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties, findfont, get_font
 from matplotlib.transforms import Affine2D, TransformedBbox, TransformedPath
 from numpy.typing import NDArray
 
-from gbeam.plots.drawing.style import STYLE
+from gbeam.plots.drawing.scales import draw_scale, without_scales
+from gbeam.plots.drawing.style import style
 
 DPI = 150
 _POINTS = 72 / DPI  # points of the SVG to a pixel of the PNG
@@ -46,11 +47,14 @@ def save(figure: Figure, folder: Path, name: str, source: str = "") -> list[Path
     png, svg = (folder / f"{name}.{kind}" for kind in ("png", "svg"))
     dpi = figure.dpi
     # Some settings are read only when a figure is drawn.
-    with rc_context(STYLE), svg.open("w", encoding="utf-8") as file:
+    with style(), svg.open("w", encoding="utf-8") as file:
         try:
             figure.set_dpi(DPI)
             both = _Both(figure, file, _signed(svg, source))
-            figure.draw(both)
+            with without_scales(figure) as scales:
+                figure.draw(both)
+            for scale in scales:
+                draw_scale(scale, both)
             both.vector.finalize()
         finally:
             figure.set_dpi(dpi)
@@ -73,16 +77,17 @@ def signature(file: Path) -> str:
 
 def write_png(path: Path, pixels: NDArray[np.uint8], signed: str = "") -> None:
     """Write pixels (h, w, 3), RGB, without a filter: between lines of one colour there is nothing to predict."""
-    height, width, _ = pixels.shape
-    rows = np.zeros((height, 1 + 3 * width), dtype=np.uint8)  # the first byte of a row names its filter
-    rows[:, 1:] = pixels.reshape(height, -1)
+    height, width, channels = pixels.shape
+    rows = np.zeros((height, 1 + channels * width), dtype=np.uint8)  # the first byte of a row names its filter
+    for k in range(channels):  # one after the other: NumPy copies long rows five times as quickly as triples
+        rows[:, 1 + k :: channels] = pixels[:, :, k]
 
     def chunk(kind: bytes, data: bytes) -> bytes:
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
     header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)  # 8 bits a channel, RGB
     resolution = struct.pack(">IIB", round(DPI / 0.0254), round(DPI / 0.0254), 1)
-    parts = [(b"IHDR", header), (b"pHYs", resolution), (b"IDAT", zlib.compress(rows.tobytes(), _LEVEL)), (b"IEND", b"")]
+    parts = [(b"IHDR", header), (b"pHYs", resolution), (b"IDAT", zlib.compress(rows.data, _LEVEL)), (b"IEND", b"")]
     if signed:  # keyword, no compression, no language
         parts.insert(2, (b"iTXt", b"Source\0\0\0\0\0" + signed.encode() + b"\0"))
     path.write_bytes(b"\x89PNG\r\n\x1a\n" + b"".join(chunk(kind, data) for kind, data in parts))
@@ -97,6 +102,7 @@ class _Both(RendererBase):
         FigureCanvasAgg(figure)
         self.raster: Any = RendererAgg(width * DPI, height * DPI, DPI)
         self.vector: Any = RendererSVG(width * 72, height * 72, file, metadata={"Source": signed} if signed else None)
+        self._heights: dict[FontProperties, Any] = {}
         self._scale = Affine2D().scale(_POINTS)
 
     def _vector_gc(self, gc: Any) -> GraphicsContextBase:
@@ -127,6 +133,16 @@ class _Both(RendererBase):
 
     def get_text_width_height_descent(self, s: str, prop: Any, ismath: Any) -> tuple[float, float, float]:
         return self.raster.get_text_width_height_descent(s, prop, ismath)
+
+    def _get_font_height_metrics(self, prop: FontProperties) -> tuple[float | None, float | None, float | None]:
+        """Ascent, descent and line gap of a font, pixels; matplotlib 3.11 else reads its tables for every text."""
+        if prop not in self._heights:
+            font = get_font(findfont(prop))
+            table: Any = font.get_sfnt_table("OS/2")
+            scale = prop.get_size_in_points() * DPI / 72 / font.units_per_EM
+            names = ("sTypoAscender", 1), ("sTypoDescender", -1), ("sTypoLineGap", 1)
+            self._heights[prop] = tuple(sign * scale * table[name] if table else None for name, sign in names)
+        return self._heights[prop]
 
     def get_canvas_width_height(self) -> tuple[float, float]:
         return self.raster.get_canvas_width_height()

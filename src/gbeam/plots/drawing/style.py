@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import wraps
 from typing import Any, ParamSpec
 
 import numpy as np
-from matplotlib import rc_context
+from matplotlib import rc_context, rcParams
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
@@ -68,12 +69,22 @@ class Shown(Figure):
         return picture.getvalue()
 
 
+@contextmanager
+def style() -> Iterator[None]:
+    """Set gbeam's style, and leave matplotlib's settings as they were; within itself it does nothing, in no time."""
+    if all(rcParams[name] == value for name, value in STYLE.items()):
+        yield
+        return
+    with rc_context(STYLE):
+        yield
+
+
 def styled(plot: Callable[P, Figure]) -> Callable[P, Figure]:
-    """Draw a plot in gbeam's style, with legends, lay it out, and leave matplotlib's settings as they were."""
+    """Draw a plot in gbeam's style, with legends, and lay it out."""
 
     @wraps(plot)
     def drawn(*args: P.args, **options: P.kwargs) -> Figure:
-        with rc_context(STYLE):
+        with style():
             figure = plot(*args, **options)
             for panel in figure.axes:
                 legend(panel)
