@@ -8,9 +8,10 @@ import numpy as np
 import scipy.sparse
 from numpy.typing import NDArray
 
-from gbeam.numerics.bspline import DEGREE, Grid
+from gbeam.numerics.bspline import DEGREE, PIECE, Grid
 
 AXES = 3
+NEAR = AXES * PIECE  # coefficients that act on one piece
 RATE, YAW, ROLL = range(AXES)  # of these quantities the splines are: ω1 rad/s, θ2 rad, θ3 rad
 
 Floats = NDArray[np.float64]
@@ -40,6 +41,14 @@ class AxisSplines:
             number[-1, RATE] = -1
         self.number = number[place]  # of the unknown that each coefficient is, (grid.size, 3); -1: it is zero
         self.size = int(self.number.max()) + 1
+        first, last = np.clip(np.arange(self.size) + np.array([[1 - NEAR], [NEAR]]), 0, self.size)
+        starts = np.append(0, np.cumsum(last - first))  # of the columns of a matrix on x
+        rows = np.arange(starts[-1]) - np.repeat(starts[:-1] - first, last - first)
+        self._banded = rows, starts
+        every = np.append(self.number.ravel(), np.full(NEAR, -1))
+        ends = np.lib.stride_tricks.sliding_window_view(every, NEAR)[:-1].T, every[:-NEAR]
+        used = (ends[0] >= 0) & (ends[1] >= 0)
+        self._places = [np.where(used, starts[c] + r - first[c], starts[-1]).ravel() for r, c in (ends, ends[::-1])]
 
     def on_unknowns(self, rows: Any, axis: int) -> Any:
         """Rows (m, grid.size) that act on the coefficients of one axis as rows (m, size) that act on x."""
@@ -63,3 +72,20 @@ class AxisSplines:
         x[self.number[half - 1 :: -1]] = coefficients[half - 1 :: -1]
         x[self.number[half:]] = coefficients[half:]
         return x[:-1]
+
+    def assembled(self, pieces: Floats) -> Any:
+        """A symmetric matrix on x, sparse (size, size), as a sum of matrices that act on a piece's coefficients each.
+
+        Parameters
+        ----------
+        pieces : array, shape (171, pieces)
+            Row by row the lower triangles of these; a piece has six places, with a coefficient of every axis at each.
+        """
+        band = np.zeros((NEAR, AXES * self.grid.size))  # row d couples every coefficient with the d-th after it
+        for i, j, values in zip(*np.tril_indices(NEAR), pieces, strict=True):
+            band[i - j, j : j + AXES * self.grid.pieces : AXES] += values
+        rows, starts = self._banded
+        data = np.bincount(self._places[0], band.ravel(), starts[-1] + 1)
+        band[0] = 0.0  # the diagonal is its own mirror image
+        data += np.bincount(self._places[1], band.ravel(), starts[-1] + 1)
+        return scipy.sparse.csc_array((data[:-1], rows, starts), shape=(self.size, self.size))

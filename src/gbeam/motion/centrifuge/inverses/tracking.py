@@ -10,7 +10,7 @@ import scipy.sparse
 from numpy.typing import NDArray
 
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.motion.centrifuge.inverses.axis_splines import AXES, RATE, ROLL, YAW, AxisSplines
+from gbeam.motion.centrifuge.inverses.axis_splines import AXES, NEAR, RATE, ROLL, YAW, AxisSplines
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry
 from gbeam.motion.centrifuge.inverses.spin_up import Ramp
 from gbeam.motion.centrifuge.target.target import Target
@@ -18,6 +18,7 @@ from gbeam.motion.centrifuge.target.target import Target
 ON_WAY = 0.01  # weight of the squared error before the flight and after it
 BELOW_IDLE = 0.1  # weight of the squared error while the flight's load is below idle, where it is 1 otherwise
 EASE = 1e-4, 1e-6  # g0: what 1 rad/s² and 1 rad/s³ of any axis cost as a tracking error
+_PAIRS = np.tril_indices(4)  # of states
 
 Floats = NDArray[np.float64]
 
@@ -50,19 +51,28 @@ class Tracking:
         self.bound = float(np.sum((self.weight * short) ** 2)) / 2  # what idle costs, whatever the axes do
         states = (RATE, 0), (RATE, 1), (YAW, 0), (ROLL, 0)
         self.states = scipy.sparse.vstack([splines.derivative(*state) for state in states], format="csr")
+        # Weights of a piece's coefficients in its states, (points, 4, 18).
+        near = np.stack([_on_axis(grid.rows(order), axis) for axis, order in states], axis=1)
+        # The lower triangles of what the states' second derivatives are by the coefficients, (171, points · 10).
+        by_pair = np.einsum("qsi,qtj->ijqst", near, near)[np.tril_indices(NEAR)]
+        by_pair = by_pair + by_pair.swapaxes(2, 3)
+        by_pair[:, :, range(4), range(4)] /= 2
+        self.by_pair = by_pair[:, :, *_PAIRS].reshape(len(by_pair), -1)
         # The spline of axis 1 is that of its rate, those of axes 2 and 3 are those of their angles.
-        eased = [
-            np.sqrt(spacing) * EASE[k] * splines.derivative(axis, k + 1 + (axis != RATE))
-            for k in range(len(EASE))
-            for axis in range(AXES)
-        ]
-        rows = scipy.sparse.vstack(eased, format="csr")
-        self.ease = rows.T @ rows
+        eased = np.concatenate(
+            [
+                np.sqrt(spacing) * EASE[k] * _on_axis(grid.rows(k + 1 + (axis != RATE)), axis)
+                for k in range(len(EASE))
+                for axis in range(AXES)
+            ]
+        )
+        self.eased = (eased.T @ eased)[np.tril_indices(NEAR)][:, None]
+        self.ease = splines.assembled(np.broadcast_to(self.eased, (self.eased.size, grid.pieces)))
 
     def gentler(self, factor: float) -> Tracking:
         """The same with a larger EASE."""
         other = copy.copy(self)
-        other.ease = factor**2 * self.ease
+        other.ease, other.eased = factor**2 * self.ease, factor**2 * self.eased
         return other
 
     def cost(self, x: Floats) -> float:
@@ -80,9 +90,9 @@ class Tracking:
         error, slope, second = self.error((self.states @ x).reshape(4, -1), 2)
         size, vectors = np.linalg.eigh(second)
         second = (vectors * np.abs(size)[:, None]) @ vectors.swapaxes(1, 2)
-        blocks = [[scipy.sparse.diags_array(second[:, i, j]) for j in range(4)] for i in range(4)]
         by_states = np.einsum("kjt,kt->jt", slope, error).ravel()
-        hessian = self.states.T @ (scipy.sparse.block_array(blocks, format="csr") @ self.states) + self.ease
+        pieces = second[:, *_PAIRS].reshape(self.splines.grid.pieces, -1)
+        hessian = self.splines.assembled(self.by_pair @ pieces.T + self.eased)
         return hessian, self.states.T @ by_states + self.ease @ x
 
     def error(self, state: Floats, order: int) -> tuple[Floats, ...]:
@@ -129,3 +139,10 @@ class Tracking:
             if i != j:
                 second[:, j, i] += value
         return error, slope, second
+
+
+def _on_axis(rows: Floats, axis: int) -> Floats:
+    """Weights (m, 6) of one axis's coefficients on a piece as weights (m, 18) of all axes'."""
+    weights = np.zeros((len(rows), NEAR))
+    weights[:, axis::AXES] = rows
+    return weights
