@@ -252,7 +252,7 @@ def chunks(drive: Drive, scheme: Scheme, steps: Steps, size: int) -> Iterator[Ch
         index = np.concatenate([each for each, _ in some])
         chosen = steps[index.ravel()]
         tableau = scheme.tableau(steps.length[index[:, 0]])
-        driven = _stage_inputs(drive, scheme, chosen), None if scheme.ends else drive(chosen.end)
+        driven = _inputs(drive, scheme, chosen)
         inputs, at_ends = jax.tree.map(lambda leaf, shape=index.shape: leaf.reshape(*shape, *leaf.shape[1:]), driven)
         first = 0
         for each, last in some:
@@ -280,9 +280,12 @@ def _groups(steps: Steps, size: int, *, restart: bool) -> Iterator[tuple[Any, An
             yield np.minimum(first[:, None] + np.arange(size), end[:, None]), last
 
 
-def _stage_inputs(drive: Drive, scheme: Scheme, steps: Steps) -> Any:
-    """Inputs at the stages of steps, arrays (t, s, ...)."""
+def _inputs(drive: Drive, scheme: Scheme, steps: Steps) -> tuple[Any, Any]:
+    """Inputs at the stages of steps, arrays (t, s, ...), and, where the last stage is not there, at their ends."""
     import jax
 
-    stages = [drive(steps.times(offset)) for offset in scheme.offsets]
-    return jax.tree.map(lambda *leaves: namespace(*leaves).stack(leaves, axis=1), *stages)
+    times = [steps.times(offset) for offset in scheme.offsets] + ([] if scheme.ends else [steps.end])
+    given, stages = drive(np.stack(times, axis=1).ravel()), len(scheme.offsets)
+    given = jax.tree.map(lambda leaf: leaf.reshape(len(steps), -1, *leaf.shape[1:]), given)
+    inputs = jax.tree.map(lambda leaf: leaf[:, :stages], given)
+    return inputs, None if scheme.ends else jax.tree.map(lambda leaf: leaf[:, stages], given)

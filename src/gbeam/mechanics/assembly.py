@@ -69,7 +69,7 @@ def assemble(
     bodies = [m.at for m in beam.masses]
     adapted = model.shapes == "adapted"
     breaks = [*beam.section.stations, *(bodies if adapted else ())]
-    rule = quadrature(beam.length, _nodes(row, max(counts), adapted=adapted), breaks)
+    rule = quadrature(beam.length, _nodes(row, max(counts)), breaks)
     # Integrals from the root are a matrix of all nodes to all.
     nodes = len(rule.node)
     refuse_more("section.stations", "nodes of integration", nodes, NODES, 24.0 * nodes, "give fewer, or fewer shapes")
@@ -148,9 +148,9 @@ def assembled(
     )
 
 
-def _nodes(kind: Kind, shapes: int, *, adapted: bool) -> int:
+def _nodes(kind: Kind, shapes: int) -> int:
     """Nodes per panel, for integrals to rounding."""
-    if kind.exact and not adapted:  # sines of polynomials are smooth
+    if kind.exact:  # sines of smooth angles are smooth
         return 10 + 2 * shapes
     # Fourth powers of the highest shape (2009's tensors: 32 for five), and products of two integrated to a body midway.
     return 12 + 4 * shapes

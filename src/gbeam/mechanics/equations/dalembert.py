@@ -17,7 +17,6 @@ from gbeam.mechanics.equations.hub import FreeHub, Ground, free_hub
 from gbeam.mechanics.equations.inertia import Elasticity, Weighed
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.equations.virtual_work import LoadWork
-from gbeam.motion.bases.base import Base
 
 Array = Any
 Components = tuple[Any, ...]  # three arrays, along x, y and z
@@ -125,23 +124,23 @@ class CompleteHub:
     mount: Any
     ground: Ground
 
-    def base(self, y: Array, yd: Array, ydd: Array) -> Base:
-        """Motion of the root; specific force where gravity acts."""
-        return self.mount.base(y[0], yd[0], ydd[0])
-
     def residual(self, y: Array, yd: Array, ydd: Array, torque: Array, load_values: Array | None = None) -> Array:
         """Residual (n + 1,) of hub and beam under a torque on the hub, N m, and load components (loads, 6)."""
         q, qd, qdd = y[1:], yd[1:], ydd[1:]
-        base = self.base(y, yd, ydd)
-        r, force, pull_back, total = self.system.inertia_forces(q, qd, qdd, base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
-        (along,) = pull_back(force)
-        forces = self.system.generalised(q, load_values)
-        axis, root = self.mount.R_HB[2], self.mount.radius * self.mount.R_HB[0]
-        # Of the forces about the axis: about the root, and of their resultant there.
+        outward, onward, axis = self.mount.R_HB  # the hub's axes in those of the base
+        a_x, a_y, a_z = self.mount.root_acceleration(y[0], yd[0], ydd[0])
+        a = a_x * outward + a_y * onward + a_z * axis
+        r, force, pull_back, resultant = self.system.inertia_forces(q, qd, qdd, a, yd[0] * axis, ydd[0] * axis)
+        (beam,) = pull_back(force)
+        beam = beam + self.system.inside(q, qd)
+        # Of the forces about the axis: about the root, and of their resultant there, e × r_O being along y of the hub.
         about = sum(e * jnp.sum(moment) for e, moment in zip(axis, _cross(r, force), strict=True))
-        about = about + jnp.stack(_cross(axis, root)) @ total
-        turning = self.ground.torque(y[0], yd[0], ydd[0]) + about - torque - self._twist() @ forces[:6]
-        return jnp.concatenate([turning[None], along + self.system.inside(q, qd) - forces[6:]])
+        about = about + self.mount.radius * onward @ resultant
+        turning = self.ground.torque(y[0], yd[0], ydd[0]) + about - torque
+        if self.system.work is not None and load_values is not None:
+            forces = self.system.generalised(q, load_values)
+            turning, beam = turning - self._twist() @ forces[:6], beam - forces[6:]
+        return jnp.concatenate([turning[None], beam])
 
     def about(self, c: Coefficients) -> FreeHub:
         """The same hub with a linear model on its rim."""

@@ -43,8 +43,10 @@ class ExactField:
     node_slopes: Array
     cumulative: Array
     node_cumulative: Array
+    turning: Array
     plane: Array
     planar: bool = static()
+    extensible: bool = static()
 
     def position(self, q: Array) -> Array:
         """Positions of the points of the axis at coordinates (..., n), (..., points, 3) m."""
@@ -56,18 +58,24 @@ class ExactField:
 
     def components(self, q: Array) -> tuple[Array, Array, Array]:
         """The same by components, (..., g) each."""
-        return self._tangents(*at_nodes(self.nodal, q))
+        if not self.planar:
+            return self._tangents(*at_nodes(self.nodal, q))
+        stretch = 1 + q @ self.nodal[0].T if self.extensible else 1.0
+        return self._in_plane(stretch, q @ self.turning.T)
 
     def tangents(self, strain: Array, y: Array, z: Array) -> Array:
         """Tangents (..., 3) at strains and angles (...)."""
         return namespace(self.cumulative, strain).stack(self._tangents(strain, y, z), axis=-1)
 
+    def _in_plane(self, stretch: Array, angle: Array) -> tuple[Array, Array, Array]:
+        sine, cosine = sine_cosine(angle)
+        across = stretch * sine
+        return stretch * cosine, self.plane[0] * across, -self.plane[1] * across
+
     def _tangents(self, strain: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:
         stretch = 1 + strain
         if self.planar:  # one of the angles is zero, and one sine is enough
-            sine, cosine = sine_cosine(y + z)
-            across = stretch * sine
-            return stretch * cosine, self.plane[0] * across, -self.plane[1] * across
+            return self._in_plane(stretch, y + z)
         sinc, _, cosine = exponential_of(y**2 + z**2)
         return stretch * cosine, stretch * sinc * z, -stretch * sinc * y
 
@@ -177,13 +185,16 @@ def exact_field(
     about_y = [-block(f, strain + along_y, n) for f in (shapes_w.slope, shapes_w.curvature)]
     about_z = [block(f, strain, n) for f in (shapes_v.slope, shapes_v.curvature)]
     cumulative = rule.cumulative(x)
+    nodal = np.stack([block(s(rule.node).slope, 0, n), about_y[0][:nodes], about_z[0][:nodes]])
     return ExactField(
         angle_y=about_y[0],
         angle_z=about_z[0],
-        nodal=np.stack([block(s(rule.node).slope, 0, n), about_y[0][:nodes], about_z[0][:nodes]]),
+        nodal=nodal,
         node_slopes=np.stack([about_y[1][:nodes], about_z[1][:nodes]]),
         cumulative=cumulative,
         node_cumulative=cumulative[:nodes],
+        turning=nodal[1] + nodal[2],
         plane=np.array([along_z == 0, along_z > 0], dtype=float),
         planar=along_y == 0 or along_z == 0,
+        extensible=strain > 0,
     )

@@ -65,11 +65,17 @@ class Mount:
     def base(self, angle: Any, rate: Any, acceleration: Any) -> Base:
         """Motion of the base, specific force where gravity acts, at angles, rates and accelerations of one shape."""
         xp = namespace(angle, rate, acceleration, self.radius, self.R_HB, self.gravity)
+        a_WO_H = xp.stack(self.root_acceleration(angle, rate, acceleration), axis=-1)
         none = xp.zeros_like(rate)
-        a_WO_H = xp.stack([-self.radius * rate**2, self.radius * acceleration, none], axis=-1)
-        if self.gravity is not None:
-            x, y, z = self.gravity
-            c, s = xp.cos(angle), xp.sin(angle)
-            a_WO_H = a_WO_H - xp.stack([c * x + s * y, c * y - s * x, z + none], axis=-1)
         axis = xp.stack([none, none, none + 1], axis=-1) @ self.R_HB
         return Base(a_WO_H @ self.R_HB, rate[..., None] * axis, acceleration[..., None] * axis)
+
+    def root_acceleration(self, angle: Any, rate: Any, acceleration: Any) -> tuple[Any, Any, Any]:
+        """Acceleration of the root, specific force where gravity acts, by components along the hub's axes, m/s²."""
+        xp = namespace(angle, rate, acceleration, self.radius, self.gravity)
+        x, y, z = -self.radius * rate**2, self.radius * acceleration, xp.zeros_like(rate)
+        if self.gravity is None:
+            return x, y, z
+        c, s = xp.cos(angle), xp.sin(angle)
+        gx, gy, gz = self.gravity
+        return x - (c * gx + s * gy), y - (c * gy - s * gx), z - gz
