@@ -13,13 +13,23 @@ import pytest
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Compiled programs are kept from run to run, in the project's own ignored folder.
 os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(Path(__file__).parents[1] / ".cache" / "jax"))
-# The way in which these versions fuse loops costs a quarter of the suite's processor time; to later ones, which do
-# not know the flag, it is fatal.
+# A test runs most programs once: compiling costs more than running. The way in which these versions fuse loops, and the
+# optimization of machine code, take two thirds of it; to later versions, which do not know the first flag, it is fatal.
+FLAGS = ["--xla_backend_optimization_level=0"]
 if version("jaxlib").startswith(("0.8.", "0.9.", "0.10.")):
-    os.environ.setdefault("XLA_FLAGS", "--xla_cpu_use_fusion_emitters=false")
+    FLAGS.append("--xla_cpu_use_fusion_emitters=false")
+os.environ.setdefault("XLA_FLAGS", " ".join(FLAGS))
+# Python looks for unused circles at every 700 new objects; with so many that stay, that is a twentieth of the time.
+gc.set_threshold(20_000, 20, 10)
 
 MAPS = Path("/proc/self/maps")
 MOST_MAPS = 30_000  # of the 65,530 memory maps that a process may have by default
+
+
+def pytest_collection_finish() -> None:
+    """What has been imported and collected stays: do not look through it again."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(autouse=True, scope="module")

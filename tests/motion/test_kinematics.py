@@ -19,12 +19,13 @@ def turn(angle: jax.Array, axis: int) -> jax.Array:
     return jnp.eye(3).at[i, i].set(c).at[i, j].set(-s).at[j, i].set(s).at[j, j].set(c)
 
 
-@pytest.mark.parametrize("seed", range(5))
-@pytest.mark.parametrize("gravity", [0.0, STANDARD_GRAVITY])
-def test_forward_and_shift_against_double_differentiation(seed: int, gravity: float) -> None:
-    rng = np.random.default_rng(seed)
-    angle, rate, acceleration = rng.normal(size=(3, 3))
-    arm, offset = 3.3, rng.normal(size=3)
+ARM = 3.3
+
+
+@jax.jit
+def differentiated(motion: jax.Array, offset: jax.Array) -> tuple[jax.Array, ...]:
+    """R_WB, its derivative, ω's derivative as a matrix, and the acceleration, of angles that are parabolas in time."""
+    angle, rate, acceleration = motion
 
     def angles(t: jax.Array) -> jax.Array:
         return angle + rate * t + acceleration * t**2 / 2
@@ -34,16 +35,24 @@ def test_forward_and_shift_against_double_differentiation(seed: int, gravity: fl
         return turn(q[0], 2) @ turn(q[1], 2) @ turn(q[2], 0)
 
     def position(t: jax.Array) -> jax.Array:
-        return turn(angles(t)[0], 2) @ jnp.array([arm, 0.0, 0.0]) + attitude(t) @ offset
+        return turn(angles(t)[0], 2) @ jnp.array([ARM, 0.0, 0.0]) + attitude(t) @ offset
 
-    R_WB, dR = attitude(0.0), jax.jacfwd(attitude)(0.0)
-    skew = jax.jacfwd(lambda t: attitude(t).T @ jax.jacfwd(attitude)(t))(0.0)  # its derivative is that of ω in B
-    w = np.asarray(R_WB.T @ dR)
-    a_W = jax.jacfwd(jax.jacfwd(position))(0.0) + np.array([0, 0, gravity])  # a − g, g down
+    skew = jax.jacfwd(lambda t: attitude(t).T @ jax.jacfwd(attitude)(t))(0.0)
+    return attitude(0.0), jax.jacfwd(attitude)(0.0), skew, jax.jacfwd(jax.jacfwd(position))(0.0)
 
-    a, r, dd = (jnp.asarray(x) for x in (angle, rate, acceleration))
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("gravity", [0.0, STANDARD_GRAVITY])
+def test_forward_and_shift_against_double_differentiation(seed: int, gravity: float) -> None:
+    rng = np.random.default_rng(seed)
+    a, r, dd = motion = rng.normal(size=(3, 3))
+    offset = rng.normal(size=3)
+    R_WB, dR, skew, a_W = (np.asarray(value) for value in differentiated(motion, offset))
+    w = R_WB.T @ dR
+    a_W = a_W + np.array([0, 0, gravity])  # a − g, g down
+
     axes = Axes(r[0], dd[0], a[1], r[1], dd[1], a[2], r[2], dd[2])
-    base = moved(forward(axes, arm, gravity), offset)
+    base = moved(forward(axes, ARM, gravity), offset)
     np.testing.assert_allclose(base.w_WB_B, [w[2, 1], w[0, 2], w[1, 0]], atol=1e-12)
     np.testing.assert_allclose(base.alpha_WB_B, [skew[2, 1], skew[0, 2], skew[1, 0]], atol=1e-12)
     np.testing.assert_allclose(base.a_WO_B, R_WB.T @ a_W, atol=1e-12)
