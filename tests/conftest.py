@@ -13,6 +13,8 @@ import pytest
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Compiled programs are kept from run to run, in the project's own ignored folder.
 os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(Path(__file__).parents[1] / ".cache" / "jax"))
+# As gbeam has it, in whichever order the tests that differentiate something themselves import JAX and gbeam.
+os.environ.setdefault("JAX_ENABLE_X64", "1")
 # A test runs most programs once: compiling costs more than running. The way in which these versions fuse loops, and the
 # optimization of machine code, take two thirds of it; to later versions, which do not know the first flag, it is fatal.
 FLAGS = ["--xla_backend_optimization_level=0"]

@@ -23,6 +23,7 @@ QUIET = (
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
     "--ignore-gpu-blocklist",
+    "--disable-gpu-compositing",  # what is not WebGL by plain software, which takes half the time of SwiftShader
 )
 
 
