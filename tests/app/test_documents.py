@@ -249,6 +249,15 @@ def test_verbs_take_their_own_options_only(site: Site, verb: str, options: list[
     assert answer.status_code == 422 and not (site.folder / "runs").exists()
 
 
+def test_refusals_are_answers_where_a_page_asks_for_that(site: Site) -> None:
+    body = {"text": FAST, "verb": "app"}
+    plain = site.call("POST", "/api/runs", site.opened, json=body)
+    asked = site.call("POST", "/api/runs", site.opened | {"x-gbeam-refusal": "1"}, json=body)
+    assert (plain.status_code, asked.status_code) == (422, 200) and plain.json() == asked.json()
+    assert "x-gbeam-refusal" in asked.headers and not (site.folder / "runs").exists()
+    assert "x-gbeam-refusal" not in site.call("GET", "/api/runs", site.opened | {"x-gbeam-refusal": "1"}).headers
+
+
 def test_values_that_are_distributions_are_swept_only(site: Site) -> None:
     text = FAST.replace('"70 GPa"', '{ normal = ["70 GPa", "2 GPa"] }')
     made = site.call("POST", "/api/document", site.opened, json={"text": text}).json()

@@ -86,6 +86,25 @@ def test_files_of_a_run_are_known_kinds_in_its_folder(tmp_path: Path) -> None:
             jobs.file(number, name)
 
 
+@pytest.mark.parametrize(
+    ("answer", "said"),
+    [
+        ('{"outcome": "limits exceeded"}', "limits exceeded"),
+        ('{"error": []}', "failed"),
+        ("in words", "failed"),
+        ('{"outcome": "diverged", "motions": {}, "comparisons": []}', "diverged"),
+        ('{"outcome": "done", "motions": {}, "comparisons": [{"accepted": false}]}', "not accepted"),
+        (
+            '{"outcome": "done", "motions": {"a": {"limits": [{"exceeded": true}]}}, "comparisons": []}',
+            "machine limits",
+        ),
+    ],
+)
+def test_a_result_that_is_not_what_was_asked_for_says_so(tmp_path: Path, answer: str, said: str) -> None:
+    (tmp_path / "answer.json").write_text(answer)
+    assert module._failure(tmp_path).startswith(said)
+
+
 def test_a_scenario_that_a_verb_writes_into_stays_as_it_came_beside_what_it_becomes(tmp_path: Path) -> None:
     text = FAST.replace('inverse = "flat"', 'inverse = "flat"  # kept')
     numbers = []

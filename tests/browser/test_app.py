@@ -155,6 +155,79 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> Non
     assert faults == []
 
 
+@pytest.mark.slow
+def test_a_person_maps_a_record_and_opens_what_a_verb_made(browser: Any, address: str, tmp_path: Path) -> None:
+    """In a narrow window, with mistakes on the way; none of it is an error of the page."""
+    faults = list[str]()
+    context = browser.new_context(viewport={"width": 360, "height": 740}, color_scheme="dark", has_touch=True)
+    page = context.new_page()
+    page.on("console", lambda m: faults.append(m.text) if m.type == "error" else None)
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    page.goto(address)
+    page.wait_for_selector("html[data-gbeam]")
+
+    # A file that is no record, then one whose names, unit of time and sign are its own.
+    file = page.get_by_label("Scenario or record")
+    (tmp_path / "no record.csv").write_text("hello\nworld\n")
+    file.set_input_files(tmp_path / "no record.csv")
+    page.locator(".problems .bad", has_text="rows of numbers").wait_for()
+    rows = "".join(f"{10 * i};{-1 - 0.002 * i:.3f}\n" for i in range(101))
+    (tmp_path / "pull up 1.csv").write_text(f"Zeit;N_z down\n{rows}")
+    text = page.get_by_label("scenario as TOML")
+    page.get_by_role("button", name="Text").click()
+    text.fill(FAST.replace("6 g", "1.1 g"))
+    page.wait_for_function("() => document.querySelector('#app pre').textContent.includes('fast')")
+    file.set_input_files(tmp_path / "pull up 1.csv")
+    page.get_by_label("z is").select_option(label="−N_z down")
+    page.get_by_label("Time in").select_option("ms")
+    page.get_by_role("button", name="Use this record").click()
+    page.locator("#app .uplot").wait_for()
+    written = text.input_value()
+    assert 'z = "-N_z down"' in written and 'time_unit = "ms"' in written
+    _holds(page)
+
+    # A value that is wrong for a verb is said beside it.
+    page.get_by_label("Compute").select_option("modes")
+    page.get_by_label("motion", exact=False).first.select_option("flight")
+    page.locator(".verbs input[placeholder='such as 2 s']").fill("--out")
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.locator(".verbs > .bad", has_text="nothing that can be read").wait_for()
+
+    # The placed scenario opens as the document; the one that it was made of is there too.
+    page.get_by_label("Compute").select_option("place")
+    for name in ("no-proof", "write"):
+        page.locator(".verbs").get_by_role("checkbox", name=name).check()
+    assert page.locator(".verbs code").inner_text() == "gbeam place scenario.toml --no-proof --write --report"
+    _holds(page)
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.get_by_role("button", name="Open placed.toml").click(timeout=60_000)
+    page.wait_for_function("was => document.querySelector('textarea').value !== was", arg=written)
+    assert 'control_point = "150 mm"' in written and 'control_point = "150 mm"' not in text.input_value()
+    page.get_by_role("button", name="Use this scenario").click()
+    page.wait_for_function("was => document.querySelector('textarea').value === was", arg=written)
+    _holds(page)
+
+    # A run that is refused says why, and a case of a sweep that cannot be run too.
+    page.get_by_label("Compute").select_option("sweep")
+    page.get_by_label("vary").first.select_option("motion.spin.control_point")
+    page.get_by_label("over").first.fill("100 mm, 400 mm")
+    page.get_by_label("measure").fill("flight.tip.size.max_abs")
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.locator(".run", has_text="sweep some cases failed").wait_for(timeout=60_000)
+    page.locator("pre.bad", has_text="1 of 2 cases").wait_for()
+    page.locator(".gbeam-map button", has_text="–").click()
+    page.locator(".gbeam-wide .bad", has_text="beyond the tip").wait_for()
+    _holds(page)
+    context.close()
+    assert faults == []
+
+
+def _holds(page: Any) -> None:
+    """Nothing is wider than the window, and axe finds nothing."""
+    assert page.evaluate("document.documentElement.scrollWidth") <= page.viewport_size["width"]
+    assert _violations(page) == []
+
+
 def _picture(page: Any) -> bytes:
     """The viewer of the report that is shown, once it is drawn."""
     report = page.frames[-1]

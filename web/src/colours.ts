@@ -30,6 +30,17 @@ export function shade(share: number): [number, number, number] {
   return [0, 1, 2].map((k) => (a[k]! + f * (b[k]! - a[k]!)) / 255) as [number, number, number];
 }
 
+/** Black or white, whichever is read better on a colour. */
+export function inkOn(colour: [number, number, number]): "#000" | "#fff" {
+  return luminance(colour) > 0.179 ? "#000" : "#fff";
+}
+
+/** Relative luminance of WCAG 2. */
+export function luminance(colour: [number, number, number]): number {
+  const [r, g, b] = colour.map((x) => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4)) as typeof colour;
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+}
+
 export function css([r, g, b]: [number, number, number]): string {
   return `rgb(${Math.round(255 * r)} ${Math.round(255 * g)} ${Math.round(255 * b)})`;
 }

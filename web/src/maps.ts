@@ -1,6 +1,6 @@
 // A sweep over two parameters: a table whose cells have the colour of their value.
 
-import { css, GRADIENT, shade } from "./colours";
+import { css, GRADIENT, inkOn, shade } from "./colours";
 import { element } from "./controls";
 import { type Data, format, type HeatMap, view } from "./data";
 
@@ -23,7 +23,7 @@ export function heatMap(root: HTMLElement, data: Data, spec: HeatMap): void {
       if (Number.isFinite(value)) {
         const share = high > low ? (value - low) / (high - low) : 0.5;
         cell.style.background = css(shade(share));
-        cell.style.color = share > 0.55 ? "#000" : "#fff";
+        cell.style.color = inkOn(shade(share));
       }
       line.append(cell);
     });

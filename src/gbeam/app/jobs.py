@@ -19,6 +19,7 @@ from typing import Any
 from gbeam.app.files import names, regular
 from gbeam.app.verbs import VERBS
 from gbeam.errors import InputError
+from gbeam.report.page.bodies import study
 
 ID = re.compile(r"\d{8}-\d{6}-[0-9a-f]{8}")
 MEMORY = 16 * 2**30  # bytes of address space, of which compiled programs reserve far more than they use
@@ -189,7 +190,7 @@ class Jobs:
             self._process = number, process
             try:
                 status = await asyncio.wait_for(process.wait(), SECONDS)
-                outcome = {0: "done", 1: "failed", 2: "refused"}.get(status, "ended")
+                outcome = {0: "done", 1: _failure(place), 2: "refused"}.get(status, "ended")
             except TimeoutError:
                 outcome = "out of time"
                 _end(process)
@@ -210,13 +211,24 @@ def _command(state: Mapping[str, Any]) -> list[str]:
     return [sys.executable, "-m", "gbeam.app.limited", str(MEMORY), str(SECONDS), *arguments]
 
 
+def _failure(place: Path) -> str:
+    """Why a result is not what was asked for, in a word or two, where there is one."""
+    try:
+        answer = json.loads((place / _ANSWER).read_text(encoding="utf-8"))
+    except (OSError, ValueError):  # words, or nothing
+        return "failed"
+    if "comparisons" in answer:
+        return study.state(answer)[0]
+    return str(answer.get("outcome", "failed"))
+
+
 def _stdout(command: Sequence[str]) -> str:
     return _ANSWER if "--json" in command else _WORDS
 
 
 def _files(place: Path) -> dict[str, Path]:
     """The files of a run by the names under which they are downloaded; its report has one name whatever the verb."""
-    fixed = {name: place / inside for name, inside in DOWNLOADS.items() if (place / inside).is_file()}
+    fixed = {name: file for name, inside in DOWNLOADS.items() if _holds(file := place / inside)}
     before = place / _BEFORE / _SCENARIO
     if before.is_file():
         changed = before.read_bytes() != fixed[_SCENARIO].read_bytes()
@@ -227,6 +239,11 @@ def _files(place: Path) -> dict[str, Path]:
     made = fixed if report is None else fixed | {"report.html": report}
     kinds = KINDS if report else (*KINDS, ".png")  # a report has the figures
     return made | {name: file for name, file in written.items() if name.endswith(kinds)}
+
+
+def _holds(file: Path) -> bool:
+    """Whether there is a file that is not empty."""
+    return file.is_file() and file.stat().st_size > 0
 
 
 def _end(process: asyncio.subprocess.Process) -> None:

@@ -28,6 +28,7 @@ from gbeam.scenario.text.source import parse
 
 _KINDS = {".js": "text/javascript", ".css": "text/css", ".html": "text/html; charset=utf-8"}
 _BINARY = {".nc": "application/octet-stream", ".mat": "application/octet-stream", ".png": "image/png"}
+REFUSALS = "x-gbeam-refusal"  # of a request: it may be answered by one; of an answer: it is one
 Text = Annotated[str, Body(embed=True, max_length=SCENARIO_BYTES)]
 Line = Annotated[str, Field(max_length=1000)]
 Short = Annotated[str, Body(embed=True, max_length=1000)]
@@ -46,8 +47,11 @@ def create_app(folder: Path) -> FastAPI:
     app = FastAPI(title="gbeam", docs_url=None, redoc_url=None, lifespan=lifespan)
 
     @app.exception_handler(GbeamError)
-    async def refuse(_: Request, error: GbeamError) -> JSONResponse:
-        return JSONResponse({"errors": documents.problems(error)}, status_code=422)
+    async def refuse(request: Request, error: GbeamError) -> JSONResponse:
+        # The page shows it at its place, and asks for it as an answer: a status of failure would stand in the
+        # browser's console as an error of the page.
+        status = 200 if REFUSALS in request.headers else 422
+        return JSONResponse({"errors": documents.problems(error)}, status, {REFUSALS: "1"})
 
     for name in ("index.html", "app.js", "app.css"):
         app.add_api_route("/" if name == "index.html" else f"/{name}", _asset(name), include_in_schema=False)

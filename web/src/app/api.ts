@@ -82,12 +82,12 @@ export function problem(message: string): Problem {
 }
 
 async function call<T>(path: string, method: string, body?: BodyInit, kind = "application/json"): Promise<T> {
-  const response = await fetch(path, { method, ...(body === undefined ? {} : { body, headers: { "content-type": kind } }) });
-  if (response.ok) return (await response.json()) as T;
-  if (response.status === 422) {
-    const answer = (await response.json()) as { errors?: Problem[] };
-    if (answer.errors) throw new Refusal(answer.errors);
+  const headers = { "x-gbeam-refusal": "1", ...(body === undefined ? {} : { "content-type": kind }) };
+  const response = await fetch(path, { method, headers, ...(body === undefined ? {} : { body }) });
+  if (response.headers.has("x-gbeam-refusal")) {
+    throw new Refusal(((await response.json()) as { errors: Problem[] }).errors);
   }
+  if (response.ok) return (await response.json()) as T;
   const why = response.status === 413 ? "the file is too large" : await response.text();
   throw new Refusal([problem(why || `status ${response.status}`)]);
 }

@@ -40,6 +40,7 @@ export class Editor {
   private readonly record = element("div", "record");
   private readonly curves = element("div");
   private readonly views: HTMLButtonElement[];
+  private readonly look: HTMLButtonElement;
   private readonly verbs: Verbs;
   private changes: Promise<unknown> = Promise.resolve();
   private waiting = 0;
@@ -55,7 +56,8 @@ export class Editor {
     });
     this.views = [button("Form", () => this.show(0)), button("Text", () => this.show(1))];
     this.problems.setAttribute("role", "status");
-    const acts = [button("Preview load", () => void this.preview()), button("Download", () => this.save())];
+    this.look = button("Preview load", () => void this.preview());
+    const acts = [this.look, button("Download", () => this.save())];
     this.verbs = new Verbs(() => this.document.text, submitted);
     this.root.append(this.start(), this.record, this.verbs.root, this.row(...this.views, ...acts), this.problems);
     this.root.append(this.curves, this.form.root, this.text, this.meaning);
@@ -106,6 +108,7 @@ export class Editor {
     const { form, errors, meaning } = this.document;
     this.form.draw(form, errors);
     this.verbs.offer(form, errors.length === 0);
+    this.look.disabled = errors.length > 0;
     this.list(errors);
     this.meaning.textContent = meaning;
     this.meaning.hidden = !meaning;
@@ -177,7 +180,8 @@ export class Editor {
     const listed = columns.map((each) => [each, each] as const);
     const signed = [["0", "none"] as const, ...listed, ...columns.map((each) => [`-${each}`, `−${each}`] as const)];
     const set = (key: string) => (value: string) => {
-      chosen[key] = value;
+      if (value) chosen[key] = value;
+      else delete chosen[key];
     };
     const use = async (): Promise<void> => {
       if (await this.take(api.map(this.document.text, motion, chosen))) await this.preview();
@@ -187,6 +191,7 @@ export class Editor {
         motion = value;
       }),
       choice("Time", listed, chosen["time"]!, set("time")),
+      choice("Time in", [["", "the file's unit, or s"], ...["s", "ms", "us", "min"].map((each) => [each, each] as const)], "", set("time_unit")),
       ...COMPONENTS.map((key) => choice(`${key} is`, signed, "0", set(key))),
       choice("Unit", [["g", "g"], ["m/s^2", "m/s²"]], "g", set("unit")),
       choice("Holds", [["specific-force", "specific force"], ["acceleration", "acceleration"]], "specific-force", set("quantity")),
@@ -197,6 +202,7 @@ export class Editor {
 
   private async preview(): Promise<void> {
     this.curves.replaceChildren();
+    if (this.document.errors.length) return; // which are said
     try {
       const { time, flights } = await api.preview(this.document.text);
       for (const [name, parts] of Object.entries(flights)) {

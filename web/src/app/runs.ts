@@ -8,6 +8,7 @@ import { sweepMap } from "./sweeps";
 const ACTIVE = ["queued", "running"];
 /** Scenarios that verbs make. */
 const MADE = ["placed.toml", "found.toml", "command.json"];
+const PROGRESS = /: \d+%(, .*)?$/;
 const OFTEN = 700; // ms, while something runs
 const SELDOM = 5000;
 
@@ -119,9 +120,11 @@ export class Runs {
     );
     this.shown.append(links);
     if (run.state !== "done" && run.files.includes("messages.txt")) {
-      this.shown.append(element("pre", "bad", await api.text(run.id, "messages.txt")));
+      const lines = (await api.text(run.id, "messages.txt")).split("\n");
+      const said = lines.filter((each) => !PROGRESS.test(each)).join("\n").trim();
+      if (said) this.shown.append(element("pre", "bad", said));
     }
-    if (run.verb === "sweep" && run.state === "done") {
+    if (run.verb === "sweep" && run.files.includes("report.html")) {
       this.shown.append(await sweepMap(run, (id) => void this.watch(id)));
     }
     if (run.files.includes("report.html")) {

@@ -1,6 +1,6 @@
 // The map of a sweep's cases, each of which opens its run.
 
-import { css, shade } from "../colours";
+import { css, inkOn, shade } from "../colours";
 import { button, element } from "../controls";
 import { format } from "../data";
 import { api, type Run } from "./api";
@@ -37,13 +37,20 @@ export async function sweepMap({ id, arguments: given }: Run, opened: (id: strin
     const value = of.values[k]!;
     return `${typeof value === "number" ? Number(value.toPrecision(6)) : value}${of.unit ? ` ${of.unit}` : ""}`;
   };
+  const problem = element("p", "bad");
+  problem.setAttribute("role", "status");
   const open = async (i: number, j: number): Promise<void> => {
-    let made = scenario;
-    for (const [of, k] of [[rows, i], [columns, j]] as const) {
-      if (of) made = (await api.edit(made, of.path, text(of, k))).text;
+    problem.textContent = "";
+    try {
+      let made = scenario;
+      for (const [of, k] of [[rows, i], [columns, j]] as const) {
+        if (of) made = (await api.edit(made, of.path, text(of, k))).text;
+      }
+      const options = given.filter((each) => /^--(motion|at)=/.test(each)).map((each) => each.slice(2));
+      opened((await api.submit(made, sweep.verb, options, `${id}/${i}/${j}`)).id);
+    } catch (error) {
+      problem.textContent = error instanceof Error ? error.message : String(error);
     }
-    const options = given.filter((each) => /^--(motion|at)=/.test(each)).map((each) => each.slice(2));
-    opened((await api.submit(made, sweep.verb, options, `${id}/${i}/${j}`)).id);
   };
   const table = element("table", "gbeam-map");
   const head = element("tr");
@@ -60,7 +67,7 @@ export async function sweepMap({ id, arguments: given }: Run, opened: (id: strin
       const share = value === null ? 0 : high > low ? (value - low) / (high - low) : 0.5;
       if (value !== null) {
         act.style.background = css(shade(share));
-        act.style.color = share > 0.55 ? "#000" : "#fff";
+        act.style.color = inkOn(shade(share));
       }
       act.title = "open the run of this case";
       cell.append(act);
@@ -69,6 +76,6 @@ export async function sweepMap({ id, arguments: given }: Run, opened: (id: strin
     table.append(line);
   });
   const box = element("div", "gbeam-wide");
-  box.append(element("p", "faint", `${name}${figure.unit ? `, ${figure.unit}` : ""}: a cell opens its run`), table);
+  box.append(element("p", "faint", `${name}${figure.unit ? `, ${figure.unit}` : ""}: a cell opens its run`), table, problem);
   return box;
 }
