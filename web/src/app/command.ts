@@ -7,6 +7,11 @@ export function quoted(words: string[]): string[] {
   return words.map((each) => (/^[\w.,:=/@%+-]+$/.test(each) ? each : `'${each.replaceAll("'", "'\\''")}'`));
 }
 
+/** What a document is called as a file, by its language. */
+export function fileName(text: string): string {
+  return text.trimStart().startsWith("{") ? "scenario.json" : "scenario.toml";
+}
+
 export class Command {
   readonly root = element("div", "gbeam-row command");
   private readonly line = element("code");

@@ -5,6 +5,7 @@ import { lineColour, prefersDark } from "../colours";
 import { button, choice, element } from "../controls";
 import { axisStyle } from "../plots";
 import { api, type Document, type Problem, problem, Refusal, type Verb } from "./api";
+import { fileName } from "./command";
 import { Form } from "./form";
 import { Verbs } from "./verbs";
 
@@ -135,7 +136,7 @@ export class Editor {
   private save(): void {
     const link = element("a");
     link.href = URL.createObjectURL(new Blob([this.document.text], { type: "text/plain" }));
-    link.download = this.document.text.trimStart().startsWith("{") ? "scenario.json" : "scenario.toml";
+    link.download = fileName(this.document.text);
     link.click();
     URL.revokeObjectURL(link.href);
   }

@@ -2,7 +2,7 @@
 
 import { button, choice, element, tick } from "../controls";
 import { api, type Entry, type Option, type Problem, Refusal, type Verb } from "./api";
-import { Command } from "./command";
+import { Command, fileName } from "./command";
 
 /** All values of a form that are written. */
 export function written(entries: Entry[]): Entry[] {
@@ -59,7 +59,7 @@ export class Verbs {
     this.run.disabled = !sound;
     this.entries = entries;
     const offered = JSON.stringify([this.motions(), this.paths()]);
-    if (offered === this.offered) return;
+    if (offered === this.offered) return this.say();
     this.offered = offered;
     this.draw();
   }
@@ -139,7 +139,7 @@ export class Verbs {
 
   private say(): void {
     const report = this.verbs[this.verb]?.report ? ["--report"] : [];
-    this.command.say(["gbeam", this.verb, "scenario.toml", ...this.options().map((each) => each.line), ...report]);
+    this.command.say(["gbeam", this.verb, fileName(this.text()), ...this.options().map((each) => each.line), ...report]);
   }
 
   private async submit(): Promise<void> {
