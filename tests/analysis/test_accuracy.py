@@ -12,6 +12,7 @@ import gbeam as gb
 from gbeam.analysis.accuracy.correction import RESOLVED
 from gbeam.analysis.accuracy.reference import Sampled, complete_residual
 from gbeam.analysis.equilibrium.compiled import evaluated
+from gbeam.mechanics.equations import sampled
 from gbeam.mechanics.equations.residuals import OnBase
 from gbeam.motion.bases.base import Base
 
@@ -182,6 +183,16 @@ def test_a_model_is_expanded_by_numpy_as_it_is_by_jax() -> None:
         ours, theirs = (getattr(each[0], name) for each in (plain, compiled))
         np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-8 * max(np.abs(theirs).max(), 1e-12), err_msg=name)
     np.testing.assert_allclose(plain[0].loads.slope, compiled[0].loads.slope, rtol=0, atol=1e-7)
+
+
+@pytest.mark.parametrize("offset", [(0.0, 0.0, 0.0), (0.0, 0.05, 0.02)])
+def test_a_clamped_exact_field_is_expanded_by_its_tangents_as_by_its_places(offset: tuple[float, float, float]) -> None:
+    body = gb.PointMass(LENGTH, 0.1, offset=offset)
+    inertia = gb.assemble(gb.Beam(LENGTH, *PLAIN[:2], [body]), "exact", axial=1, y=2, z=2).inertia
+    (q,) = states(5, 1, 0.3, 3)
+    by_places = sampled.about(inertia.positions, q, np.full(5, 0.003))
+    for ours, theirs in zip(sampled.places_about(inertia, q), by_places, strict=True):
+        np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-8)
 
 
 def test_shapes_are_added_until_they_are_enough() -> None:

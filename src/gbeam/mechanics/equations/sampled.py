@@ -120,12 +120,43 @@ def load_forces(work: LoadWork, q: Array, values: Array) -> tuple[Array, Array, 
 
 def places_about(inertia: Inertia, q: Array) -> tuple[Array, Array, Array]:
     """Places (k, 3) of the particles at q (n,), and their first and second derivatives, (k, 3, n) and (k, 3, n, n)."""
+    field = inertia.field
+    if not isinstance(field, ExactField):
+        return about(inertia.positions, q, _steps(field, len(q)))
+    axis = _axis_about(field, q)
+    if inertia.offset is None:
+        return axis
+    off = inertia.off_axis
+    for whole, of_arms in zip(axis, about(partial(inertia.arms, at=off), q, _steps(field, len(q))), strict=True):
+        whole[off] += of_arms
+    return axis
+
+
+def about(place: Any, q: Array, steps: Array) -> tuple[Array, Array, Array]:
+    """Points (p, 3) at q (n,) and their derivatives, of places that may depend on the coordinates in any way."""
 
     def slopes(q: Array) -> Array:
         moved = q[..., None, :] + 1j * STEP * np.eye(q.shape[-1])
-        return np.moveaxis(np.asarray(inertia.positions(moved)).imag / STEP, -3, -1)
+        return np.moveaxis(np.asarray(place(moved)).imag / STEP, -3, -1)
 
-    return np.asarray(inertia.positions(q)), slopes(q), _differences(slopes, q, _steps(inertia.field, len(q)))
+    return np.asarray(place(q)), slopes(q), _differences(slopes, q, steps)
+
+
+def _axis_about(field: ExactField, q: Array) -> tuple[Array, Array, Array]:
+    """The same of an exact field's points: a tangent depends on its own strain and angles, three numbers."""
+    values, unit, n = field.nodal @ q, np.eye(3)[..., None], len(q)
+
+    def slopes(values: Array) -> Array:  # (..., 3, g) -> (..., 3, g, 3)
+        moved = values[..., None, :, :] + 1j * STEP * unit
+        return np.asarray(field.tangents(*np.moveaxis(moved, -2, 0))).imag / STEP
+
+    far, near = (slopes(values + k * BEND * unit) - slopes(values - k * BEND * unit) for k in (2, 1))
+    second = (8 * near - far) / (12 * BEND)  # by two of them, (3, 3, g, 3)
+    slope = np.einsum("kga,kgi->gai", slopes(values), field.nodal)
+    once = np.einsum("lkga,lgj->kgaj", second, field.nodal)
+    twice = np.matmul(np.moveaxis(field.nodal, 0, -1)[:, None], np.moveaxis(once, 0, -2))  # (g, 3, n, n)
+    first, second = (field.cumulative @ x.reshape(len(x), -1) for x in (slope, twice))
+    return field.cumulative @ field.tangents(*values), first.reshape(-1, 3, n), second.reshape(-1, 3, n, n)
 
 
 def elastic_about(elasticity: Elasticity, q: Array, stiffness: Array) -> tuple[Array, Array]:
