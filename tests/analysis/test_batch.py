@@ -17,15 +17,24 @@ def slew(level: float, duration: float) -> gb.Hub:
     return gb.Hub(radius=0.5, rate=gb.SmoothStep(level, duration))
 
 
+def errors(response: gb.Response) -> list[float]:
+    every = response.errors.displacement, response.errors.loads, response.errors.stress
+    return [value for each in every for value in (each.step, each.total)]
+
+
 def agree(cases: list[tuple[gb.Structure, Any]], within: float, **how: Any) -> list[gb.Response]:
     few = 4 if cases[0][0].linear and not cases[0][1].free else 2
+    how = {"estimate": False, **how}
     together = dict(gb.simulate_batch(cases, together=few, **how))
     assert sorted(together) == list(range(len(cases)))
     for k, (structure, motion) in enumerate(cases):
-        alone = gb.simulate(structure, motion, estimate=False, **how)
+        alone = gb.simulate(structure, motion, **how)
         size = np.abs(alone.displacement).max()
         assert together[k].outcome == alone.outcome and together[k].warnings == alone.warnings
+        assert together[k].steps == alone.steps
         np.testing.assert_array_equal(together[k].time, alone.time)
+        for ours, theirs in zip(errors(together[k]), errors(alone), strict=True):
+            assert ours == pytest.approx(theirs, rel=1e-3, abs=within, nan_ok=True)
         np.testing.assert_allclose(together[k].displacement, alone.displacement, rtol=0, atol=within * size)
         np.testing.assert_allclose(together[k].peaks.max_abs, alone.peaks.max_abs, rtol=0, atol=within * size)
         np.testing.assert_allclose(together[k].q, alone.q, rtol=0, atol=within * np.abs(alone.q).max())
@@ -68,6 +77,24 @@ def test_free_hubs(integrator: str) -> None:
     agree(cases, 1e-7, duration=3.0, integrator=integrator, step=0.02)
 
 
+@pytest.mark.parametrize(("integrator", "step"), [("newmark", None), ("gauss", None), ("gauss", 0.05)])
+def test_cases_whose_steps_follow_from_their_errors(integrator: str, step: float | None) -> None:
+    """They need different numbers of runs and steps; the last one moves too far for its model."""
+    model = hub_beam("FOAM", y=2)
+    motions = [slew(3.0, 2.0), slew(0.5, 1.5), slew(3.0, 0.31), slew(1e3, 2.0)]
+    cases = [(model, motion) for motion in motions]
+    responses = agree(cases, 1e-9, duration=3.0, integrator=integrator, step=step, estimate=True, tolerance=1e-3)
+    if step is None:
+        assert len({response.steps for response in responses[:3]}) > 1
+    assert responses[-1].outcome == "diverged"
+
+
+def test_free_hubs_whose_steps_follow_from_their_errors() -> None:
+    model = hub_beam("FOAM", y=2)
+    hubs = [gb.Hub(radius=0.5, inertia=200.0, torque=gb.Sine(torque, 2.0)) for torque in (200.0, 20.0)]
+    agree([(model, hub) for hub in hubs], 1e-6, duration=2.0, integrator="gauss", tolerance=1e-3)
+
+
 def test_a_case_that_leaves_its_model_or_cannot_be_solved_is_integrated_alone() -> None:
     """TLAM beyond its critical speed beside a slow slew: the same outcome and message as alone."""
     model = hub_beam("TLAM", y=2)
@@ -80,7 +107,7 @@ def digits(response: gb.Response) -> bytes:
     return b"".join(np.ascontiguousarray(each).tobytes() for each in arrays)
 
 
-@pytest.mark.parametrize("kind", ["slews", "slews by gauss", "structures", "free hubs"])
+@pytest.mark.parametrize("kind", ["slews", "slews by gauss", "automatic steps", "structures", "free hubs"])
 def test_what_stands_beside_a_case_does_not_change_a_digit_of_it(kind: str) -> None:
     """Batches of one width of cases in a random order, some left out: the last one is filled, or of one case."""
     random, model, together = np.random.default_rng(5), hub_beam("FOAM", y=2), 4
@@ -89,6 +116,9 @@ def test_what_stands_beside_a_case_does_not_change_a_digit_of_it(kind: str) -> N
     if kind == "slews by gauss":  # those of another duration end within a step, which is split there
         how |= {"integrator": "gauss", "step": 0.05}
         cases = [(model, slew(level, end)) for level in (1.0, 2.0, 3.0) for end in (1.03, 2.0)]
+    if kind == "automatic steps":
+        how = {"duration": 3.0, "tolerance": 1e-3}
+        cases = [(model, slew(level, end)) for level in (1.0, 3.0) for end in (0.31, 2.0)]
     if kind == "structures":
         dampings = [gb.assemble(appendage(damping_ratio=0.01 * k), "FOAM", axial=1, y=2) for k in range(3)]
         cases += [(each, slew(2.0, 2.0)) for each in dampings]
@@ -121,11 +151,5 @@ def test_no_more_cases_are_taken_than_wait_for_others() -> None:
 
 def test_what_a_batch_refuses() -> None:
     cases = [(hub_beam("FOAM", y=2), slew(1.0, 2.0))]
-    refused = {
-        "step is automatic": {},
-        "a batch estimates no errors": {"step": 0.1, "estimate": True},
-        "together is 0": {"step": 0.1, "together": 0},
-    }
-    for words, how in refused.items():
-        with pytest.raises(gb.InputError, match=words):
-            gb.simulate_batch(cases, duration=3.0, **how)
+    with pytest.raises(gb.InputError, match="together is 0"):
+        gb.simulate_batch(cases, duration=3.0, step=0.1, together=0)

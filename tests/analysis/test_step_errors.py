@@ -18,7 +18,7 @@ from gbeam import Flight, Hub, Response, Sine, SmoothStep, Structure, simulate, 
 from gbeam.analysis.response.problem import problem_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.steps.step_errors import Readings, Run, observed_order
-from gbeam.analysis.response.steps.stepping import refine
+from gbeam.analysis.response.steps.stepping import answered, refine
 from gbeam.integrate import Trajectory
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.results.response import BaseMotion
@@ -188,7 +188,7 @@ def test_a_step_found_by_a_large_jump_is_checked() -> None:
         return np.asarray(q * np.array([0.0, 0.0, 1.0]))
 
     assert error(0.0025) > 1.5 * settings.aim  # the step that the order promises to be enough
-    found, errors = refine(run, 0.02, 2, settings)
+    found, errors = answered(refine(0.02, 2, settings), run)
     assert error(found.step) <= min(settings.aim, BOUND * errors.displacement)
 
 

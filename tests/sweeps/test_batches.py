@@ -75,12 +75,27 @@ def test_loads_that_are_not_measured_change_no_digit(fast: Path) -> None:
     assert np.isfinite([lean.measures[name] for name in tips]).all()
 
 
-def test_cases_of_an_automatic_step_are_computed_one_by_one(fast: Path) -> None:
-    for given, together in (((), False), (FIXED, True)):
+def test_few_cases_of_an_automatic_step_are_computed_one_by_one(fast: Path) -> None:
+    for given, cases, together in (((), 31, False), ((), 32, True), (FIXED, 2, True)):
         source = load(fast, given).source
         assert source is not None
         question = Question(source, "run", None, keys=(("motions", "flight", "tip", "z", "max_abs"),), together=True)
-        assert settled(question, question.case(())).together == together
+        case = question.case(())
+        assert settled(question, case, cases).together == together
+        assert not settled(question, replace(case, model=replace(case.model, automatic=True)), cases).together
+
+
+def test_many_cases_of_an_automatic_step_have_the_figures_of_their_own_runs(fast: Path) -> None:
+    """The machine's runs, which spin up, are integrated alone."""
+    found = gb.sweep(fast, {LEVEL: "3 g:8 g:32"}, MEASURES, overrides=["response.duration=0.6 s"])
+    levels = np.linspace(3, 8, 32).tolist()
+    for k in (0, 17):
+        given = [f"{LEVEL}={levels[k]!r} g", "response.duration=0.6 s", "response.estimate=false"]
+        study = gb.study(gb.read_scenario(fast, given))
+        peaks = study.responses["flight"].peaks
+        assert peaks.loads is not None
+        alone = [peaks.max_abs[2], peaks.loads.moment[0].components.value[1]]
+        assert [found.measures[MEASURES[i]][k] for i in (0, 3)] == pytest.approx(alone, rel=1e-9)
 
 
 def test_cases_with_other_steps_stay_apart() -> None:

@@ -134,7 +134,7 @@ def start(
             question = replace(question, keys=keys)
             units = tuple(unit_at(facts, each) for each in keys)
             truths = tuple(is_truth(facts, each) for each in keys)
-        question = settled(histories.of(question, case), case)
+        question = settled(histories.of(question, case), case, len(cases))
         own = (number, cases.overrides(number))
         rows += computed(question, [own]) if question.together else [question.measured(number, case, facts)]
         seconds = time.perf_counter() - begin
@@ -162,7 +162,7 @@ def go_on(
     scenario = question.scenario(cases.overrides(possible[0].case))
     if histories.names or question.together:
         case = build(scenario)
-        question = settled(histories.of(question, case), case)
+        question = settled(histories.of(question, case), case, len(cases))
     rows: list[Row] = []
     seconds = 0.0
     few = min(_FEW, width(question))

@@ -8,38 +8,51 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.response.problem import Problem, problem_of
 from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.simulation import (
-    felt_corners,
-    planned_steps,
-    settings_of,
-    simulate,
-    steps_within,
-)
-from gbeam.analysis.response.steps.stepping import scheme_of
+from gbeam.analysis.response.simulation import settings_of, simulate
+from gbeam.analysis.response.steps.posed import Posed, pose, steps_within
+from gbeam.analysis.response.steps.step_errors import Run
+from gbeam.analysis.response.steps.stepping import Plan, scheme_of
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
 from gbeam.integrate.driver import Trajectory
-from gbeam.integrate.steps import fitted
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
-from gbeam.results.parts.errors import StepErrors
 from gbeam.results.response import Response
 
 TOGETHER = 32  # cases: what they carry stays in a cache, and a processor's vectors are full
+LONGEST = 20_000_000  # numbers of a trajectory: of a longer one as many at once would fill the memory
 
 
 @dataclass(frozen=True, eq=False)
 class _Case:
-    """A case that waits for others of its shape."""
+    """A case whose plan waits for a run.
+
+    Parameters
+    ----------
+    index : int
+        Its place among the cases.
+    posed : Posed
+    plan : Plan
+    step : float
+        Of the run that the plan waits for, s.
+    run : gbeam.integrate.batch.Run
+        The same, to be integrated.
+    """
 
     index: int
-    structure: Structure
-    motion: Motion
-    problem: Problem
+    posed: Posed
+    plan: Plan
+    step: float
     run: Any
+
+    @property
+    def shape(self) -> Hashable | None:
+        """What cases have in common that stand together; None of one that is to be integrated alone."""
+        if 3 * self.run.q.size * len(self.run.steps) * TOGETHER > LONGEST:
+            return None
+        return None if self.run.shape is None else (self.posed.motion.kind, self.posed.structure.linear, self.run.shape)
 
 
 def simulate_batch(
@@ -49,12 +62,13 @@ def simulate_batch(
     together: int = TOGETHER,
     **options: Any,
 ) -> Iterator[tuple[int, Response]]:
-    """Compute the responses of many cases, with a given step and without an estimate of their errors.
+    """Compute the responses of many cases.
 
     Cases of one shape are integrated together, some at a time, by the same steps that :func:`simulate` takes: of one
-    model with equal numbers of shapes, in environments of one kind whose corners split as many steps. A machine that
-    spins up, and a case whose corrections fail, are integrated alone. No more cases are taken from `cases` than wait
-    for others of their shape.
+    model with equal numbers of shapes, in environments of one kind whose corners split as many steps. Where steps are
+    automatic, or errors are estimated, the runs that this takes are: a case goes on to its next one beside those that
+    need as many steps. A machine that spins up, runs with error control, very long ones, and those whose corrections
+    fail are integrated alone. No more cases are taken from `cases` than wait for others of their shape.
 
     Parameters
     ----------
@@ -73,22 +87,18 @@ def simulate_batch(
     Raises
     ------
     InputError
-        If there is no step, an estimate is to be made, less than one case stands together, or as :func:`simulate` does.
+        If less than one case stands together, or as :func:`simulate` does.
     ComputationError
         If a case has no relative equilibrium to start from.
 
     Notes
     -----
-    A batch judges nothing: simulate one or a few of its cases with an estimate.
+    Errors are estimated where ``estimate=True`` says so, which costs more than a run; of a few of the cases, mostly.
 
     A case's digits depend neither on the cases beside it nor on their order, on one machine: with as many `together`, a
     case alone, the last of a hundred and one in other company give the same bytes.
     """
     settings = settings_of("simulate_batch", settings, options if settings else {"estimate": False, **options})
-    if settings.step is None or settings.integrator == "adaptive":
-        raise InputError("step", "is automatic, and cases that are integrated together share one", "give a step, s")
-    if settings.estimate:
-        raise InputError("estimate", "is true, and a batch estimates no errors", "give estimate = False")
     if together < 1:
         raise InputError("together", f"is {together}", "give one or more")
     return _responses(cases, settings, together)
@@ -98,62 +108,88 @@ def _responses(
     cases: Iterable[tuple[Structure, Motion]], settings: ResponseSettings, together: int
 ) -> Iterator[tuple[int, Response]]:
     waiting: dict[Hashable, list[_Case]] = {}
+
+    def full(case: _Case) -> list[_Case]:
+        """Let a case wait for others; these, if they are enough now."""
+        queue = waiting.setdefault(case.shape, [])
+        queue.append(case)
+        return waiting.pop(case.shape) if len(queue) == together else []
+
+    def through(queue: list[_Case]) -> Iterator[tuple[int, Response]]:
+        """Integrate cases together, and what becomes enough by those that go on."""
+        ready = [queue]
+        while ready:
+            for answer in _together(ready.pop(), together):
+                if not isinstance(answer, _Case):
+                    yield answer
+                elif more := full(answer):
+                    ready.append(more)
+
     for index, (structure, motion) in enumerate(cases):
-        case, shape = _posed(index, structure, motion, settings)
-        if case is None:
+        structure.require_damping("the response")
+        motion = motion.over(settings.start, settings.start + settings.duration)
+        if structure.holds_jax or holds_jax(motion):
+            raise InputError("simulate_batch", "is given what JAX traces", "map simulate over it with jax.vmap")
+        posed, before, after = pose(structure, motion, settings)
+        if before or after or settings.integrator == "adaptive":
             yield index, simulate(structure, motion, settings)
             continue
-        queue = waiting.setdefault((type(motion), structure.linear, shape), [])
-        queue.append(case)
-        if len(queue) == together:
-            yield from _together(queue, settings, together)
-            queue.clear()
-    for queue in waiting.values():
-        yield from _together(queue, settings, together)
+        case = _going_on(index, posed, posed.plan())
+        if not isinstance(case, _Case):
+            yield case
+        elif queue := full(case):
+            yield from through(queue)
+    while waiting:
+        yield from through(waiting.pop(next(iter(waiting))))
 
 
-def _posed(
-    index: int, structure: Structure, motion: Motion, settings: ResponseSettings
-) -> tuple[_Case | None, Hashable]:
-    """A case and its shape; None of one that is to be integrated alone."""
-    from gbeam.integrate.batch import Run
+def _going_on(
+    index: int, posed: Posed, plan: Plan, run: Run | None = None, known: dict[str, Any] | None = None
+) -> _Case | tuple[int, Response]:
+    """A case with the run that its plan wants after another; its response where there is no more to wait for.
 
-    structure.require_damping("the response")
-    motion = motion.over(settings.start, settings.start + settings.duration)
-    if structure.holds_jax or holds_jax(motion):
-        raise InputError("simulate_batch", "is given what JAX traces", "map simulate over it with jax.vmap")
-    coarse, step, before, after = planned_steps(structure, motion, settings)
-    if before or after:
-        return None, None
-    assert step is not None
-    problem = problem_of(structure, motion, settings.start, settings.begin)
-    felt = felt_corners(structure, motion, settings, coarse, problem.equations.drive)
-    count, scheme = round(settings.duration / step), scheme_of(settings)
-    steps = fitted(settings.start, step, count, felt.felt_by(scheme))
-    run = Run(problem.equations, np.asarray(problem.q), np.asarray(problem.qd), steps, scheme)
-    return None if run.shape is None else _Case(index, structure, motion, problem, run), run.shape
+    `known` is what :func:`response_of` need not compute if that run is the one that counts.
+    """
+    from gbeam.integrate import batch
+
+    scheme = scheme_of(posed.settings)
+    q, qd = (np.asarray(x) for x in (posed.problem.q, posed.problem.qd))
+    try:
+        while True:
+            step, _ = next(plan) if run is None else plan.send(run)
+            wanted = batch.Run(posed.problem.equations, q, qd, posed.steps(step), scheme)
+            case = _Case(index, posed, plan, step, wanted)
+            if case.shape is not None:
+                return case
+            run, known = posed.run(step, stop=posed.too_far), None
+    except StopIteration as end:
+        made, errors = end.value
+    runs, stride = (None, made.trajectory, None), posed.stride(made.step)
+    given = posed.structure, posed.motion, posed.settings, posed.problem, runs, "", made.step, errors, stride
+    return index, response_of(*given, **(known if known and made is run else {}))
 
 
-def _together(queue: list[_Case], settings: ResponseSettings, together: int) -> Iterator[tuple[int, Response]]:
+def _together(queue: list[_Case], together: int) -> Iterator[_Case | tuple[int, Response]]:
     from gbeam.integrate.batch import integrate_together
 
-    if not queue:
-        return
     # Filled with its last case: one program serves every number of them, and no digit depends on it.
     filling = [queue[-1].run] * (together - len(queue))
     trajectories = integrate_together([case.run for case in queue] + filling)
     for case, trajectory in zip(queue, trajectories, strict=False):
-        yield case.index, _response(case, trajectory, settings)
+        posed, known = case.posed, None if trajectory is None else _known(case, trajectory)
+        if trajectory is None or known is None:  # one that leaves what its model can mean stops there
+            run = posed.run(case.step, stop=posed.too_far)
+        else:
+            run = posed.read(trajectory, case.step)
+        yield _going_on(case.index, posed, case.plan, run, known)
 
 
-def _response(case: _Case, trajectory: Trajectory | None, settings: ResponseSettings) -> Response:
-    structure, motion, problem = case.structure, case.motion, case.problem
-    if trajectory is not None:
-        moved = np.asarray(structure.displacement(trajectory.q[:, problem.first :]))
-        if steps_within(structure, moved) is None:
-            base, _ = (case.run.at_times if structure.linear and not motion.free else None) or (None, None)
-            runs, step = (None, trajectory, None), settings.duration / (len(trajectory.time) - 1)
-            given = structure, motion, settings, problem, runs, "", step, StepErrors(), 1
-            return response_of(*given, base=base, moved=moved)
-    # One that leaves what its model can mean stops there.
-    return simulate(structure, motion, settings)
+def _known(case: _Case, trajectory: Trajectory) -> dict[str, Any] | None:
+    """What is known of a run's response; None where it moves too far for its model."""
+    posed = case.posed
+    moved = np.asarray(posed.structure.displacement(trajectory.q[:, posed.problem.first :]))
+    if steps_within(posed.structure, moved) is not None:
+        return None
+    alone = posed.structure.linear and not posed.motion.free and posed.stride(case.step) == 1
+    base, _ = (case.run.at_times if alone else None) or (None, None)
+    return {"base": base, "moved": moved}

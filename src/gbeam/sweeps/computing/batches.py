@@ -1,4 +1,4 @@
-"""Some cases at once, which is what a worker is given: runs of a given step are integrated together.
+"""Some cases at once, which is what a worker is given: runs of one shape are integrated together.
 
 A case's digits do not depend on the cases beside it (:func:`gbeam.simulate_batch`), so neither do they on the workers,
 nor on what a store holds; whether it is integrated with others depends on the sweep and on the case alone.
@@ -35,11 +35,16 @@ def may_share(verb: str, paths: Sequence[str]) -> bool:
     return verb == "run" and not any(path.partition(".")[0] in _ALONE for path in paths)
 
 
-def settled(question: Question, case: Case) -> Question:
-    """The question, its figures known, with whether this case's step, and so every one's, lets them stand together."""
+def settled(question: Question, case: Case, cases: int) -> Question:
+    """The question, its figures known, with whether a case, and so every one of a sweep of so many, stands with others.
+
+    An automatic step takes several runs, whose programs a few cases do not repay; so do numbers of shapes that are
+    found case by case.
+    """
     settings = reduced(case, question.needs).response
-    fixed = settings.step is not None and settings.integrator != "adaptive" and not settings.estimate
-    return replace(question, together=question.together and fixed)
+    enough = settings.step is not None or cases >= TOGETHER
+    able = settings.integrator != "adaptive" and not settings.estimate and not case.model.automatic
+    return replace(question, together=question.together and enough and able)
 
 
 def rows(question: Question, tasks: Sequence[Task]) -> list[Row]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 
 import numpy as np
 
@@ -21,6 +21,8 @@ LOADS_STEPS = 50_000  # at most, where it is the loads that need them
 ONE_CORNER = 1e-6  # of the duration: corners nearer to one another are one
 JUMPS = 2, 3, 4, 6, 8, 12, 16  # into how many a step is divided; a check takes four, three or two of the new ones
 SPARE = 1.05  # how much finer a step is than the order promises to be enough
+# Yields a step, s, and what it is for; is sent the run; returns the run that counts with its errors.
+Plan = Generator[tuple[float, str], Run, tuple[Run, StepErrors]]
 
 
 def scheme_of(settings: ResponseSettings) -> Scheme:
@@ -60,18 +62,37 @@ def corners(structure: Structure, motion: Motion, step: float) -> Floats:
     return np.concatenate([motion.corners(step), *loads])
 
 
-def check(run: Callable[[float, str], Run], step: float, order: int) -> tuple[Run, StepErrors]:
+def answered(plan: Plan, run: Callable[[float, str], Run]) -> tuple[Run, StepErrors]:
+    """Compute the runs of a plan, one after the other."""
+    try:
+        wanted = next(plan)
+        while True:
+            wanted = plan.send(run(*wanted))
+    except StopIteration as end:
+        made, errors = end.value
+        return made, errors
+
+
+def planned(settings: ResponseSettings, coarse: float, given: float | None) -> Plan:
+    """The runs of some settings: those of an automatic step, or of the given one and what its estimate needs."""
+    order = scheme_of(settings).order
+    if given is None:
+        return (yield from refine(coarse, order, settings))
+    if settings.estimate:
+        return (yield from check(given, order))
+    return (yield given, "integrating"), StepErrors()
+
+
+def check(step: float, order: int) -> Plan:
     """Run with a given step, and with twice and four times that, from which the error is estimated."""
-    runs = [run(step, "integrating"), run(2 * step, "checking with twice the step")]
+    runs = [(yield step, "integrating"), (yield 2 * step, "checking with twice the step")]
     if not runs[1].whole:
         return runs[0], StepErrors()
-    runs.append(run(4 * step, "checking with four times the step"))
+    runs.append((yield 4 * step, "checking with four times the step"))
     return runs[0], of_everything(runs[::-1], order)
 
 
-def refine(
-    run: Callable[[float, str], Run], coarse: float, order: int, settings: ResponseSettings
-) -> tuple[Run, StepErrors]:
+def refine(coarse: float, order: int, settings: ResponseSettings) -> Plan:
     """Divide the step, from twice the results', until the errors estimated from the runs are what they aim at.
 
     The tip's history is to be within its aim, the peaks of the tip and of the root's moment within theirs. The
@@ -79,15 +100,16 @@ def refine(
     tolerance, as far as LOADS_STEPS bring them there.
     """
 
-    def refined(step: float) -> Run:
-        return run(step, f"refining the step to {1e3 * step:.3g} ms")
+    def refined(step: float) -> tuple[float, str]:
+        return step, f"refining the step to {1e3 * step:.3g} ms"
 
-    runs = [run(2 * coarse, "integrating"), refined(coarse)]
+    runs = [(yield 2 * coarse, "integrating"), (yield refined(coarse))]
     while True:
         left, promised = _left(runs, order, settings)
         both = runs[-2].whole and runs[-1].whole
         if both and promised <= 1 and (more := _check_needed(runs, left)):
-            runs = sorted([*runs[-2:], run(more, f"checking with {1e3 * more:.3g} ms")], key=lambda each: -each.step)
+            checked = yield more, f"checking with {1e3 * more:.3g} ms"
+            runs = sorted([*runs[-2:], checked], key=lambda each: -each.step)
             left, _ = _left(runs, order, settings)
         far, most = promised, MAX_STEPS
         if both and left <= 1:
@@ -99,7 +121,7 @@ def refine(
         stuck = not (runs[-2].whole or runs[-1].whole)
         if stuck or settings.duration / runs[-1].step * finer > most:
             break
-        runs = [*runs[-2:], refined(runs[-1].step / finer)]
+        runs = [*runs[-2:], (yield refined(runs[-1].step / finer))]
     return runs[-1], of_everything(runs, order)
 
 

@@ -1,0 +1,159 @@
+"""A run that is posed: its equations, initial state, corners and steps, and what its runs are judged by."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from gbeam.analysis.response.problem import Problem, problem_of
+from gbeam.analysis.response.record import moving
+from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.steps.step_errors import Readings, Run
+from gbeam.analysis.response.steps.stepping import Plan, corners, first_step, planned, scheme_of
+from gbeam.analysis.response.steps.trajectories import adapted, integrated, steps_beyond
+from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
+from gbeam.integrate.driver import Trajectory
+from gbeam.integrate.steps import Corners, Steps, fitted
+from gbeam.mechanics.section_forces import section_forces
+from gbeam.mechanics.structure import Structure
+from gbeam.motion.protocol import Motion
+from gbeam.results.parts.errors import StepErrors
+from gbeam.results.result import Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Posed:
+    """A run at the flight's times, ready to be integrated with any step.
+
+    Parameters
+    ----------
+    structure : Structure
+    motion : Motion
+        Over these times.
+    settings : ResponseSettings
+    problem : Problem
+        Its state is that at the start.
+    coarse : float
+        Step of the results where it is automatic, s.
+    given : float or None
+        Step that the settings give, as it divides the duration, s.
+    """
+
+    structure: Structure
+    motion: Motion
+    settings: ResponseSettings
+    problem: Problem
+    coarse: float
+    given: float | None
+
+    @property
+    def kept(self) -> float:
+        """Step of the results, s."""
+        return self.given or self.coarse
+
+    @cached_property
+    def felt(self) -> Corners:
+        """Corners and jumps of what drives the run."""
+        times = corners(self.structure, self.motion, self.coarse)
+        start, end = self.settings.start, self.settings.start + self.settings.duration
+        return Corners.of(times, self.problem.equations.drive, start, end)
+
+    def plan(self) -> Plan:
+        """Which runs the settings need."""
+        return planned(self.settings, self.coarse, self.given)
+
+    def steps(self, step: float) -> Steps:
+        """Steps of about a length, s; one that does not divide the duration goes beyond the end."""
+        count = math.ceil(self.settings.duration / step - 1e-6)
+        return fitted(self.settings.start, step, count, self.felt.felt_by(scheme_of(self.settings)))
+
+    def run(self, step: float, **how: Any) -> Run:
+        """The run with such steps."""
+        return self.read(integrated(self.problem, self.settings, step, corners=self.felt, **how), step)
+
+    def adapted(self) -> tuple[Run, StepErrors]:
+        """The run with error control."""
+        settings = replace(self.settings, tolerance=self.settings.aim)
+        return adapted(self.problem, settings, self.coarse, self.felt, self._readings, self.too_far)
+
+    def read(self, trajectory: Trajectory, step: float) -> Run:
+        """A trajectory of such steps, with what is read from it."""
+        return Run(trajectory, step, self._readings)
+
+    def stride(self, step: float) -> int:
+        """How many steps of a length make one of the results.
+
+        An automatic step divides the coarse one: the stride brings every motion of a study back to the same times.
+        """
+        return 1 if self.settings.step is not None or math.isnan(step) else round(self.coarse / step)
+
+    def too_far(self, y: Floats) -> int | None:
+        """After how many steps (t, n) a projected field moved by the beam's length, and means nothing; None if never."""
+        return steps_within(self.structure, self.structure.displacement(y[:, self.problem.first :]))
+
+    @cached_property
+    def _readings(self) -> Readings:
+        return Readings(self._tip, self._moment, self._loads)
+
+    def _tip(self, y: Floats) -> Floats:
+        return np.asarray(self.structure.tip(y[..., self.problem.first :]))
+
+    def _moment(self, y: Floats) -> Floats:
+        """Root moment by the elastic forces K q, which the coordinates' inertia balances, of the straight beam."""
+        c = self.structure.coefficients
+        return np.asarray(y[..., self.problem.first :] @ (c.f_al @ np.linalg.solve(c.mass, c.stiffness)).T)
+
+    def _loads(self, trajectory: Trajectory, stride: int) -> list[Floats]:
+        """Force and moment at the root, and both sides' stress at every section; none where the settings have none."""
+        if not self.settings.loads:
+            return []
+        some = slice(None, None, stride)
+        time, q, qd, qdd = (x[some] for x in (trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd))
+        base, _ = moving(self.motion, time, q, qd, qdd)
+        q, qd, qdd = (x[:, self.problem.first :] for x in (q, qd, qdd))
+        made = section_forces(self.structure, base, q, qd, qdd, time, motion=self.motion)
+        if made is None:
+            return []
+        stress = np.concatenate([made.stress_tension, made.stress_compression], axis=1)[..., None]
+        return [made.section_force[:, 0], made.section_moment[:, 0], stress]
+
+
+def pose(structure: Structure, motion: Motion, settings: ResponseSettings) -> tuple[Posed, int, int]:
+    """Pose a run, from a machine's start if that comes before; and how many steps it takes before and after.
+
+    Raises
+    ------
+    InputError
+        If there are too many steps.
+    ComputationError
+        If there is no relative equilibrium to start from.
+    """
+    coarse = first_step(structure, motion, settings)
+    given = None if settings.step is None else settings.duration / max(1, round(settings.duration / settings.step))
+    kept = given or coarse
+    each = 8.0 * (3 * sum(structure.counts) + 9 * len(structure.stations))
+    most = min(STEPS, int(HISTORY_BYTES / each))
+    fix = f"give {most * kept:.3g} s or less, or fewer stations"
+    refuse_more("response.duration", "steps", settings.duration / kept, most, each, fix)
+    before, after = steps_beyond(motion, settings, kept)
+    problem = problem_of(structure, motion, settings.start - before * kept, settings.begin)
+    return Posed(structure, motion, settings, problem, coarse, given), before, after
+
+
+def steps_within(structure: Structure, displacement: Floats) -> int | None:
+    """After how many steps a projected field moved by the beam's length, and means nothing.
+
+    Parameters
+    ----------
+    structure : Structure
+    displacement : (t, s, 3)
+        Of its stations, m.
+    """
+    if structure.kind == "exact":
+        return None
+    largest = np.abs(displacement).max(axis=(1, 2))
+    return int(np.argmax(largest > structure.length)) + 1 if largest.max() > structure.length else None
