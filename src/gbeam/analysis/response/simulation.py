@@ -6,10 +6,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from gbeam.analysis.response.steps.posed import pose
 from gbeam.analysis.response.problem import problem_of
 from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.steps.posed import pose
 from gbeam.analysis.response.steps.stepping import answered
 from gbeam.analysis.response.steps.trajectories import going_on, integrated, ramp, split, steps_beyond
 from gbeam.arrays.namespace import holds_jax

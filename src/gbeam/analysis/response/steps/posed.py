@@ -92,7 +92,7 @@ class Posed:
         return 1 if self.settings.step is not None or math.isnan(step) else round(self.coarse / step)
 
     def too_far(self, y: Floats) -> int | None:
-        """After how many steps (t, n) a projected field moved by the beam's length, and means nothing; None if never."""
+        """After how many steps a projected field moved by the beam's length, and means nothing; None if it did not."""
         return steps_within(self.structure, self.structure.displacement(y[:, self.problem.first :]))
 
     @cached_property
