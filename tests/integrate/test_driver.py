@@ -10,7 +10,7 @@ import pytest
 
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
-from gbeam.integrate import NonlinearEquations, gauss, integrate, integrate_adaptively, newmark
+from gbeam.integrate import LinearEquations, NonlinearEquations, gauss, integrate, integrate_adaptively, newmark
 from gbeam.integrate.driver import _LINEAR_CHUNK as LINEAR_CHUNK
 from gbeam.integrate.driver import CHUNK
 
@@ -54,6 +54,29 @@ def test_nonlinear_chunks_leave_no_seam(scheme: Any) -> None:
     for run, count in zip(runs[1:], (1, CHUNK - 1, CHUNK, CHUNK + 1), strict=True):
         assert len(run.time) == len(run.q) == len(run.qd) == len(run.qdd) == count + 1
         np.testing.assert_allclose(run.q, longest.q[: count + 1], atol=1e-9)
+
+
+@pytest.mark.parametrize("scheme", [newmark(), gauss()], ids=["newmark", "gauss"])
+def test_coordinates_that_nothing_couples_move_as_they_would_alone(scheme: Any) -> None:
+    """Two systems as one, the second's coordinate between those of the first."""
+
+    def joined(outer: Any, inner: Any) -> Any:
+        made = np.zeros((*outer.shape[:-2], 3, 3))
+        made[..., ::2, ::2], made[..., 1:2, 1:2] = outer, inner
+        return made
+
+    def matrices(t: Any) -> Any:
+        (c, k, f), (c1, k1, f1) = VARYING.matrices(t), OSCILLATOR.matrices(undriven(t))
+        return joined(c, c1), joined(k, k1), np.stack([f[:, 0], f1[:, 0], f[:, 1]], axis=1)
+
+    both = LinearEquations(joined(VARYING.mass, OSCILLATOR.mass), matrices, VARYING.drive)
+    options = {"step": H, "count": LINEAR_CHUNK + 20}
+    run = integrate(both, scheme, np.array([0.1, 1.0, -0.2]), np.array([0.5, 0.0, 0.3]), **options)
+    outer = integrate(VARYING, scheme, np.array([0.1, -0.2]), np.array([0.5, 0.3]), **options)
+    inner = integrate(OSCILLATOR, scheme, one(1.0), one(0.0), **options)
+    for made, first, second in zip(*((x.q, x.qd, x.qdd) for x in (run, outer, inner)), strict=True):
+        np.testing.assert_allclose(made[:, ::2], first, atol=ROUNDING)
+        np.testing.assert_allclose(made[:, 1:2], second, atol=ROUNDING)
 
 
 def test_inputs_are_taken_at_the_right_times() -> None:

@@ -58,38 +58,76 @@ def chunk(
     count, stages, (m, n) = len(steps), len(scheme.offsets), z.shape
     at = [equations.matrices(equations.drive(steps.times(offset))) for offset in scheme.offsets]
     xp, mass = namespace(equations.mass, z, *at[0]), equations.mass + added[0]
-    # S x = F − L z at all stages together.
-    c_v, c_q, w_v, w_q = (weights[..., None, None] for weights in (t.c_v, t.c_q, t.w_v, t.w_q))
-    rows, sides = [], []
-    for i, (c, k, f) in enumerate(at):
-        c = c + added[1]
-        blocks = [c_v[:, i, j] * c + c_q[:, i, j] * k + (mass if i == j else 0) for j in range(stages)]
-        onto = [-(w_v[:, i, a] * c + w_q[:, i, a] * k) for a in range(m)]
-        rows.append(xp.concatenate(blocks, axis=-1) if stages > 1 else blocks[0])
-        sides.append(xp.concatenate([*onto, xp.broadcast_to(f, (count, n))[..., None]], axis=-1))
-    left = xp.concatenate(rows, axis=-2) if stages > 1 else rows[0]
-    x = _solved(xp, left, xp.concatenate(sides, axis=-2) if stages > 1 else sides[0])
-    x = xp.reshape(x, (count, stages, n, m * n + 1))
-    unit = np.eye(m * n, m * n + 1).reshape(1, m, n, m * n + 1)
-    maps = _sum(t.g, unit) + _sum(t.d, x)
-    if scheme.ends and not steps.equal:
-        maps = _started_anew(equations, scheme, maps, _sum(t.end_z, unit) + _sum(t.end_x, x), steps)
-    # Sums of products below: many products of a small matrix with one vector are slow.
+    at = [(c + added[1], k, f) for c, k, f in at]
+    anew = scheme.ends and not steps.equal
+    groups = [np.arange(n)] if xp is not np or anew else _uncoupled(mass, at)
+    solved = [_stages(xp, t, mass, at, own, m) for own in groups]
+    maps = solved[0][1] if len(groups) == 1 else np.zeros((count, m, n, m * n + 1))
+    if anew:
+        ends = _sum(t.end_z, _unit(m, n)) + _sum(t.end_x, solved[0][0])
+        maps = _started_anew(equations, scheme, maps, ends, steps)
+    for own, (_, part) in zip(groups, solved, strict=True):
+        if len(groups) > 1:
+            columns = np.append((n * np.arange(m)[:, None] + own).ravel(), m * n)
+            maps[:, :, own[:, None], columns] = part
     before, last = _recur(xp, xp.reshape(maps, (count, m * n, m * n + 1)), xp.reshape(z, (-1,)))
-    x = (x[..., :-1] * before[:, None, None, :]).sum(axis=-1) + x[..., -1]
-    ends = _sum(t.end_z, xp.reshape(before, (count, m, n))) + _sum(t.end_x, x)
+    states, parts = xp.reshape(before, (count, m, n)), []
+    for own, (x, _) in zip(groups, solved, strict=True):
+        state = xp.reshape(states if len(groups) == 1 else states[:, :, own], (count, -1, 1))
+        flat = xp.reshape(x, (count, stages * len(own), -1))
+        parts.append(xp.reshape((flat[..., :-1] @ state)[..., 0] + flat[..., -1], (count, stages, -1)))
+    x = parts[0] if len(groups) == 1 else np.concatenate(parts, axis=-1)[..., np.argsort(np.concatenate(groups))]
+    ends = _sum(t.end_z, states) + _sum(t.end_x, x)
     q, qd, qdd = (values if steps.kept.all() else values[steps.kept] for values in (ends[:, 0], ends[:, 1], x[:, -1]))
     # The last stage's acceleration is that at the end, unless the stage lies before it, or just before a jump.
     again = np.flatnonzero(steps.jump[steps.kept]) if scheme.ends else np.arange(len(q))
     if again.size:
         c, k, f = equations.matrices(equations.drive(steps.end[steps.kept][again]))
-        force = f - (k * q[again, None] + c * qd[again, None]).sum(axis=-1)
+        force = f - (k @ q[again, :, None] + c @ qd[again, :, None])[..., 0]
         there = xp.linalg.solve(equations.mass, force.T).T
         if scheme.ends:
             qdd[again] = there
         else:
             qdd = there
     return xp.reshape(last, (m, n)), (q, qd, qdd)
+
+
+def _uncoupled(mass: Array, at: list[tuple[Array, Array, Array]]) -> list[Array]:
+    """Groups of coordinates that no matrix couples, such as the directions of a beam that does not turn."""
+    coupled = (mass != 0) | np.eye(len(mass), dtype=bool)
+    for c, k, _ in at:
+        coupled = coupled | (c != 0).any(axis=0) | (k != 0).any(axis=0)
+    coupled = coupled | coupled.T
+    for _ in range(len(mass).bit_length()):  # twice as far each time
+        coupled = coupled @ coupled
+    return [np.flatnonzero(row) for i, row in enumerate(coupled) if row.argmax() == i]
+
+
+def _unit(m: int, n: int) -> Array:
+    """The affine map (1, m, n, m n + 1) of z (m, n) that leaves it as it is."""
+    return np.eye(m * n, m * n + 1).reshape(1, m, n, m * n + 1)
+
+
+def _stages(
+    xp: Any, t: Any, mass: Array, at: list[tuple[Array, Array, Array]], own: Array, m: int
+) -> tuple[Array, Array]:
+    """Affine maps of the own part of z to the stages' x, (t, stages, n, m n + 1), and to the next z, (t, m, n, ...)."""
+    stages, n, whole = len(at), len(own), len(own) == len(mass)
+    if not whole:
+        pair = np.ix_(own, own)
+        mass, at = mass[pair], [(c[:, *pair], k[:, *pair], f[:, own]) for c, k, f in at]
+    # S x = F − L z at all stages together.
+    c_v, c_q, w_v, w_q = (weights[..., None, None] for weights in (t.c_v, t.c_q, t.w_v, t.w_q))
+    rows, sides = [], []
+    for i, (c, k, f) in enumerate(at):
+        blocks = [c_v[:, i, j] * c + c_q[:, i, j] * k + (mass if i == j else 0) for j in range(stages)]
+        onto = [-(w_v[:, i, a] * c + w_q[:, i, a] * k) for a in range(m)]
+        rows.append(xp.concatenate(blocks, axis=-1) if stages > 1 else blocks[0])
+        sides.append(xp.concatenate([*onto, xp.broadcast_to(f, onto[0].shape[:2])[..., None]], axis=-1))
+    left = xp.concatenate(rows, axis=-2) if stages > 1 else rows[0]
+    x = _solved(xp, left, xp.concatenate(sides, axis=-2) if stages > 1 else sides[0])
+    x = xp.reshape(x, (-1, stages, n, m * n + 1))
+    return x, _sum(t.g, _unit(m, n)) + _sum(t.d, x)
 
 
 def _started_anew(equations: LinearEquations, scheme: Scheme, maps: Array, ends: Array, steps: Steps) -> Array:

@@ -33,6 +33,10 @@ def _matrix() -> Floats:
 
 
 _BASIS = _matrix()
+# [k, j]: weights of xᵏ in the j-th Taylor coefficient at x, for each of the six basis functions.
+_TAYLOR = np.array(
+    [[comb(k + j, j) * _BASIS[k + j] if k + j < PIECE else np.zeros(PIECE) for j in range(PIECE)] for k in range(PIECE)]
+)
 # Row i: the i-th coefficient in Bernstein's polynomials of the fifth degree, from those of the powers of x.
 _BERNSTEIN = np.array([[comb(i, k) / comb(DEGREE, k) for k in range(PIECE)] for i in range(PIECE)])
 _HALVED = np.array([comb(PIECE, j) for j in range(PIECE + 1)]) / 2**DEGREE  # B(u) in those of half the width
@@ -68,12 +72,11 @@ class Spline:
         powers = [xp.ones_like(u)]
         for _ in range(DEGREE):
             powers.append(powers[-1] * (u - piece))
-        taylor = []
-        for j in range(order + 1):
-            rows = [comb(m, j) * powers[m - j] if m >= j else 0.0 * u for m in range(PIECE)]
-            weights = (xp.stack(rows, axis=-1) @ _BASIS) / self.step**j
-            taylor.append((weights[..., None] * near).sum(axis=-2))
-        return Series(tuple(taylor))
+        # One product for all times and orders, then one for each time.
+        flat = _TAYLOR[:, : order + 1].reshape(PIECE, -1)
+        weights = xp.reshape(xp.stack(powers, axis=-1) @ flat, (*u.shape, order + 1, PIECE))
+        taylor = weights @ near
+        return Series(tuple(taylor[..., j, :] / self.step**j for j in range(order + 1)))
 
 
 class Grid:
