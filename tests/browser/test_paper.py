@@ -108,9 +108,9 @@ def test_no_heading_ends_a_page(printed: Printed) -> None:
         assert _words(text.rstrip().splitlines()[-1]) not in heads
 
 
-def test_paper_is_as_it_was_before(opened: Any, any_report: Path) -> None:
-    """The page looks after a print as it did, with what was folded folded."""
-    page = opened(any_report, color_scheme="dark")
+def test_a_page_is_after_a_print_as_it_was(opened: Any, report: Path) -> None:
+    """With its colours, and what was folded folded."""
+    page = opened(report, color_scheme="dark")
     before = page.screenshot()
     page.evaluate("dispatchEvent(new Event('beforeprint'))")
     assert page.locator("details:not([open])").count() == 0
