@@ -49,6 +49,16 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 SWEEP = ("--over", "beam.length=280 mm:320 mm:3", "--measure", "flight.tip.size.max_abs")
 POINTS = ("--over", "motion.spin.control_point=100 mm:200 mm:2")
+# Wider than a sheet of paper: columns with long names, and a map.
+MANY = (
+    *("--over", "motion.spin.control_point=100 mm, 200 mm", "--over", "beam.material.youngs_modulus=69 GPa, 70 GPa"),
+    *("--over", "beam.section.thickness=4 mm, 5 mm", "--measure", "flight.tip.size.max_abs, spin.tip.size.max_abs"),
+    *("--measure", "spin.loads.root_moment.size.max_abs, spin.loads.root_force.size.max_abs"),
+)
+WIDE = (
+    *("--over", "beam.length=6.1 m:8 m:20", "--over", "motion.slew.radius=0.1 m:0.5 m:2"),
+    *("--verb", "critical-speed", "--measure", "critical_speed"),
+)
 # Every kind of report: its scenario and the arguments of its verb.
 KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "run": (FAST, ()),
@@ -61,6 +71,8 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "place": (FAST, ()),
     "sweep": (FAST, SWEEP),
     "sweep of two": (FAST, (*SWEEP, *POINTS)),
+    "sweep of many": (FAST, MANY),
+    "sweep on a wide map": (SLEWING, WIDE),
 }
 
 

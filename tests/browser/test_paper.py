@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 pdfium: Any = pytest.importorskip("pypdfium2")
 A4 = (595.3, 841.9)  # points
@@ -74,6 +76,12 @@ def _pictures(document: Any) -> Iterator[tuple[float, float, float, float]]:
             yield each.get_bounds()
 
 
+def _written(page: Any) -> list[tuple[float, float, float, float]]:
+    """Left, bottom, right and top of every stretch of text, points."""
+    text = page.get_textpage()
+    return [text.get_rect(i) for i in range(text.count_rects())]
+
+
 def test_everything_comes_out(printed: Printed) -> None:
     texts = _texts(printed.document)
     assert all(len(_words(each)) > 60 for each in texts)  # no page has its number alone
@@ -97,6 +105,8 @@ def test_pages_are_a4_with_white_margins_and_dark_ink(printed: Printed) -> None:
         for margin in (grey[:, :edge], grey[:, -edge:], grey[:edge], grey[-edge // 2 :]):
             assert margin.min() > 250
         assert np.median(grey) > 250 and grey.min() < 90
+        for left, _, right, _ in _written(document[i]):
+            assert MARGIN - 1 <= left < right <= A4[0] - MARGIN + 1  # also where it would be clipped
     for left, bottom, right, top in _pictures(document):
         assert MARGIN - 1 <= left < right <= A4[0] - MARGIN + 1
         assert MARGIN - 1 <= bottom < top <= A4[1] - MARGIN + 1
@@ -111,9 +121,15 @@ def test_no_heading_ends_a_page(printed: Printed) -> None:
 def test_a_page_is_after_a_print_as_it_was(opened: Any, report: Path) -> None:
     """With its colours, and what was folded folded."""
     page = opened(report, color_scheme="dark")
-    before = page.screenshot()
+    before = _pixels(page)
     page.evaluate("dispatchEvent(new Event('beforeprint'))")
     assert page.locator("details:not([open])").count() == 0
+    assert (_pixels(page) != before).mean() > 0.5  # light
     page.evaluate("dispatchEvent(new Event('afterprint'))")
+    assert page.locator("details[open]").count() == 0
+    assert (_pixels(page) != before).mean() < 1e-3  # the drawing of lines may differ by a rounding
+
+
+def _pixels(page: Any) -> Any:
     page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
-    assert page.locator("details[open]").count() == 0 and page.screenshot() == before
+    return np.asarray(Image.open(BytesIO(page.screenshot())).convert("L"))

@@ -81,19 +81,25 @@ function setTheme(theme: string): void {
   window.dispatchEvent(new Event("gbeam-theme"));
 }
 
+const PAPER_WIDTH = 680; // pixels between the margins
+
 /** Paper is white and cannot be clicked: all is drawn in light colours and unfolded while the page is printed. */
 function printing(plots: Plots): void {
   let before = "";
   let folded: HTMLDetailsElement[] = [];
+  let maps: HTMLElement[] = [];
   window.addEventListener("beforeprint", () => {
     before = document.documentElement.dataset["theme"] ?? "";
     setTheme("light");
     plots.toPaper();
     folded = [...document.querySelectorAll<HTMLDetailsElement>("details:not([open])")];
     for (const each of folded) each.open = true;
+    maps = [...document.querySelectorAll<HTMLElement>(".gbeam-map")];
+    for (const each of maps) each.style.zoom = String(Math.min(1, PAPER_WIDTH / each.offsetWidth));
   });
   window.addEventListener("afterprint", () => {
     setTheme(before);
     for (const each of folded) each.open = false;
+    for (const each of maps) each.style.zoom = "";
   });
 }

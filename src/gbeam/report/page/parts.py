@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import math
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -76,13 +77,18 @@ def table(
     if not made:
         return ""
     top = "".join(
-        f'<th scope="col"{_class("" if column in texts else "number")}>{escaped(name)}</th>' if name else "<td></td>"
+        f'<th scope="col"{_class("" if column in texts else "number")}>{_breaking(name)}</th>' if name else "<td></td>"
         for column, name in enumerate(head)
     )
     body = "".join(f"<tr>{''.join(row)}</tr>" for row in made)
     title = f"<caption>{escaped(caption)}</caption>" if caption else ""
     top = f"<thead><tr>{top}</tr></thead>" if any(head) else ""
     return f'<div class="gbeam-wide"><table>{title}{top}<tbody>{body}</tbody></table></div>'
+
+
+def _breaking(name: str) -> str:
+    """The head of a column, whose path breaks between its words where the page is narrow."""
+    return re.sub(r"(?<=[a-z\]])([._])(?=[a-z])", r"\1<wbr>", escaped(name))
 
 
 def badge(text: str, good: bool) -> str:
