@@ -54,7 +54,11 @@ def run(
         from gbeam.report.study.summary import table
 
         show_table(table(answer))
-    files = [] if folder is None else publish(folder, make)
+    files = []
+    if folder is not None:
+        with Watch() as watch:
+            watch("writing results and plots", 0.0)
+            files = publish(folder, make)
     if json:
         from gbeam.report.study.summary_json import to_json
 
