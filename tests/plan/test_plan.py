@@ -118,6 +118,7 @@ def test_exceeding_a_limit_is_status_1_unless_allowed(
 
 
 BEAM = SPECIMEN + model("FOAM", 1, 1, 1)
+STEP = ("--set", "response.step=2 ms")  # of the machine's limits no step says anything
 
 
 @pytest.mark.parametrize("verb", ["plan", "run"])
@@ -126,7 +127,7 @@ def test_a_broken_promise_is_told_by_every_verb(
 ) -> None:
     text = PLAN.replace('"flat"', '"planned"').replace("60 rpm", "30 rpm") + BEAM
     scenario.write_text(text, encoding="utf-8")
-    assert main([verb, str(scenario), "--json", "--out", str(tmp_path)]) == 0
+    assert main([verb, str(scenario), "--json", "--out", str(tmp_path), *STEP]) == 0
     spin = json.loads(capsys.readouterr().out)["motions"]["spin"]
     (warning,) = (each for each in spin["warnings"] if "followed" in each)
     # 6 g, of which gravity is 1, against 3.3 m times (30 rpm)²; the arm's tangential acceleration helps a little.
@@ -141,7 +142,7 @@ def test_a_broken_promise_is_told_by_every_verb(
 def test_run_names_the_limits_too(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:
     scenario.write_text(PLAN.replace("60 rpm", "20 rpm") + BEAM, encoding="utf-8")
     for allow, status, mark in ((), 1, "%) at"), (("--ignore-limits",), 0, "(allowed)"):
-        assert main(["run", str(scenario), "--json", *allow]) == status
+        assert main(["run", str(scenario), "--json", *STEP, *allow]) == status
         facts = capsys.readouterr()
         assert "motion.spin limits exceeded: exceeds axis 1 rate" in facts.err and mark in facts.err
         limits = json.loads(facts.out)["motions"]["spin"]["limits"]

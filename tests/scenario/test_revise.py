@@ -52,7 +52,8 @@ def _paths(node: Any, path: Path = ()) -> list[Path]:
     """Every entry, and one more of each table and list."""
     if isinstance(node, dict):
         inside = [each for key, value in node.items() for each in _paths(value, (*path, key))]
-        return [path, *inside, (*path, "new"), (*path, "new", "deep.key")]
+        deep = [(*path, "new", "deep.key")] if isinstance(node.get("new", {}), dict) else []
+        return [path, *inside, (*path, "new"), *deep]
     if isinstance(node, list) and all(isinstance(each, dict) for each in node):
         return [path, *(each for i, value in enumerate(node) for each in _paths(value, (*path, i))), (*path, len(node))]
     return [path]

@@ -42,7 +42,7 @@ def test_powers_of_a_static_deflection_and_of_a_frequency(fast: Path) -> None:
 def test_exact_derivatives_are_those_of_runs_by_the_same_steps(fast: Path, integrator: str) -> None:
     measures = ["flight.tip.z.max_abs", "spin.tip.z.max_abs", "spin.loads.root_moment.y.max_abs", "verdict.tip"]
     parameters = [E, LENGTH, "beam.damping_ratio", LEVEL, ARM, "motion.spin.control_point"]
-    ends = ["response.initial.state=undeformed", f"response.integrator={integrator}"]
+    ends = ["response.initial.state=undeformed", f"response.integrator={integrator}", "response.step=1 ms"]
     found = gb.sensitivity(fast, measures, parameters, overrides=ends)
     assert set(found.methods) == {"exact"} and not found.kinks.any() and np.isnan(found.errors).all()
     case = gb.read_scenario(fast, ends)

@@ -6,6 +6,7 @@ import math
 import os
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -96,7 +97,8 @@ def optimise(
     question = Question(base.source, verb, motion, at)
     first = Neighbourhood(question, parameters, progress=progress)
     goal = _goal(facts_of(first.answer), first.case, minimise, subject_to)
-    search = Search(question, parameters, goal, first, progress)
+    # On the way no more is computed than is read; the last answer is whole.
+    search = Search(replace(question, keys=goal.keys), parameters, goal, first, progress)
     values, ends = search.best(limits, starts)
     last = Neighbourhood(question, parameters, values.tolist(), progress=progress)
     before, after = (values_at(facts_of(each.answer), goal.keys) for each in (first, last))

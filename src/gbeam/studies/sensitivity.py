@@ -6,6 +6,7 @@ import math
 import os
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -94,6 +95,7 @@ def sensitivity(
     facts = facts_of(about.answer)
     keys = tuple(figure(facts, name) for name in of)
     motions, about.parts = needed(keys, about.case.tracks)
+    about.question = replace(question, keys=keys)  # of other answers no more is computed than is read
     slopes = about.slopes(lambda _, answer: values_at(facts_of(answer), keys), motions)
     units = tuple(unit_at(facts, each) for each in keys)
     kinks = _kinks(slopes, [each.value for each in chosen], units)
