@@ -83,7 +83,9 @@ export function problem(message: string): Problem {
 
 async function call<T>(path: string, method: string, body?: BodyInit, kind = "application/json"): Promise<T> {
   const headers = { "x-gbeam-refusal": "1", ...(body === undefined ? {} : { "content-type": kind }) };
-  const response = await fetch(path, { method, headers, ...(body === undefined ? {} : { body }) });
+  const response = await fetch(path, { method, headers, ...(body === undefined ? {} : { body }) }).catch(() => {
+    throw new Refusal([problem("the server does not answer: start `gbeam app` again, and open the address that it prints")]);
+  });
   if (response.headers.has("x-gbeam-refusal")) {
     throw new Refusal(((await response.json()) as { errors: Problem[] }).errors);
   }

@@ -44,6 +44,7 @@ export class Editor {
   private readonly look: HTMLButtonElement;
   private readonly verbs: Verbs;
   private changes: Promise<unknown> = Promise.resolve();
+  private offerFlights: (flights: string[]) => void = () => {};
   private waiting = 0;
   private latest = 0;
 
@@ -110,6 +111,7 @@ export class Editor {
     this.form.draw(form, errors);
     this.verbs.offer(form, errors.length === 0);
     this.look.disabled = errors.length > 0;
+    this.offerFlights(this.flights());
     this.list(errors);
     this.meaning.textContent = meaning;
     this.meaning.hidden = !meaning;
@@ -172,33 +174,44 @@ export class Editor {
     }
   }
 
-  /** Columns, signs and units of a record, by hand. */
-  private map({ name, columns }: { name: string; columns: string[] }): void {
+  private flights(): string[] {
     const motions = this.document.form.find((each) => each.path === "motion")?.inside ?? [];
-    const flights = motions.filter((each) => each.choice === "flight").map((each) => each.key);
+    return motions.filter((each) => each.choice === "flight").map((each) => each.key);
+  }
+
+  /** Columns, signs and units of a record, by hand; what is chosen stays as the flights change. */
+  private map({ name, columns }: { name: string; columns: string[] }): void {
     const chosen: Record<string, string> = { file: name, time: columns[0] ?? "", x: "0", y: "0", z: "0", unit: "g" };
-    let motion = flights[0] ?? "flight";
     const listed = columns.map((each) => [each, each] as const);
     const signed = [["0", "none"] as const, ...listed, ...columns.map((each) => [`-${each}`, `−${each}`] as const)];
     const set = (key: string) => (value: string) => {
       if (value) chosen[key] = value;
       else delete chosen[key];
     };
-    const use = async (): Promise<void> => {
-      if (await this.take(api.map(this.document.text, motion, chosen))) await this.preview();
-    };
     const parts = [
-      choice("Flight", flights.map((each) => [each, each]), motion, (value) => {
-        motion = value;
-      }),
       choice("Time", listed, chosen["time"]!, set("time")),
       choice("Time in", [["", "the file's unit, or s"], ...["s", "ms", "us", "min"].map((each) => [each, each] as const)], "", set("time_unit")),
       ...COMPONENTS.map((key) => choice(`${key} is`, signed, "0", set(key))),
       choice("Unit", [["g", "g"], ["m/s^2", "m/s²"]], "g", set("unit")),
       choice("Holds", [["specific-force", "specific force"], ["acceleration", "acceleration"]], "specific-force", set("quantity")),
-      button("Use this record", () => void use()),
     ];
-    this.record.replaceChildren(element("h3", "", `Record ${name}`), this.row(...parts));
+    const which = element("span");
+    const act = button("Use this record", () => void use());
+    let motion = "";
+    const use = async (): Promise<void> => {
+      if (await this.take(api.map(this.document.text, motion, chosen))) await this.preview();
+    };
+    let offered: string | null = null;
+    this.offerFlights = (flights) => {
+      if (offered === flights.join("\n")) return; // nothing that has the focus is made again without need
+      offered = flights.join("\n");
+      if (!flights.includes(motion)) motion = flights[0] ?? "";
+      act.disabled = !motion;
+      const none = element("span", "bad", "the scenario has no flight that could follow it: add a motion of that kind");
+      which.replaceChildren(motion ? choice("Flight", flights.map((each) => [each, each]), motion, (value) => (motion = value)) : none);
+    };
+    this.offerFlights(this.flights());
+    this.record.replaceChildren(element("h3", "", `Record ${name}`), this.row(which, ...parts, act));
   }
 
   private async preview(): Promise<void> {

@@ -47,7 +47,7 @@ export class Runs {
       this.draw(runs);
       if (runs.some((each) => ACTIVE.includes(each.state))) wait = OFTEN;
     } catch (error) {
-      this.list.replaceChildren(element("p", "bad", String(error)));
+      this.list.replaceChildren(element("p", "bad", error instanceof Error ? error.message : String(error)));
     }
     this.timer = window.setTimeout(() => void this.watch(), wait);
   }
