@@ -16,7 +16,7 @@ import numpy as np
 
 import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.integrate import lanes, newton
-from gbeam.integrate.driver import Trajectory, chunks
+from gbeam.integrate.driver import Stretch, Trajectory, chunks, stretches
 from gbeam.integrate.equations import LinearEquations, LinearTerms, NonlinearEquations
 from gbeam.integrate.fitting import added
 from gbeam.integrate.schemes import Scheme
@@ -117,7 +117,12 @@ def integrate_together(runs: Sequence[Run]) -> list[Trajectory | None]:
 
 
 def _stacked(parts: Sequence[Any], axis: int = 0) -> Any:
-    return jax.tree.map(lambda *leaves: np.stack([np.asarray(leaf) for leaf in leaves], axis=axis), *parts)
+    def stack(first: Any, *others: Any) -> Any:
+        if all(other is first for other in others):  # of one structure, most often
+            return np.repeat(np.expand_dims(first, axis), len(parts), axis)
+        return np.stack([first, *others], axis=axis)
+
+    return jax.tree.map(stack, *parts)
 
 
 def _linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
@@ -170,9 +175,13 @@ def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     carry = begun(q, qd, qdd, [run.steps.length[0] for run in runs])
     pieces, sound = [[x[:, None] for x in (q, qd, qdd)]], np.ones(len(runs), dtype=bool)
     size, corrections = newton.PER_JACOBIAN[scheme.order], newton.CORRECTIONS[scheme.order]
-    for every in zip(
-        *(chunks(e.drive, scheme, run.steps, size) for e, run in zip(equations, runs, strict=True)), strict=True
-    ):
+    of_steps: dict[bytes, list[Stretch]] = {}
+    of_runs = []
+    for run in runs:  # mostly of the same steps
+        key = run.steps.digits
+        of_steps[key] = of_steps.get(key) or list(stretches(scheme, run.steps, size))
+        of_runs.append(chunks(run.equations.drive, scheme, of_steps[key]))
+    for every in zip(*of_runs, strict=True):
         inside, ends = every[0].inside, [chunk.end for chunk in every]
         tableau, inputs, at_ends = _stacked([(chunk.tableau, chunk.inputs, chunk.at_ends) for chunk in every])
         made: Any = None

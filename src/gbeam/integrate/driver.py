@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -155,7 +155,7 @@ def _nonlinear(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, s
 
     carry, corrections = begun(q, qd, qdd, steps.length[0]), newton.CORRECTIONS[scheme.order]
     sound = True
-    for chunk in chunks(drive, scheme, steps, newton.PER_JACOBIAN[scheme.order]):
+    for chunk in chunks(drive, scheme, stretches(scheme, steps, newton.PER_JACOBIAN[scheme.order])):
         if traced:
             after, (*piece, left) = newton.steps(residual, *chunk.given(carry), corrections)
             fine = xp.max(left[chunk.inside]) <= newton.ACCEPTED
@@ -243,23 +243,56 @@ class Chunk:
         return scheme.tableau(self.steps.length), carry, flat[0], flat[1]
 
 
-def chunks(drive: Drive, scheme: Scheme, steps: Steps, size: int) -> Iterator[Chunk]:
-    """Groups of `size` steps, chunk by chunk; what drives many chunks is computed at once."""
+@dataclass(frozen=True)
+class Stretch:
+    """Many chunks of a run's steps, without what drives the equations in them: the same for every run with these steps.
+
+    Parameters
+    ----------
+    steps : Steps
+        Of all groups of all chunks, with their fillings.
+    shape : (groups, steps)
+    lasts : list of (groups,)
+        Of each chunk, as :class:`Chunk` has them.
+    tableau : Tableau
+        Of the groups.
+    times : (steps, stages)
+        At which inputs are needed, s; the end of the step is the last where the last stage is not there.
+    """
+
+    steps: Steps
+    shape: tuple[int, int]
+    lasts: list[Any]
+    tableau: Any
+    times: Any
+
+
+def stretches(scheme: Scheme, steps: Steps, size: int) -> Iterator[Stretch]:
+    """Steps in groups of `size`, some chunks at a time."""
+    all_groups = list(_groups(steps, size, restart=scheme.ends))
+    for some in (all_groups[k : k + _AT_ONCE] for k in range(0, len(all_groups), _AT_ONCE)):
+        index = np.concatenate([each for each, _ in some])
+        chosen, tableau = steps[index.ravel()], scheme.tableau(steps.length[index[:, 0]])
+        times = [chosen.times(offset) for offset in scheme.offsets] + ([] if scheme.ends else [chosen.end])
+        yield Stretch(chosen, index.shape, [last for _, last in some], tableau, np.stack(times, axis=1))
+
+
+def chunks(drive: Drive, scheme: Scheme, of: Iterable[Stretch]) -> Iterator[Chunk]:
+    """The chunks with what drives them, which is computed for many at once."""
     import jax
 
-    made = list(_groups(steps, size, restart=scheme.ends))
-    for some in (made[k : k + _AT_ONCE] for k in range(0, len(made), _AT_ONCE)):
-        index = np.concatenate([each for each, _ in some])
-        chosen = steps[index.ravel()]
-        tableau = scheme.tableau(steps.length[index[:, 0]])
-        driven = _inputs(drive, scheme, chosen)
-        inputs, at_ends = jax.tree.map(lambda leaf, shape=index.shape: leaf.reshape(*shape, *leaf.shape[1:]), driven)
-        first = 0
-        for each, last in some:
-            part = slice(first, first + len(each))
+    stages = len(scheme.offsets)
+    for stretch in of:
+        (groups, size), first = stretch.shape, 0
+        given = drive(stretch.times.ravel())
+        given = jax.tree.map(lambda leaf, to=(groups, size, -1): leaf.reshape(*to, *leaf.shape[1:]), given)
+        at_ends = None if scheme.ends else jax.tree.map(lambda leaf: leaf[:, :, stages], given)
+        inputs = jax.tree.map(lambda leaf: leaf[:, :, :stages], given)
+        for last in stretch.lasts:
+            part = slice(first, first + len(last))
+            own = jax.tree.map(lambda leaf, part=part: leaf[part], (stretch.tableau, inputs, at_ends))
+            yield Chunk(stretch.steps[part.start * size : part.stop * size], last, *own)
             first = part.stop
-            own = jax.tree.map(lambda leaf, part=part: leaf[part], (tableau, inputs, at_ends))
-            yield Chunk(steps[each.ravel()], last, *own)
 
 
 def _groups(steps: Steps, size: int, *, restart: bool) -> Iterator[tuple[Any, Any]]:
@@ -278,14 +311,3 @@ def _groups(steps: Steps, size: int, *, restart: bool) -> Iterator[tuple[Any, An
             last = np.append(np.minimum(end - first, size - 1), np.full(fill, -1))
             first, end = (np.append(x, np.full(fill, end[-1])) for x in (first, end))
             yield np.minimum(first[:, None] + np.arange(size), end[:, None]), last
-
-
-def _inputs(drive: Drive, scheme: Scheme, steps: Steps) -> tuple[Any, Any]:
-    """Inputs at the stages of steps, arrays (t, s, ...), and, where the last stage is not there, at their ends."""
-    import jax
-
-    times = [steps.times(offset) for offset in scheme.offsets] + ([] if scheme.ends else [steps.end])
-    given, stages = drive(np.stack(times, axis=1).ravel()), len(scheme.offsets)
-    given = jax.tree.map(lambda leaf: leaf.reshape(len(steps), -1, *leaf.shape[1:]), given)
-    inputs = jax.tree.map(lambda leaf: leaf[:, :stages], given)
-    return inputs, None if scheme.ends else jax.tree.map(lambda leaf: leaf[:, stages], given)

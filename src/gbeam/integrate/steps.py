@@ -108,6 +108,11 @@ class Steps:
         return np.clip(self.begin + offset * self.length, self.first, self.last)
 
     @property
+    def digits(self) -> bytes:
+        """Equal for equal steps only."""
+        return b"".join(getattr(self, field.name).tobytes() for field in dataclasses.fields(self))
+
+    @property
     def longest(self) -> float:
         """Length of the longest, s: of those that are not split."""
         return float(self.length.max())

@@ -18,6 +18,18 @@ _PER_STEP = 8  # subdivisions; the vertex of a parabola through three of them is
 _COUNT = 128  # windows at most per history
 _SMOOTH = 0.25  # degree 6 may change degree 4 by this share of what that changed degree 2; corners and jumps: 0.35
 _SHARES = np.arange(_PER_STEP + 1) / _PER_STEP
+# Hermite's polynomials of fifth degree there: of value, first and second derivative at either end.
+_QUINTIC = np.stack(
+    [
+        1 - _SHARES**3 * (10 - 15 * _SHARES + 6 * _SHARES**2),
+        _SHARES - _SHARES**3 * (6 - 8 * _SHARES + 3 * _SHARES**2),
+        _SHARES**2 * (1 - 3 * _SHARES + 3 * _SHARES**2 - _SHARES**3) / 2,
+        _SHARES**3 * (10 - 15 * _SHARES + 6 * _SHARES**2),
+        -(_SHARES**3) * (4 - 7 * _SHARES + 3 * _SHARES**2),
+        _SHARES**3 * (1 - 2 * _SHARES + _SHARES**2) / 2,
+    ],
+    axis=1,
+)
 
 
 def near_maxima(time: Floats, values: Floats) -> Indices:
@@ -113,23 +125,11 @@ def quintic_hermite(time: Floats, q: Floats, qd: Floats, qdd: Floats, at: Indice
         On each step the polynomial of fifth degree that has both ends' values and derivatives; its error is of sixth
         order in the step where these are exact.
     """
-    x = _SHARES
-    basis = np.stack(
-        [
-            1 - x**3 * (10 - 15 * x + 6 * x**2),
-            x - x**3 * (6 - 8 * x + 3 * x**2),
-            x**2 * (1 - 3 * x + 3 * x**2 - x**3) / 2,
-            x**3 * (10 - 15 * x + 6 * x**2),
-            -(x**3) * (4 - 7 * x + 3 * x**2),
-            x**3 * (1 - 2 * x + x**2) / 2,
-        ],
-        axis=1,
-    )
 
     def step(j: Indices) -> Floats:
         h = (time[j + 1] - time[j])[:, None]
         ends = [each for k in (j, j + 1) for each in (q[k], h * qd[k], h**2 * qdd[k])]
-        return np.asarray(basis @ np.stack(ends, axis=1))
+        return np.asarray(_QUINTIC @ np.stack(ends, axis=1))
 
     return _subdivided(time, at), np.concatenate([step(at - 1), step(at)[:, 1:]], axis=1)
 
