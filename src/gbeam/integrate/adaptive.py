@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.integrate.driver import Trajectory
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations
 from gbeam.integrate.steps import Floats
+from gbeam.integrate.trajectory import Trajectory
 
 
 def integrate_adaptively(
@@ -105,7 +105,7 @@ def _acceleration(equations: LinearEquations | NonlinearEquations) -> Callable[[
 
         return linear
 
-    from gbeam.integrate.newton import accelerations
+    from gbeam.integrate.compiled.newton import accelerations
 
     def nonlinear(t: Any, q: Any, qd: Any) -> Any:
         return accelerations(equations.residual, q[None], qd[None], inputs(t))[0]

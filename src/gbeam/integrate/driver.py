@@ -2,51 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 
 from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.integrate import linear
-from gbeam.integrate.equations import Drive, LinearEquations, NonlinearEquations
+from gbeam.integrate.equations import LinearEquations, NonlinearEquations
 from gbeam.integrate.fitting import added
 from gbeam.integrate.schemes import Scheme
 from gbeam.integrate.steps import Corners, Floats, Steps, fitted
+from gbeam.integrate.trajectory import Trajectory
 
-CHUNK = 200  # steps per compiled call at most, and per look at whether to stop
-_AT_ONCE = 20  # chunks whose inputs are computed at once
 _LINEAR_CHUNK = 500  # steps whose maps are found at once: as many as stay in a cache
 Piece = tuple[Any, ...]  # q, q̇, q̈ (k, n), and which of the steps were solved (k,)
-
-
-@dataclass(frozen=True)
-class Trajectory:
-    """Coordinates over time, as far as the integration got.
-
-    Parameters
-    ----------
-    time : (t,) s
-    q, qd, qdd : (t, n)
-    converged : bool
-        False where the acceleration could not be computed in the step after the last time.
-    stopped : bool
-        Whether the caller's condition stopped it.
-    """
-
-    time: Floats
-    q: Any
-    qd: Any
-    qdd: Any
-    converged: bool = True
-    stopped: bool = False
-
-    @property
-    def whole(self) -> bool:
-        """Whether it came to its end."""
-        return self.converged and not self.stopped
 
 
 def integrate(
@@ -140,7 +110,8 @@ def _linear(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: 
 def _nonlinear(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:
     import jax
 
-    from gbeam.integrate import newton
+    from gbeam.integrate.compiled import newton
+    from gbeam.integrate.compiled.chunks import chunks, stretches
 
     drive, residual = equations.drive, equations.residual
     qdd = newton.accelerations(residual, q[None], qd[None], drive(steps.first[:1]))
@@ -183,131 +154,3 @@ def _nonlinear(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, s
         solved = np.logical_and.accumulate(np.append(sound, np.asarray(solved)[chunk.inside]))[1:]
         sound = bool(solved[-1])
         yield *(values[chunk.kept] for values in piece), solved[chunk.steps.kept[chunk.inside]]
-
-
-@dataclass(frozen=True)
-class Chunk:
-    """Steps of one compiled call, and what drives the equations in them.
-
-    Parameters
-    ----------
-    steps : Steps
-        With the fillings of the groups.
-    last : (groups,)
-        Index of the last step of each group, −1 of a group of fillings.
-    tableau : Tableau
-        Of the groups.
-    inputs : arrays (groups, steps, s, ...)
-        At the stages.
-    at_ends : arrays (groups, steps, ...) or None
-        At the ends of the steps, where the last stage is not there.
-    """
-
-    steps: Steps
-    last: Any
-    tableau: Any
-    inputs: Any
-    at_ends: Any
-
-    @cached_property
-    def inside(self) -> Any:
-        """Which steps are no fillings."""
-        return (np.arange(len(self.steps) // len(self.last)) <= self.last[:, None]).ravel()
-
-    @cached_property
-    def kept(self) -> Any:
-        """Which of them belong to the result."""
-        return self.inside & self.steps.kept
-
-    @property
-    def count(self) -> int:
-        """Groups that are not of fillings."""
-        return int(np.count_nonzero(self.last >= 0))
-
-    @property
-    def end(self) -> Steps:
-        """The last step that is no filling."""
-        return self.steps[np.flatnonzero(self.inside)[-1]]
-
-    def given(self, carry: Any) -> tuple[Any, Any, Any, Any, Any]:
-        """What :func:`newton.steps` takes of it."""
-        return self.tableau, carry, self.inputs, self.at_ends, self.last
-
-    def one_by_one(self, scheme: Scheme, carry: Any) -> tuple[Any, Any, Any, Any]:
-        """What :func:`newton.safe` takes."""
-        import jax
-
-        flat = [
-            jax.tree.map(lambda leaf: leaf.reshape(-1, *leaf.shape[2:]), part) for part in (self.inputs, self.at_ends)
-        ]
-        return scheme.tableau(self.steps.length), carry, flat[0], flat[1]
-
-
-@dataclass(frozen=True)
-class Stretch:
-    """Many chunks of a run's steps, without what drives the equations in them: the same for every run with these steps.
-
-    Parameters
-    ----------
-    steps : Steps
-        Of all groups of all chunks, with their fillings.
-    shape : (groups, steps)
-    lasts : list of (groups,)
-        Of each chunk, as :class:`Chunk` has them.
-    tableau : Tableau
-        Of the groups.
-    times : (steps, stages)
-        At which inputs are needed, s; the end of the step is the last where the last stage is not there.
-    """
-
-    steps: Steps
-    shape: tuple[int, int]
-    lasts: list[Any]
-    tableau: Any
-    times: Any
-
-
-def stretches(scheme: Scheme, steps: Steps, size: int) -> Iterator[Stretch]:
-    """Steps in groups of `size`, some chunks at a time."""
-    all_groups = list(_groups(steps, size, restart=scheme.ends))
-    for some in (all_groups[k : k + _AT_ONCE] for k in range(0, len(all_groups), _AT_ONCE)):
-        index = np.concatenate([each for each, _ in some])
-        chosen, tableau = steps[index.ravel()], scheme.tableau(steps.length[index[:, 0]])
-        times = [chosen.times(offset) for offset in scheme.offsets] + ([] if scheme.ends else [chosen.end])
-        yield Stretch(chosen, index.shape, [last for _, last in some], tableau, np.stack(times, axis=1))
-
-
-def chunks(drive: Drive, scheme: Scheme, of: Iterable[Stretch]) -> Iterator[Chunk]:
-    """The chunks with what drives them, which is computed for many at once."""
-    import jax
-
-    stages = len(scheme.offsets)
-    for stretch in of:
-        (groups, size), first = stretch.shape, 0
-        given = drive(stretch.times.ravel())
-        given = jax.tree.map(lambda leaf, to=(groups, size, -1): leaf.reshape(*to, *leaf.shape[1:]), given)
-        at_ends = None if scheme.ends else jax.tree.map(lambda leaf: leaf[:, :, stages], given)
-        inputs = jax.tree.map(lambda leaf: leaf[:, :, :stages], given)
-        for last in stretch.lasts:
-            part = slice(first, first + len(last))
-            own = jax.tree.map(lambda leaf, part=part: leaf[part], (stretch.tableau, inputs, at_ends))
-            yield Chunk(stretch.steps[part.start * size : part.stop * size], last, *own)
-            first = part.stop
-
-
-def _groups(steps: Steps, size: int, *, restart: bool) -> Iterator[tuple[Any, Any]]:
-    """Indices (groups, size) of the steps of each chunk, and the last (groups,) of each group that is not a filling.
-
-    Steps of a group are of one length. Where the scheme is to `restart`, a chunk ends wherever it starts anew.
-    """
-    ends = np.append(np.flatnonzero(steps.anew[:-1]), len(steps) - 1)
-    starts = [np.arange(a, b + 1, size) for a, b in zip(np.append(0, ends[:-1] + 1), ends, strict=True)]
-    stretches = [np.stack([first, np.full(len(first), end)]) for first, end in zip(starts, ends, strict=True)]
-    for run in stretches if restart else [np.concatenate(stretches, axis=1)]:
-        for done in range(0, run.shape[1], CHUNK // size):
-            first, end = run[:, done : done + CHUNK // size]
-            # Groups beyond the last fill the chunk, so that one program serves every duration.
-            fill = CHUNK // size - len(first)
-            last = np.append(np.minimum(end - first, size - 1), np.full(fill, -1))
-            first, end = (np.append(x, np.full(fill, end[-1])) for x in (first, end))
-            yield np.minimum(first[:, None] + np.arange(size), end[:, None]), last

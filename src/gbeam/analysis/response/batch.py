@@ -16,7 +16,7 @@ from gbeam.analysis.response.steps.step_errors import Run
 from gbeam.analysis.response.steps.stepping import Plan, scheme_of
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
-from gbeam.integrate.driver import Trajectory
+from gbeam.integrate.trajectory import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.results.response import Response
@@ -37,7 +37,7 @@ class _Case:
     plan : Plan
     step : float
         Of the run that the plan waits for, s.
-    run : gbeam.integrate.batch.Run
+    run : gbeam.integrate.compiled.batch.Run
         The same, to be integrated.
     """
 
@@ -150,7 +150,7 @@ def _going_on(
 
     `known` is what :func:`response_of` need not compute if that run is the one that counts.
     """
-    from gbeam.integrate import batch
+    from gbeam.integrate.compiled import batch
 
     scheme = scheme_of(posed.settings)
     q, qd = (np.asarray(x) for x in (posed.problem.q, posed.problem.qd))
@@ -170,7 +170,7 @@ def _going_on(
 
 
 def _together(queue: list[_Case], together: int) -> Iterator[_Case | tuple[int, Response]]:
-    from gbeam.integrate.batch import integrate_together
+    from gbeam.integrate.compiled.batch import integrate_together
 
     # Filled with its last case: one program serves every number of them, and no digit depends on it.
     filling = [queue[-1].run] * (together - len(queue))

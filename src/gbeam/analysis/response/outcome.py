@@ -9,7 +9,7 @@ import numpy as np
 from gbeam.analysis.equilibrium.definiteness import first_loss
 from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.integrate.driver import Trajectory
+from gbeam.integrate.trajectory import Trajectory
 from gbeam.mechanics.fields.exact import ExactField
 from gbeam.mechanics.fields.rooted import RootedField
 from gbeam.mechanics.structure import Structure

@@ -18,7 +18,7 @@ from gbeam.analysis.response.problem import Problem, start_of
 from gbeam.analysis.response.settings import NOT_ESTIMATED, ResponseSettings
 from gbeam.analysis.response.steps.trajectories import joined
 from gbeam.arrays.namespace import is_jax
-from gbeam.integrate.driver import Trajectory
+from gbeam.integrate.trajectory import Trajectory
 from gbeam.mechanics.influence import influence
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import section_forces

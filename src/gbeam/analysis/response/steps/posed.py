@@ -16,8 +16,8 @@ from gbeam.analysis.response.steps.step_errors import Readings, Run
 from gbeam.analysis.response.steps.stepping import Plan, corners, first_step, planned, scheme_of
 from gbeam.analysis.response.steps.trajectories import adapted, integrated, steps_beyond
 from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
-from gbeam.integrate.driver import Trajectory
 from gbeam.integrate.steps import Corners, Steps, fitted
+from gbeam.integrate.trajectory import Trajectory
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion

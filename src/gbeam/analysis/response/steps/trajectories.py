@@ -21,9 +21,10 @@ from gbeam.analysis.response.steps.stepping import scheme_of
 from gbeam.arrays.namespace import is_traced, namespace
 from gbeam.errors import InputError
 from gbeam.integrate.adaptive import integrate_adaptively
-from gbeam.integrate.driver import Trajectory, integrate
+from gbeam.integrate.driver import integrate
 from gbeam.integrate.schemes import gauss
 from gbeam.integrate.steps import Corners
+from gbeam.integrate.trajectory import Trajectory
 from gbeam.motion.protocol import Motion
 from gbeam.results.parts.errors import StepErrors
 from gbeam.results.result import Floats

@@ -19,9 +19,10 @@ from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.steps.stepping import corners, first_step, scheme_of
 from gbeam.analysis.response.steps.trajectories import steps_beyond
 from gbeam.analysis.response.tangents.linearised import Pair, Posed, linearised
-from gbeam.integrate.driver import Trajectory, through
+from gbeam.integrate.driver import through
 from gbeam.integrate.steps import Corners, Steps, fitted
 from gbeam.integrate.tangent import tangent
+from gbeam.integrate.trajectory import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
