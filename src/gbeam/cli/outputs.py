@@ -130,7 +130,7 @@ def show_found(
 
 def _write_found(answer: Fit | Optimum, scenario: Path, file: Path) -> None:
     """Write a scenario with the values that a search found."""
-    from gbeam.studies.bounds import with_values
+    from gbeam.studies.search.bounds import with_values
 
     with naming("--write"):
         text, place = with_values(answer.parameters, answer.values.tolist(), scenario, file.parent), file.resolve()

@@ -310,7 +310,7 @@ class Structure:
         """Derivatives of the stations' places with respect to coordinates `q` (n,), (s, 3, n)."""
         if self.linear:
             return self.station_places.slopes(q)
-        from gbeam.mechanics.equations.compiled import slopes
+        from gbeam.mechanics.equations.dalembert import slopes
 
         assert self.field is not None
         return np.asarray(slopes(self.inertia, self.field.sampled(slice(self.first_station, None)), q)[1])

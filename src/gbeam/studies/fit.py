@@ -15,12 +15,12 @@ from gbeam.results.result import Floats
 from gbeam.results.studies.fit import Fit, FittedColumn
 from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
-from gbeam.studies.bounds import Bounds, bounds_of, named
 from gbeam.studies.derivatives import Progress
-from gbeam.studies.least_squares import Fitted, Solution, search_from, tell_apart
 from gbeam.studies.measurement import Measurement, read_measurement
 from gbeam.studies.parameters import PhysicalValue
-from gbeam.studies.starts import agreeing, starting_points
+from gbeam.studies.search.bounds import Bounds, bounds_of, named
+from gbeam.studies.search.least_squares import Fitted, Solution, search_from, tell_apart
+from gbeam.studies.search.starts import agreeing, starting_points
 from gbeam.sweeps.computing.evaluate import Question
 
 OPTION = "--free"

@@ -19,11 +19,11 @@ from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
 from gbeam.scenario.values.kinds import KINDS
 from gbeam.scenario.values.units import UnitError, argument
-from gbeam.studies.bounds import Bounds, bounds_of, named
 from gbeam.studies.derivatives import Neighbourhood, Progress
-from gbeam.studies.descent import Goal, Search
+from gbeam.studies.search.bounds import Bounds, bounds_of, named
+from gbeam.studies.search.descent import Goal, Search
+from gbeam.studies.search.starts import agreeing
 from gbeam.studies.sensitivity import facts_of, figure, needed, values_at
-from gbeam.studies.starts import agreeing
 from gbeam.sweeps.computing.evaluate import Question
 from gbeam.sweeps.figures.answers import Facts
 from gbeam.sweeps.figures.measures import Keys, unit_at

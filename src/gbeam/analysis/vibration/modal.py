@@ -22,7 +22,7 @@ def _sensitivity(structure: Structure, q: Any) -> tuple[Floats, Floats]:
     """How the particles move with q, (k, 3, n), and how the stations do, (s, 3, n)."""
     if structure.linear:
         return structure.places.slopes(q), structure.station_places.slopes(q)
-    from gbeam.mechanics.equations.compiled import slopes
+    from gbeam.mechanics.equations.dalembert import slopes
 
     assert structure.field is not None
     particles, points = slopes(structure.inertia, structure.field.sampled(slice(structure.first_station, None)), q)

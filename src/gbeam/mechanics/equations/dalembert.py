@@ -1,7 +1,8 @@
 """The equations of a complete model (CFOAM, exact): D'Alembert's sum over the particles of its field, by JAX.
 
 Σ m (∂r/∂q)·a + ∂U/∂q + C q̇ = Q, a = a_O + α × r + ω × (ω × r) + 2 ω × ṙ + r̈: one pull-back of the particles' inertia
-forces along their places. On a free hub the moment of the same forces about the axis is the hub's row.
+forces along their places. On a free hub the moment of the same forces about the axis is the hub's row. The key of a
+compiled function is sizes, never values.
 """
 
 from __future__ import annotations
@@ -155,3 +156,30 @@ class CompleteHub:
 
     def _twist(self) -> Array:
         return jnp.concatenate([self.mount.radius * jnp.asarray(self.mount.R_HB)[1], jnp.asarray(self.mount.R_HB)[2]])
+
+
+@jax.jit
+def paths(points: Any, q: Any, qd: Any, qdd: Any) -> tuple[Any, Any, Any]:
+    """Places, velocities and accelerations of particles, or of a field's points, over times, (t, p, 3) each.
+
+    Parameters
+    ----------
+    points : Inertia or Field
+    q, qd, qdd : (t, n)
+    """
+    place = getattr(points, "positions", None) or points.position
+
+    def moving(q: Any, qd: Any) -> Any:
+        return jax.jvp(place, (q,), (qd,))
+
+    def at(q: Any, qd: Any, qdd: Any) -> Any:
+        (r, rd), (_, rdd) = jax.jvp(moving, (q, qd), (qd, qdd))
+        return r, rd, rdd
+
+    return jax.vmap(at)(q, qd, qdd)
+
+
+@jax.jit
+def slopes(inertia: Any, field: Any, q: Any) -> tuple[Any, Any]:
+    """Derivatives with respect to q of the particles' places (k, 3, n) and of a field's points (p, 3, n)."""
+    return jax.jacfwd(inertia.positions)(q), jax.jacfwd(field.position)(q)

@@ -16,8 +16,8 @@ from gbeam.mechanics.models import Model
 from gbeam.results.result import Floats
 from gbeam.studies.derivatives import Neighbourhood, Progress
 from gbeam.studies.parameters import PhysicalValue
+from gbeam.studies.search.starts import starting_points
 from gbeam.studies.sensitivity import facts_of, needed, values_at
-from gbeam.studies.starts import starting_points
 from gbeam.sweeps.computing.evaluate import Question
 from gbeam.sweeps.figures.measures import Keys
 

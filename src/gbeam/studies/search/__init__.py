@@ -1,0 +1,1 @@
+"""How fits and optima search: within bounds, from several starts, by derivatives."""
