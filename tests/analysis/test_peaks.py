@@ -48,7 +48,7 @@ def found_and_finer(name: str) -> tuple[Response, Response]:
     """A response, and one of a quarter of its step."""
     structure, motion, duration = MOTIONS[name]
     found = simulate(structure, motion, duration=duration, tolerance=TOLERANCE)
-    return found, simulate(structure, motion, duration=duration, step=found.step / 4)
+    return found, simulate(structure, motion, duration=duration, step=found.step / 4, estimate=False)
 
 
 def every(peaks: VectorPeaks, place: int = -1) -> np.ndarray:
@@ -85,7 +85,7 @@ def test_peaks_of_loads_are_found_between_the_steps_kept(name: str) -> None:
     """Against all loads of the same steps, sampled; the response keeps some of them only."""
     structure, motion, duration = MOTIONS[name]
     kept = simulate(structure, motion, duration=duration, tolerance=1e-5)
-    whole = simulate(structure, motion, duration=duration, step=kept.step)
+    whole = simulate(structure, motion, duration=duration, step=kept.step, estimate=False)
     assert len(whole.time) > 2 * len(kept.time)
     assert kept.peaks.loads is not None and whole.loads is not None and kept.loads is not None
     for peaks, history, sparse in (

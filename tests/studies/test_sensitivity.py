@@ -62,7 +62,7 @@ def _figures(file: Path, overrides: list[str], step: dict[str, float]) -> list[f
     case = gb.read_scenario(file, overrides)
     structure = case.assemble()
     flight, spin = (
-        gb.simulate(structure, case.motions[name], replace(case.response, step=step[name]), name=name)
+        gb.simulate(structure, case.motions[name], replace(case.response, step=step[name], estimate=False), name=name)
         for name in ("flight", "spin")
     )
     loads = spin.peaks.loads

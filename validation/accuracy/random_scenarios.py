@@ -41,9 +41,8 @@ def judge(seed: int, scenario: Scenario) -> Judged | None:
         interval = float(found.time[1] - found.time[0])
         finer = math.ceil(interval / scenario.period * PER_PERIOD)
         exact = gb.assemble(scenario.beam, "exact", axial=2, y=8, shapes="adapted")
-        truth = gb.simulate(
-            exact, scenario.motion, duration=scenario.settings.duration, step=interval / finer, integrator="gauss"
-        )
+        small = {"step": interval / finer, "integrator": "gauss", "estimate": False}
+        truth = gb.simulate(exact, scenario.motion, duration=scenario.settings.duration, **small)
     except GbeamError:
         return None
     if found.outcome != "done" or truth.outcome != "done" or found.loads is None or truth.loads is None:
