@@ -13,6 +13,7 @@ from gbeam.io.groups import Variable
 from gbeam.results.provenance import Environment, Provenance, RecordFile
 
 RECORD = "record_"  # before the flight's name
+_LEVEL = 4  # of compression: more saves 3 % of a record's text in six times the time
 
 
 def provenance_attrs(provenance: Provenance) -> dict[str, str]:
@@ -34,7 +35,7 @@ def provenance_variables(provenance: Provenance) -> dict[str, Variable]:
     text = np.array(provenance.scenario, dtype=object)
     made = {"scenario": Variable((), text, {"long_name": "text of the scenario file"})}
     for record in provenance.records:
-        packed = b"" if record.content is None else zlib.compress(record.content, 9)
+        packed = b"" if record.content is None else zlib.compress(record.content, _LEVEL)
         attrs = {"long_name": "bytes of the record file, compressed by zlib; none where it is too large"}
         attrs |= {"file": record.file, "sha256": record.sha256}
         name = f"{RECORD}{record.motion}"

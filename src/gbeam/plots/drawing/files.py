@@ -7,7 +7,6 @@ import struct
 import zlib
 from pathlib import Path
 from typing import Any, TextIO
-from xml.sax.saxutils import unescape
 
 import numpy as np
 from matplotlib.backend_bases import GraphicsContextBase, RendererBase
@@ -25,6 +24,7 @@ DPI = 150
 _POINTS = 72 / DPI  # points of the SVG to a pixel of the PNG
 _LEVEL = 3  # of compression: more takes longer than it is worth
 _BEGINNING = 2000  # bytes of a file that hold its signature
+_ESCAPED = ("&lt;", "<"), ("&gt;", ">"), ("&amp;", "&")  # of XML; its own module imports what fetches from the net
 _SIGNATURE = {
     ".png": re.compile(rb"iTXtSource\0\0\0\0\0([^\0]*)\0"),
     ".svg": re.compile(rb"<dc:source>([^<]*)</dc:source>"),
@@ -72,7 +72,9 @@ def signature(file: Path) -> str:
         beginning = opened.read(_BEGINNING)
     match = _SIGNATURE[file.suffix].search(beginning)
     source, _, name = (match[1].decode(errors="replace") if match else "").rpartition(": ")
-    return source if unescape(name) == file.name else ""
+    for escaped, letter in _ESCAPED:
+        name = name.replace(escaped, letter)
+    return source if name == file.name else ""
 
 
 def write_png(path: Path, pixels: NDArray[np.uint8], signed: str = "") -> None:

@@ -18,6 +18,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.arrays.imports import import_scipy
 from gbeam.arrays.tree import record
 from gbeam.errors import InputError
 from gbeam.motion.centrifuge.ends import Ends
@@ -69,7 +70,8 @@ def planned(target: Target, geometry: Geometry, limits: Limits, ends: Ends) -> P
     InputError
         If the limits do not allow idle, or do not in the time that is given to reach it.
     """
-    # scipy.sparse and the solver take longer to import than most commands to run
+    # scipy.sparse and the solver take longer to import than most commands to run.
+    import_scipy()
     from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines
     from gbeam.motion.centrifuge.inverses.kept_limits import KeptLimits, idle_rate
     from gbeam.motion.centrifuge.inverses.tracking import Tracking
