@@ -107,18 +107,3 @@ def test_figures_of_the_command_line_import_no_documentation_of_artists() -> Non
         for code in (begin + look, begin.replace("begin()\n", "") + look)
     ]
     assert told == ["False", "True"]
-
-
-def test_scipy_is_imported_without_what_numpy_imports_when_it_is_named() -> None:
-    code = """
-import sys
-from gbeam.arrays.imports import import_scipy
-from gbeam.cli.process import begin
-begin()
-import_scipy()
-print("scipy.linalg" in sys.modules, "numpy.f2py" in sys.modules)
-import numpy, scipy.linalg
-print("f2py" in dir(numpy), "f2py" in numpy.__all__, numpy.testing.__name__, scipy.linalg.expm(numpy.zeros((1, 1))))
-"""
-    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    assert told.split() == ["True", "False", "True", "True", "numpy.testing", "[[1.]]"]

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import gc
 
-from gbeam.arrays.imports import in_own_process
-
 _MADE = 20_000  # objects between two looks for circles of unused ones: Python's own 700 suit a smaller heap
 _own = False
 
@@ -15,7 +13,6 @@ def begin() -> None:
     global _own
     gc.set_threshold(_MADE, 20, 10)
     _own = True
-    in_own_process()
 
 
 def import_plots() -> None:

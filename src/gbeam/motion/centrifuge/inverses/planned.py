@@ -18,7 +18,6 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.arrays.imports import import_scipy
 from gbeam.arrays.tree import record
 from gbeam.errors import InputError
 from gbeam.motion.centrifuge.ends import Ends
@@ -70,8 +69,7 @@ def planned(target: Target, geometry: Geometry, limits: Limits, ends: Ends) -> P
     InputError
         If the limits do not allow idle, or do not in the time that is given to reach it.
     """
-    # scipy.sparse and the solver take longer to import than most commands to run.
-    import_scipy()
+    # scipy.sparse and the solver take longer to import than most commands to run
     from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines
     from gbeam.motion.centrifuge.inverses.kept_limits import KeptLimits, idle_rate
     from gbeam.motion.centrifuge.inverses.tracking import Tracking
