@@ -89,13 +89,16 @@ class Weighed:
 
     def forces(self, relative: Any, root: Array) -> tuple[Array, ...]:
         """Inertia forces on the points by components (p,), of accelerations relative to the root's, and that, (3,)."""
-        own = (self.first * a if self.pairs is None else self.pairs @ a for a in relative)
+        if self.pairs is None:
+            own = [self.first * a for a in relative]
+        else:  # which is symmetric
+            own = list(namespace(self.pairs).stack(relative) @ self.pairs)
         return tuple(f + self.first * a for f, a in zip(own, root, strict=True))
 
     def total(self, relative: Any, root: Array) -> Array:
         """Their resultant, (3,) N."""
         xp = namespace(self.first, root)
-        return xp.stack([self.first @ a for a in relative]) + self.inertia.mass.sum() * root
+        return xp.stack(relative) @ self.first + self.inertia.mass.sum() * root
 
 
 def weighed(inertia: Inertia) -> Weighed:
