@@ -78,7 +78,7 @@ def beside_exudyn(name: str, problem: Problem, count: int, goal: float) -> None:
         rated[code] = sorted(
             ((s, choice) for choice, s, answer in tried if reference.errors(answer).reach("peak")),
             key=lambda row: row[0],
-        )[:3]
+        )[:6]
     theirs = min(comparison.later_calls(problem, choice, 5)[0] for _, choice in rated["Exudyn"])
     ours, choice = min(
         ((seconds(problem, choice, count, 3) / count, choice) for _, choice in rated["gbeam"]), key=lambda r: r[0]

@@ -9,6 +9,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ Flags = NDArray[np.bool_]
 _NEAR, _ULPS = 1e-8, 8  # of a step, and roundings of a time: nearer to one another, two times are one
 _JUMP = 1e-4  # of the largest value at or between the corners: less is no jump
 _BETWEEN = 0.37  # of the way from one corner to the next
+_FEW = 10_000  # steps: what is kept of them is small
 _BESIDE = 1e-12  # of the span: where a drive is looked at on both sides of a corner
 
 
@@ -108,11 +110,6 @@ class Steps:
         return np.clip(self.begin + offset * self.length, self.first, self.last)
 
     @property
-    def digits(self) -> bytes:
-        """Equal for equal steps only."""
-        return b"".join(getattr(self, field.name).tobytes() for field in dataclasses.fields(self))
-
-    @property
     def longest(self) -> float:
         """Length of the longest, s: of those that are not split."""
         return float(self.length.max())
@@ -126,8 +123,22 @@ class Steps:
 def fitted(start: float, step: float, count: int, corners: Corners | None = None) -> Steps:
     """Return `count` steps of length `step`, each split at the corners within it; splits are not kept.
 
-    Times are products, not sums, so that they do not drift.
+    Times are products, not sums, so that they do not drift. Equal ones are the same object where they are few, and were
+    the last: cases of a batch mostly share theirs.
     """
+    if count > _FEW:
+        return _fitted(start, step, count, corners)
+    given = None if corners is None else (corners.time.tobytes(), corners.jump.tobytes())
+    return _shared(start, step, count, given)
+
+
+@lru_cache(maxsize=8)
+def _shared(start: float, step: float, count: int, corners: tuple[bytes, bytes] | None) -> Steps:
+    given = None if corners is None else Corners(np.frombuffer(corners[0]), np.frombuffer(corners[1], dtype=bool))
+    return _fitted(start, step, count, given)
+
+
+def _fitted(start: float, step: float, count: int, corners: Corners | None) -> Steps:
     nodes = np.asarray(start + step * np.arange(count + 1), dtype=np.float64)
     if corners is None or not len(corners.time):
         ones, length = np.ones(count, dtype=bool), np.full(count, step)

@@ -9,7 +9,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import holds_jax, is_traced
 from gbeam.mechanics.structure import Structure
-from gbeam.motion.plausibility import implausible_motion, times
+from gbeam.motion.plausibility import implausible_values, times
 from gbeam.motion.protocol import Motion
 
 NOTICED = 0.01  # of the largest: a smaller share along a direction without shapes is none
@@ -44,7 +44,7 @@ def input_warnings(
     where = f"motion.{name}" if name else "motion"
     found = [*structure.warnings, *_frequency(structure)]
     if motion is not None:
-        found += implausible_motion(motion, where, span, base)
+        found += implausible_values(motion, where, span, base)
         if base is None and motion.kind != "centrifuge" and not motion.free:
             base = motion.base(times(motion, span))
         elif base is None and motion.free:

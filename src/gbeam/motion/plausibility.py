@@ -28,10 +28,11 @@ def implausible_motion(motion: Motion, where: str, span: tuple[float, float], ba
     base : Base or BaseMotion, optional
         What the motion is at the times that matter, (t, 3), where it is known.
     """
-    return () if holds_jax(motion) else tuple(_each(motion, where, span, base))
+    return () if holds_jax(motion) else tuple(implausible_values(motion, where, span, base))
 
 
-def _each(motion: Any, where: str, span: tuple[float, float], base: Any) -> Iterator[str]:
+def implausible_values(motion: Any, where: str, span: tuple[float, float], base: Any) -> Iterator[str]:
+    """The same of a motion that holds nothing of JAX."""
     if motion.kind == "centrifuge":
         yield from implausible(f"{where}.arm", "arm", float(motion.geometry.arm))
         return

@@ -176,10 +176,10 @@ def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     carry = begun(q, qd, qdd, [run.steps.length[0] for run in runs])
     pieces, sound = [[x[:, None] for x in (q, qd, qdd)]], np.ones(len(runs), dtype=bool)
     size, corrections = newton.PER_JACOBIAN[scheme.order], newton.CORRECTIONS[scheme.order]
-    of_steps: dict[bytes, list[Stretch]] = {}
+    of_steps: dict[int, list[Stretch]] = {}
     of_runs = []
     for run in runs:  # mostly of the same steps
-        key = run.steps.digits
+        key = id(run.steps)
         of_steps[key] = of_steps.get(key) or list(stretches(scheme, run.steps, size))
         of_runs.append(chunks(run.equations.drive, scheme, of_steps[key]))
     for every in zip(*of_runs, strict=True):
