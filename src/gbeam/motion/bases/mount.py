@@ -52,8 +52,8 @@ class Mount:
                 fix = "give three finite components, along x, y and z of the hub"
                 raise InputError("gravity", f"is {gravity!r}", fix)
         xp = namespace(angle)
-        c, s, one, none = xp.cos(angle), xp.sin(angle), xp.ones(()), xp.zeros(())
-        about_x = xp.stack([xp.stack([one, none, none]), xp.stack([none, c, -s]), xp.stack([none, s, c])])
+        c, s = xp.cos(angle), xp.sin(angle)
+        about_x = xp.asarray([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
         about_z = np.diag([1.0, 1.0, 1.0] if pointing == "outward" else [-1.0, -1.0, 1.0])
         assign(
             self,
