@@ -212,7 +212,7 @@ def _command(state: Mapping[str, Any]) -> list[str]:
 
 
 def _failure(place: Path) -> str:
-    """Why a result is not what was asked for, in a word or two, where there is one."""
+    """Why a result is not the one that was wanted, in a word or two, where there is a reason."""
     try:
         answer = json.loads((place / _ANSWER).read_text(encoding="utf-8"))
     except (OSError, ValueError):  # words, or nothing

@@ -1,4 +1,4 @@
-"""What a process of the command line's own goes without: it lives for seconds, and nobody reads documentation in it."""
+"""What a process of the command line's own goes without: it lives for seconds, and no documentation is read in it."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ from gbeam.motion.protocol import Motion
 from gbeam.results.response import Response
 
 TOGETHER = 32  # cases: what they carry stays in a cache, and a processor's vectors are full
-LONGEST = 20_000_000  # numbers of a trajectory: of a longer one as many at once would fill the memory
+LONGEST = 20_000_000  # numbers of as many trajectories: longer ones together would fill the memory
 
 
 @dataclass(frozen=True, eq=False)
