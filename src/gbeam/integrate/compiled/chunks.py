@@ -134,8 +134,8 @@ def _groups(steps: Steps, size: int, *, restart: bool) -> Iterator[tuple[Any, An
     """
     ends = np.append(np.flatnonzero(steps.anew[:-1]), len(steps) - 1)
     starts = [np.arange(a, b + 1, size) for a, b in zip(np.append(0, ends[:-1] + 1), ends, strict=True)]
-    stretches = [np.stack([first, np.full(len(first), end)]) for first, end in zip(starts, ends, strict=True)]
-    for run in stretches if restart else [np.concatenate(stretches, axis=1)]:
+    spans = [np.stack([first, np.full(len(first), end)]) for first, end in zip(starts, ends, strict=True)]
+    for run in spans if restart else [np.concatenate(spans, axis=1)]:
         for done in range(0, run.shape[1], CHUNK // size):
             first, end = run[:, done : done + CHUNK // size]
             # Groups beyond the last fill the chunk, so that one program serves every duration.
