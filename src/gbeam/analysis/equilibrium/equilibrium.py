@@ -6,8 +6,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.arrays.namespace import is_traced, namespace
+from gbeam.arrays.namespace import is_jax, is_traced, namespace
 from gbeam.errors import ComputationError
+from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.numerics.solvers.eigen import positive_definite
@@ -51,6 +52,11 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
     ComputationError
         ``not converged``, with the share of the load that was reached.
     """
+    return equilibrium_about(structure, base, time)[0]
+
+
+def equilibrium_about(structure: Structure, base: Base, time: float | None = None) -> tuple[Equilibrium, Coefficients]:
+    """The same, and the coefficients of small departures from it."""
     values = structure.load_values if time is None else structure.at_time(time).load_values
     if not structure.linear:
         return _along_a_path(structure, base, values)
@@ -59,10 +65,11 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
     if structure.traced or is_traced(stiffness, force):
         import jax.numpy as jnp
 
-        return Equilibrium(jnp.linalg.solve(stiffness, force), True)
+        return Equilibrium(jnp.linalg.solve(stiffness, force), True), c
     q = _solved(np, stiffness, force)
     if np.isfinite(q).all():
-        return Equilibrium(q, positive_definite(stiffness) if values is None else keeps(structure, base, values, q))
+        stable = positive_definite(stiffness) if values is None else keeps(c, base, values)
+        return Equilibrium(q, stable), c
     raise ComputationError(
         "not converged",
         f"no relative equilibrium: the stiffness is singular, or the base's motion not finite; "
@@ -70,7 +77,17 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
     )
 
 
-def _along_a_path(structure: Structure, base: Base, values: Array | None) -> Equilibrium:
+def expanded(structure: Structure, q: Array) -> tuple[Coefficients, Array]:
+    """Coefficients of small departures from coordinates `q` (n,), and the elastic forces there, (n,).
+
+    Those of the straight beam are its structure's own.
+    """
+    if structure.traced or is_jax(q) or np.any(q):
+        return structure.about(q)
+    return structure.coefficients, np.zeros(structure.size)
+
+
+def _along_a_path(structure: Structure, base: Base, values: Array | None) -> tuple[Equilibrium, Coefficients]:
     """Newton's method from the straight beam; where one stride fails, along a path of growing load.
 
     A beam that is stable stays so along the path until its stability is lost at one share of the load. Where a stride
@@ -79,19 +96,20 @@ def _along_a_path(structure: Structure, base: Base, values: Array | None) -> Equ
     """
     straight = np.zeros(structure.size)
     if structure.traced:
-        return Equilibrium(_newton(structure, base, values, 1.0, straight)[0], True)
-    c = structure.coefficients
-    slope = _solved(np, c.stiffness, c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)[2])
+        q, _, about, _ = _newton(structure, base, values, 1.0, straight)
+        return Equilibrium(q, True), about
+    about = structure.coefficients
+    slope = _solved(np, about.stiffness, about.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)[2])
     slope = slope if np.isfinite(slope).all() else straight  # dq/dshare, along which a stride starts
     q, stable, reached, stride = straight, True, 0.0, 1.0
     while reached < 1.0:
         attempt = min(reached + stride, 1.0)
         ahead = q + (attempt - reached) * slope
-        moved, stiffness, ok = _newton(structure, base, values, attempt, ahead)
+        moved, stiffness, c, ok = _newton(structure, base, values, attempt, ahead)
         definite = ok and positive_definite(stiffness)
         if definite or (ok and (not stable or stride < _LOCATED or _near(structure, moved, ahead))):
             slope = (moved - q) / (attempt - reached)
-            q, stable, reached, stride = moved, definite, attempt, 2 * stride
+            q, about, stable, reached, stride = moved, c, definite, attempt, 2 * stride
             continue
         stride /= 4
         if stride < _SHORTEST:
@@ -100,7 +118,7 @@ def _along_a_path(structure: Structure, base: Base, values: Array | None) -> Equ
                 f"no relative equilibrium beyond {reached:.4g} of the load: the beam buckles or diverges there; "
                 f"the rate is {_rate(base):.4g} rad/s",
             )
-    return Equilibrium(q, stable if values is None else keeps(structure, base, values, q))
+    return Equilibrium(q, stable if values is None else keeps(about, base, values)), about
 
 
 def _near(structure: Structure, q: Array, other: Array) -> bool:
@@ -108,12 +126,11 @@ def _near(structure: Structure, q: Array, other: Array) -> bool:
     return bool(np.abs(apart).max() < _NEAR * structure.length)
 
 
-def keeps(structure: Structure, base: Base, values: Array | None, q: Array) -> bool:
-    """Whether a beam keeps an equilibrium: by its stiffness, and where loads follow it by what may grow.
+def keeps(c: Coefficients, base: Base, values: Array | None) -> bool:
+    """Whether a beam keeps an equilibrium, by the coefficients about it: where loads follow it, by what may grow.
 
     The skew part of what the angular acceleration adds to the stiffness is no such load: it stores and feeds no energy.
     """
-    c, _ = structure.about(q)
     velocity, steady, _ = c.at(base.a_WO_B, base.w_WB_B, np.zeros(3), values)
     turning = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)[1] - steady
     matrices = c.mass, velocity, steady + (turning + turning.T) / 2
@@ -122,14 +139,14 @@ def keeps(structure: Structure, base: Base, values: Array | None, q: Array) -> b
 
 def _newton(
     structure: Structure, base: Base, values: Array | None, share: float, q: Array
-) -> tuple[Array, Array, bool]:
+) -> tuple[Array, Array, Coefficients, bool]:
     """Solve at a share of all loads: accelerations and what is applied by the share, rates by its root.
 
     Corrections that do not shrink lead away from the equilibrium that is near, perhaps to one that is far: failed.
 
     Returns
     -------
-    coordinates (n,), tangent stiffness (n, n), and whether the method converged
+    coordinates (n,), tangent stiffness (n, n), the coefficients that it is of, and whether the method converged
     """
     frozen = share * base.a_WO_B, np.sqrt(share) * base.w_WB_B, share * base.alpha_WB_B
     loads = None if values is None else share * values
@@ -137,7 +154,7 @@ def _newton(
     xp = namespace(stiffness, q)
     last = np.inf
     for _ in range(_TRACED if structure.traced else _ITERATIONS):
-        c, elastic = structure.about(q)
+        c, elastic = expanded(structure, q)
         _, stiffness, force = c.at(*frozen, loads)
         correction = _solved(xp, stiffness, force - elastic)
         q = q + correction
@@ -145,11 +162,11 @@ def _newton(
             continue
         size, scale = np.abs(correction).max(), np.abs(q).max()
         if not size > 1e-13 + 1e-12 * scale:
-            return q, stiffness, bool(np.isfinite(q).all())
+            return q, stiffness, c, bool(np.isfinite(q).all())
         if size > last / 2 and size > _NOISE * scale:
             break
         last = size
-    return q, stiffness, False
+    return q, stiffness, c, False
 
 
 def _solved(xp: Any, matrix: Array, right: Array) -> Array:

@@ -15,25 +15,27 @@ from gbeam.mechanics.structure import Structure
 Array = Any
 
 
-def _about_rest(structure: Structure, residual: OnHub, y: Array) -> tuple[OnHub, Array]:
-    """A linear residual about y, and y in its coordinates: where nothing moves its hub's row is the complete one's."""
-    if structure.linear:
+def _about_rest(point: OperatingPoint) -> tuple[OnHub, Array]:
+    """A linear residual about a point, and the point's y in its coordinates.
+
+    Where nothing moves its hub's row is the complete one's.
+    """
+    residual, y = point.residual, point.y
+    assert isinstance(residual, OnHub)
+    if point.structure.linear:
         return residual, y
-    c, _ = structure.about(y[1:])
-    return OnHub(residual.equations.about(c), residual.mount), np.append(y[0], np.zeros(structure.size))
+    return OnHub(residual.equations.about(point.about), residual.mount), np.append(y[0], np.zeros(len(y) - 1))
 
 
 def needed_torque(point: OperatingPoint) -> float:
     """Torque on a free hub that its state needs, the beam at rest relative to the hub, N m."""
-    assert isinstance(point.residual, OnHub)
-    residual, y = _about_rest(point.structure, point.residual, point.y)
+    residual, y = _about_rest(point)
     return float(residual(y, point.yd, point.ydd, (0.0, residual.unpack(point.u)[1]))[0])
 
 
 def angular_momentum(point: OperatingPoint) -> float:
     """Angular momentum that hub and beam have, the beam at rest relative to the hub, N m s."""
-    assert isinstance(point.residual, OnHub)
-    residual, y = _about_rest(point.structure, point.residual, point.y)
+    residual, y = _about_rest(point)
     return float(residual.equations.momentum(y, point.yd))
 
 
@@ -51,16 +53,16 @@ def on_hub(
     `q` and `qd` as for :func:`on_base`.
     """
     base = hub.mount.base(*(np.asarray(float(x)) for x in (angle, rate, acceleration)))
-    at, moving, rests = placed(structure, base, q, qd)
+    at, moving, found, rests = placed(structure, base, q, qd)
     residual = OnHub(structure.on_free_hub(hub), hub.mount)
     y, yd, ydd = (np.append(x, beam) for x, beam in ((angle, at), (rate, moving), (acceleration, 0 * at)))
     u = residual.pack(0.0, structure.load_values)
     if rests:
-        u[0] = needed_torque(OperatingPoint(structure, residual, y, yd, ydd, u, base))
+        u[0] = needed_torque(OperatingPoint(structure, residual, y, yd, ydd, u, base, found))
     else:
         ydd[1:] = beam_acceleration(structure, residual, y, yd, ydd, u)
         u[0] = evaluated_at(structure, residual, y, yd, ydd, u)[0]
-    return OperatingPoint(structure, residual, y, yd, ydd, u, base)
+    return OperatingPoint(structure, residual, y, yd, ydd, u, base, found)
 
 
 def settled_hub(structure: Structure, hub: Any, time: float, q: Array | None, qd: Array | None) -> OperatingPoint:

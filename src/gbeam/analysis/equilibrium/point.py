@@ -8,11 +8,13 @@ residual is differentiated by a complex step, a complete one's is expanded about
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
+from gbeam.analysis.equilibrium.equilibrium import equilibrium_about, expanded
+from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
@@ -45,6 +47,8 @@ class OperatingPoint:
     u : (inputs,) as the residual packs them
     base : Base
         Frozen motion of the root.
+    found : Coefficients, optional
+        Those about its coordinates, where the search for its equilibrium has them.
     """
 
     structure: Structure
@@ -54,6 +58,12 @@ class OperatingPoint:
     ydd: Array
     u: Array
     base: Base
+    found: Coefficients | None = None
+
+    @cached_property
+    def about(self) -> Coefficients:
+        """Coefficients of small departures from the beam's coordinates."""
+        return expanded(self.structure, self.q)[0] if self.found is None else self.found
 
     @property
     def first(self) -> int:
@@ -109,9 +119,7 @@ def linear_matrices(point: OperatingPoint) -> Linear:
         # The beam moves: how its places bend further matters.
         return _split(_jacobian(structure, residual, point.y, point.yd, point.ydd, point.u), n)
     # A complete model's small departures from where it rests are a linear model about that place.
-    c, q = structure.coefficients, point.q
-    if not structure.linear:
-        c, q = structure.about(q)[0], np.zeros(structure.size)
+    c, q = point.about, point.q if structure.linear else np.zeros(structure.size)
     if isinstance(residual, OnBase):
         base, loads = residual.unpack(point.u)
         velocity, stiffness, _ = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
@@ -144,11 +152,20 @@ def held_base(motion: Motion | None, time: float) -> Base:
     return steady_base(motion, 0.0) if motion.free else frozen_base(motion, time)
 
 
-def placed(structure: Structure, base: Base, q: Array | None, qd: Array | None) -> tuple[Array, Array, bool]:
-    """Coordinates and rates, those of the relative equilibrium unless given; and whether that is where they are."""
-    at = solve_equilibrium(structure, base).q if q is None else np.asarray(q, dtype=float)
+def placed(
+    structure: Structure, base: Base, q: Array | None, qd: Array | None
+) -> tuple[Array, Array, Coefficients | None, bool]:
+    """Coordinates and rates, those of the relative equilibrium unless given; and whether that is where they are.
+
+    Of an equilibrium the coefficients about it, too.
+    """
+    found = None
+    if q is None:
+        (at, _), found = equilibrium_about(structure, base)
+    else:
+        at = np.asarray(q, dtype=float)
     moving = 0 * at if qd is None else np.asarray(qd, dtype=float)
-    return at, moving, q is None and qd is None
+    return at, moving, found, q is None and qd is None
 
 
 def beam_acceleration(
@@ -166,8 +183,8 @@ def on_base(structure: Structure, base: Base, q: Array | None = None, qd: Array 
 
     At its relative equilibrium, or with the coordinates and rates `q`, `qd` (n,) and the accelerations that follow.
     """
-    at, moving, rests = placed(structure, base, q, qd)
+    at, moving, found, rests = placed(structure, base, q, qd)
     residual = OnBase(structure.equations)
     u, still = residual.pack(base, structure.load_values), np.zeros_like(at)
     qdd = still if rests else beam_acceleration(structure, residual, at, moving, still, u)
-    return OperatingPoint(structure, residual, at, moving, qdd, u, base)
+    return OperatingPoint(structure, residual, at, moving, qdd, u, base, found)

@@ -88,7 +88,7 @@ def deflection_at(
         displacement=displacement,
         q=q,
         strain_energy=float(structure.strain_energy(q)),
-        stable=keeps(structure, point.base, point.residual.unpack(point.u)[1], q),
+        stable=keeps(point.about, point.base, point.residual.unpack(point.u)[1]),
         warnings=warnings,
         loads=loads,
         errors=errors,

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
+from gbeam.analysis.equilibrium.equilibrium import equilibrium_about
 from gbeam.analysis.equilibrium.point import Linear, OperatingPoint, stepped
 from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import enrichment
@@ -118,10 +118,8 @@ def _about_equilibrium(rich: Structure, point: OperatingPoint) -> Linear:
     rich = replace(rich, load_values=loads)
     if not isinstance(point.residual, OnHub):
         return resting(rich, base)
-    q = solve_equilibrium(rich, base).q
-    c = rich.coefficients
-    if not rich.linear:
-        c, q = rich.about(q)[0], 0 * q
+    (q, _), c = equilibrium_about(rich, base)
+    q = q if rich.linear else 0 * q
     hub = point.residual
     equations = free_hub(c, hub.mount, hub.equations.ground, hub_force=rich.hub_force)
     y, yd, ydd = (np.append(x[0], beam) for x, beam in ((point.y, q), (point.yd, 0 * q), (point.ydd, 0 * q)))
@@ -132,7 +130,6 @@ def _about_equilibrium(rich: Structure, point: OperatingPoint) -> Linear:
 
 def resting(structure: Structure, base: Base) -> Linear:
     """M, C and K of a structure about its equilibrium on a base, under its loads, by NumPy for complete models too."""
-    q = solve_equilibrium(structure, base).q
-    c = structure.coefficients if structure.linear else structure.about(q)[0]
+    _, c = equilibrium_about(structure, base)
     velocity, stiffness, _ = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, structure.load_values)
     return Linear(c.mass, velocity, stiffness, np.zeros((structure.size, 0)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -54,6 +55,7 @@ def judged(found: Critical, path: Path) -> Critical:
 def _lost(rich: Structure, path: Path, near: float) -> float:
     """Value at which a richer model loses its equilibrium; infinity where it keeps it to the last of the shares."""
 
+    @cache
     def margin(value: float) -> float:
         structure, base = path(value)
         try:
