@@ -6,34 +6,60 @@ modes and stability of a complete model need no derivative of its residual.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 
 import gbeam.arrays.jax_setup  # noqa: F401
+from gbeam.mechanics.fields.taylor import EPSILON
 
 Array = Any
+
+
+def _with_slope(function: Callable[[Array], Any]) -> Callable[[Array], tuple[Any, Any]]:
+    """A function's values and their derivatives: traced once for both."""
+
+    def twice(q: Array) -> tuple[Any, Any]:
+        values = function(q)
+        return values, values
+
+    def both(q: Array) -> tuple[Any, Any]:
+        slope, values = jax.jacfwd(twice, has_aux=True)(q)
+        return values, slope
+
+    return both
 
 
 @jax.jit
 def places_about(inertia: Any, q: Array) -> tuple[Array, Array, Array]:
     """Places (k, 3) of the particles at q, and their first and second derivatives, (k, 3, n) and (k, 3, n, n)."""
-    slope = jax.jacfwd(inertia.positions)
-    return inertia.positions(q), slope(q), jax.jacfwd(slope)(q)
+    (places, slope), (_, second) = _with_slope(_with_slope(inertia.positions))(q)
+    return places, slope, second
 
 
 @jax.jit
 def elastic_about(elasticity: Any, q: Array) -> tuple[Array, Array]:
     """Gradient (n,) and second derivatives (n, n) of the strain energy at q."""
-    return jax.grad(elasticity.energy)(q), jax.hessian(elasticity.energy)(q)
+    return _with_slope(jax.grad(elasticity.energy))(q)
 
 
 @jax.jit
 def loads_about(work: Any, q: Array, like: Array) -> tuple[Array, Array]:
     """Generalised forces of unit components at q, (loads, 6, 6 + n), and their derivatives (loads, 6, 6 + n, n)."""
+    loads, epsilon = like.shape[0], jnp.asarray(EPSILON)
+    onto = (np.arange(loads)[:, None] == work.load) * work.weight  # (loads, p)
 
     def unit(q: Array) -> Array:
-        return jnp.moveaxis(jax.jacfwd(work.generalised, 1)(q, jnp.zeros_like(like)), 0, 2)
+        (r, rotation), (slope, turn) = _with_slope(lambda q: (work.field.position(q), work.field.rotation(q)))(q)
+        axes = jnp.where(work.follower[:, None, None], rotation, jnp.eye(3))  # in columns: the unit components
+        pull = jnp.swapaxes(axes, 1, 2)
+        about = jnp.einsum("abd,pb,pdc->pca", epsilon, r, axes)
+        angle = -0.5 * jnp.einsum("abe,padi,pbd->pei", epsilon, turn, rotation)  # of [δθ]× = δR Rᵀ
+        force = jnp.concatenate([pull, about, pull @ slope], axis=2)
+        moment = jnp.concatenate([jnp.zeros_like(pull), pull, pull @ angle], axis=2)
+        return jnp.tensordot(onto, jnp.concatenate([force, moment], axis=1), axes=1)
 
-    return unit(q), jax.jacfwd(unit)(q)
+    return _with_slope(unit)(q)
