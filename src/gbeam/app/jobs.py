@@ -177,6 +177,8 @@ class Jobs:
         self._note(number, state="running")
         command = _command(self.state(number))
         environment = {**os.environ, "GBEAM_PROGRESS": "0.5", "PYTHONUNBUFFERED": "1"}
+        if "--report" in command:  # which has the figures
+            environment["GBEAM_FIGURES"] = "none"
         with (place / _LOG).open("wb") as log, (place / _stdout(command)).open("wb") as answer:
             process = await asyncio.create_subprocess_exec(
                 *command,

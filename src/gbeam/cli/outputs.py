@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from gbeam.cli.inputs import naming, signed
 from gbeam.cli.invocation import command
-from gbeam.cli.process import import_plots
+from gbeam.cli.process import figures_wanted, import_plots
 from gbeam.cli.publication import publish
 from gbeam.errors import InputError
 from gbeam.printable import printable
@@ -73,7 +73,7 @@ def write(
             from gbeam.report.page.document import html
 
             (hidden / f"{name}.html").write_text(html(facts, {}), encoding="utf-8")
-        if figures is not None:
+        if figures is not None and figures_wanted():
             import_plots()
             from gbeam.plots import save
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import gc
+import os
 
 _MADE = 20_000  # objects between two looks for circles of unused ones: Python's own 700 suit a smaller heap
+FIGURES = "GBEAM_FIGURES"  # environment: "none" where nobody looks at the files: pages draw for themselves
 _own = False
 
 
@@ -13,6 +15,11 @@ def begin() -> None:
     global _own
     gc.set_threshold(_MADE, 20, 10)
     _own = True
+
+
+def figures_wanted() -> bool:
+    """Whether files of figures are written, which takes most of the time of a short run."""
+    return os.environ.get(FIGURES) != "none"
 
 
 def import_plots() -> None:

@@ -12,7 +12,7 @@ from gbeam.cli.inputs import number, signed
 from gbeam.cli.invocation import command
 from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, Report, ScenarioFile
 from gbeam.cli.outputs import folder_of, list_files, show, show_table
-from gbeam.cli.process import import_plots
+from gbeam.cli.process import figures_wanted, import_plots
 from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.cli.terminal.failures import FAILED, complain
 from gbeam.errors import InputError
@@ -64,16 +64,18 @@ def plan(
     }
 
     def make(hidden: Path) -> None:
-        import_plots()
         from gbeam.io.commands import write_commands
-        from gbeam.plots import figures, save
 
         for name, each in plans.items():
             own = tables[name].commands
             time = every or (own.sample if own else SAMPLE)
             write_commands(each, analysis.commands(machines[name], time), hidden)
-            for kind, draw in figures(each, given.title).items():
-                save(draw(), hidden, f"{kind}_{name}", "gbeam plan")
+            if figures_wanted():
+                import_plots()
+                from gbeam.plots import figures, save
+
+                for kind, draw in figures(each, given.title).items():
+                    save(draw(), hidden, f"{kind}_{name}", "gbeam plan")
 
         if report:
             from gbeam.report.page.result import report_of_plans

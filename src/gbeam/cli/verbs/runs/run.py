@@ -8,7 +8,7 @@ from threading import Thread
 from gbeam.cli.inputs import read
 from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, Report, ScenarioFile
 from gbeam.cli.outputs import folder_of, list_files, show, show_table
-from gbeam.cli.process import import_plots
+from gbeam.cli.process import figures_wanted, import_plots
 from gbeam.cli.publication import publish
 from gbeam.cli.terminal.console import Watch
 from gbeam.cli.terminal.failures import FAILED, complain
@@ -42,13 +42,14 @@ def run(
         answer = study(given.case, watch)
 
     def make(hidden: Path) -> None:
-        import_plots()
-        from gbeam.plots import write_plots
-
         answer.save(hidden / "result.nc")
         if report:
             answer.report(hidden / "report.html")
-        write_plots(answer, hidden, "gbeam run")
+        if figures_wanted():
+            import_plots()
+            from gbeam.plots import write_plots
+
+            write_plots(answer, hidden, "gbeam run")
 
     if not json:
         from gbeam.report.study.summary import table
@@ -77,5 +78,6 @@ def run(
 
 
 def _import_leaves() -> None:
-    import_plots()
+    if figures_wanted():
+        import_plots()
     import gbeam.io.netcdf  # noqa: F401

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from gbeam.cli.inputs import Input, numbers
 from gbeam.cli.outputs import show, write_json
+from gbeam.cli.process import figures_wanted
 from gbeam.cli.publication import publish
 from gbeam.cli.terminal.console import Watch
 from gbeam.errors import InputError
@@ -38,15 +39,16 @@ def critical_map(
     facts = given.signed(words.map_json(critical))
 
     def make(hidden: Path) -> None:
-        from gbeam.plots import save
-
         write_json(hidden / "critical_speed.json", facts)
         (hidden / "critical_speed.csv").write_text(words.map_csv(critical), encoding="utf-8")
         if report:
             from gbeam.report.page.document import html
 
             (hidden / "critical_speed.html").write_text(html(facts, {}), encoding="utf-8")
-        save(critical.plot(title=case.title).figure, hidden, "critical_speed", "gbeam critical-speed")
+        if figures_wanted():
+            from gbeam.plots import save
+
+            save(critical.plot(title=case.title).figure, hidden, "critical_speed", "gbeam critical-speed")
 
     if out is not None:
         publish(out, make)

@@ -13,6 +13,7 @@ from gbeam.cli.inputs import names, number, signed
 from gbeam.cli.invocation import command
 from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile, option
 from gbeam.cli.outputs import list_files, show, write_json
+from gbeam.cli.process import figures_wanted
 from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.cli.terminal.console import Watch
 from gbeam.cli.terminal.failures import FAILED, complain
@@ -110,10 +111,11 @@ def sweep(
     from gbeam.report.studies import sweep as words
 
     def make(hidden: Path) -> None:
-        from gbeam.plots import figures, save
+        if figures_wanted():
+            from gbeam.plots import figures, save
 
-        for name, draw in figures(answer).items():
-            save(draw(), hidden, re.sub(r"[^\w.-]+", "_", re.sub(r"[\[\]]", "", name)), "gbeam sweep")
+            for name, draw in figures(answer).items():
+                save(draw(), hidden, re.sub(r"[^\w.-]+", "_", re.sub(r"[\[\]]", "", name)), "gbeam sweep")
         write_json(hidden / "sweep.json", signed(words.to_json(answer), answer.provenance))
         if netcdf:
             answer.save(hidden / "sweep.nc")
