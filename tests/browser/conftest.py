@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from gbeam.cli import main
+from gbeam.cli.process import FIGURES
 
 from ..scenarios import FAST, SLEWING
 from .chromium import arguments, environment, find
@@ -36,15 +38,6 @@ def browser() -> Iterator[Any]:
         )
         yield launched
         launched.close()
-
-
-@pytest.fixture(scope="session")
-def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The report of a run of half a second, made by the command line."""
-    folder = tmp_path_factory.mktemp("report")
-    (folder / "fast.toml").write_text(FAST)
-    assert main(["run", str(folder / "fast.toml"), "--out", str(folder), "--report"]) == 0
-    return folder / "report.html"
 
 
 SWEEP = ("--over", "beam.length=280 mm:320 mm:3", "--measure", "flight.tip.size.max_abs")
@@ -76,16 +69,35 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
 }
 
 
+@pytest.fixture(scope="session")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """Make a report of some kind by the command line, once."""
+
+    @cache
+    def make(kind: str) -> Path:
+        text, arguments = KINDS[kind]
+        folder = tmp_path_factory.mktemp("report")
+        (folder / "scenario.toml").write_text(text)
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv(FIGURES, "none")  # a page draws for itself
+            verb = kind.split()[0]
+            assert main([verb, str(folder / "scenario.toml"), *arguments, "--out", str(folder), "--report"]) == 0
+        (file,) = folder.glob("*.html")
+        return file
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def report(made: Callable[[str], Path]) -> Path:
+    """The report of a run of half a second."""
+    return made("run")
+
+
 @pytest.fixture(scope="session", params=KINDS)
-def any_report(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A report of each kind, made by the command line."""
-    text, arguments = KINDS[request.param]
-    folder = tmp_path_factory.mktemp("report")
-    (folder / "scenario.toml").write_text(text)
-    verb = request.param.split()[0]
-    assert main([verb, str(folder / "scenario.toml"), *arguments, "--out", str(folder), "--report"]) == 0
-    (file,) = folder.glob("*.html")
-    return file
+def any_report(request: pytest.FixtureRequest, made: Callable[[str], Path]) -> Path:
+    """A report of each kind."""
+    return made(request.param)
 
 
 @pytest.fixture

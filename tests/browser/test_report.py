@@ -13,8 +13,6 @@ import pytest
 
 import gbeam as gb
 
-from .axe import violations
-
 F16 = Path(__file__).parents[2] / "examples" / "f16_8g_turn.toml"
 CANVAS = ".gbeam-canvas"
 TIME = "window.gbeam.viewer.clock.time"
@@ -145,13 +143,3 @@ def test_page_without_webgl_says_so(opened: Any, report: Path) -> None:
     page = opened(report, before=none)
     assert "shows no WebGL" in page.locator("#gbeam-viewer").inner_text()
     assert page.locator(".uplot").count() >= 6
-
-
-def test_axe_finds_nothing_in_any_kind_and_small_windows_hold_it(opened: Any, any_report: Path) -> None:
-    page = opened(any_report)
-    for width in (1200, 360):
-        page.set_viewport_size({"width": width, "height": 900})
-        for scheme in ("light", "dark"):
-            page.emulate_media(color_scheme=scheme)
-            assert [f"{width} {scheme}: {each}" for each in violations(page)] == []
-        assert page.evaluate("document.documentElement.scrollWidth") <= width

@@ -63,14 +63,17 @@ class Reader:
     status: int = 0
     services: list[subprocess.Popen[bytes]] = field(default_factory=list)
 
-    def end(self) -> None:
-        """End what was started and stays."""
-        for service in self.services:
-            service.kill()
-            service.wait()
-
     def read(self, page: Path) -> None:
-        """Run a page's blocks; an AssertionError names the line."""
+        """Run a page's blocks; an AssertionError names the line. What it started ends with it."""
+        try:
+            self._read(page)
+        finally:
+            for service in self.services:
+                service.kill()
+                service.wait()
+            self.services.clear()
+
+    def _read(self, page: Path) -> None:
         names: dict[str, Any] = {}
         printed = ""
         for block in blocks(page):

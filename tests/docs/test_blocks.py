@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -19,13 +18,11 @@ RUNNABLE = [page for page in PAGES if any(block.language in RUN for block in blo
 
 
 @pytest.fixture(scope="module")
-def reader(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Reader]:
+def reader(tmp_path_factory: pytest.TempPathFactory) -> Reader:
     """One reader of all pages, in a folder with the examples."""
     folder = tmp_path_factory.mktemp("reader")
     (folder / "examples").symlink_to(ROOT / "examples")
-    reader = Reader(folder)
-    yield reader
-    reader.end()
+    return Reader(folder)
 
 
 def named(page: Path) -> str:

@@ -1,4 +1,4 @@
-"""Reports on paper, of every kind: printed by headless Chromium, and read page by page."""
+"""Reports of every kind, each made once: looked at by axe, and printed by headless Chromium and read page by page."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-pdfium: Any = pytest.importorskip("pypdfium2")
+from .axe import violations
+
 A4 = (595.3, 841.9)  # points
 MARGIN = 15 * 72 / 25.4
 IMAGE = 3  # FPDF_PAGEOBJ_IMAGE
@@ -43,6 +44,7 @@ def known() -> dict[Path, Printed]:
 @pytest.fixture
 def printed(opened: Any, any_report: Path, known: dict[Path, Printed]) -> Printed:
     """A report of each kind, in dark colours."""
+    pdfium = pytest.importorskip("pypdfium2")
     if any_report not in known:
         page = opened(any_report, color_scheme="dark")
         page.evaluate("for (const each of document.querySelectorAll('.u-series:first-child')) each.remove()")  # of x
@@ -80,6 +82,16 @@ def _written(page: Any) -> list[tuple[float, float, float, float]]:
     """Left, bottom, right and top of every stretch of text, points."""
     text = page.get_textpage()
     return [text.get_rect(i) for i in range(text.count_rects())]
+
+
+def test_axe_finds_nothing_in_any_kind_and_small_windows_hold_it(opened: Any, any_report: Path) -> None:
+    page = opened(any_report)
+    for width in (1200, 360):
+        page.set_viewport_size({"width": width, "height": 900})
+        for scheme in ("light", "dark"):
+            page.emulate_media(color_scheme=scheme)
+            assert [f"{width} {scheme}: {each}" for each in violations(page)] == []
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
 
 
 def test_everything_comes_out(printed: Printed) -> None:
