@@ -26,6 +26,7 @@ def agree(cases: list[tuple[gb.Structure, Any]], within: float, **how: Any) -> l
     few = 4 if cases[0][0].linear and not cases[0][1].free else 2
     how = {"estimate": False, **how}
     together = dict(gb.simulate_batch(cases, together=few, **how))
+    how.pop("one_structure", None)
     assert sorted(together) == list(range(len(cases)))
     for k, (structure, motion) in enumerate(cases):
         alone = gb.simulate(structure, motion, **how)
@@ -107,7 +108,10 @@ def digits(response: gb.Response) -> bytes:
     return b"".join(np.ascontiguousarray(each).tobytes() for each in arrays)
 
 
-@pytest.mark.parametrize("kind", ["slews", "slews by gauss", "automatic steps", "structures", "free hubs"])
+KINDS = ["slews", "slews by gauss", "automatic steps", "structures", "free hubs", "exact hubs of one structure"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
 def test_what_stands_beside_a_case_does_not_change_a_digit_of_it(kind: str) -> None:
     """Batches of one width of cases in a random order, some left out: the last one is filled, or of one case."""
     random, model, together = np.random.default_rng(5), hub_beam("FOAM", y=2), 4
@@ -122,9 +126,11 @@ def test_what_stands_beside_a_case_does_not_change_a_digit_of_it(kind: str) -> N
     if kind == "structures":
         dampings = [gb.assemble(appendage(damping_ratio=0.01 * k), "FOAM", axial=1, y=2) for k in range(3)]
         cases += [(each, slew(2.0, 2.0)) for each in dampings]
-    if kind == "free hubs":  # the largest needs more corrections, and those beside it have no more
+    if kind.endswith(("free hubs", "one structure")):  # the largest needs more corrections, and those beside it no more
         together, how["integrator"] = 2, "gauss"
         torques = [10.0, 100.0, 2e4, 200.0, 4e4]
+        if kind != "free hubs":
+            model, torques, how = hub_beam("exact", y=2), [10.0, 200.0, 2000.0], {**how, "one_structure": True}
         cases = [(model, gb.Hub(radius=0.5, inertia=200.0, torque=gb.Sine(torque, 2.0))) for torque in torques]
     alone = {}
     for k, case in enumerate(cases):
@@ -134,6 +140,13 @@ def test_what_stands_beside_a_case_does_not_change_a_digit_of_it(kind: str) -> N
         some = random.permutation(len(cases))[: random.integers(2, len(cases) + 1)]
         beside = gb.simulate_batch([cases[k] for k in some], together=together, **how)
         assert all(digits(response) == alone[some[place]] for place, response in beside)
+
+
+def test_one_structure_gives_what_each_case_gives_alone() -> None:
+    """Of an exact beam, whose arrays then are the same for all; the torques jump, and the scheme starts anew there."""
+    model = hub_beam("exact", y=2)
+    hubs = [gb.Hub(radius=0.5, inertia=200.0, torque=gb.Sine(torque, 1.03)) for torque in (200.0, 50.0)]
+    agree([(model, hub) for hub in hubs], 1e-7, duration=3.0, integrator="gauss", step=0.02, one_structure=True)
 
 
 def test_no_more_cases_are_taken_than_wait_for_others() -> None:
@@ -153,3 +166,6 @@ def test_what_a_batch_refuses() -> None:
     cases = [(hub_beam("FOAM", y=2), slew(1.0, 2.0))]
     with pytest.raises(gb.InputError, match="together is 0"):
         gb.simulate_batch(cases, duration=3.0, step=0.1, together=0)
+    cases.append((gb.assemble(appendage(), "FOAM", axial=1, y=2), slew(1.0, 2.0)))
+    with pytest.raises(gb.InputError, match="one_structure is true, and case 1 has another structure than the first"):
+        list(gb.simulate_batch(cases, duration=3.0, step=0.1, one_structure=True))

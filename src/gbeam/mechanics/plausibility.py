@@ -63,7 +63,7 @@ def _frequency(structure: Structure) -> Iterator[str]:
 
 def _without_shapes(structure: Structure, base: Any, where: str, span: tuple[float, float]) -> Iterator[str]:
     """Accelerations and loads across the beam along which the model has no shape: the beam stays straight there."""
-    still = [axis for axis in (1, 2) if not np.any(structure.station_places.first[:, axis])]
+    still = structure.axes_without_shapes
     if structure.field is None or not still:
         return
     if base is not None and not is_traced(base.a_WO_B):

@@ -302,6 +302,17 @@ class Structure:
         assert self.work is not None
         return self.work.field.places()
 
+    @cached_property
+    def axes_without_shapes(self) -> tuple[int, ...]:
+        """Axes across the beam, 1 for y and 2 for z, along which no station moves."""
+        return tuple(axis for axis in (1, 2) if not np.any(self.station_places.first[:, axis]))
+
+    @cached_property
+    def station_field(self) -> Field:
+        """The field at the stations."""
+        assert self.field is not None
+        return self.field.sampled(slice(self.first_station, None))
+
     def strain_energy(self, q: Array) -> Array:
         """Strain energy at coordinates `q` (n,), J."""
         return self.equations.strain_energy(q)
@@ -312,15 +323,13 @@ class Structure:
             return self.station_places.slopes(q)
         from gbeam.mechanics.equations.dalembert import slopes
 
-        assert self.field is not None
-        return np.asarray(slopes(self.inertia, self.field.sampled(slice(self.first_station, None)), q)[1])
+        return np.asarray(slopes(self.inertia, self.station_field, q)[1])
 
     def displacement(self, q: Array) -> Array:
         """Displacement of the stations relative to the base axes at coordinates `q` (..., n), (..., s, 3) m."""
         if self.linear:
             return self.station_places.positions(q) - self.station_places.r0
-        assert self.field is not None
-        return self.field.position(q)[..., self.first_station :, :] - self.station_places.r0
+        return self.station_field.position(q) - self.station_places.r0
 
     def tip(self, q: Array) -> Array:
         """Displacement of the tip, the last station, likewise at coordinates `q` (..., n), (..., 3) m."""

@@ -16,6 +16,7 @@ Indices = NDArray[np.intp]
 FEWEST = 7  # samples that the polynomial without derivatives needs
 _PER_STEP = 8  # subdivisions; the vertex of a parabola through three of them is the peak
 _COUNT = 128  # windows at most per history
+_STRAIGHT = 1e-150  # of a second derivative: less is none
 _SMOOTH = 0.25  # degree 6 may change degree 4 by this share of what that changed degree 2; corners and jumps: 0.35
 _SHARES = np.arange(_PER_STEP + 1) / _PER_STEP
 # Hermite's polynomials of fifth degree there: of value, first and second derivative at either end.
@@ -54,14 +55,18 @@ def near_maxima(time: Floats, values: Floats) -> Indices:
     row, column = np.nonzero(turning)
     around = row + np.arange(3)[:, None]
     _, height = _vertex(time[around], values[around, column])
-    gain = np.zeros(values.shape[1])
+    gain, highest = np.zeros(values.shape[1]), np.full(values.shape[1], -np.inf)
     np.maximum.at(gain, column, height - values[row + 1, column])
-    order = np.lexsort((-height, column))
-    row, column, height = row[order], column[order], height[order]
-    start = np.searchsorted(column, np.arange(values.shape[1]))
-    rank = np.arange(len(row)) - start[column]
-    near = height >= height[start[column]] - 0.5 * gain[column]
-    return np.unique(row[near & (rank < _COUNT)] + 1)
+    np.maximum.at(highest, column, height)
+    near = height >= highest[column] - 0.5 * gain[column]
+    row, column, height = row[near], column[near], height[near]
+    if len(row) > _COUNT:  # the highest of each
+        order = np.lexsort((-height, column))
+        row, column = row[order], column[order]
+        row = row[np.arange(len(row)) - np.searchsorted(column, np.arange(values.shape[1]))[column] < _COUNT]
+    chosen = np.zeros(len(time), dtype=bool)
+    chosen[row + 1] = True
+    return np.flatnonzero(chosen)
 
 
 def maxima(time: Floats, values: Floats, t: Floats, between: Floats) -> tuple[Floats, Floats]:
@@ -126,10 +131,11 @@ def quintic_hermite(time: Floats, q: Floats, qd: Floats, qdd: Floats, at: Indice
         order in the step where these are exact.
     """
 
+    history = np.stack([q, qd, qdd], axis=1)
+
     def step(j: Indices) -> Floats:
-        h = (time[j + 1] - time[j])[:, None]
-        ends = [each for k in (j, j + 1) for each in (q[k], h * qd[k], h**2 * qdd[k])]
-        return np.asarray(_QUINTIC @ np.stack(ends, axis=1))
+        scale = (time[j + 1] - time[j])[:, None, None] ** np.arange(3)[:, None]
+        return np.asarray(_QUINTIC @ np.concatenate([scale * history[j], scale * history[j + 1]], axis=1))
 
     return _subdivided(time, at), np.concatenate([step(at - 1), step(at)[:, 1:]], axis=1)
 
@@ -189,9 +195,9 @@ def _vertex(t: Floats, y: Floats) -> tuple[Floats, Floats]:
     before, after = (y[1] - y[0]) / (t[1] - t[0]), (y[2] - y[1]) / (t[2] - t[1])
     bend = (after - before) / (t[2] - t[0])
     slope = before + bend * (t[1] - t[0])
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        shift = -slope / (2 * bend)
-        inside = (bend < 0) & (shift > t[0] - t[1]) & (shift < t[2] - t[1])
+    curved = bend < -_STRAIGHT
+    shift = slope / np.where(curved, -2 * bend, 1.0)
+    inside = curved & (shift > t[0] - t[1]) & (shift < t[2] - t[1])
     shift = np.where(inside, shift, 0.0)
     sample = np.where(y[1] >= np.maximum(y[0], y[2]), t[1], np.where(y[0] >= y[2], t[0], t[2]))
     value = y[1] + shift * (slope + bend * shift)

@@ -34,9 +34,10 @@ class Series:
     @classmethod
     def of(cls, derivatives: Sequence[Any], order: int) -> Series:
         """From the value and the derivatives; those left out are zero."""
-        xp = namespace(*derivatives)
         given = [value / factorial(k) if k > 1 else value for k, value in enumerate(derivatives[: order + 1])]
-        return cls((*given, *[xp.zeros_like(derivatives[0])] * (order + 1 - len(given))))
+        if len(given) <= order:
+            given += [namespace(*derivatives).zeros_like(derivatives[0])] * (order + 1 - len(given))
+        return cls(tuple(given))
 
     @property
     def order(self) -> int:

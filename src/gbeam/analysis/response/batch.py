@@ -34,6 +34,8 @@ class _Case:
     index : int
         Its place among the cases.
     posed : Posed
+    common : record or None
+        What the equations of all cases share.
     plan : Plan
     step : float
         Of the run that the plan waits for, s.
@@ -43,6 +45,7 @@ class _Case:
 
     index: int
     posed: Posed
+    common: Any
     plan: Plan
     step: float
     run: Any
@@ -60,6 +63,7 @@ def simulate_batch(
     settings: ResponseSettings | None = None,
     *,
     together: int = TOGETHER,
+    one_structure: bool = False,
     **options: Any,
 ) -> Iterator[tuple[int, Response]]:
     """Compute the responses of many cases.
@@ -78,6 +82,8 @@ def simulate_batch(
         then unless it is given.
     together : int
         How many cases are integrated together; by default as many as a processor's cache holds; more on a GPU.
+    one_structure : bool
+        Whether all cases have the same structure, one object: those of complete models then take less time.
 
     Yields
     ------
@@ -87,7 +93,8 @@ def simulate_batch(
     Raises
     ------
     InputError
-        If less than one case stands together, or as :func:`simulate` does.
+        If less than one case stands together, a case has another structure than the first although they should have
+        one, or as :func:`simulate` does.
     ComputationError
         If a case has no relative equilibrium to start from.
 
@@ -95,17 +102,17 @@ def simulate_batch(
     -----
     Errors are estimated where ``estimate=True`` says so, which costs more than a run; of a few of the cases, mostly.
 
-    A case's digits depend neither on the cases beside it nor on their order, on one machine: with as many `together`, a
-    case alone, the last of a hundred and one in other company give the same bytes.
+    A case's digits depend neither on the cases beside it nor on their order, on one machine: with as many `together`,
+    and `one_structure` alike, a case alone, the last of a hundred and one in other company give the same bytes.
     """
     settings = settings_of("simulate_batch", settings, options if settings else {"estimate": False, **options})
     if together < 1:
         raise InputError("together", f"is {together}", "give one or more")
-    return _responses(cases, settings, together)
+    return _responses(cases, settings, together, one_structure)
 
 
 def _responses(
-    cases: Iterable[tuple[Structure, Motion]], settings: ResponseSettings, together: int
+    cases: Iterable[tuple[Structure, Motion]], settings: ResponseSettings, together: int, one_structure: bool
 ) -> Iterator[tuple[int, Response]]:
     waiting: dict[Hashable, list[_Case]] = {}
 
@@ -125,7 +132,12 @@ def _responses(
                 elif more := full(answer):
                     ready.append(more)
 
+    first = None
     for index, (structure, motion) in enumerate(cases):
+        first = first or structure
+        if one_structure and structure is not first:
+            fix = "leave out one_structure, or give the same object"
+            raise InputError("one_structure", f"is true, and case {index} has another structure than the first", fix)
         structure.require_damping("the response")
         motion = motion.over(settings.start, settings.start + settings.duration)
         if structure.holds_jax or holds_jax(motion):
@@ -134,7 +146,7 @@ def _responses(
         if before or after or settings.integrator == "adaptive":
             yield index, simulate(structure, motion, settings)
             continue
-        case = _going_on(index, posed, posed.plan())
+        case = _going_on(index, posed, structure.equations if one_structure else None, posed.plan())
         if not isinstance(case, _Case):
             yield case
         elif queue := full(case):
@@ -144,7 +156,7 @@ def _responses(
 
 
 def _going_on(
-    index: int, posed: Posed, plan: Plan, run: Run | None = None, known: dict[str, Any] | None = None
+    index: int, posed: Posed, common: Any, plan: Plan, run: Run | None = None, known: dict[str, Any] | None = None
 ) -> _Case | tuple[int, Response]:
     """A case with the run that its plan wants after another; its response where there is no more to wait for.
 
@@ -157,8 +169,8 @@ def _going_on(
     try:
         while True:
             step, _ = next(plan) if run is None else plan.send(run)
-            wanted = batch.Run(posed.problem.equations, q, qd, posed.steps(step), scheme)
-            case = _Case(index, posed, plan, step, wanted)
+            wanted = batch.Run(posed.problem.equations, q, qd, posed.steps(step), scheme, common)
+            case = _Case(index, posed, common, plan, step, wanted)
             if case.shape is not None:
                 return case
             run, known = posed.run(step, stop=posed.too_far), None
@@ -181,7 +193,7 @@ def _together(queue: list[_Case], together: int) -> Iterator[_Case | tuple[int, 
             run = posed.run(case.step, stop=posed.too_far)
         else:
             run = posed.read(trajectory, case.step)
-        yield _going_on(case.index, posed, case.plan, run, known)
+        yield _going_on(case.index, posed, case.common, case.plan, run, known)
 
 
 def _known(case: _Case, trajectory: Trajectory) -> dict[str, Any] | None:

@@ -6,7 +6,7 @@ are each one's own. The steps are those that :func:`gbeam.integrate.driver.integ
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any
@@ -39,6 +39,9 @@ class Run:
         Initial state.
     steps : Steps
     scheme : Scheme
+    common : record, optional
+        What all runs that stand together share of a nonlinear residual, the same arrays: products with them are of one
+        matrix with all runs, in half the time.
     """
 
     equations: LinearEquations | NonlinearEquations
@@ -46,17 +49,25 @@ class Run:
     qd: Array
     steps: Steps
     scheme: Scheme
+    common: Any = None
 
     @cached_property
     def shape(self) -> Hashable | None:
         """What runs have in common that are integrated together; None of one that has to be integrated alone."""
         steps = self.steps
         if isinstance(self.equations, NonlinearEquations):
-            leaves, form = jax.tree.flatten(self.equations.residual)
-            return "nonlinear", form, *(np.shape(leaf) for leaf in leaves), len(steps), steps.anew.tobytes()
+            leaves, form = self.residual
+            return "nonlinear", form, *map(np.shape, leaves), len(steps), steps.anew.tobytes()
         if self.terms is None or (self.scheme.ends and steps.anew.any()):
             return None
         return "linear", len(self.q), len(steps), self.parts
+
+    @cached_property
+    def residual(self) -> tuple[list[Array], Any]:
+        """Arrays and form of the residual of nonlinear equations."""
+        assert isinstance(self.equations, NonlinearEquations)
+        leaves, form = jax.tree.flatten(self.equations.residual)
+        return leaves, form
 
     @cached_property
     def terms(self) -> LinearTerms | None:
@@ -154,19 +165,41 @@ def _linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     return (histories[0], histories[1], histories[2]), np.ones(len(runs), dtype=bool)
 
 
-_accelerations = jax.jit(jax.vmap(newton.accelerations))
-_quick = jax.jit(jax.vmap(newton.steps, in_axes=(0, 0, 0, 0, 0, None, None, None)))
+def _over_runs(solve: Callable[..., Any], *given: int | None) -> Callable[..., Any]:
+    """A function of a residual and more for many runs, (form, axes, leaves, ...): the residual's by arrays and axes."""
+
+    @partial(jax.jit, static_argnums=(0, 1))
+    def over_runs(form: Any, axes: tuple[int | None, ...], leaves: list[Array], *args: Any) -> Any:
+        def of_one(leaves: list[Array], *args: Any) -> Any:
+            return solve(jax.tree.unflatten(form, leaves), *args)
+
+        return jax.vmap(of_one, in_axes=(list(axes), *given))(leaves, *args)
+
+    return over_runs
+
+
+_accelerations = _over_runs(newton.accelerations, 0, 0, 0)
+_quick = _over_runs(newton.steps, 0, 0, 0, 0, None, None, None)
+
+
+def _residuals(runs: Sequence[Run]) -> tuple[Any, tuple[int | None, ...], list[Array]]:
+    """Form, axes and arrays of the runs' residuals: no axis of those that are common."""
+    common = {id(leaf) for leaf in jax.tree.leaves(runs[0].common)}
+    every = list(zip(*(run.residual[0] for run in runs), strict=True))
+    axes = [None if id(leaf[0]) in common and all(x is leaf[0] for x in leaf) else 0 for leaf in every]
+    leaves = [leaf[0] if axis is None else _stacked(leaf) for leaf, axis in zip(every, axes, strict=True)]
+    return runs[0].residual[1], tuple(axes), leaves
 
 
 def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     scheme = runs[0].scheme
     equations: list[Any] = [run.equations for run in runs]
-    residual = _stacked([e.residual for e in equations])
+    residual = _residuals(runs)
     q, qd = (np.stack([getattr(run, name) for run in runs]) for name in ("q", "qd"))
 
     def accelerations(times: Sequence[float], q: Array, qd: Array) -> Array:
         inputs = _stacked([e.drive(np.array([t])) for e, t in zip(equations, times, strict=True)])
-        return np.asarray(_accelerations(residual, q[:, None], qd[:, None], inputs))[:, 0]
+        return np.asarray(_accelerations(*residual, q[:, None], qd[:, None], inputs))[:, 0]
 
     def begun(q: Array, qd: Array, qdd: Array, lengths: Sequence[float]) -> newton.Carry:
         x = np.broadcast_to(qdd[:, None], (len(q), len(scheme.offsets), q.shape[1]))
@@ -189,7 +222,7 @@ def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
         solved = np.zeros(len(runs), dtype=bool)
         for tries in (corrections, newton.PATIENT[0]):
             given = tableau, carry, inputs, at_ends, every[0].last, tries, every[0].count
-            new = jax.tree.map(np.asarray, _quick(residual, *given))
+            new = jax.tree.map(np.asarray, _quick(*residual, *given))
             # A run that is solved keeps what it has: nothing of it depends on the others.
             made = new if made is None else jax.tree.map(partial(_chosen, solved), made, new)
             solved |= (new[1][-1][:, inside] <= newton.ACCEPTED).all(axis=1)  # NaN is not

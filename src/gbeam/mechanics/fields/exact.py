@@ -50,14 +50,12 @@ class ExactField:
 
     def position(self, q: Array) -> Array:
         """Positions of the points of the axis at coordinates (..., n), (..., points, 3) m."""
-        return self.cumulative @ self.vectors(q)
-
-    def vectors(self, q: Array) -> Array:
-        """Tangents (1 + ε) R e₁ at the quadrature nodes at coordinates (..., n), (..., g, 3)."""
-        return self.tangents(*at_nodes(self.nodal, q))
+        xp = namespace(self.cumulative, q)
+        # Component by component: a product of large matrices, not one of small ones for every time.
+        return xp.stack([part @ self.cumulative.T for part in self.components(q)], axis=-1)
 
     def components(self, q: Array) -> tuple[Array, Array, Array]:
-        """The same by components, (..., g) each."""
+        """Tangents (1 + ε) R e₁ at the quadrature nodes at coordinates (..., n), by components (..., g)."""
         if not self.planar:
             return self._tangents(*at_nodes(self.nodal, q))
         stretch = 1 + q @ self.nodal[0].T if self.extensible else 1.0
@@ -110,7 +108,7 @@ class ExactField:
 
     @property
     def cumulates(self) -> bool:
-        """The positions are sums of nodal vectors, `cumulative @ vectors(q)`."""
+        """The positions are sums of nodal vectors, ``cumulative @ components(q)``."""
         return True
 
     @property

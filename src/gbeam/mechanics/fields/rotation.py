@@ -56,7 +56,7 @@ class Field(Protocol):
 
     @property
     def cumulates(self) -> bool:
-        """Whether the positions are ``cumulative @ vectors(q)``."""
+        """Whether the positions are ``cumulative @ components(q)``, component by component."""
         ...
 
     def components(self, q: Array) -> tuple[Array, Array, Array]:
@@ -95,27 +95,27 @@ def sine_cosine(angle: Array) -> tuple[Array, Array]:
 def _compiled() -> Any:
     """The same for JAX, by polynomials: compiled, its own functions take one number after the other, 20 times as long.
 
-    XLA takes them for cheap, and would compute them anew wherever they are read. A product, with the unit matrix, it
-    computes once; the derivatives read its result.
+    XLA takes them for cheap, and would compute them anew wherever they are read. A product, of the two with the unit
+    matrix, it computes once; the derivatives read its result.
     """
     import jax
 
     import gbeam.arrays.jax_setup  # noqa: F401
 
     @jax.custom_jvp
-    def both(angle: Array) -> tuple[Array, Array]:
+    def of(angle: Array) -> tuple[Array, Array]:
         sine, cosine = _polynomials(angle)
         if not angle.ndim:
             return sine, cosine
-        unit = np.eye(angle.shape[-1])  # of NumPy: a constant, one for all
-        return sine @ unit, cosine @ unit
+        both = np.eye(2) @ jax.numpy.stack([sine, cosine], axis=-2)
+        return both[..., 0, :], both[..., 1, :]
 
-    @both.defjvp
+    @of.defjvp
     def _(primals: Any, tangents: Any) -> Any:
-        sine, cosine = both(primals[0])
+        sine, cosine = of(primals[0])
         return (sine, cosine), (cosine * tangents[0], -sine * tangents[0])
 
-    return both
+    return of
 
 
 # pi/2 in two parts, the first of 33 bits: its products with whole numbers up to a million are exact (Cody and Waite).

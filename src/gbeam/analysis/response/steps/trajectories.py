@@ -30,6 +30,7 @@ from gbeam.results.parts.errors import StepErrors
 from gbeam.results.result import Floats
 
 Array = Any
+_HISTORIES = "q", "qd", "qdd"
 
 
 def steps_beyond(motion: Motion, settings: ResponseSettings, step: float) -> tuple[int, int]:
@@ -93,20 +94,17 @@ def split(trajectory: Trajectory, *counts: int) -> list[Trajectory | None]:
 
 def joined(up: Trajectory | None, flight: Trajectory, down: Trajectory | None, stride: int) -> tuple[Trajectory, slice]:
     """Every step of spin-up and spin-down with every `stride`-th of the flight's, and where these are."""
-    sampled = _part(flight, slice(None, None, stride))
-    pieces = [
-        *([] if up is None else [_part(up, slice(None, -1))]),
-        sampled,
-        *([] if down is None else [_part(down, slice(1, None))]),
-    ]
+    pieces = [(flight, slice(None, None, stride))]
+    if up is not None:
+        pieces.insert(0, (up, slice(None, -1)))
+    if down is not None:
+        pieces.append((down, slice(1, None)))
+    xp = namespace(flight.q)
+    histories = {name: xp.concatenate([getattr(run, name)[steps] for run, steps in pieces]) for name in _HISTORIES}
+    time = np.concatenate([run.time[steps] for run, steps in pieces])
     first = 0 if up is None else len(up.time) - 1
-    histories = {
-        name: namespace(flight.q).concatenate([getattr(piece, name) for piece in pieces]) for name in ("q", "qd", "qdd")
-    }
-    time = np.concatenate([piece.time for piece in pieces])
-    return replace(flight, time=time, **histories), slice(first, first + len(sampled.time))
+    return replace(flight, time=time, **histories), slice(first, first + len(flight.time[::stride]))
 
 
 def _part(trajectory: Trajectory, steps: slice) -> Trajectory:
-    histories = {name: getattr(trajectory, name)[steps] for name in ("time", "q", "qd", "qdd")}
-    return replace(trajectory, **histories)
+    return replace(trajectory, **{name: getattr(trajectory, name)[steps] for name in ("time", *_HISTORIES)})
