@@ -11,12 +11,11 @@ import pytest
 import gbeam as gb
 from gbeam.analysis.accuracy.correction import RESOLVED
 from gbeam.analysis.accuracy.reference import Sampled, complete_residual
-from gbeam.analysis.equilibrium.compiled import evaluated
 from gbeam.mechanics.equations import sampled
-from gbeam.mechanics.equations.residuals import OnBase
 from gbeam.motion.bases.base import Base
 
 from ..literature.test_elastica import PLANAR
+from ..residuals import on_base
 from ..specimens import appendage, laden, states
 
 EI, LENGTH = 1.0, 1.0  # N m², m; 1 kg/m
@@ -140,9 +139,8 @@ def test_a_complete_residual_at_many_times_is_the_compiled_one() -> None:
     q, qd, qdd = (states(structure.size, 2, 0.1, seed) for seed in range(3))
     base, loads = Base(*(states(3, 2, 1.0, seed) for seed in (3, 4, 5))), structure.history(np.zeros(2))
     ours = complete_residual(structure, Sampled(np.zeros(2), base, q, qd, qdd, loads=loads))
-    residual = OnBase(structure.equations)
-    u = residual.pack(Base(base.a_WO_B[0], base.w_WB_B[0], base.alpha_WB_B[0]), loads[0])
-    theirs = np.asarray(evaluated(residual, q[0], qd[0], qdd[0], u))
+    first = Base(base.a_WO_B[0], base.w_WB_B[0], base.alpha_WB_B[0])
+    theirs = on_base(structure, q[0], qd[0], qdd[0], first, loaded=True)
     np.testing.assert_allclose(ours[0], theirs, rtol=0, atol=1e-8 * np.abs(theirs).max())
 
 

@@ -10,10 +10,9 @@ from gbeam import Beam, Gauge, InputError, Model, Root, assemble
 from gbeam.analysis.control.linearization import linearize
 from gbeam.analysis.control.nonlinear import nonlinear_system
 from gbeam.analysis.control.reduction import balanced_truncation, modal_truncation
-from gbeam.analysis.equilibrium.compiled import evaluated
 from gbeam.analysis.equilibrium.hub_point import on_hub
 from gbeam.analysis.equilibrium.operating_point import operating_point
-from gbeam.analysis.equilibrium.point import linear_matrices, on_base
+from gbeam.analysis.equilibrium.point import evaluated_at, linear_matrices, on_base
 from gbeam.analysis.vibration.modal import modes
 from gbeam.motion import Base, Hub, constant
 from gbeam.report.steady.state_space import text, to_json
@@ -44,7 +43,7 @@ def test_matrices_are_finite_differences(kind):
             for sign in (1, -1):
                 moved = [x.copy() for x in state]
                 moved[which][k] += sign * h
-                ends.append(np.asarray(evaluated(point.residual, *moved)))
+                ends.append(evaluated_at(structure, point.residual, *moved)[0])
             column = (ends[0] - ends[1]) / (2 * h)
             assert column == pytest.approx(matrix[:, k], rel=1e-6, abs=1e-6 * np.abs(matrix).max())
 

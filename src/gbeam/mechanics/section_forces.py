@@ -157,7 +157,9 @@ def _of_polynomial(structure: Structure, count: int, q: Array, qd: Array, qdd: A
 
 
 def _of_field(structure: Structure, count: int, q: Array, qd: Array, qdd: Array) -> tuple[Any, ...]:
-    """The same of a complete field, by JAX."""
+    """The same of a complete field, by JAX; by NumPy where nothing moves."""
+    if not is_jax(q) and not np.any(qd) and not np.any(qdd):
+        return _of_samples(structure, count, q, qd, qdd)
     from gbeam.mechanics.equations.dalembert import paths as compiled_paths
 
     assert structure.field is not None

@@ -7,7 +7,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 
-import gbeam.arrays.jax_setup  # noqa: F401
+from gbeam.arrays.derivatives import with_slope
 
 Array = Any
 
@@ -15,7 +15,7 @@ Array = Any
 @jax.jit
 def output_matrices(outputs: Any, z: Array) -> tuple[Array, Array]:
     """Values (p,) of outputs at (y, ẏ, ÿ, u), and their derivatives."""
-    return outputs.stacked(z), jax.jacfwd(outputs.stacked)(z)
+    return with_slope(outputs.stacked)(z)
 
 
 @jax.jit
@@ -25,6 +25,7 @@ def rates(outputs: Any, x: Array, u: Array) -> tuple[Array, Array]:
     n = outputs.structure.size + i
     y, yd, rate = x[:n], x[n : 2 * n], x[2 * n :]
     full = u if i else jnp.concatenate([u[:3], rate, u[3:]])
-    inputs, o = residual.unpack(full), jnp.zeros(n)
-    ydd = jnp.linalg.solve(jax.jacfwd(residual, 2)(y, yd, o, inputs), -residual(y, yd, o, inputs))
+    inputs = residual.unpack(full)
+    rest, mass = with_slope(lambda ydd: residual(y, yd, ydd, inputs))(jnp.zeros(n))
+    ydd = jnp.linalg.solve(mass, -rest)
     return jnp.concatenate([yd, ydd, u[3:6] if not i else jnp.zeros(0)]), outputs(y, yd, ydd, full)

@@ -61,7 +61,7 @@ def on_hub(
         u[0] = needed_torque(OperatingPoint(structure, residual, y, yd, ydd, u, base, found))
     else:
         ydd[1:] = beam_acceleration(structure, residual, y, yd, ydd, u)
-        u[0] = evaluated_at(structure, residual, y, yd, ydd, u)[0]
+        u[0] = evaluated_at(structure, residual, y, yd, ydd, u)[0][0]
     return OperatingPoint(structure, residual, y, yd, ydd, u, base, found)
 
 

@@ -86,20 +86,16 @@ def frozen(base: Base) -> BaseMotion:
     return BaseMotion(*(np.asarray(x) for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
 
 
-def evaluated_at(structure: Structure, residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
+def evaluated_at(
+    structure: Structure, residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array
+) -> tuple[Array, Array]:
+    """The residual (n,) and its derivatives with respect to (y, ẏ, ÿ, u), (n, 3n + inputs)."""
     if structure.linear:
-        return residual(y, yd, ydd, residual.unpack(u))
-    from gbeam.analysis.equilibrium.compiled import evaluated
+        return residual(y, yd, ydd, residual.unpack(u)), stepped(residual, y, yd, ydd, u)
+    from gbeam.analysis.equilibrium.compiled import expanded
 
-    return np.asarray(evaluated(residual, y, yd, ydd, u))
-
-
-def _jacobian(structure: Structure, residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
-    if not structure.linear:
-        from gbeam.analysis.equilibrium.compiled import jacobian
-
-        return np.asarray(jacobian(residual, np.concatenate([y, yd, ydd]), u))
-    return stepped(residual, y, yd, ydd, u)
+    value, slope = expanded(residual, np.concatenate([y, yd, ydd]), u)
+    return np.asarray(value), np.asarray(slope)
 
 
 def stepped(residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
@@ -117,7 +113,7 @@ def linear_matrices(point: OperatingPoint) -> Linear:
     structure, residual, n = point.structure, point.residual, len(point.y)
     if not structure.linear and (point.yd[point.first :].any() or point.ydd[point.first :].any()):
         # The beam moves: how its places bend further matters.
-        return _split(_jacobian(structure, residual, point.y, point.yd, point.ydd, point.u), n)
+        return _split(evaluated_at(structure, residual, point.y, point.yd, point.ydd, point.u)[1], n)
     # A complete model's small departures from where it rests are a linear model about that place.
     c, q = point.about, point.q if structure.linear else np.zeros(structure.size)
     if isinstance(residual, OnBase):
@@ -174,8 +170,8 @@ def beam_acceleration(
     """q̈ that the beam's equations ask for, the hub's acceleration being given, (n,)."""
     n, i = len(y), residual.first
     still = np.where(np.arange(n) < i, ydd, 0.0)
-    mass = _jacobian(structure, residual, y, yd, still, u)[i:, 2 * n + i : 3 * n]
-    return np.linalg.solve(mass, -evaluated_at(structure, residual, y, yd, still, u)[i:])
+    value, slope = evaluated_at(structure, residual, y, yd, still, u)
+    return np.linalg.solve(slope[i:, 2 * n + i : 3 * n], -value[i:])
 
 
 def on_base(structure: Structure, base: Base, q: Array | None = None, qd: Array | None = None) -> OperatingPoint:

@@ -6,7 +6,6 @@ modes and stability of a complete model need no derivative of its residual.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import jax
@@ -14,36 +13,23 @@ import jax.numpy as jnp
 import numpy as np
 
 import gbeam.arrays.jax_setup  # noqa: F401
+from gbeam.arrays.derivatives import with_slope
 from gbeam.mechanics.fields.taylor import EPSILON
 
 Array = Any
 
 
-def _with_slope(function: Callable[[Array], Any]) -> Callable[[Array], tuple[Any, Any]]:
-    """A function's values and their derivatives: traced once for both."""
-
-    def twice(q: Array) -> tuple[Any, Any]:
-        values = function(q)
-        return values, values
-
-    def both(q: Array) -> tuple[Any, Any]:
-        slope, values = jax.jacfwd(twice, has_aux=True)(q)
-        return values, slope
-
-    return both
-
-
 @jax.jit
 def places_about(inertia: Any, q: Array) -> tuple[Array, Array, Array]:
     """Places (k, 3) of the particles at q, and their first and second derivatives, (k, 3, n) and (k, 3, n, n)."""
-    (places, slope), (_, second) = _with_slope(_with_slope(inertia.positions))(q)
+    (places, slope), (_, second) = with_slope(with_slope(inertia.positions))(q)
     return places, slope, second
 
 
 @jax.jit
 def elastic_about(elasticity: Any, q: Array) -> tuple[Array, Array]:
     """Gradient (n,) and second derivatives (n, n) of the strain energy at q."""
-    return _with_slope(jax.grad(elasticity.energy))(q)
+    return with_slope(jax.grad(elasticity.energy))(q)
 
 
 @jax.jit
@@ -53,7 +39,7 @@ def loads_about(work: Any, q: Array, like: Array) -> tuple[Array, Array]:
     onto = (np.arange(loads)[:, None] == work.load) * work.weight  # (loads, p)
 
     def unit(q: Array) -> Array:
-        (r, rotation), (slope, turn) = _with_slope(lambda q: (work.field.position(q), work.field.rotation(q)))(q)
+        (r, rotation), (slope, turn) = with_slope(lambda q: (work.field.position(q), work.field.rotation(q)))(q)
         axes = jnp.where(work.follower[:, None, None], rotation, jnp.eye(3))  # in columns: the unit components
         pull = jnp.swapaxes(axes, 1, 2)
         about = jnp.einsum("abd,pb,pdc->pca", epsilon, r, axes)
@@ -62,4 +48,4 @@ def loads_about(work: Any, q: Array, like: Array) -> tuple[Array, Array]:
         moment = jnp.concatenate([jnp.zeros_like(pull), pull, pull @ angle], axis=2)
         return jnp.tensordot(onto, jnp.concatenate([force, moment], axis=1), axes=1)
 
-    return _with_slope(unit)(q)
+    return with_slope(unit)(q)

@@ -9,7 +9,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-import gbeam.arrays.jax_setup  # noqa: F401
+from gbeam.arrays.derivatives import with_slope
 
 Array = Any
 _BLOCK = 256  # states handled together: one compiled shape
@@ -28,9 +28,9 @@ def residuals(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> Ar
 @jax.jit
 def _about(residual: Any, q: Array, qd: Array, inputs: Any) -> Any:
     def at(q: Array, qd: Array, inputs: Any) -> Any:
-        still = jnp.zeros_like(q)
-        mass = jax.jacfwd(lambda qdd: residual(q, qd, qdd, inputs))(still)  # the equations are linear in q̈
-        qdd = jnp.linalg.solve(mass, -residual(q, qd, still, inputs))
+        # The equations are linear in q̈.
+        rest, mass = with_slope(lambda qdd: residual(q, qd, qdd, inputs))(jnp.zeros_like(q))
+        qdd = jnp.linalg.solve(mass, -rest)
         k, c = jax.jacfwd(lambda q, qd: residual(q, qd, qdd, inputs), argnums=(0, 1))(q, qd)
         return mass, c, k, qdd
 
