@@ -5,6 +5,7 @@ Modes that the samples resolve answer in time, by Gauss's method; the others fol
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -136,8 +137,8 @@ class Vibration(NamedTuple):
         return displaced, moving
 
 
-def correction(of: Operator, vibration: Vibration, time: Floats, residual: Floats, start: State) -> Correction:
-    """Linear response to −R, (t, n) each.
+def responses(of: Operator, vibration: Vibration, time: Floats) -> Callable[[Floats, State], Correction]:
+    """The linear response to −R, (t, n) each, as a function of R (t, n) and of where the beam begins and how fast.
 
     Parameters
     ----------
@@ -145,39 +146,39 @@ def correction(of: Operator, vibration: Vibration, time: Floats, residual: Float
     vibration : Vibration
         Of the same.
     time : (t,) s
-    residual : (t, n)
-        R.
-    start : ((n,), (n,))
-        Where the beam begins and how fast.
     """
     square, modes, kept = vibration
     step = _interval(time)
     phi, stiff = modes[:, kept], modes[:, ~kept]
     flexibility = stiff / square[~kept] @ stiff.T
-    c, k = (np.einsum("ia,tij,jb->tab", phi, x, phi, optimize=True) for x in (of.velocity, of.stiffness))
-    force = -residual @ phi
-    first, moving = (each[kept] for each in vibration.of_state(of, start))
+    c, k = (phi.T @ x @ phi for x in (of.velocity, of.stiffness))
+    damping = c.mean(axis=0)
+    rest = (damping + damping.T) / 2, np.diag(square[kept])
 
     def drive(t: Any) -> Any:
         place = np.clip((t - time[0]) / step, 0, len(time) - 1)
         before = np.minimum(place.astype(int), len(time) - 2)
         return before, place - before
 
-    def matrices(at: Any) -> tuple[Floats, Floats, Floats]:
-        before, share = at
+    def correction(residual: Floats, start: State) -> Correction:
+        force = -residual @ phi
+        first, moving = (each[kept] for each in vibration.of_state(of, start))
 
-        def between(x: Floats) -> Floats:
-            weight = share.reshape(-1, *[1] * (x.ndim - 1))
-            return x[before] * (1 - weight) + x[before + 1] * weight
+        def matrices(at: Any) -> tuple[Floats, Floats, Floats]:
+            before, share = at
 
-        return between(c), between(k), between(force)
+            def between(x: Floats) -> Floats:
+                weight = share.reshape(-1, *[1] * (x.ndim - 1))
+                return x[before] * (1 - weight) + x[before + 1] * weight
 
-    damping = c.mean(axis=0)
-    rest = (damping + damping.T) / 2, np.diag(square[kept])
-    equations = LinearEquations(np.eye(phi.shape[1]), matrices, drive, rest=rest)
-    made = integrate(equations, gauss(), first, moving, step=step, count=len(time) - 1, start=float(time[0]))
-    static = -residual @ flexibility
-    return Correction(made.q @ phi.T + static, made.qd @ phi.T, made.qdd @ phi.T)
+            return between(c), between(k), between(force)
+
+        equations = LinearEquations(np.eye(phi.shape[1]), matrices, drive, rest=rest)
+        made = integrate(equations, gauss(), first, moving, step=step, count=len(time) - 1, start=float(time[0]))
+        static = -residual @ flexibility
+        return Correction(made.q @ phi.T + static, made.qd @ phi.T, made.qdd @ phi.T)
+
+    return correction
 
 
 def _interval(time: Floats) -> float:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.analysis.accuracy.correction import Operator, State, Vibration, correction, operator
+from gbeam.analysis.accuracy.correction import Operator, State, Vibration, operator, responses
 from gbeam.analysis.accuracy.reference import Sampled, complete_residual, linear_residual
 from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import Enrichment, enrichment
@@ -116,12 +116,13 @@ def lacking(
     else:
         same = exact if structure.kind == "exact" else more.model(structure.kind, directions=directions)[0]
         start, start_of_shapes = (_departure(begin, each, at) for each in (exact, same))
-    total = correction(of, vibration, solution.time, residual, start)
+    correction = responses(of, vibration, solution.time)
+    total = correction(residual, start)
     if own is None:
         own = quantities(structure, _lifted(structure, np.arange(structure.size), motion, solution))
     truth, same_shapes = quantities(exact, at.moved(*total)), own
     if structure.kind != "exact":
-        shapes = correction(of, vibration, solution.time, new, start_of_shapes)
+        shapes = correction(new, start_of_shapes)
         same_shapes = quantities(exact, at.moved(*(a - b for a, b in zip(total, shapes, strict=True))))
     parts = Parts(
         Quantities(*(a - b for a, b in zip(truth, same_shapes, strict=True))),
