@@ -188,10 +188,12 @@ def _of_samples(structure: Structure, count: int, q: Array, qd: Array, qdd: Arra
 
 def absolute_accelerations(xp: Any, base: Base, r: Array, rd: Array, rdd: Array) -> Array:
     """Absolute accelerations of points, (t, p, 3)."""
-    w, alpha = base.w_WB_B, base.alpha_WB_B
+    w, alpha, along = base.w_WB_B, base.alpha_WB_B, base.a_WO_B[:, None, :]
+    if xp is np and not (w.any() or alpha.any()):
+        return along + rdd
     spin = _matrix(xp, w)
-    turning = r @ xp.swapaxes(_matrix(xp, alpha) + spin @ spin, -1, -2) + 2 * rd @ xp.swapaxes(spin, -1, -2)
-    return base.a_WO_B[:, None, :] + turning + rdd
+    both = xp.swapaxes(xp.concatenate([_matrix(xp, alpha) + spin @ spin, 2 * spin], axis=-1), -1, -2)
+    return along + xp.concatenate([r, rd], axis=-1) @ both + rdd
 
 
 def _matrix(xp: Any, w: Array) -> Array:

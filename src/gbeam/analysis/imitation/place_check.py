@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -57,14 +58,20 @@ def verify(
         Prepared for the settings' span, by the names of their places.
     settings : ResponseSettings
     """
+    settings = replace(settings, estimate=False)  # none of it is told
     in_flight = simulate(structure, flight, settings)
     cutoff = CUTOFF * float(in_flight.frequencies[0]) / (2 * np.pi)
-    carried: dict[int, Response] = {}  # machines at different control points share their axis motions
+    # Machines at different control points share their axis motions, and the current one may be at the middle.
+    carried: dict[int, Response] = {}
+    responses: dict[tuple[int, float], Response] = {}
     verifications = []
     for name, machine in machines.items():
-        response, motion = simulate(structure, machine, settings), id(machine.course)
+        motion, at = id(machine.course), float(machine.control_point)
+        if (motion, at) not in responses:
+            responses[motion, at] = simulate(structure, machine, settings)
         if motion not in carried:
             carried[motion] = simulate(structure, _Carried(machine), settings)
+        response = responses[motion, at]
         comparison = compare(in_flight, response)
         # Whose automatic step may differ.
         own = interpolated(response.time, carried[motion].time, carried[motion].tip)
@@ -78,7 +85,7 @@ def verify(
         verifications.append(
             Verification(
                 name,
-                float(machine.control_point),
+                at,
                 _largest(comparison.difference[comparison.covered]),
                 _largest(swing[compared]),
                 moment,

@@ -74,16 +74,18 @@ class Ramp:
         s = where(s.value < 0, 0.0, where(s.value > 1, 1.0, s))
         none = 0.0 * s
         turned = self.rate * abs(self.steady - self.still)
-        share, yaw, roll = _rise(s) ** 2, none + self.yaw, none + self.roll
+        quotient = _quotient(s)
+        rise = s**5 * quotient
+        share, yaw, roll = rise**2, none + self.yaw, none + self.roll
         if self.yawed:
             # tan δ = (dω1/dt)/ω1² = S'/(ΩT S²), with the powers of s and 1 − s that both hold taken out.
-            lag = math.pi / 2 - arctan2(turned * s**6 * _quotient(s) ** 2, 630 * (1 - s) ** 4)
+            lag = math.pi / 2 - arctan2(turned * s**6 * quotient**2, 630 * (1 - s) ** 4)
             yaw = yaw + self.outward * lag
-            share = s**4 * sqrt(s**12 * _quotient(s) ** 4 + (630 * (1 - s) ** 4 / turned) ** 2)
+            share = s**4 * sqrt(s**12 * quotient**4 + (630 * (1 - s) ** 4 / turned) ** 2)
         if self.gravity:
             down = none + self.gravity
             roll = roll + arctan2(down, share * self.across) - arctan2(down, none + self.across)
-        return _rise(s) * self.rate, yaw, roll
+        return rise * self.rate, yaw, roll
 
     def load(self, t: Any, arm: Any) -> Any:
         """Load that the ramp makes at the control point at times `t` (s), base axes, m/s², shape (..., 3)."""
@@ -126,13 +128,8 @@ class Ramp:
 
 
 def _quotient(s: Series) -> Series:
-    """S over s⁵."""
-    return 126 - 420 * s + 540 * s**2 - 315 * s**3 + 70 * s**4
-
-
-def _rise(s: Series) -> Series:
-    """S = s⁵ (126 − 420 s + 540 s² − 315 s³ + 70 s⁴), S' = 630 s⁴ (1 − s)⁴."""
-    return s**5 * _quotient(s)
+    """S over s⁵, where S = s⁵ (126 − 420 s + 540 s² − 315 s³ + 70 s⁴) and S' = 630 s⁴ (1 − s)⁴."""
+    return 126 - s * (420 - s * (540 - s * (315 - 70 * s)))
 
 
 def build_ramps(
