@@ -15,7 +15,7 @@ from gbeam.cli.program import VERBS as PROGRAM
 from gbeam.cli.program import parsed
 
 from ..calling import Answer
-from ..scenarios import FAST
+from ..scenarios import FAST, RAMPS
 from .conftest import Site
 
 _REFERENCE = (Path(__file__).parents[2] / "docs" / "scenario.md").read_text(encoding="utf-8")
@@ -150,7 +150,7 @@ def test_a_record_takes_the_place_of_a_profile(site: Site) -> None:
     answer = site.call("PUT", "/api/records/pull up.csv", site.opened, content=f"t,n_z\n{rows}".encode())
     assert answer.json() == {"name": "pull up.csv", "columns": ["t", "n_z"]}
     record = {"file": "pull up.csv", "time": "t", "x": "0", "y": "0", "z": "n_z", "unit": "g"}
-    text = FAST.replace('level = "6 g"', 'level = "1.2 g"')
+    text = FAST.replace(RAMPS, "").replace('level = "6 g"', 'level = "1.2 g"')
     for _ in range(2):  # the second time in place of the first
         body = {"text": text, "motion": "flight", "record": record}
         text = site.call("POST", "/api/record", site.opened, json=body).json()["text"]

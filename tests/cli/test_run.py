@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
+import json
 import subprocess
 import sys
 from collections.abc import Callable
@@ -12,9 +15,12 @@ import numpy as np
 import pytest
 
 from gbeam.analysis.response import simulation
+from gbeam.cli import main
 from gbeam.errors import ComputationError
 from gbeam.io import netcdf as store
 from gbeam.results.response import Response
+
+from ..scenarios import FAST, RAMPS
 
 Call = Callable[..., Any]
 
@@ -55,7 +61,7 @@ def test_json_contract(fast: Path, gbeam: Call) -> None:
     assert not Path("out").exists()
 
 
-def test_stress_yield_and_fatigue(fast: Path, gbeam: Call) -> None:
+def test_stress_yield_and_fatigue(fast: Path, gbeam: Call, without_figures: None) -> None:
     """A steady 6 g: M = m g L²/2 at the root, σ = 6 M/(b h²); a margin of one where the strength is twice that."""
     stress = 6 * (2700 * 0.02 * 0.004 * 6 * 9.80665 * 0.3**2 / 2) / (0.02 * 0.004**2)
     material = f"beam.material.yield_strength={2 * stress}"
@@ -113,17 +119,22 @@ PULLS = """{ z = { profile = "sum", terms = [
   { profile = "trapezoid", level = "2.55 g", jerk = "9 g/s", start = "4 s", hold = "0.1 s" } ] } }"""
 
 
-@pytest.fixture
-def pulls(fast: Path) -> Path:
-    """Level flight with a pull to 10 g, and a second one to 3.55 g that is over in 0.67 s."""
-    text = fast.read_text(encoding="utf-8").replace('{ z = { profile = "constant", level = "6 g" } }', PULLS)
-    text = text.replace("gravity = false", 'gravity = true\nidle = "1.4 g"\nsmoothing = "60 ms"')
-    fast.write_text(text.replace('duration = "0.5 s"', 'duration = "6 s"\nintegrator = "gauss"'), encoding="utf-8")
-    return fast
+@pytest.fixture(scope="module")
+def pulls(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """A run: level flight with a pull to 10 g, and a second one to 3.55 g that is over in 0.67 s."""
+    text = FAST.replace(RAMPS, RAMPS.replace("1.3 s", "3 s")).replace(
+        '{ z = { profile = "constant", level = "6 g" } }', PULLS
+    )
+    text = text.replace("gravity = false", 'gravity = true\nidle = "1.4 g"\nsmoothing = "60 ms"\nstart = "rest"')
+    file = tmp_path_factory.mktemp("pulls") / "pulls.toml"
+    file.write_text(text.replace('duration = "0.5 s"', 'duration = "6 s"\nintegrator = "gauss"'), encoding="utf-8")
+    with contextlib.redirect_stdout(io.StringIO()) as out:
+        main(["run", str(file), "--json"])
+    return json.loads(out.getvalue())
 
 
-def test_a_short_second_pull_is_accounted_for(pulls: Path, gbeam: Call) -> None:
-    (comparison,) = gbeam("run", pulls, "--json").json["comparisons"]
+def test_a_short_second_pull_is_accounted_for(pulls: Any) -> None:
+    (comparison,) = pulls["comparisons"]
     accounting = comparison["accounting"]
     assert [peak["load"] / 9.80665 for peak in accounting["peaks"]] == pytest.approx([10, 3.55], rel=1e-3)
     assert [peak["time"] for peak in accounting["peaks"]] == pytest.approx([1.5, 4.283], abs=0.01)
@@ -137,10 +148,9 @@ def test_a_short_second_pull_is_accounted_for(pulls: Path, gbeam: Call) -> None:
         assert each["reason"] != "below idle" or each["flight_peak"] <= 1.4 * 9.80665
 
 
-def test_the_peak_is_that_of_the_whole_flight(pulls: Path, gbeam: Call) -> None:
+def test_the_peak_is_that_of_the_whole_flight(pulls: Any) -> None:
     """A machine that spins up from rest: no peak of the flight vanishes in that."""
-    start = ["--set", "motion.spin.start=rest", "--set", "motion.spin.spin_up=3 s"]
-    flown = gbeam("run", pulls, *start, "--json").json
+    flown = pulls
     (comparison,) = flown["comparisons"]
     tip = comparison["peaks"]["tip"]
     assert tip["flight"] == pytest.approx(flown["motions"]["flight"]["tip"]["z"]["max_abs"], rel=1e-3)

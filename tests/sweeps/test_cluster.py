@@ -22,7 +22,7 @@ distributed = pytest.importorskip("distributed")
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGKILL")
 
 Call = Callable[..., Any]
-LEVELS = ["motion.flight.acceleration.z.level=1 g:8 g:24"]
+LEVELS = ["motion.flight.acceleration.z.level=2 g:8 g:24"]
 TIP = ["flight.tip.z"]
 LENGTHS = {"beam.length": "0.2 m:0.3 m:24"}
 MEASURES = """
@@ -48,11 +48,12 @@ def measures(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ModuleType]:
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(str(folder))
         patch.setenv("PYTHONPATH", os.pathsep.join([str(folder), *sys.path]))
-        # A case that ends two workers is given up; four by default.
+        # A case that ends two workers is given up; eight by default. Processes read the environment as they begin.
         patch.setenv("DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES", "0")
         import of_cases  # type: ignore[import-not-found]
 
-        yield of_cases
+        with dask.config.set({"distributed.scheduler.allowed-failures": 0}):
+            yield of_cases
 
 
 class ByHand:
@@ -78,6 +79,12 @@ class ByHand:
         self.workers.append(self._start("worker", self.address, *options, *arguments))
         return self.workers[-1]
 
+    def two(self) -> None:
+        """Start two workers, and wait for them."""
+        self.worker()
+        self.worker()
+        self.wait(2)
+
     def wait(self, count: int) -> None:
         """Wait for workers."""
         with distributed.Client(self.address, set_as_default=False) as client:
@@ -92,11 +99,8 @@ class ByHand:
 
 @pytest.fixture
 def by_hand(tmp_path: Path, measures: ModuleType) -> Iterator[ByHand]:
-    """A scheduler with two workers."""
+    """A scheduler that has no workers yet."""
     cluster = ByHand(tmp_path)
-    for _ in range(2):
-        cluster.worker()
-    cluster.wait(2)
     yield cluster
     cluster.end()
 
@@ -137,6 +141,11 @@ def test_workers_started_by_hand_lose_no_case_when_one_is_killed(
     fast: Path, by_hand: ByHand, measures: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("gbeam.sweeps.sweep._LONGEST", 1)
+    with monkeypatch.context() as patch:
+        patch.setattr("gbeam.sweeps.computing.cluster.CONNECTION", 1.0)
+        with pytest.raises(InputError, match="has no workers; start some with: dask worker"):
+            gb.sweep(fast, LEVELS, TIP, verb="static", scheduler=by_hand.address)
+    by_hand.two()
     whole = gb.sweep(fast, LENGTHS, {"length": measures.slow})
     kill = after(6, by_hand.workers[0].kill)
     found = gb.sweep(fast, LENGTHS, {"length": measures.slow}, scheduler=by_hand.address, progress=kill)
@@ -155,6 +164,7 @@ def test_a_driver_and_a_scheduler_that_are_killed_are_resumed(
     fast: Path, by_hand: ByHand, measures: ModuleType, gbeam: Call, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("gbeam.sweeps.sweep._LONGEST", 1)
+    by_hand.two()
     code = "import gbeam as gb, of_cases, gbeam.sweeps.sweep as s; s._LONGEST = 1\n"
     code += f"gb.sweep({str(fast)!r}, {LENGTHS!r}, {{'length': of_cases.slow}}, store='there', "
     code += f"scheduler={by_hand.address!r})"
@@ -178,13 +188,3 @@ def test_a_driver_and_a_scheduler_that_are_killed_are_resumed(
         gb.sweep(fast, LENGTHS, {"length": measures.slow}, **arguments)
     found = gb.sweep(fast, LENGTHS, {"length": measures.slow}, store="there", resume=True)
     assert data(found).identical(data(whole))
-
-
-def test_a_scheduler_without_workers(fast: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("gbeam.sweeps.computing.cluster.CONNECTION", 1.0)
-    cluster = ByHand(tmp_path)
-    try:
-        with pytest.raises(InputError, match="has no workers; start some with: dask worker"):
-            gb.sweep(fast, LEVELS, TIP, verb="static", scheduler=cluster.address)
-    finally:
-        cluster.end()

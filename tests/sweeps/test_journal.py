@@ -19,7 +19,7 @@ import gbeam as gb
 from gbeam.errors import InputError
 
 Call = Callable[..., Any]
-OVER = ["motion.flight.acceleration.z.level=1 g:8 g:40"]
+OVER = ["motion.flight.acceleration.z.level=2 g:8 g:40"]
 MEASURE = ["flight.tip.z"]
 ARGUMENTS = ("--verb", "static", "--over", *OVER, "--measure", *MEASURE, "--out", "there")
 
@@ -74,7 +74,7 @@ def test_another_sweeps_store_is_refused_by_what_differs(fast: Path) -> None:
         gb.sweep(fast, OVER, ["flight.tip.x"], verb="static", store="there", resume=True)
     with pytest.raises(InputError, match="its values and cases differ"):
         gb.sweep(
-            fast, ["motion.flight.acceleration.z.level=1 g:8 g:20"], MEASURE, verb="static", store="there", resume=True
+            fast, ["motion.flight.acceleration.z.level=2 g:8 g:20"], MEASURE, verb="static", store="there", resume=True
         )
     Path("there/cases.jsonl").write_text("something else\n", encoding="utf-8")
     with pytest.raises(InputError, match="not the store of a sweep"):

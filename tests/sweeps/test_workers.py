@@ -14,7 +14,7 @@ import pytest
 
 import gbeam as gb
 
-OVER = {"motion.flight.acceleration.z.level": "1 g:8 g:12"}
+OVER = {"motion.flight.acceleration.z.level": "2 g:8 g:12"}
 # Kills its process in one case: the first time only, or always.
 MEASURES = """
 import os, signal
