@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from gbeam.cli import main
+from gbeam.cli.process import FIGURES
 
 
 @dataclass(frozen=True)
@@ -37,3 +38,9 @@ def gbeam(capsys: pytest.CaptureFixture[str]) -> Callable[..., Answer]:
         return Answer(status, captured.out, captured.err)
 
     return call
+
+
+@pytest.fixture
+def without_figures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Write no figures, where a test is about something else."""
+    monkeypatch.setenv(FIGURES, "none")

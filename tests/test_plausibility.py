@@ -14,9 +14,11 @@ from gbeam.guards.plausibility import RANGES, implausible
 from gbeam.scenario import template
 
 from . import scenarios, specimens
-from .calling import Answer, gbeam
+from .calling import Answer, gbeam, without_figures
 
-__all__ = ["gbeam"]
+__all__ = ["gbeam", "without_figures"]
+
+pytestmark = pytest.mark.usefixtures("without_figures")
 
 STRIP, METAL = specimens.STRIP, specimens.ALUMINIUM
 FLIGHT = gb.Flight(z=9.81)

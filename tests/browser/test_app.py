@@ -33,7 +33,7 @@ def address(tmp_path: Path) -> Iterator[str]:
 
 
 @pytest.mark.slow
-def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> None:
+def test_a_person_runs_compares_and_downloads(browser: Any, address: str, tmp_path: Path) -> None:
     home, faults = address.split("/?")[0], list[str]()
     context = browser.new_context(viewport={"width": 1400, "height": 1000}, accept_downloads=True)
     page = context.new_page()
@@ -152,6 +152,8 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str) -> Non
     assert Path(download.value.path()).read_bytes()[:4] == b"\x89HDF"
     assert page.get_by_label("scenario as TOML").input_value() == BIG  # the draft is kept
     assert faults == []
+    # The reports have the figures.
+    assert len([*tmp_path.rglob("result.nc")]) == 2 and not [*tmp_path.rglob("*.png")]
 
     # Without the server the page says so.
     page.route("**/api/**", lambda route: route.abort())

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from ..calling import gbeam
+from ..calling import gbeam, without_figures
 from ..scenarios import FAST, FREE_HUB
 
-__all__ = ["gbeam"]
+__all__ = ["gbeam", "without_figures"]
 
 
 @pytest.fixture
@@ -28,9 +28,3 @@ def hub(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     file = tmp_path / "hub.toml"
     file.write_text(FREE_HUB)
     return file
-
-
-@pytest.fixture
-def without_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Write no figures, where a test is about something else."""
-    monkeypatch.setattr("gbeam.plots.write_plots", lambda *_: [])

@@ -208,6 +208,7 @@ def test_diverged_in_words(fast: Path, gbeam: Call, without_figures: None) -> No
     level = "motion.flight.acceleration.z.level=3000 g"
     again = gbeam("run", fast, "--set", level)
     assert again.status == 1 and "diverged" in again.out and "out/fast" in again.out
+    assert [file.name for file in Path("out/fast").iterdir()] == ["result.nc"]
 
 
 def test_no_result_leaves_no_files(fast: Path, gbeam: Call, monkeypatch: pytest.MonkeyPatch) -> None:

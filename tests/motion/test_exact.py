@@ -82,7 +82,7 @@ def test_smooth_step_and_rates() -> None:
 
 @pytest.mark.parametrize(("frequency", "arm", "possible"), [(0.5, 3.3, True), (1.0, 3.3, False), (0.5, 15.0, False)])
 def test_a_maximum_can_be_followed_where_it_is_flat_enough(frequency: float, arm: float, possible: bool) -> None:
-    t = np.arange(0, 4, 0.005)
+    t = np.arange(0, 4, 0.02)
     raw = vector(z=tabulated(t, 2 * G + 1.2 * G * np.sin(2 * np.pi * frequency * t)))
     sharp = 1.2 * G * (2 * np.pi * frequency) ** 2 / ((3.2 * G) ** 2 / arm)  # −ä over a²/R
     assert (sharp <= 1) == possible

@@ -11,8 +11,14 @@ import xarray as xr
 from scipy.io import loadmat
 
 from gbeam.cli import main
+from gbeam.cli.process import FIGURES
 
+from ..calling import without_figures
 from ..scenarios import SPECIMEN, model
+
+__all__ = ["without_figures"]
+
+pytestmark = pytest.mark.usefixtures("without_figures")
 
 PLAN = """\
 title = "plan"
@@ -73,7 +79,8 @@ def test_a_plan_has_a_page(scenario: Path, tmp_path: Path, capsys: pytest.Captur
     assert "spin: load at the control point along z" in page and "spin: rate of the axes" in page
 
 
-def test_commands_are_the_axes_at_the_samples(scenario: Path, tmp_path: Path) -> None:
+def test_commands_are_the_axes_at_the_samples(scenario: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(FIGURES)
     assert main(["plan", str(scenario), "--out", str(tmp_path / "out"), "--json"]) == 0
     lines = (tmp_path / "out" / "commands_spin.csv").read_text(encoding="utf-8").splitlines()
     head = [line for line in lines if line.startswith("#")]

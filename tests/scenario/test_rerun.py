@@ -16,10 +16,12 @@ import gbeam as gb
 from gbeam.results.provenance import Environment
 from gbeam.scenario import provenance
 
-from ..calling import Answer, gbeam
+from ..calling import Answer, gbeam, without_figures
 from ..scenarios import EVERY_MOTION, FAST, FLIGHT, SPECIMEN, model, response
 
-__all__ = ["gbeam"]
+__all__ = ["gbeam", "without_figures"]
+
+pytestmark = pytest.mark.usefixtures("without_figures")
 
 RECORD = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 RECORDED = (

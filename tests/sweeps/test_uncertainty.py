@@ -87,7 +87,8 @@ def test_quantiles_of_a_frequency_are_those_of_the_root_of_the_stiffness(unsure:
 def test_sobol_indices_of_a_static_deflection(unsure: Path) -> None:
     """Deflection goes with load over stiffness: the indices of a product of two lognormal numbers."""
     over = [f"{LEVEL}=lognormal(6 g, 0.1)"]
-    found = gb.sweep(unsure, over, ["flight.tip.z"], verb="static", sampler="saltelli", samples=64)
+    of_flight = {"verb": "static", "motion": "flight"}
+    found = gb.sweep(unsure, over, ["flight.tip.z"], **of_flight, sampler="saltelli", samples=64)
     assert found.outcome.shape == (4 * 64,)
     alone = np.expm1(np.array([0.1, 0.06]) ** 2)
     variance = np.prod(1 + alone) - 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -36,8 +37,12 @@ def provenance(scenario: Environments, command: str = "") -> Provenance:
     changes = tuple(change.text for change in source.overrides)
     data = source.data
     if source.distributions:  # which have their centres there
-        data, _ = override(parse(source.name, source.text), source.name, changes)
+        data, _ = override(_parsed(source.name, source.text), source.name, changes)
     return Provenance(source.text, changes, fingerprint(data), records, command)
+
+
+# A sweep's cases are of one text; `override` copies it.
+_parsed = lru_cache(maxsize=4)(parse)
 
 
 def fingerprint(data: dict[str, Any]) -> str:
