@@ -43,14 +43,16 @@ def bar_shapes(x: Array, length: float, count: int) -> Shapes:
     return Shapes(np.sqrt(2) * np.sin(phase), np.sqrt(2) * k * np.cos(phase), -np.sqrt(2) * k**2 * np.sin(phase))
 
 
+@cache
 def bending_roots(count: int) -> Array:
-    """Roots λ of cos λ + 1/cosh λ = 0, ascending: the clamped-free beam's."""
+    """Roots λ of cos λ + 1/cosh λ = 0, ascending: the clamped-free beam's; read only."""
     guess = (np.arange(1, count + 1) - 0.5) * np.pi
     # The root leaves (i − ½)π by about 2 e^{−λ}, alternately up and down.
     root = guess - 2 * (-1.0) ** np.arange(1, count + 1) * np.exp(-guess)
     for _ in range(8):
         sech = 2 * np.exp(-root) / (1 + np.exp(-2 * root))
         root = root - (np.cos(root) + sech) / (-np.sin(root) - sech * np.tanh(root))
+    root.flags.writeable = False
     return root
 
 
@@ -154,9 +156,15 @@ class Quadrature(NamedTuple):
 
 
 @cache
+def _gauss(nodes: int) -> tuple[Array, Array]:
+    """Gauss-Legendre nodes and weights on [−1, 1]."""
+    return legendre.leggauss(nodes)
+
+
+@cache
 def _operator(nodes: int, *, integrate: bool) -> Array:
     """From values at Gauss-Legendre nodes on [−1, 1] to Legendre coefficients, of the integral from −1 if so wished."""
-    xi, _ = legendre.leggauss(nodes)
+    xi, _ = _gauss(nodes)
     to_coefficients = np.linalg.inv(legendre.legvander(xi, nodes - 1))
     if not integrate:
         return np.concatenate([to_coefficients, np.zeros((1, nodes))])
@@ -171,6 +179,6 @@ def quadrature(length: float, per_panel: int, breaks: Sequence[float] = ()) -> Q
         if near < b < length - near and (not inner or b - inner[-1] > near):
             inner.append(b)
     edges = np.array([0.0, *inner, length])
-    xi, w = legendre.leggauss(per_panel)
+    xi, w = _gauss(per_panel)
     half = np.diff(edges)[:, None] / 2
     return Quadrature((edges[:-1, None] + half * (xi + 1)).ravel(), (half * w).ravel(), edges)
