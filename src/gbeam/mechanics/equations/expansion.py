@@ -9,12 +9,9 @@ from __future__ import annotations
 from typing import Any
 
 import jax
-import jax.numpy as jnp
-import numpy as np
 
-import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.arrays.derivatives import with_slope
-from gbeam.mechanics.fields.taylor import EPSILON
+from gbeam.mechanics.fields.taylor import Places
 
 Array = Any
 
@@ -35,17 +32,7 @@ def elastic_about(elasticity: Any, q: Array) -> tuple[Array, Array]:
 @jax.jit
 def loads_about(work: Any, q: Array, like: Array) -> tuple[Array, Array]:
     """Generalised forces of unit components at q, (loads, 6, 6 + n), and their derivatives (loads, 6, 6 + n, n)."""
-    loads, epsilon = like.shape[0], jnp.asarray(EPSILON)
-    onto = (np.arange(loads)[:, None] == work.load) * work.weight  # (loads, p)
-
-    def unit(q: Array) -> Array:
-        (r, rotation), (slope, turn) = with_slope(lambda q: (work.field.position(q), work.field.rotation(q)))(q)
-        axes = jnp.where(work.follower[:, None, None], rotation, jnp.eye(3))  # in columns: the unit components
-        pull = jnp.swapaxes(axes, 1, 2)
-        about = jnp.einsum("abd,pb,pdc->pca", epsilon, r, axes)
-        angle = -0.5 * jnp.einsum("abe,padi,pbd->pei", epsilon, turn, rotation)  # of [δθ]× = δR Rᵀ
-        force = jnp.concatenate([pull, about, pull @ slope], axis=2)
-        moment = jnp.concatenate([jnp.zeros_like(pull), pull, pull @ angle], axis=2)
-        return jnp.tensordot(onto, jnp.concatenate([force, moment], axis=1), axes=1)
-
-    return with_slope(unit)(q)
+    (place, slope), (_, second) = with_slope(with_slope(lambda q: (work.field.position(q), work.field.rotation(q))))(q)
+    (r, rotation), (first, turn), (bend, twice) = place, slope, second
+    terms = work.about(like.shape[0], Places(r, first, bend), rotation, turn, twice)
+    return terms.constant, terms.slope

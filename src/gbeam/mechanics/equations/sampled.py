@@ -16,6 +16,7 @@ from gbeam.mechanics.equations.inertia import Elasticity, Inertia
 from gbeam.mechanics.equations.virtual_work import LoadWork
 from gbeam.mechanics.fields.exact import ExactField
 from gbeam.mechanics.fields.rotation import Field, Strains
+from gbeam.mechanics.fields.taylor import Places
 
 Array = NDArray[np.float64]
 STEP = 1e-30
@@ -78,14 +79,9 @@ def elastic_forces(elasticity: Elasticity, q: Array, stiffness: Array) -> Array:
     field = elasticity.field
     if field.linear_strains:
         return q @ stiffness
-    if isinstance(field, ExactField):
-        return _bent(field, elasticity.rigidity, q)
-
-    def energy(q: Any) -> Any:
-        parts = [((e**2) @ k)[..., None] for k, e in zip(elasticity.rigidity, field.strains(q), strict=True) if len(k)]
-        return 0.5 * sum(parts[1:], start=parts[0])
-
-    return pulled_back(energy, q, np.ones((len(q), 1)))
+    inner: Any = getattr(field, "inner", field)  # within a root's springs, whose coordinates come last
+    beam, root = np.split(q, [inner.nodal.shape[-1]], axis=1)
+    return np.concatenate([_bent(inner, elasticity.rigidity, beam), root * elasticity.rigidity.root], axis=1)
 
 
 def _bent(field: ExactField, rigidity: Strains, q: Array) -> Array:
@@ -133,13 +129,22 @@ def places_about(inertia: Inertia, q: Array) -> tuple[Array, Array, Array]:
 
 
 def about(place: Any, q: Array, steps: Array) -> tuple[Array, Array, Array]:
-    """Points (p, 3) at q (n,) and their derivatives, of places that may depend on the coordinates in any way."""
+    """Points (p, 3) at q (n,) and their derivatives, of places that may depend on the coordinates in any way.
 
-    def slopes(q: Array) -> Array:
-        moved = q[..., None, :] + 1j * STEP * np.eye(q.shape[-1])
-        return np.moveaxis(np.asarray(place(moved)).imag / STEP, -3, -1)
-
-    return np.asarray(place(q)), slopes(q), _differences(slopes, q, steps)
+    The real part of what a place is at a step i h has its second derivative along h: of two such steps, to fourth
+    order; those of pairs of coordinates are from steps along both.
+    """
+    n, (j, k) = len(q), np.tril_indices(len(q), -1)
+    r = np.asarray(place(q))
+    slope = np.asarray(place(q + 1j * STEP * np.eye(n))).imag / STEP
+    ways = steps * np.concatenate([np.eye(n), (np.eye(n)[j] + np.eye(n)[k]) / 2])  # none turns further than one step
+    near, far = (2 * (r - np.asarray(place(q + 1j * size * ways)).real) / size**2 for size in (0.5, 1))
+    alone, both = np.split((4 * near - far) / 3, [n])
+    second = np.empty((n, n, *r.shape))
+    second[np.arange(n), np.arange(n)] = alone
+    second[j, k] = second[k, j] = 2 * both - (alone[j] + alone[k]) / 2
+    second /= np.multiply.outer(steps, steps).reshape(n, n, *[1] * r.ndim)
+    return r, np.moveaxis(slope, 0, -1), np.moveaxis(second, (0, 1), (-2, -1))
 
 
 def _axis_about(field: ExactField, q: Array) -> tuple[Array, Array, Array]:
@@ -170,26 +175,16 @@ def elastic_about(elasticity: Elasticity, q: Array, stiffness: Array) -> tuple[A
 
 def loads_about(work: LoadWork, q: Array, loads: int) -> tuple[Array, Array]:
     """Generalised forces of unit components at q, (loads, 6, 6 + n), and their derivatives (loads, 6, 6 + n, n)."""
-    unit, field = np.eye(6 * loads).reshape(-1, loads, 6), work.field
+    field = work.field
 
-    def forces(q: Array) -> Array:
-        q = np.atleast_2d(q)
-        r, rotation = field.position(q), field.rotation(q)
-        moved = q[:, None, :] + 1j * STEP * np.eye(q.shape[1])
-        slope, turn = (np.asarray(each(moved)).imag / STEP for each in (field.position, field.rotation))
-        slope, turn = (x.reshape(*x.shape[:2], -1) for x in (slope, turn))
-        every = []
-        for values in unit:
-            force, moment = work.forces(rotation, np.broadcast_to(values, (len(q), *values.shape)))
-            turning = 0.5 * np.cross(moment[..., :, None], rotation, axis=-2)
-            along = slope @ force.reshape(len(q), -1, 1) + turn @ turning.reshape(len(q), -1, 1)
-            about = (np.cross(r, force) + moment).sum(axis=1)
-            every.append(np.concatenate([force.sum(axis=1), about, along[..., 0]], axis=1))
-        return np.stack(every, axis=1)
+    def place(q: Array) -> Array:
+        """Places of the loaded points and rotations of their sections, side by side."""
+        return np.concatenate([field.position(q)[..., None], field.rotation(q)], axis=-1)
 
-    shape = (loads, 6, 6 + len(q))
-    slope = _differences(forces, q, _steps(work.field, len(q)))
-    return forces(q)[0].reshape(shape), slope.reshape(*shape, len(q))
+    values, slope, second = about(place, q, _steps(field, len(q)))
+    places = Places(values[..., 0], slope[:, :, 0], second[:, :, 0])
+    terms = work.about(loads, places, values[..., 1:], slope[:, :, 1:], second[:, :, 1:])
+    return terms.constant, terms.slope
 
 
 def _steps(field: Any, n: int) -> Array:

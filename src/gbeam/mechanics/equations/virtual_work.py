@@ -13,7 +13,7 @@ from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.equations.linear import LoadTerms
 from gbeam.mechanics.fields.rotation import Field
-from gbeam.mechanics.fields.taylor import EPSILON
+from gbeam.mechanics.fields.taylor import EPSILON, Places
 
 Array = Any
 
@@ -66,44 +66,60 @@ class LoadWork:
         )
 
     def first_order(self, count: int) -> LoadTerms:
-        """The generalised forces of `count` loads' unit components, to first order in q."""
+        """The generalised forces of `count` loads' unit components, to first order in q about the straight beam."""
         places, turns = self.field.places(), self.field.turns()
         xp = namespace(places.first, self.weight)
-        r0, slope, bend = places.r0, places.first, places.second
-        points, _, n = slope.shape
-        unit = xp.broadcast_to(xp.eye(3), (points, 3, 3))  # [p, c, a]: component a of the unit vector c
-        # How the unit vectors of a follower turn: R1 e_c, (p, c, a, n).
-        turned = xp.asarray(self.follower)[:, None, None, None] * xp.einsum("paci->pcai", turns.first)
+        straight = xp.broadcast_to(xp.eye(3), (len(places.r0), 3, 3))
+        return self.about(count, places, straight, turns.first, turns.second)
+
+    def about(self, count: int, places: Places, rotation: Array, turn: Array, bend: Array) -> LoadTerms:
+        """The same about any coordinates.
+
+        Parameters
+        ----------
+        count : int
+        places : Places
+            Of the loaded points there: the places themselves, and their first and second derivatives.
+        rotation, turn, bend : (p, 3, 3), (p, 3, 3, n), (p, 3, 3, n, n)
+            Of the sections there, and their first and second derivatives.
+        """
+        xp = namespace(places.first, rotation, self.weight)
+        r, slope, second = places.r0, places.first, places.second
+        epsilon, follower = xp.asarray(EPSILON), xp.asarray(self.follower)[:, None, None]
+        # In columns: the unit components, and how those of a follower turn.
+        axes, turned = xp.where(follower, rotation, xp.eye(3)), follower[..., None] * turn
+
+        def rows(columns: Array) -> Array:
+            return xp.swapaxes(columns, 1, 2)
 
         def cross(left: Array, right: Array, form: str) -> Array:
-            return xp.einsum(f"abd,{form}", xp.asarray(EPSILON), left, right)
+            return xp.einsum(f"abd,{form}", epsilon, left, right)
 
-        none = xp.zeros((points, 3, 3))
-        force = xp.concat([unit, cross(r0, unit, "pb,pcd->pca"), xp.einsum("pai,pca->pci", slope, unit)], axis=2)
-        force_slope = xp.concat(
-            [
-                turned,
-                cross(slope, unit, "pbj,pcd->pcaj") + cross(r0, turned, "pb,pcdj->pcaj"),
-                xp.einsum("paij,pca->pcij", bend, unit) + xp.einsum("pai,pcaj->pcij", slope, turned),
-            ],
-            axis=2,
-        )
-        # Of a moment, ½ [M]× R : ∂R/∂q.
-        skew = -0.5 * xp.einsum("abd,pcd->pcab", xp.asarray(EPSILON), unit)
-        skew_turned = -0.5 * xp.einsum("abd,pcdj->pcabj", xp.asarray(EPSILON), turned)
-        moment = xp.concat([none, unit, xp.einsum("pcab,pabi->pci", skew, turns.first)], axis=2)
-        along = (
-            xp.einsum("pcab,pabij->pcij", skew, turns.second)
-            + xp.einsum("pcab,pbdj,padi->pcij", skew, turns.first, turns.first)
-            + xp.einsum("pcabj,pabi->pcij", skew_turned, turns.first)
-        )
-        moment_slope = xp.concat([xp.zeros((points, 3, 3, n)), turned, along], axis=2)
-        weight = xp.asarray(self.weight)
-        onto = (np.arange(count)[:, None] == np.asarray(self.load)) * weight  # (loads, p)
-        return LoadTerms(
-            xp.einsum("lp,pcj->lcj", onto, xp.concat([force, moment], axis=1)),
-            xp.einsum("lp,pcjn->lcjn", onto, xp.concat([force_slope, moment_slope], axis=1)),
-        )
+        def angle(outer: Array, inner: Array, form: str) -> Array:
+            """θ of [θ]× = outer innerᵀ."""
+            return -0.5 * xp.einsum("abe,pab...->pe...", epsilon, xp.einsum(form, outer, inner))
+
+        force = [rows(axes), cross(r, axes, "pb,pdc->pca"), xp.einsum("pai,pac->pci", slope, axes)]
+        force_slope = [
+            rows(turned),
+            cross(slope, axes, "pbj,pdc->pcaj") + cross(r, turned, "pb,pdcj->pcaj"),
+            xp.einsum("paij,pac->pcij", second, axes) + xp.einsum("pai,pacj->pcij", slope, turned),
+        ]
+        # A moment works along θ_i of [θ_i]× = ∂R/∂q_i Rᵀ.
+        once = angle(turn, rotation, "padi,pbd->pabi")
+        twice = angle(bend, rotation, "padij,pbd->pabij") + angle(turn, turn, "padi,pbdj->pabij")
+        moment = [xp.zeros_like(axes), rows(axes), xp.einsum("pei,pec->pci", once, axes)]
+        moment_slope = [
+            xp.zeros_like(turned),
+            rows(turned),
+            xp.einsum("peij,pec->pcij", twice, axes) + xp.einsum("pei,pecj->pcij", once, turned),
+        ]
+        onto = (np.arange(count)[:, None] == xp.asarray(self.load)) * xp.asarray(self.weight)  # (loads, p)
+
+        def summed(force: list[Array], moment: list[Array]) -> Array:
+            return xp.tensordot(onto, xp.concat([xp.concat(force, axis=2), xp.concat(moment, axis=2)], axis=1), axes=1)
+
+        return LoadTerms(summed(force, moment), summed(force_slope, moment_slope))
 
 
 @record
