@@ -18,7 +18,7 @@ SCENARIO = (
     APPENDAGE
     + model("FOAM", 1, 2, 0)
     + SLEW.replace("60 rpm", "6 rad/s").replace("2 s", "4 s")
-    + response("8 s", residual_from="5 s")
+    + response("6 s", residual_from="5 s")
     + "tolerance = 1e-3\n"
 )
 
@@ -68,5 +68,5 @@ def test_models_that_do_not_fit_the_scenario_do_not_end_the_study(call):
 def test_too_few_shapes_show_in_the_last(rotations, fine):
     structure = structure_2009("exact", 3, rotations)
     hub = Hub(radius=0.5, rate=SmoothStep(6.0, 4.0))
-    response = simulate(structure, hub, ResponseSettings(duration=8.0, step=0.04))
+    response = simulate(structure, hub, ResponseSettings(duration=5.0, step=0.04))
     assert (shape_tail(structure, response) < SHAPES_FINE) == fine
