@@ -23,7 +23,7 @@ def test_a_requirement_that_decides_gives_the_closed_form(fast: Path) -> None:
     before = gb.sensitivity(fast, ["flight.tip.z"], [THICKNESS], verb="static").figures[0]
     found = gb.optimise(
         fast, "flight.loads.root_force.z", [THICKNESS], subject_to=["flight.tip.z >= -2 mm"], verb="static",
-        bounds={THICKNESS: ("2 mm", "8 mm")},
+        motion="flight", bounds={THICKNESS: ("2 mm", "8 mm")},
     )  # fmt: skip
     assert found.values[0] == pytest.approx(0.004 * np.sqrt(before / -0.002), rel=1e-5)
     (required,) = found.requirements
@@ -78,7 +78,7 @@ def test_the_command_writes_a_scenario_a_file_and_a_plot(fast: Path, gbeam: Call
 def test_all_searches_of_a_figure_with_one_valley_agree(fast: Path, gbeam: Call) -> None:
     words = ("optimize", fast, "--verb", "static", "--minimise", "flight.loads.root_force.z", "--over", THICKNESS)
     bound = ("--bounds", f"{THICKNESS}=3 mm:8 mm", "--subject-to", "flight.tip.z >= -2 mm", "--starts", "3")
-    done = gbeam(*words, *bound)
+    done = gbeam(*words, *bound, "--motion", "flight")
     assert done.status == 0 and "3 of 3 searches end at these values" in done.out
 
 

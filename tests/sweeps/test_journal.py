@@ -21,11 +21,12 @@ from gbeam.errors import InputError
 Call = Callable[..., Any]
 OVER = ["motion.flight.acceleration.z.level=2 g:8 g:40"]
 MEASURE = ["flight.tip.z"]
-ARGUMENTS = ("--verb", "static", "--over", *OVER, "--measure", *MEASURE, "--out", "there")
+STATIC = {"verb": "static", "motion": "flight"}
+ARGUMENTS = ("--verb", "static", "--motion", "flight", "--over", *OVER, "--measure", *MEASURE, "--out", "there")
 
 
 def _whole(fast: Path) -> Any:
-    return gb.sweep(fast, OVER, MEASURE, verb="static").measures["flight.tip.z"]
+    return gb.sweep(fast, OVER, MEASURE, **STATIC).measures["flight.tip.z"]
 
 
 def test_a_killed_sweep_is_resumed(fast: Path, gbeam: Call) -> None:
@@ -46,7 +47,7 @@ def test_a_killed_sweep_is_resumed(fast: Path, gbeam: Call) -> None:
     assert "add --resume" in gbeam("sweep", fast, *ARGUMENTS).err
     assert gbeam("sweep", fast, *ARGUMENTS, "--resume").status == 0
     assert lines[: lines.rfind(b"\n")] in journal.read_bytes()  # what was done is not computed again
-    found = gb.sweep(fast, OVER, MEASURE, verb="static", store="there", resume=True)
+    found = gb.sweep(fast, OVER, MEASURE, **STATIC, store="there", resume=True)
     assert np.array_equal(found.measures["flight.tip.z"], _whole(fast))
 
 
@@ -69,16 +70,14 @@ def test_a_full_disk_keeps_what_is_done(fast: Path, gbeam: Call, monkeypatch: py
 
 
 def test_another_sweeps_store_is_refused_by_what_differs(fast: Path) -> None:
-    gb.sweep(fast, OVER, MEASURE, verb="static", store="there")
+    gb.sweep(fast, OVER, MEASURE, **STATIC, store="there")
     with pytest.raises(InputError, match="its measures differs"):
-        gb.sweep(fast, OVER, ["flight.tip.x"], verb="static", store="there", resume=True)
+        gb.sweep(fast, OVER, ["flight.tip.x"], **STATIC, store="there", resume=True)
     with pytest.raises(InputError, match="its values and cases differ"):
-        gb.sweep(
-            fast, ["motion.flight.acceleration.z.level=2 g:8 g:20"], MEASURE, verb="static", store="there", resume=True
-        )
+        gb.sweep(fast, ["motion.flight.acceleration.z.level=2 g:8 g:20"], MEASURE, **STATIC, store="there", resume=True)
     Path("there/cases.jsonl").write_text("something else\n", encoding="utf-8")
     with pytest.raises(InputError, match="not the store of a sweep"):
-        gb.sweep(fast, OVER, MEASURE, verb="static", store="there", resume=True)
+        gb.sweep(fast, OVER, MEASURE, **STATIC, store="there", resume=True)
 
 
 def test_a_store_that_is_being_written_is_refused(fast: Path) -> None:
@@ -86,9 +85,9 @@ def test_a_store_that_is_being_written_is_refused(fast: Path) -> None:
     lock = Path("there/cases.lock")
     lock.write_text(str(os.getppid()), encoding="utf-8")  # a process that runs
     with pytest.raises(InputError, match="being written by another sweep"):
-        gb.sweep(fast, OVER, MEASURE, verb="static", store="there")
+        gb.sweep(fast, OVER, MEASURE, **STATIC, store="there")
     ended = subprocess.Popen([sys.executable, "-c", ""])
     ended.wait()
     lock.write_text(str(ended.pid), encoding="utf-8")
-    gb.sweep(fast, OVER, MEASURE, verb="static", store="there")
+    gb.sweep(fast, OVER, MEASURE, **STATIC, store="there")
     assert not lock.exists()

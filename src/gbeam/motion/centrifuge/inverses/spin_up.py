@@ -76,14 +76,14 @@ class Ramp:
         turned = self.rate * abs(self.steady - self.still)
         quotient = _quotient(s)
         rise = s**5 * quotient
-        share, yaw, roll = rise**2, none + self.yaw, none + self.roll
+        yaw, roll = none + self.yaw, none + self.roll
         if self.yawed:
             # tan δ = (dω1/dt)/ω1² = S'/(ΩT S²), with the powers of s and 1 − s that both hold taken out.
             lag = math.pi / 2 - arctan2(turned * s**6 * quotient**2, 630 * (1 - s) ** 4)
             yaw = yaw + self.outward * lag
-            share = s**4 * sqrt(s**12 * quotient**4 + (630 * (1 - s) ** 4 / turned) ** 2)
         if self.gravity:
             down = none + self.gravity
+            share = s**4 * sqrt(s**12 * quotient**4 + (630 * (1 - s) ** 4 / turned) ** 2) if self.yawed else rise**2
             roll = roll + arctan2(down, share * self.across) - arctan2(down, none + self.across)
         return rise * self.rate, yaw, roll
 
