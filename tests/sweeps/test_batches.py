@@ -15,7 +15,7 @@ from gbeam.sweeps.computing.evaluate import Question
 
 LEVEL = "motion.flight.acceleration.z.level"
 MEASURES = ["flight.tip.z.max_abs", "spin.tip.z.max_abs", "verdict.tip", "flight.loads.root_moment.y.max_abs"]
-FIXED = ("response.step=2 ms",)
+FIXED = ("response.step=5 ms",)
 
 
 def test_a_case_has_the_figures_of_its_own_run(fast: Path) -> None:
