@@ -166,7 +166,7 @@ def _of_field(structure: Structure, count: int, q: Array, qd: Array, qdd: Array)
     traced, size = is_jax(q), len(q)
     padded = [x if traced else np.concatenate([x, np.repeat(x[-1:], -size % _BLOCK, axis=0)]) for x in (q, qd, qdd)]
     stations = structure.field.sampled(slice(-count, None))
-    particles, points = (compiled_paths(record, *padded) for record in (structure.inertia, stations))
+    particles, points = compiled_paths(structure.inertia, stations, *padded)
     if not traced:
         particles, points = (tuple(np.asarray(x)[:size] for x in each) for each in (particles, points))
     loaded = None

@@ -10,6 +10,7 @@ import numpy as np
 from gbeam.analysis.equilibrium.operating_point import operating_point
 from gbeam.analysis.equilibrium.point import Linear, OperatingPoint, linear_matrices
 from gbeam.analysis.vibration.errors import Richer, doubtful
+from gbeam.mechanics.equations.sampled import slopes
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
@@ -22,11 +23,9 @@ def _sensitivity(structure: Structure, q: Any) -> tuple[Floats, Floats]:
     """How the particles move with q, (k, 3, n), and how the stations do, (s, 3, n)."""
     if structure.linear:
         return structure.places.slopes(q), structure.station_places.slopes(q)
-    from gbeam.mechanics.equations.dalembert import slopes
-
-    assert structure.field is not None
-    particles, points = slopes(structure.inertia, structure.field.sampled(slice(structure.first_station, None)), q)
-    return np.asarray(particles), np.asarray(points)
+    assert structure.inertia is not None and structure.field is not None
+    stations = structure.field.sampled(slice(structure.first_station, None))
+    return slopes(structure.inertia.positions, q), slopes(stations.position, q)
 
 
 def directions(structure: Structure, point: OperatingPoint, coordinates: Complex | Floats) -> tuple[str, ...]:

@@ -159,24 +159,28 @@ class CompleteHub:
 
 
 @jax.jit
-def paths(points: Any, q: Any, qd: Any, qdd: Any) -> tuple[Any, Any, Any]:
-    """Places, velocities and accelerations of particles, or of a field's points, over times, (t, p, 3) each.
+def paths(inertia: Any, field: Any, q: Any, qd: Any, qdd: Any) -> tuple[tuple[Any, Any, Any], tuple[Any, Any, Any]]:
+    """Places, velocities and accelerations of particles and of a field's points over times, (t, p, 3) each.
 
     Parameters
     ----------
-    points : Inertia or Field
+    inertia : Inertia
+    field : Field
     q, qd, qdd : (t, n)
     """
-    place = getattr(points, "positions", None) or points.position
+
+    def place(q: Any) -> tuple[Any, Any]:
+        return inertia.positions(q), field.position(q)
 
     def moving(q: Any, qd: Any) -> Any:
         return jax.jvp(place, (q,), (qd,))
 
     def at(q: Any, qd: Any, qdd: Any) -> Any:
         (r, rd), (_, rdd) = jax.jvp(moving, (q, qd), (qd, qdd))
-        return r, rd, rdd
+        return tuple(zip(r, rd, rdd, strict=True))
 
-    return jax.vmap(at)(q, qd, qdd)
+    particles, points = jax.vmap(at)(q, qd, qdd)
+    return particles, points
 
 
 @jax.jit

@@ -128,6 +128,11 @@ def places_about(inertia: Inertia, q: Array) -> tuple[Array, Array, Array]:
     return axis
 
 
+def slopes(place: Any, q: Array) -> Array:
+    """Derivatives with respect to q (n,) of points (p, 3), the last axis of the result, to rounding."""
+    return np.moveaxis(np.asarray(place(q + 1j * STEP * np.eye(len(q)))).imag / STEP, 0, -1)
+
+
 def about(place: Any, q: Array, steps: Array) -> tuple[Array, Array, Array]:
     """Points (p, 3) at q (n,) and their derivatives, of places that may depend on the coordinates in any way.
 
@@ -136,7 +141,6 @@ def about(place: Any, q: Array, steps: Array) -> tuple[Array, Array, Array]:
     """
     n, (j, k) = len(q), np.tril_indices(len(q), -1)
     r = np.asarray(place(q))
-    slope = np.asarray(place(q + 1j * STEP * np.eye(n))).imag / STEP
     ways = steps * np.concatenate([np.eye(n), (np.eye(n)[j] + np.eye(n)[k]) / 2])  # none turns further than one step
     near, far = (2 * (r - np.asarray(place(q + 1j * size * ways)).real) / size**2 for size in (0.5, 1))
     alone, both = np.split((4 * near - far) / 3, [n])
@@ -144,7 +148,7 @@ def about(place: Any, q: Array, steps: Array) -> tuple[Array, Array, Array]:
     second[np.arange(n), np.arange(n)] = alone
     second[j, k] = second[k, j] = 2 * both - (alone[j] + alone[k]) / 2
     second /= np.multiply.outer(steps, steps).reshape(n, n, *[1] * r.ndim)
-    return r, np.moveaxis(slope, 0, -1), np.moveaxis(second, (0, 1), (-2, -1))
+    return r, slopes(place, q), np.moveaxis(second, (0, 1), (-2, -1))
 
 
 def _axis_about(field: ExactField, q: Array) -> tuple[Array, Array, Array]:
