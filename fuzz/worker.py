@@ -47,7 +47,8 @@ def warm_up() -> None:
         sound()
         sound_json()
         import_module("xarray")
-        for words in ([], ["--json"], ["--set", "beam.length=x"], ["--set", "beam.length=99 inch"]):
+        main(["check", scenario, "--json"])
+        for words in ([], ["--set", "beam.length=x"], ["--set", "beam.length=99 inch"]):
             for verb in ("check", "static", "modes", "campbell", "critical-speed", "linearize"):
                 main([verb, scenario, *words])
     gc.freeze()  # forks do not copy what is never collected
