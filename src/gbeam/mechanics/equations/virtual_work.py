@@ -59,11 +59,16 @@ class LoadWork:
         """Forces and moments at the loaded points, base axes, given their sections' rotations, (..., p, 3) each."""
         xp = namespace(rotation, values, self.weight)
         local = xp.asarray(self.weight)[:, None] * values[..., self.load, :]
-        axes = xp.where(xp.asarray(self.follower)[:, None, None], rotation, xp.eye(3))
+        axes = self._axes(rotation)
         return (
             xp.einsum("...pij,...pj->...pi", axes, local[..., :3]),
             xp.einsum("...pij,...pj->...pi", axes, local[..., 3:]),
         )
+
+    def _axes(self, rotation: Array) -> Array:
+        """The loads' axes in columns, base axes, given their sections' rotations, (..., p, 3, 3)."""
+        xp = namespace(rotation, self.weight)
+        return xp.where(xp.asarray(self.follower)[:, None, None], rotation, xp.eye(3))
 
     def first_order(self, count: int) -> LoadTerms:
         """The generalised forces of `count` loads' unit components, to first order in q about the straight beam."""
@@ -85,9 +90,9 @@ class LoadWork:
         """
         xp = namespace(places.first, rotation, self.weight)
         r, slope, second = places.r0, places.first, places.second
-        epsilon, follower = xp.asarray(EPSILON), xp.asarray(self.follower)[:, None, None]
+        epsilon = xp.asarray(EPSILON)
         # In columns: the unit components, and how those of a follower turn.
-        axes, turned = xp.where(follower, rotation, xp.eye(3)), follower[..., None] * turn
+        axes, turned = self._axes(rotation), xp.asarray(self.follower)[:, None, None, None] * turn
 
         def rows(columns: Array) -> Array:
             return xp.swapaxes(columns, 1, 2)
