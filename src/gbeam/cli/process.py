@@ -6,7 +6,7 @@ import gc
 import os
 
 _MADE = 20_000  # objects between two looks for circles of unused ones: Python's own 700 suit a smaller heap
-FIGURES = "GBEAM_FIGURES"  # environment: "none" where nobody looks at the files: pages draw for themselves
+FIGURES = "GBEAM_FIGURES"  # environment: "none" leaves out the files of figures, as where a report draws its own
 _own = False
 
 

@@ -58,7 +58,7 @@ def verify(
         Prepared for the settings' span, by the names of their places.
     settings : ResponseSettings
     """
-    settings = replace(settings, estimate=False)  # none of it is told
+    settings = replace(settings, estimate=False)  # a verification states none
     in_flight = simulate(structure, flight, settings)
     cutoff = CUTOFF * float(in_flight.frequencies[0]) / (2 * np.pi)
     # Machines at different control points share their axis motions, and the current one may be at the middle.
