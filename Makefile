@@ -13,6 +13,9 @@ EXAMPLE := examples/f16_8g_turn.toml
 # Compiled programs are kept here between test runs.
 CACHE := $(CURDIR)/.cache/jax
 
+# Where this is set, every process that a test starts compiles all of gbeam anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 # Folders that ruff reads.
 CODE := src tests validation fuzz mutants benchmarks examples docs .ci
 
