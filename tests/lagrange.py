@@ -1,4 +1,4 @@
-"""Lagrange's equations by differentiating the kinetic energy: the tests' independent derivation.
+"""Lagrange's equations by automatic differentiation of the kinetic energy: the tests' independent derivation.
 
 T = ½ Σ m_k |v_O + ω × r_k + ṙ_k|² over the particles of a field, complete or truncated to second order in (q, q̇) by
 differentiating it at rest. gbeam itself never writes T: its equations are D'Alembert's sum.
@@ -20,7 +20,7 @@ from gbeam import Structure
 from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.arrays.tree import record
 
-from .differences import along, hessian, jacobian, rate
+from .differences import along, hessian, jacobian
 
 Array = Any
 quickly_compiled = partial(jax.jit, compiler_options={"xla_backend_optimization_level": 0})
@@ -131,18 +131,7 @@ def _momentum_rates(energy: Any, u: Array, ud: Array, q: Array, qd: Array, qdd: 
     return base, beam - of_q + jax.grad(energy.potential)(q)
 
 
-def momentum_rates(energy: Any, u: Array, ud: Array, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array]:
-    """The same by NumPy: T is of second degree in the rates, of which a central difference is its derivative."""
-    unit = np.eye(6 + len(q))
-
-    def momenta(t: float) -> Array:
-        at, rates = q + qd * t + qdd * t**2 / 2, np.concatenate([u + ud * t, qd + qdd * t])
-        pairs = [[energy.kinetic(v[:6], at, v[6:]) for v in (rates + each, rates - each)] for each in unit]
-        return np.array([(more - less) / 2 for more, less in pairs])
-
-    changing = rate(momenta)
-    of_q = np.array([rate(lambda t, e=each: energy.kinetic(u, q + t * e, qd)) for each in np.eye(len(q))])
-    return changing[:6], changing[6:] - of_q + jacobian(energy.potential, q)
+momentum_rates = quickly_compiled(_momentum_rates)
 
 
 def on_prescribed_base(
@@ -150,7 +139,7 @@ def on_prescribed_base(
 ) -> np.ndarray:
     """Residual on a base whose motion is given: v_O = 0 with rate a_O."""
     u, ud = np.concatenate([np.zeros(3), w]), np.concatenate([a, alpha])
-    return momentum_rates(energy, u, ud, q, qd, qdd)[1] + damping @ qd
+    return np.asarray(momentum_rates(energy, u, ud, q, qd, qdd)[1]) + damping @ qd
 
 
 def twist(radius: float, R_HB: Array) -> np.ndarray:
