@@ -17,5 +17,7 @@ def violations(page: Any) -> list[str]:
     if not page.evaluate("() => 'axe' in window"):
         script = Path(found.origin).with_name("axe.min.js").read_text(encoding="utf-8")
         page.evaluate(f"() => {{ {script}\n }}")
+    # A page answers to a new size in the frame after.
+    page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
     result = page.evaluate("() => axe.run(document, {resultTypes: ['violations'], preload: false})")
     return [f"{each['id']}: {each['nodes'][0]['html'][:200]}" for each in result["violations"]]

@@ -48,12 +48,13 @@ def test_plots_zoom_together_and_lead_the_viewer(opened: Any, report: Path) -> N
     page = opened(report)
     plots = page.locator(".uplot .u-over")
     assert plots.count() >= 6
+    plots.nth(0).scroll_into_view_if_needed()  # the mouse reaches what is in the window
     box = plots.nth(0).bounding_box()
     page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 50)
     page.mouse.down()
     page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 60, steps=4)
     page.mouse.up()
-    _seek(page, 0.0)
+    page.evaluate("window.gbeam.viewer.clock.seek(window.gbeam.viewer.clock.start)")
     other = plots.nth(1).bounding_box()
     page.mouse.click(other["x"] + 0.5 * other["width"], other["y"] + 40)
     start, end = page.evaluate("[window.gbeam.viewer.clock.start, window.gbeam.viewer.clock.end]")
