@@ -321,9 +321,7 @@ class Structure:
         """Derivatives of the stations' places with respect to coordinates `q` (n,), (s, 3, n)."""
         if self.linear:
             return self.station_places.slopes(q)
-        from gbeam.mechanics.equations.dalembert import slopes
-
-        return np.asarray(slopes(self.inertia, self.station_field, q)[1])
+        return sampled.slopes(self.station_field.position, q)
 
     def displacement(self, q: Array) -> Array:
         """Displacement of the stations relative to the base axes at coordinates `q` (..., n), (..., s, 3) m."""

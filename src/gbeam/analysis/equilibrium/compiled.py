@@ -13,7 +13,7 @@ Array = Any
 
 
 @jax.jit
-def expanded(residual: Any, z: Array, u: Array) -> tuple[Array, Array]:
+def evaluated(residual: Any, z: Array, u: Array) -> tuple[Array, Array]:
     """A residual (n,) at (y, ẏ, ÿ) and its inputs' vector u, and its derivatives there, (n, 3n + inputs)."""
     n = z.shape[0] // 3
 

@@ -92,9 +92,9 @@ def evaluated_at(
     """The residual (n,) and its derivatives with respect to (y, ẏ, ÿ, u), (n, 3n + inputs)."""
     if structure.linear:
         return residual(y, yd, ydd, residual.unpack(u)), stepped(residual, y, yd, ydd, u)
-    from gbeam.analysis.equilibrium.compiled import expanded
+    from gbeam.analysis.equilibrium.compiled import evaluated
 
-    value, slope = expanded(residual, np.concatenate([y, yd, ydd]), u)
+    value, slope = evaluated(residual, np.concatenate([y, yd, ydd]), u)
     return np.asarray(value), np.asarray(slope)
 
 

@@ -34,8 +34,6 @@ class _Case:
     index : int
         Its place among the cases.
     posed : Posed
-    common : record or None
-        What the equations of all cases share.
     plan : Plan
     step : float
         Of the run that the plan waits for, s.
@@ -45,7 +43,6 @@ class _Case:
 
     index: int
     posed: Posed
-    common: Any
     plan: Plan
     step: float
     run: Any
@@ -170,7 +167,7 @@ def _going_on(
         while True:
             step, _ = next(plan) if run is None else plan.send(run)
             wanted = batch.Run(posed.problem.equations, q, qd, posed.steps(step), scheme, common)
-            case = _Case(index, posed, common, plan, step, wanted)
+            case = _Case(index, posed, plan, step, wanted)
             if case.shape is not None:
                 return case
             run, known = posed.run(step, stop=posed.too_far), None
@@ -193,7 +190,7 @@ def _together(queue: list[_Case], together: int) -> Iterator[_Case | tuple[int, 
             run = posed.run(case.step, stop=posed.too_far)
         else:
             run = posed.read(trajectory, case.step)
-        yield _going_on(case.index, posed, case.common, case.plan, run, known)
+        yield _going_on(case.index, posed, case.run.common, case.plan, run, known)
 
 
 def _known(case: _Case, trajectory: Trajectory) -> dict[str, Any] | None:

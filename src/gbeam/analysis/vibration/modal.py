@@ -22,10 +22,9 @@ from gbeam.results.steady.modal import Instability, Modes
 def _sensitivity(structure: Structure, q: Any) -> tuple[Floats, Floats]:
     """How the particles move with q, (k, 3, n), and how the stations do, (s, 3, n)."""
     if structure.linear:
-        return structure.places.slopes(q), structure.station_places.slopes(q)
-    assert structure.inertia is not None and structure.field is not None
-    stations = structure.field.sampled(slice(structure.first_station, None))
-    return slopes(structure.inertia.positions, q), slopes(stations.position, q)
+        return structure.places.slopes(q), structure.station_slopes(q)
+    assert structure.inertia is not None
+    return slopes(structure.inertia.positions, q), structure.station_slopes(q)
 
 
 def directions(structure: Structure, point: OperatingPoint, coordinates: Complex | Floats) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 
-import gbeam.arrays.jax_setup  # noqa: F401
+from gbeam.arrays.derivatives import with_slope
 from gbeam.integrate.schemes import Tableau
 
 Array = Any
@@ -75,11 +75,8 @@ def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
     """q̈ that the equations demand, which are linear in them, at states (k, n) and inputs (k, ...): (k, n)."""
 
     def at(q: Array, qd: Array, inputs: Any) -> Array:
-        def forces(qdd: Array) -> Array:
-            return residual(q, qd, qdd, inputs)
-
-        still = jnp.zeros_like(q)
-        return jnp.linalg.solve(jax.jacfwd(forces)(still), -forces(still))
+        rest, mass = with_slope(lambda qdd: residual(q, qd, qdd, inputs))(jnp.zeros_like(q))
+        return jnp.linalg.solve(mass, -rest)
 
     return jax.vmap(at)(q, qd, inputs)
 

@@ -181,9 +181,3 @@ def paths(inertia: Any, field: Any, q: Any, qd: Any, qdd: Any) -> tuple[tuple[An
 
     particles, points = jax.vmap(at)(q, qd, qdd)
     return particles, points
-
-
-@jax.jit
-def slopes(inertia: Any, field: Any, q: Any) -> tuple[Any, Any]:
-    """Derivatives with respect to q of the particles' places (k, 3, n) and of a field's points (p, 3, n)."""
-    return jax.jacfwd(inertia.positions)(q), jax.jacfwd(field.position)(q)
