@@ -91,3 +91,22 @@ def test_few_windows_of_a_long_vibration() -> None:
     """A million samples need a handful of polynomials."""
     t = np.arange(100_000) * 0.15
     assert len(near_maxima(t, np.sin(t)[:, None])) <= 130
+
+
+def test_several_runs_have_each_the_peaks_that_they_have_alone() -> None:
+    """To the last digit; of one without a turn inside, too, and where more turns are near the highest than are kept."""
+    rng = np.random.default_rng(2)
+    t = np.cumsum(rng.uniform(0.1, 0.2, 700))
+    phase, shares = rng.uniform(0, 6, (4, 1, 3)), np.array([0.0, 1.0, 1.0, 7.0])[:, None, None]
+    angle = shares * t[:, None] + phase
+    runs = [np.sin(angle) + 0.1 * (shares == 0) * t[:, None], shares * np.cos(angle), -(shares**2) * np.sin(angle)]
+    sizes = np.abs(runs[0])
+    at = near_maxima(t, sizes)
+    times, between = quintic_hermite(t, runs[0], runs[1], runs[2], at)
+    together = maxima(t, sizes, times, np.abs(between), at)
+    for k in range(4):
+        own = near_maxima(t, sizes[k])
+        np.testing.assert_array_equal(own, at[at // len(t) == k] - k * len(t))
+        times, between = quintic_hermite(t, *(each[k] for each in runs), own)
+        for ours, alone in zip(together, maxima(t, sizes[k], times, np.abs(between)), strict=True):
+            np.testing.assert_array_equal(ours[k], alone)

@@ -71,7 +71,9 @@ def _without_shapes(structure: Structure, base: Any, where: str, span: tuple[flo
         for axis in still:
             if size[axis] > NOTICED * size.max():
                 yield _remark(f"{where} accelerates the root, or gravity does,", f"{size[axis]:.3g} m/s²", axis)
-    values = _largest_loads(structure, span)
+    if structure.history is None:
+        return
+    values = _largest_loads(structure.history, span)
     for axis in still:
         # A moment about z bends along y, one about y along z.
         for part, column, unit in (("force", axis, "N"), ("moment", 6 - axis, "N m")):
@@ -82,9 +84,9 @@ def _without_shapes(structure: Structure, base: Any, where: str, span: tuple[flo
 
 def _twisting(structure: Structure, span: tuple[float, float]) -> Iterator[str]:
     """Moments about the beam's axis, which no model here turns by."""
-    if structure.field is None:
+    if structure.field is None or structure.history is None:
         return
-    values = _largest_loads(structure, span)[:, 3:]
+    values = _largest_loads(structure.history, span)[:, 3:]
     for i in np.flatnonzero(values[:, 0] > NOTICED * values.max(initial=0.0)):
         yield (
             f"beam.loads[{i}].moment twists the beam about x with up to {values[i, 0]:.3g} N m: no model here has "
@@ -92,13 +94,11 @@ def _twisting(structure: Structure, span: tuple[float, float]) -> Iterator[str]:
         )
 
 
-def _largest_loads(structure: Structure, span: tuple[float, float]) -> Any:
+def _largest_loads(history: Any, span: tuple[float, float]) -> Any:
     """Largest sizes of the components of each load over a span of time, (loads, 6)."""
-    if structure.history is None:
-        return np.zeros((0, 6))
-    inside = np.clip(structure.history.corners((span[1] - span[0]) / 200), *span)
+    inside = np.clip(history.corners((span[1] - span[0]) / 200), *span)
     when = np.union1d(np.linspace(*span, 201), inside)
-    return np.abs(structure.history(when)).max(axis=0)
+    return np.abs(history(when)).max(axis=0)
 
 
 def _remark(what: str, size: str, axis: int) -> str:

@@ -40,60 +40,71 @@ def near_maxima(time: Floats, values: Floats) -> Indices:
     ----------
     time : (t,)
         Strictly increasing.
-    values : (t, k)
-        Samples of the histories; larger is what counts.
+    values : (t, k) or (b, t, k)
+        Samples of the histories, or of those of several runs; larger is what counts.
 
     Returns
     -------
     (u,)
-        Indices, ascending, neither of the first nor of the last sample; none of less than three.
+        Indices, ascending, neither of the first nor of the last sample of a run; none of less than three. Those of
+        several runs count on from run to run, as if one stood after the other.
     """
-    if len(time) < 3:
+    count = len(time)
+    if count < 3:
         return np.empty(0, dtype=np.intp)
-    turning = (values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])
-    turning[[0, -1]] = True
-    row, column = np.nonzero(turning)
+    values = values.reshape(-1, *values.shape[-2:])
+    turning = (values[:, 1:-1] > values[:, :-2]) & (values[:, 1:-1] >= values[:, 2:])
+    turning[:, [0, -1]] = True
+    run, row, column = np.nonzero(turning)
     around = row + np.arange(3)[:, None]
-    _, height = _vertex(time[around], values[around, column])
-    gain, highest = np.zeros(values.shape[1]), np.full(values.shape[1], -np.inf)
-    np.maximum.at(gain, column, height - values[row + 1, column])
-    np.maximum.at(highest, column, height)
-    near = height >= highest[column] - 0.5 * gain[column]
-    row, column, height = row[near], column[near], height[near]
-    if len(row) > _COUNT:  # the highest of each
-        order = np.lexsort((-height, column))
-        row, column = row[order], column[order]
-        row = row[np.arange(len(row)) - np.searchsorted(column, np.arange(values.shape[1]))[column] < _COUNT]
-    chosen = np.zeros(len(time), dtype=bool)
-    chosen[row + 1] = True
+    _, height = _vertex(time[around], values[run, around, column])
+    of = run * values.shape[2] + column  # which history
+    gain, highest = np.zeros(len(values) * values.shape[2]), np.full(len(values) * values.shape[2], -np.inf)
+    np.maximum.at(gain, of, height - values[run, row + 1, column])
+    np.maximum.at(highest, of, height)
+    near = height >= highest[of] - 0.5 * gain[of]
+    of, place, height = of[near], (run * count + row + 1)[near], height[near]
+    if len(of) > _COUNT:  # the highest of each
+        order = np.lexsort((-height, of))
+        of, place = of[order], place[order]
+        place = place[np.arange(len(of)) - np.searchsorted(of, np.arange(len(gain)))[of] < _COUNT]
+    chosen = np.zeros(len(values) * count, dtype=bool)
+    chosen[place] = True
     return np.flatnonzero(chosen)
 
 
-def maxima(time: Floats, values: Floats, t: Floats, between: Floats) -> tuple[Floats, Floats]:
+def maxima(
+    time: Floats, values: Floats, t: Floats, between: Floats, at: Indices | None = None
+) -> tuple[Floats, Floats]:
     """Largest value of each history, and its time, between samples where it lies there.
 
     Parameters
     ----------
     time : (t,)
-    values : (t, k)
-        Samples of the histories.
+    values : (t, k) or (b, t, k)
+        Samples of the histories, or of those of several runs.
     t, between : (u, p), (u, p, k)
         Times about chosen samples, and the histories there.
+    at : (u,), optional
+        The chosen samples of several runs, as :func:`near_maxima` has them.
 
     Returns
     -------
-    value, time : (k,)
+    value, time : (k,) or (b, k)
         Never less than the largest sample.
     """
-    first, columns = values.argmax(axis=0), np.arange(values.shape[1])
-    largest, when = values[first, columns], time[first]
+    first, columns = values.argmax(axis=-2), np.arange(values.shape[-1])
+    largest, when = np.take_along_axis(values, first[..., None, :], axis=-2)[..., 0, :], time[first]
     if not len(between):
         return largest, when
-    window, place = np.divmod(between.reshape(-1, between.shape[-1]).argmax(axis=0), between.shape[1])
-    around = np.clip(place, 1, between.shape[1] - 2) + np.arange(-1, 2)[:, None]
-    at, value = _vertex(t[window, around], between[window, around, columns])
+    starts = np.zeros(1, dtype=np.intp) if at is None else np.searchsorted(at, len(time) * np.arange(len(values)))
+    best = [part.reshape(-1, len(columns)).argmax(axis=0) for part in np.split(between, starts[1:])]
+    window, place = np.divmod(np.reshape(best, first.shape), between.shape[1])
+    window = window + starts.reshape(-1, *[1] * (values.ndim - 2))
+    around = np.clip(place, 1, between.shape[1] - 2) + np.arange(-1, 2).reshape(-1, *[1] * place.ndim)
+    vertex, value = _vertex(t[window, around], between[window, around, columns])
     better = value > largest
-    return np.where(better, value, largest), np.where(better, at, when)
+    return np.where(better, value, largest), np.where(better, vertex, when)
 
 
 def turning_points(time: Floats, values: Floats) -> Floats:
@@ -119,9 +130,10 @@ def quintic_hermite(time: Floats, q: Floats, qd: Floats, qdd: Floats, at: Indice
     Parameters
     ----------
     time : (t,)
-    q, qd, qdd : (t, n)
+    q, qd, qdd : (t, n) or (b, t, n)
+        Of one run, or of several.
     at : (u,)
-        Indices of samples, neither the first nor the last.
+        Indices of samples as :func:`near_maxima` has them, neither the first nor the last of a run.
 
     Returns
     -------
@@ -130,14 +142,15 @@ def quintic_hermite(time: Floats, q: Floats, qd: Floats, qdd: Floats, at: Indice
         On each step the polynomial of fifth degree that has both ends' values and derivatives; its error is of sixth
         order in the step where these are exact.
     """
+    history, within = np.stack([q, qd, qdd], axis=-2).reshape(-1, 3, q.shape[-1]), at % len(time)
 
-    history = np.stack([q, qd, qdd], axis=1)
-
-    def step(j: Indices) -> Floats:
+    def step(shift: int) -> Floats:
+        j = within + shift
         scale = (time[j + 1] - time[j])[:, None, None] ** np.arange(3)[:, None]
-        return np.asarray(_QUINTIC @ np.concatenate([scale * history[j], scale * history[j + 1]], axis=1))
+        both = np.concatenate([scale * history[at + shift], scale * history[at + shift + 1]], axis=1)
+        return np.asarray(_QUINTIC @ both)
 
-    return _subdivided(time, at), np.concatenate([step(at - 1), step(at)[:, 1:]], axis=1)
+    return _subdivided(time, within), np.concatenate([step(-1), step(0)[:, 1:]], axis=1)
 
 
 def seven_point(time: Floats, values: Floats, at: Indices) -> tuple[Floats, Floats]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
+from gbeam.analysis.response.peaks import displacement_peaks
 from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import settings_of, simulate
@@ -19,10 +20,13 @@ from gbeam.errors import InputError
 from gbeam.integrate.trajectory import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
+from gbeam.results.parts.errors import StepErrors
 from gbeam.results.response import Response
 
+Item = TypeVar("Item")
 TOGETHER = 32  # cases: what they carry stays in a cache, and a processor's vectors are full
 LONGEST = 20_000_000  # numbers of as many trajectories: longer ones together would fill the memory
+SHORT = 100_000  # numbers of the displacements whose peaks are found together: more of them would leave a cache
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +57,17 @@ class _Case:
         if 3 * self.run.q.size * len(self.run.steps) * TOGETHER > LONGEST:
             return None
         return None if self.run.shape is None else (self.posed.motion.kind, self.posed.structure.linear, self.run.shape)
+
+
+@dataclass(frozen=True, eq=False)
+class _Ended:
+    """A case whose runs are made: the one that counts, its errors, and what is known of its response."""
+
+    index: int
+    posed: Posed
+    made: Run
+    errors: StepErrors
+    known: dict[str, Any]
 
 
 def simulate_batch(
@@ -144,8 +159,8 @@ def _responses(
             yield index, simulate(structure, motion, settings)
             continue
         case = _going_on(index, posed, structure.equations if one_structure else None, posed.plan())
-        if not isinstance(case, _Case):
-            yield case
+        if isinstance(case, _Ended):
+            yield from _responses_of([case])
         elif queue := full(case):
             yield from through(queue)
     while waiting:
@@ -154,10 +169,10 @@ def _responses(
 
 def _going_on(
     index: int, posed: Posed, common: Any, plan: Plan, run: Run | None = None, known: dict[str, Any] | None = None
-) -> _Case | tuple[int, Response]:
-    """A case with the run that its plan wants after another; its response where there is no more to wait for.
+) -> _Case | _Ended:
+    """A case with the run that its plan wants after another; where there is no more to wait for, one that has ended.
 
-    `known` is what :func:`response_of` need not compute if that run is the one that counts.
+    `known` is what :func:`response_of` need not compute if that other run is the one that counts.
     """
     from gbeam.integrate.compiled import batch
 
@@ -173,9 +188,7 @@ def _going_on(
             run, known = posed.run(step, stop=posed.too_far), None
     except StopIteration as end:
         made, errors = end.value
-    runs, stride = (None, made.trajectory, None), posed.stride(made.step)
-    given = posed.structure, posed.motion, posed.settings, posed.problem, runs, "", made.step, errors, stride
-    return index, response_of(*given, **(known if known and made is run else {}))
+    return _Ended(index, posed, made, errors, known if known and made is run else {})
 
 
 def _together(queue: list[_Case], together: int) -> Iterator[_Case | tuple[int, Response]]:
@@ -183,22 +196,66 @@ def _together(queue: list[_Case], together: int) -> Iterator[_Case | tuple[int, 
 
     # Filled with its last case: one program serves every number of them, and no digit depends on it.
     filling = [queue[-1].run] * (together - len(queue))
-    trajectories = integrate_together([case.run for case in queue] + filling)
-    for case, trajectory in zip(queue, trajectories, strict=False):
-        posed, known = case.posed, None if trajectory is None else _known(case, trajectory)
-        if trajectory is None or known is None:  # one that leaves what its model can mean stops there
-            run = posed.run(case.step, stop=posed.too_far)
+    trajectories = integrate_together([case.run for case in queue] + filling)[: len(queue)]
+    ended = []
+    for case, trajectory, moved in zip(queue, trajectories, _displaced(queue, trajectories), strict=True):
+        posed, known = case.posed, None
+        if trajectory is None or steps_within(posed.structure, moved) is not None:
+            run = posed.run(case.step, stop=posed.too_far)  # one that leaves what its model can mean stops there
         else:
-            run = posed.read(trajectory, case.step)
-        yield _going_on(case.index, posed, case.run.common, case.plan, run, known)
+            run, known = posed.read(trajectory, case.step), {"moved": moved}
+            if posed.structure.linear and not posed.motion.free and posed.stride(case.step) == 1:
+                known["base"], _ = case.run.at_times or (None, None)
+        after = _going_on(case.index, posed, case.run.common, case.plan, run, known)
+        if isinstance(after, _Case):
+            yield after
+        else:
+            ended.append(after)
+    yield from _responses_of(ended)
 
 
-def _known(case: _Case, trajectory: Trajectory) -> dict[str, Any] | None:
-    """What is known of a run's response; None where it moves too far for its model."""
-    posed = case.posed
-    moved = np.asarray(posed.structure.displacement(trajectory.q[:, posed.problem.first :]))
-    if steps_within(posed.structure, moved) is not None:
-        return None
-    alone = posed.structure.linear and not posed.motion.free and posed.stride(case.step) == 1
-    base, _ = (case.run.at_times if alone else None) or (None, None)
-    return {"base": base, "moved": moved}
+def _displaced(queue: list[_Case], trajectories: list[Trajectory | None]) -> list[Any]:
+    """Displacement of the stations at every step of each trajectory, m; None where that is None."""
+    made: list[Any] = [None] * len(queue)
+    there = [(k, case.posed, t) for k, (case, t) in enumerate(zip(queue, trajectories, strict=True)) if t is not None]
+    for some in _alike(there, lambda each: (id(each[1].structure), len(each[2].time))):
+        posed = some[0][1]
+        q = np.stack([trajectory.q[:, posed.problem.first :] for _, _, trajectory in some])
+        for (k, _, _), moved in zip(some, np.asarray(posed.structure.displacement(q)), strict=True):
+            made[k] = moved
+    return made
+
+
+def _responses_of(ended: list[_Ended]) -> Iterator[tuple[int, Response]]:
+    """Places and responses of cases whose runs are made; peaks of those of one structure are found together."""
+
+    def key(case: _Ended) -> Hashable:
+        return (id(case.posed.structure), case.made.trajectory.time.tobytes()) if case.known else id(case)
+
+    for some in _alike(ended, key):
+        each = max(1, SHORT // some[0].known["moved"].size) if some[0].known else 1
+        for part in (some[k : k + each] for k in range(0, len(some), each)):
+            yield from _described(part)
+
+
+def _described(ended: list[_Ended]) -> Iterator[tuple[int, Response]]:
+    """Places and responses of one case, or of some of one structure and with the same times."""
+    posed = ended[0].posed
+    if ended[0].known:
+        trajectories, moved = [case.made.trajectory for case in ended], np.stack([c.known["moved"] for c in ended])
+        late = posed.settings.residual_from
+        peaks = displacement_peaks(posed.structure, trajectories, posed.problem.first, moved, late)
+        for case, own, found in zip(ended, moved, peaks, strict=True):
+            case.known.update(moved=own.copy(), peaks=found)
+    for case in ended:
+        posed, step = case.posed, case.made.step
+        given = posed.structure, posed.motion, posed.settings, posed.problem, (None, case.made.trajectory, None)
+        yield case.index, response_of(*given, "", step, case.errors, posed.stride(step), **case.known)
+
+
+def _alike(items: Iterable[Item], key: Callable[[Item], Hashable]) -> Iterable[list[Item]]:
+    """Items in groups of equal keys."""
+    groups: dict[Hashable, list[Item]] = {}
+    for item in items:
+        groups.setdefault(key(item), []).append(item)
+    return groups.values()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,43 +16,50 @@ from gbeam.results.parts.section_forces import Loads
 
 
 def displacement_peaks(
-    structure: Structure, trajectory: Trajectory, first: int, moved: Any, residual_from: float | None
-) -> Peaks:
+    structure: Structure, trajectories: Sequence[Trajectory], first: int, moved: Any, residual_from: float | None
+) -> list[Peaks]:
     """Peaks of the displacement: between two steps the model's at the coordinates' quintic Hermite polynomials.
 
     Parameters
     ----------
     structure : Structure
-    trajectory : Trajectory
-        The steps whose peaks are meant.
+    trajectories : sequence of Trajectory
+        The steps whose peaks are meant, of one run or of several with the same times.
     first : int
-        Index of the beam's first coordinate in the trajectory's.
-    moved : (t, s, 3)
-        Displacement of the stations at every step, m; where JAX traces it, the peaks are the tip's largest samples.
+        Index of the beam's first coordinate in a trajectory's.
+    moved : (b, t, s, 3)
+        Displacement of the stations at every step of each, m; where JAX traces it, the peaks are the tip's largest
+        samples.
     residual_from : float or None
         s.
+
+    Returns
+    -------
+    list of Peaks
+        Of each run; no digit depends on the others.
     """
-    time, start = trajectory.time, 0 if residual_from is None else int(np.searchsorted(trajectory.time, residual_from))
+    time = trajectories[0].time
+    start = 0 if residual_from is None else int(np.searchsorted(time, residual_from))
     late = residual_from is not None and start < len(time) - 1
     if is_jax(moved):
-        return _samples(time, moved[:, -1], start if late else None)
-    q, qd, qdd = (x[:, first:] for x in (trajectory.q, trajectory.qd, trajectory.qdd))
-
-    def between(chosen: Indices) -> tuple[Floats, Floats]:
-        t, y = quintic_hermite(time, q, qd, qdd, chosen)
-        return t, np.asarray(structure.displacement(y))
+        return [_samples(time, each[:, -1], start if late else None) for each in moved]
+    q, qd, qdd = (np.stack([getattr(each, name)[:, first:] for each in trajectories]) for name in ("q", "qd", "qdd"))
 
     def largest(begin: int, measure: Callable[[Floats], Floats]) -> tuple[Floats, Floats]:
-        values = measure(moved[begin:])
+        values = measure(moved[:, begin:])
         chosen = near_maxima(time[begin:], values)
-        t, displacement = between(chosen + begin)
-        return maxima(time[begin:], values, t, measure(displacement))
+        t, y = quintic_hermite(time[begin:], q[:, begin:], qd[:, begin:], qdd[:, begin:], chosen)
+        return maxima(time[begin:], values, t, measure(np.asarray(structure.displacement(y))), chosen)
 
-    every = _vectors(*largest(0, _sizes), moved.shape[1])
-    residual = np.full(3, np.nan)
+    stations, residual = moved.shape[2], np.full((len(trajectories), 3), np.nan)
     if late:
         highest, _ = largest(start, lambda u: np.concatenate([u[..., -1, :], -u[..., -1, :]], axis=-1))
-        residual = (highest[:3] + highest[3:]) / 2
+        residual = (highest[:, :3] + highest[:, 3:]) / 2
+    every = [_vectors(*each, stations) for each in zip(*largest(0, _sizes), strict=True)]
+    return [_of_stations(*each) for each in zip(every, residual, strict=True)]
+
+
+def _of_stations(every: VectorPeaks, residual: Floats) -> Peaks:
     tip = every[-1]
     return Peaks(
         max_abs=tip.components.value,

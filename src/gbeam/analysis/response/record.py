@@ -28,6 +28,7 @@ from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
 from gbeam.results.machine import AxesResult
 from gbeam.results.parts.errors import ErrorEstimate, Errors, StepErrors
+from gbeam.results.parts.peaks import Peaks
 from gbeam.results.parts.section_forces import Loads
 from gbeam.results.response import BaseMotion, HubResult, Response
 from gbeam.results.result import Floats
@@ -49,10 +50,12 @@ def response_of(
     axes_of: Callable[[Any, Floats], AxesResult | None] = axes_result,
     base: Base | None = None,
     moved: Array | None = None,
+    peaks: Peaks | None = None,
 ) -> Response:
     """Sample spin-up, flight and spin-down on the coarse grid and describe them; peaks are of the flight's times.
 
-    Of a flight alone, sampled at every step, the `base` and the stations' displacement, `moved`, may be known before.
+    Of a flight alone the stations' displacement at every step, `moved`, and its `peaks` may be known before, and where
+    every step is sampled, the `base`.
     """
     up, trajectory, down = runs
     every, flight = joined(up, trajectory, down, stride)
@@ -60,7 +63,8 @@ def response_of(
     traced = is_jax(trajectory.q)
     beam = slice(problem.first, None)
     fine = structure.displacement(trajectory.q[:, beam]) if moved is None else moved
-    peaks = displacement_peaks(structure, trajectory, problem.first, fine, settings.residual_from)
+    if peaks is None:
+        (peaks,) = displacement_peaks(structure, [trajectory], problem.first, fine[None], settings.residual_from)
 
     def at(
         of: Trajectory, steps: Any, known: Base | None = None

@@ -66,8 +66,7 @@ class Mount:
         """Motion of the base, specific force where gravity acts, at angles, rates and accelerations of one shape."""
         xp = namespace(angle, rate, acceleration, self.radius, self.R_HB, self.gravity)
         a_WO_H = xp.stack(self.root_acceleration(angle, rate, acceleration), axis=-1)
-        none = xp.zeros_like(rate)
-        axis = xp.stack([none, none, none + 1], axis=-1) @ self.R_HB
+        axis = self.R_HB[2]
         return Base(a_WO_H @ self.R_HB, rate[..., None] * axis, acceleration[..., None] * axis)
 
     def root_acceleration(self, angle: Any, rate: Any, acceleration: Any) -> tuple[Any, Any, Any]:

@@ -66,8 +66,7 @@ class SmoothStep(Profile):
 
     def corners(self, step: float) -> NDArray[np.float64]:
         """Start and end, s, and the quarters between where these are of few steps."""
-        short = float(self.duration) < 2 * STEPS_PER_EVENT * step
-        return np.asarray(self.start + self.duration * np.linspace(0, 1, 1 + (STEPS_PER_EVENT if short else 1)))
+        return _quarters(self, step)
 
     def knots(self, step: float) -> NDArray[np.float64]:
         """Times over the slew, s, no further apart than `step`."""
@@ -125,8 +124,7 @@ class Sine(Profile):
 
     def corners(self, step: float) -> NDArray[np.float64]:
         """Start and end, s, and the quarters between where these are of few steps."""
-        short = float(self.duration) < 2 * STEPS_PER_EVENT * step
-        return np.asarray(self.start + self.duration * np.linspace(0, 1, 1 + (STEPS_PER_EVENT if short else 1)))
+        return _quarters(self, step)
 
     def knots(self, step: float) -> NDArray[np.float64]:
         """Times over the pulse, s, no further apart than `step`."""
@@ -135,3 +133,9 @@ class Sine(Profile):
     def smoothed(self, width: Any) -> Profile:
         """By quadrature."""
         return Convolved(self, width)
+
+
+def _quarters(pulse: SmoothStep | Sine, step: float) -> NDArray[np.float64]:
+    """Start and end, s, and the quarters between where these are of few steps."""
+    parts = STEPS_PER_EVENT if float(pulse.duration) < 2 * STEPS_PER_EVENT * step else 1
+    return np.asarray(pulse.start + pulse.duration * (np.arange(1 + parts) / parts))
