@@ -16,10 +16,11 @@ os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(Path(__file__).parents[1]
 # As gbeam has it, in whichever order the tests that differentiate something themselves import JAX and gbeam.
 os.environ.setdefault("JAX_ENABLE_X64", "1")
 # A test runs most programs once: compiling costs more than running. The way in which these versions fuse loops, and the
-# optimization of machine code, take two thirds of it; to later versions, which do not know the first flag, it is fatal.
+# optimization of machine code, take two thirds of it, and a program in parts for several cores a fifth of the rest; to
+# later versions, which do not know the flags, they are fatal.
 FLAGS = ["--xla_backend_optimization_level=0"]
 if version("jaxlib").startswith(("0.8.", "0.9.", "0.10.")):
-    FLAGS.append("--xla_cpu_use_fusion_emitters=false")
+    FLAGS += ["--xla_cpu_use_fusion_emitters=false", "--xla_cpu_parallel_codegen_split_count=1"]
 os.environ.setdefault("XLA_FLAGS", " ".join(FLAGS))
 # Python looks for unused circles at every 700 new objects; with so many that stay, that is a twentieth of the time.
 gc.set_threshold(20_000, 20, 10)

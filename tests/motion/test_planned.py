@@ -1,5 +1,6 @@
 """The planned inverse: least error against the flight within the limits, from standstill to standstill."""
 
+import pickle
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -271,3 +272,18 @@ def test_what_keeps_the_rows_keeps_the_limits_at_all_times_and_they_are_not_much
         x = x * min(0.85 / shares[:3].max(), np.sqrt(0.85 / shares[3]))
         assert shares_of(splines, x, limits).max() == pytest.approx(0.85)
         assert use(x, x) <= 1
+
+
+def test_equal_machines_share_a_plan_and_a_load_that_cannot_be_pickled_has_one() -> None:
+    pulls = [trapezoid(20.0, jerk=20.0, start=1.0, hold=1.0) for _ in range(3)]
+    object.__setattr__(pulls[2], "source", lambda: None)
+    with pytest.raises((AttributeError, pickle.PicklingError)):
+        pickle.dumps(pulls[2])
+    first, second, own = (
+        Centrifuge(Flight(z=pull), limits=SPECIMEN, arm=R, control_point=0.15, idle=IDLE, span=(0.0, 5.0))
+        for pull in pulls
+    )
+    assert first.course is not None and second.course is not None and own.course is not None
+    assert first.course.inverse is second.course.inverse and first.course.inverse is not own.course.inverse
+    t = times(first, 0.1)
+    np.testing.assert_array_equal(first.base(t).a_WO_B, own.base(t).a_WO_B)
