@@ -26,7 +26,7 @@ from gbeam.results.response import Response
 Item = TypeVar("Item")
 TOGETHER = 32  # cases: what they carry stays in a cache, and a processor's vectors are full
 LONGEST = 20_000_000  # numbers of as many trajectories: longer ones together would fill the memory
-SHORT = 100_000  # numbers of the displacements whose peaks are found together: more of them would leave a cache
+SHORT = 100_000  # numbers of the displacements that are read at once: more of them would leave a cache
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,6 +197,14 @@ def _together(queue: list[_Case], together: int) -> Iterator[_Case | tuple[int, 
     # Filled with its last case: one program serves every number of them, and no digit depends on it.
     filling = [queue[-1].run] * (together - len(queue))
     trajectories = integrate_together([case.run for case in queue] + filling)[: len(queue)]
+    numbers = 3 * len(queue[0].run.steps) * max(len(case.posed.structure.stations) for case in queue)
+    each = max(1, SHORT // numbers)
+    for some in (slice(k, k + each) for k in range(0, len(queue), each)):
+        yield from _read(queue[some], trajectories[some])
+
+
+def _read(queue: list[_Case], trajectories: list[Trajectory | None]) -> Iterator[_Case | tuple[int, Response]]:
+    """What becomes of cases by the trajectories that they waited for."""
     ended = []
     for case, trajectory, moved in zip(queue, trajectories, _displaced(queue, trajectories), strict=True):
         posed, known = case.posed, None
@@ -230,22 +238,13 @@ def _responses_of(ended: list[_Ended]) -> Iterator[tuple[int, Response]]:
     """Places and responses of cases whose runs are made; peaks of those of one structure are found together."""
 
     def key(case: _Ended) -> Hashable:
-        return (id(case.posed.structure), case.made.trajectory.time.tobytes()) if case.known else id(case)
+        return id(case.posed.structure), case.made.trajectory.time.tobytes()
 
-    for some in _alike(ended, key):
-        each = max(1, SHORT // some[0].known["moved"].size) if some[0].known else 1
-        for part in (some[k : k + each] for k in range(0, len(some), each)):
-            yield from _described(part)
-
-
-def _described(ended: list[_Ended]) -> Iterator[tuple[int, Response]]:
-    """Places and responses of one case, or of some of one structure and with the same times."""
-    posed = ended[0].posed
-    if ended[0].known:
-        trajectories, moved = [case.made.trajectory for case in ended], np.stack([c.known["moved"] for c in ended])
-        late = posed.settings.residual_from
+    for some in _alike([case for case in ended if case.known], key):
+        posed, moved = some[0].posed, np.stack([case.known["moved"] for case in some])
+        trajectories, late = [case.made.trajectory for case in some], posed.settings.residual_from
         peaks = displacement_peaks(posed.structure, trajectories, posed.problem.first, moved, late)
-        for case, own, found in zip(ended, moved, peaks, strict=True):
+        for case, own, found in zip(some, moved, peaks, strict=True):
             case.known.update(moved=own.copy(), peaks=found)
     for case in ended:
         posed, step = case.posed, case.made.step
