@@ -53,7 +53,7 @@ class Tableau:
     first: Floats
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Scheme:
     """An integration scheme.
 

@@ -23,7 +23,7 @@ Flags = NDArray[np.bool_]
 _NEAR, _ULPS = 1e-8, 8  # of a step, and roundings of a time: nearer to one another, two times are one
 _JUMP = 1e-4  # of the largest value at or between the corners: less is no jump
 _BETWEEN = 0.37  # of the way from one corner to the next
-_FEW = 10_000  # steps: what is kept of them is small
+FEW = 10_000  # steps: what is kept of them is small
 _BESIDE = 1e-12  # of the span: where a drive is looked at on both sides of a corner
 
 
@@ -67,7 +67,7 @@ def leaves(inputs: Any) -> Iterator[Any]:
         yield inputs
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Steps:
     """Steps in order, (t,) each.
 
@@ -126,7 +126,7 @@ def fitted(start: float, step: float, count: int, corners: Corners | None = None
     Times are products, not sums, so that they do not drift. Equal ones are the same object where they are few, and were
     the last: cases of a batch mostly share theirs.
     """
-    if count > _FEW:
+    if count > FEW:
         return _fitted(start, step, count, corners)
     given = None if corners is None else (corners.time.tobytes(), corners.jump.tobytes())
     return _shared(start, step, count, given)

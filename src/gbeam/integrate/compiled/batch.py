@@ -16,7 +16,7 @@ import numpy as np
 
 import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.integrate.compiled import lanes, newton
-from gbeam.integrate.compiled.chunks import Stretch, chunks, stretches
+from gbeam.integrate.compiled.chunks import chunks, stretches
 from gbeam.integrate.equations import LinearEquations, LinearTerms, NonlinearEquations
 from gbeam.integrate.fitting import added
 from gbeam.integrate.schemes import Scheme
@@ -209,12 +209,7 @@ def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     carry = begun(q, qd, qdd, [run.steps.length[0] for run in runs])
     pieces, sound = [[x[:, None] for x in (q, qd, qdd)]], np.ones(len(runs), dtype=bool)
     size, corrections = newton.PER_JACOBIAN[scheme.order], newton.CORRECTIONS[scheme.order]
-    of_steps: dict[int, list[Stretch]] = {}
-    of_runs = []
-    for run in runs:  # mostly of the same steps
-        key = id(run.steps)
-        of_steps[key] = of_steps.get(key) or list(stretches(scheme, run.steps, size))
-        of_runs.append(chunks(run.equations.drive, scheme, of_steps[key]))
+    of_runs = [chunks(run.equations.drive, scheme, stretches(scheme, run.steps, size)) for run in runs]
     for every in zip(*of_runs, strict=True):
         inside, ends = every[0].inside, [chunk.end for chunk in every]
         tableau, inputs, at_ends = _stacked([(chunk.tableau, chunk.inputs, chunk.at_ends) for chunk in every])
