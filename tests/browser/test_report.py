@@ -17,6 +17,16 @@ F16 = Path(__file__).parents[2] / "examples" / "f16_8g_turn.toml"
 CANVAS = ".gbeam-canvas"
 TIME = "window.gbeam.viewer.clock.time"
 
+# Whether a plot has ink where the numbers of its two axes stand: beside their titles and ticks.
+NUMBERED = """plot => {
+  const canvas = plot.querySelector("canvas"), over = plot.querySelector(".u-over"), ratio = devicePixelRatio;
+  const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", {willReadFrequently: true});
+  copy.drawImage(canvas, 0, 0);
+  const ink = (...box) => copy.getImageData(...box.map(x => x * ratio)).data.some(x => x > 0);
+  const [left, top, width, height] = [over.offsetLeft, over.offsetTop, over.offsetWidth, over.offsetHeight];
+  return [ink(left - 40, top, 28, height), ink(left, top + height + 11, width, 14)];
+}"""
+
 
 def _seek(page: Any, time: float) -> bytes:
     """Take the clock to a time, and return the picture of the viewer there."""
@@ -110,6 +120,8 @@ def test_the_f16_turn_of_sixteen_seconds_opens_whole(opened: Any, tmp_path: Path
     assert page.evaluate("document.documentElement.scrollWidth") <= 360
     assert page.locator(".uplot").count() >= 12 and page.evaluate("window.gbeam.viewer.clock.end") > 16
     assert _seek(page, 4.9) != _seek(page, 12.0)
+    for plot in page.locator(".uplot").all():
+        assert all(plot.evaluate(NUMBERED)), plot.get_attribute("aria-label")
     assert "axes are drawn without turning" in page.locator(".gbeam-label").first.inner_text()
 
 

@@ -8,7 +8,9 @@ import html
 import json
 import re
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,6 +18,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import gbeam as gb
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.report.facts import facts
 from gbeam.report.page import series
@@ -43,6 +46,44 @@ def test_page_says_what_the_run_says(study: Study) -> None:
     assert verdict[1:] in page and '<span class="badge good">done</span>' in page
     assert "axis 1 acceleration" in page and "89 %" in page
     assert "Load followed within 0.600 m/s²" in page
+
+
+def test_page_says_when_the_result_was_written(study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert report_of(study).count("2025-06-15 15:06 UTC") == 2  # at the head, and with where it comes from
+    study.save(tmp_path / "result.nc")
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1800000000")
+    assert "2027-01-15 08:00 UTC" in report_of(study)
+    page = report_of_file(tmp_path)
+    assert "2025-06-15 15:06 UTC" in page and "2027" not in page
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "tomorrow")
+    assert f"{datetime.now(UTC):%Y-%m-%d}" in report_of(study)
+
+
+def test_page_says_how_much_is_not_followed(study: Study) -> None:
+    assert "Not followed: 15 % of the flight's time (85 % is followed)" in html.unescape(report_of(study))
+
+
+def plots_of(page: str) -> dict[str, dict[str, np.ndarray]]:
+    """The lines of every plot, by title and label."""
+    packed = re.search(r'id="gbeam-numbers">(.*?)</script>', page)
+    assert packed is not None
+    numbers = np.frombuffer(base64.b64decode(packed[1]), dtype="<f4")
+    plots: list[dict[str, Any]] = header_of(page)["plots"]  # type: ignore[assignment]
+    return {
+        each["title"]: {line["label"]: numbers[line["y"]["at"] :][: line["y"]["shape"][0]] for line in each["series"]}
+        for each in plots
+    }
+
+
+def test_loads_are_shown_beside_the_flights(study: Study) -> None:
+    lines = plots_of(report_of(study))["spin: load at the control point along z"]
+    assert [*lines] == ["flight", "target", "machine"]
+    flight, axes = study.responses["flight"], study.responses["spin"].axes
+    assert axes is not None
+    for name, load in (("flight", flight.base.a_WO_B), ("target", axes.reference), ("machine", axes.actual)):
+        np.testing.assert_allclose(lines[name], load[:, 2] / STANDARD_GRAVITY, rtol=1e-6)
+    alone = plots_of(report_of(flight))  # without a machine that imitates it
+    np.testing.assert_allclose(alone["flight: load of the base"]["along z"], 60 / STANDARD_GRAVITY, rtol=1e-6)
 
 
 def test_nothing_from_outside_is_obeyed(study: Study) -> None:

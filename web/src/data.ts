@@ -59,6 +59,8 @@ export interface Series {
   colour: number;
   dash?: boolean;
   points?: boolean;
+  /** Of a flight that others are compared with, and drawn above. */
+  broad?: boolean;
 }
 
 export interface Level {

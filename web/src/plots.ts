@@ -112,8 +112,8 @@ export class Plots {
         y: { distr: spec.logY ? 3 : 1, range: (_, low, high) => range(low, high, spec) },
       },
       axes: [
-        { ...axis, label: spec.x, size: 34 * scale, ...(spec.logX ? { values: sparse } : {}) },
-        { ...axis, label: spec.y, size: (screen ? 62 : 46) * scale, ...(spec.logY ? { values: sparse } : {}) },
+        { ...axis, label: spec.x, size: 34 * scale, ...(spec.logX ? LOGARITHMIC : {}) },
+        { ...axis, label: spec.y, size: (screen ? 62 : 46) * scale, ...(spec.logY ? LOGARITHMIC : {}) },
       ],
       cursor: {
         show: screen,
@@ -127,7 +127,7 @@ export class Plots {
         ...spec.series.map((each) => ({
           label: each.label,
           stroke: lineColour(each.colour, dark),
-          width: each.points ? 0 : (screen ? 1.4 : 1.1) * scale,
+          width: each.points ? 0 : (each.broad ? 4 : screen ? 1.4 : 1.1) * scale,
           ...(each.dash ? { dash: [6 * scale, 4 * scale] } : {}),
           points: { show: each.points === true, size: 5 * scale, fill: lineColour(each.colour, dark) },
           spanGaps: true,
@@ -194,13 +194,40 @@ export function plain(splits: (number | null)[]): string[] {
   return splits.map((x) => (x === null ? "" : Math.abs(x) < 1e-9 * largest ? "0" : String(+x.toPrecision(8))));
 }
 
-/** Of logarithmic axes the powers of ten as plain numbers; twice and five times those too where few are in sight. */
-export function sparse(_: unknown, splits: (number | null)[]): string[] {
-  const first = (x: number): number => +(x / 10 ** Math.floor(Math.log10(x) + 1e-9)).toPrecision(6);
-  const powers = splits.filter((x) => x !== null && x > 0 && first(x) === 1).length;
-  const shown = powers > 1 ? [1] : [1, 2, 5];
-  return splits.map((x) => (x !== null && x > 0 && shown.includes(first(x)) ? String(+x.toPrecision(6)) : ""));
+/** The first digits that are labelled on logarithmic axes where few powers of ten are in sight. */
+const FEW = [1, 2, 5];
+
+function firstDigit(x: number): number {
+  return +(x / 10 ** Math.floor(Math.log10(x) + 1e-9)).toPrecision(6);
 }
+
+/** Where a logarithmic axis has lines: at 1 to 9 times the powers of ten; at even steps where too few of these are in sight. */
+export function decades(low: number, high: number): number[] {
+  // An end may be a little off its round number: the first frequency of a spectrum, 0.10002 Hz.
+  const [from, to] = [low * (1 - 1e-3), high * (1 + 1e-3)];
+  const steps = (first: number, last: number, step: number): number[] =>
+    Array.from({ length: Math.max(last - first + 1, 0) }, (_, i) => +((first + i) * step).toPrecision(8));
+  const powers = steps(Math.floor(Math.log10(from)), Math.floor(Math.log10(to)), 1);
+  const seen = powers.flatMap((power) => steps(1, 9, 10 ** power)).filter((x) => x >= from && x <= to);
+  if (seen.filter((x) => FEW.includes(firstDigit(x))).length > 1) return seen;
+  const power = 10 ** Math.floor(Math.log10((high - low) / 3));
+  const step = power * ([5, 2].find((each) => high - low >= 3 * each * power) ?? 1);
+  return steps(Math.ceil(low / step), Math.floor(high / step), step);
+}
+
+/** Of a logarithmic axis's lines those with numbers: powers of ten; where few are in sight twice and five times those, or all. */
+export function sparse(splits: number[]): string[] {
+  const among = (shown: number[]): boolean[] => splits.map((x) => shown.includes(firstDigit(x)));
+  const marked = [[1], FEW].map(among).find((each) => each.filter(Boolean).length > 1);
+  return splits.map((x, i) => (!marked || marked[i] ? String(+x.toPrecision(6)) : ""));
+}
+
+/** How uPlot divides a logarithmic axis: its own lines begin at the end of the axis, which is no round number. */
+const LOGARITHMIC: Partial<uPlot.Axis> = {
+  splits: (_, __, low, high) => decades(low, high),
+  filter: (_, splits) => splits,
+  values: (_, splits) => sparse(splits),
+};
 
 /** From the least to the largest with some air, and with zero where that is near; levels are in it if they are near. */
 function range(low: number, high: number, spec: Plot): [number, number] {

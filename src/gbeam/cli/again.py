@@ -56,7 +56,7 @@ def _read(file: Path) -> tuple[dict[str, Any], Provenance]:
         environment = Environment(origin["gbeam"], origin["python"], origin["platform"], origin["dependencies"])
         records = tuple(RecordFile(**each) for each in origin["records"])
         words = origin["scenario"], tuple(origin["overrides"]), origin["scenario_sha256"], records, origin["command"]
-        return facts, Provenance(*words, environment)
+        return facts, Provenance(*words, environment, str(origin.get("date", "")))
     except OSError as error:
         raise InputError(str(file), f"cannot be read ({error.strerror})", fix) from None
     except (ValueError, KeyError, TypeError, RecursionError) as error:

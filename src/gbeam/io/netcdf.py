@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -148,7 +147,6 @@ def _study(study: Study) -> dict[str, Group]:
         "outcome": study.outcome,
         "verdict": "\n".join(each.verdict for each in study.comparisons),
         "summary": repr(study),
-        "date": datetime.now(UTC).isoformat(timespec="seconds"),
     }
     attrs |= {f"failure_{name}": f"{failed.outcome}: {failed.message}" for name, failed in study.failures.items()}
     groups = {"": Group({}, {}, attrs)}

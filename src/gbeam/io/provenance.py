@@ -24,6 +24,7 @@ def provenance_attrs(provenance: Provenance) -> dict[str, str]:
         "python_version": environment.python,
         "platform": environment.platform,
         "dependencies": "\n".join(f"{name} {version}" for name, version in environment.dependencies.items()),
+        "date": provenance.date,
         "command": provenance.command,
         "overrides": "\n".join(provenance.overrides),
         "scenario_sha256": provenance.sha256,
@@ -72,4 +73,5 @@ def provenance_of(variables: Mapping[str, Any], attrs: Mapping[str, Mapping[str,
         records=tuple(records),
         command=str(root.get("command", "")),
         environment=Environment(versions[0], versions[1], versions[2], dependencies),
+        date=str(root.get("date", "")),
     )

@@ -15,6 +15,7 @@ def to_json(provenance: Provenance) -> dict[str, Any]:
     """Provenance as JSON: the scenario's text, hashes and versions; of records not the bytes."""
     provenance, environment = provenance.stated()
     return {
+        "date": provenance.date,
         "command": provenance.command,
         "scenario": provenance.scenario,
         "overrides": list(provenance.overrides),

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import platform
 import re
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
 from functools import cache
 from types import MappingProxyType
 
@@ -78,6 +80,8 @@ class Provenance:
         The command line; empty where gbeam was called from Python.
     environment : Environment or None
         None: the present one.
+    date : str
+        When the result was written, UTC, as ISO 8601 has it; empty: now, or what ``SOURCE_DATE_EPOCH`` says.
     """
 
     scenario: str = field(default="", repr=False)
@@ -86,11 +90,19 @@ class Provenance:
     records: tuple[RecordFile, ...] = ()
     command: str = ""
     environment: Environment | None = None
+    date: str = ""
 
     def stated(self) -> tuple[Provenance, Environment]:
-        """The same with its environment, which takes some time to find, and that."""
+        """The same with its date and its environment, which takes some time to find, and that."""
         environment = self.environment or present()
-        return replace(self, environment=environment), environment
+        return replace(self, environment=environment, date=self.date or _now()), environment
+
+
+def _now() -> str:
+    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")  # of builds that must be the same again
+    known = epoch.isdecimal() and len(epoch) < 12  # before the year 5139
+    now = datetime.fromtimestamp(int(epoch), UTC) if known else datetime.now(UTC)
+    return now.isoformat(timespec="seconds")
 
 
 @cache

@@ -13,6 +13,7 @@ from gbeam.results.result import Floats
 
 SMALL = 0.01  # of the largest: a smaller component is not drawn
 REFERENCE = 6  # the colour of what others are compared with
+FLIGHT = {"colour": 5, "broad": True}  # one that is imitated, below what does: where they agree both are seen
 Drawn = list[tuple[str, str]]  # id and title
 Variables = Mapping[str, Any]
 
@@ -28,7 +29,8 @@ def of_run(facts: Mapping[str, Any], motions: Mapping[str, Any], variables: Vari
         for each in compared["accounting"]["not_followed"]
         if each["end"] - each["start"] > 0.005
     ]
-    page = _Page(plots, variables, {"bands": held} if held else {})
+    flights = {each["centrifuge"]: each["flight"] for each in facts["comparisons"] if each["flight"] in present}
+    page = _Page(plots, motions, variables, {"bands": held} if held else {}, flights)
     page.tips(present)
     for name in present:
         page.loads(name)
@@ -46,7 +48,7 @@ def of_run(facts: Mapping[str, Any], motions: Mapping[str, Any], variables: Vari
 
 def of_plan(motions: Mapping[str, Any], variables: Variables, plots: Plots) -> Drawn:
     """Add the plots of a machine's plan, and return their places and titles."""
-    page = _Page(plots, variables, {})
+    page = _Page(plots, motions, variables, {}, {})
     for name in motions:
         if f"motions/{name}/time" in variables:
             page.loads(name)
@@ -55,11 +57,19 @@ def of_plan(motions: Mapping[str, Any], variables: Variables, plots: Plots) -> D
 
 
 class _Page:
-    """The plots of one page, all over the variables of one file."""
+    """The plots of one page, all over the variables of one file; `flights` are compared with, by their machines."""
 
-    def __init__(self, plots: Plots, variables: Variables, common: dict[str, Any]) -> None:
+    def __init__(
+        self,
+        plots: Plots,
+        motions: Mapping[str, Any],
+        variables: Variables,
+        common: dict[str, Any],
+        flights: Mapping[str, str],
+    ) -> None:
         self.drawn: Drawn = []
-        self._plots, self._variables, self._common = plots, variables, common
+        self._plots, self._motions, self._variables = plots, motions, variables
+        self._common, self._flights = common, flights
         self._times: dict[str, Floats] = {}
 
     def _of(self, name: str, key: str) -> Any:
@@ -67,8 +77,9 @@ class _Page:
 
     def _line(self, label: str, name: str, values: Floats, colour: int, **more: Any) -> dict[str, Any]:
         time, kept = thinned(self._of(name, "time"), values)
+        look = FLIGHT if name in self._flights.values() else {"colour": colour}
         # Lines of one motion share their times, which are the same numbers.
-        return {"label": label, "x": self._times.setdefault(name, time), "y": kept, "colour": colour, **more}
+        return {"label": label, "x": self._times.setdefault(name, time), "y": kept, **look, **more}
 
     def _add(self, title: str, y: str, lines: list[dict[str, Any]], **more: Any) -> None:
         over_time = self._common if "x" not in more else {}
@@ -81,13 +92,24 @@ class _Page:
             self._add(f"Tip along {'xyz'[i]}", "displacement, mm", lines)
 
     def loads(self, name: str) -> None:
+        """The load at a machine's control point, the one that it should be, and the flight's; or that of a flight."""
         actual, reference = self._of(name, "load_actual"), self._of(name, "load_reference")
         if actual is None:
+            if self._motions[name]["environment"] == "flight" and name not in self._flights.values():
+                load = self._of(name, "root_acceleration") / STANDARD_GRAVITY
+                lines = [self._line(f"along {'xyz'[i]}", name, load[:, i], i) for i in _moving(load)]
+                self._add(f"{name}: load of the base", "load, g", lines)
             return
-        for i in _moving(reference):
-            made = self._line("made", name, actual[:, i] / STANDARD_GRAVITY, 1)
-            target = self._line("target", name, reference[:, i] / STANDARD_GRAVITY, REFERENCE, dash=True)
-            self._add(f"{name}: load at the control point along {'xyz'[i]}", "load, g", [made, target])
+        flight = self._flights.get(name)
+        for i in _moving(reference, actual):
+            lines = [
+                self._line("target", name, reference[:, i] / STANDARD_GRAVITY, REFERENCE, dash=True),
+                self._line("machine", name, actual[:, i] / STANDARD_GRAVITY, 1),
+            ]
+            if flight is not None:
+                flown = self._of(flight, "root_acceleration")[:, i] / STANDARD_GRAVITY
+                lines.insert(0, self._line(flight, flight, flown, 0))
+            self._add(f"{name}: load at the control point along {'xyz'[i]}", "load, g", lines)
 
     def sizes(self, title: str, y: str, names: list[str], key: str, scale: float, size: Any) -> None:
         lines = []
@@ -133,15 +155,15 @@ class _Page:
         shock = compared.get("shock")
         if shock is None:
             return
-        frequency = np.array(shock["frequency"])
-        both = {compared["flight"]: np.array(shock["flight"]), compared["centrifuge"]: np.array(shock["centrifuge"])}
-        axis = int(np.argmax(both[compared["flight"]].max(axis=0)))
-        lines = [
-            {"label": name, "x": frequency, "y": values[:, axis], "colour": k}
-            for k, (name, values) in enumerate(both.items())
-        ]
-        title = f"Shock response of the tip along {'xyz'[axis]}, Q {shock['quality']:g}"
-        self._add(title, "acceleration, m/s²", lines, x="frequency, Hz", logX=True, logY=True)
+        frequency, flight, machine = (np.array(shock[key]) for key in ("frequency", "flight", "centrifuge"))
+        peaks = (np.array([[*compared[f"peak_{place}"].values()]]) for place in ("flight", "centrifuge"))
+        for i in _moving(*peaks):
+            lines = [
+                {"label": compared["flight"], "x": frequency, "y": flight[:, i], **FLIGHT},
+                {"label": compared["centrifuge"], "x": frequency, "y": machine[:, i], "colour": 1},
+            ]
+            title = f"Shock response of the tip along {'xyz'[i]}, Q {shock['quality']:g}"
+            self._add(title, "acceleration, m/s²", lines, x="frequency, Hz", logX=True, logY=True)
 
 
 def _moving(*values: Floats) -> list[int]:

@@ -78,7 +78,13 @@ def html(facts: Mapping[str, Any], variables: Mapping[str, Any], origin: Mapping
 
 def _subject(kind: str, origin: Mapping[str, Any]) -> str:
     version = f", gbeam {origin['gbeam']}" if "gbeam" in origin else ""
-    return f"gbeam {kind}{version}"
+    date = f", {_date(origin['date'])}" if origin.get("date") else ""
+    return f"gbeam {kind}{version}{date}"
+
+
+def _date(text: str) -> str:
+    """A time of ISO 8601 as it is read: 2026-01-31 12:00 UTC."""
+    return text[:16].replace("T", " ") + " UTC"
 
 
 def _title(origin: Mapping[str, Any]) -> str:
@@ -99,6 +105,7 @@ def _origin(origin: Mapping[str, Any]) -> str:
         return ""
     changes = paragraph("changed by --set: " + ", ".join(origin["overrides"])) if origin["overrides"] else ""
     rows = [
+        ("date", _date(origin["date"]) if origin.get("date") else ""),
         ("command", origin["command"]),
         *((f"record of {each['motion']}", f"{each['file']}, SHA-256 {each['sha256']}") for each in origin["records"]),
         ("SHA-256 of what it says", origin["scenario_sha256"]),

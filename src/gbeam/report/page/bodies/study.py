@@ -126,9 +126,10 @@ def _not_followed(compared: Facts) -> str:
         [f"{each['start']:.3f}", f"{each['end']:.3f}", each["flight_peak"] / STANDARD_GRAVITY, each["reason"]]
         for each in compared["accounting"]["not_followed"]
     ]
-    share = _percent(compared["accounting"]["followed_share"])
+    followed = known(compared["accounting"]["followed_share"])
     head = ("from, s", "to, s", "flight up to, g", "why")
-    shown = table(head, rows, f"Not followed; {share} of the flight's time is", words=(3,))
+    caption = f"Not followed: {_percent(1 - followed)} of the flight's time ({_percent(followed)} is followed)"
+    shown = table(head, rows, caption, words=(3,))
     return shown if len(rows) <= 12 else folded(f"{len(rows)} stretches that are not followed", shown)
 
 
