@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import json
+import os
+import shutil
 import subprocess
 import sys
 import time
@@ -13,7 +16,9 @@ from pathlib import Path
 
 import pytest
 
+from gbeam.app import files
 from gbeam.app import jobs as module
+from gbeam.app.documents import changes
 from gbeam.app.jobs import Jobs
 from gbeam.errors import InputError
 
@@ -45,12 +50,26 @@ async def _until(jobs: Jobs, number: str, *states: str) -> str:
     return state
 
 
+async def _begun(jobs: Jobs, number: str) -> None:
+    """Wait until a run that sleeps has said how far it is."""
+    while "10%" not in jobs.state(number)["progress"]:
+        await asyncio.sleep(0.05)
+
+
+@pytest.fixture
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs that are done at once."""
+    monkeypatch.setattr(module, "_command", lambda _: [sys.executable, "-c", "print('{}')", "--json"])
+    monkeypatch.setattr(module, "PAUSE", 0.05)
+
+
 @pytest.fixture
 def sleeping(monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs that sleep, with a child of their own, instead of computing."""
     code = "import subprocess, sys, time; subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(600)']);"
-    code += "print('gbeam: flight: run: 10%', file=sys.stderr, flush=True); time.sleep(600)"
+    code += "open('progress.txt', 'w').write('flight: run: 10%'); time.sleep(600)"
     monkeypatch.setattr(module, "_command", lambda _: [sys.executable, "-c", code])
+    monkeypatch.setattr(module, "PAUSE", 0.1)
 
 
 def test_runs_are_kept_and_wrong_ones_say_why(tmp_path: Path) -> None:
@@ -128,9 +147,7 @@ def test_a_scenario_that_a_verb_writes_into_stays_as_it_came_beside_what_it_beco
 def test_a_run_is_cancelled_with_all_that_it_started(tmp_path: Path, sleeping: None) -> None:
     async def act(jobs: Jobs) -> None:
         first, second = jobs.submit(FAST, "a", []), jobs.submit(FAST, "b", [])
-        await _until(jobs, first, "running")
-        while "10%" not in jobs.state(first)["progress"]:
-            await asyncio.sleep(0.05)
+        await _begun(jobs, first)
         group = jobs._process[1].pid  # type: ignore[index]
         jobs.cancel(second)  # before its turn
         jobs.cancel(first)
@@ -159,6 +176,173 @@ def test_what_a_server_leaves_is_interrupted_or_taken_up(
         assert await _until(jobs, numbers[1], "refused")
 
     _with(tmp_path, take_up)
+
+
+@POSIX
+def test_a_run_whose_folder_is_deleted_is_forgotten(tmp_path: Path, sleeping: None) -> None:
+    async def act(jobs: Jobs) -> None:
+        numbers = [jobs.submit(FAST, name, []) for name in "abc"]
+        await _begun(jobs, numbers[0])
+        group = jobs._process[1].pid  # type: ignore[index]
+        shutil.rmtree(tmp_path / numbers[1])  # before its turn
+        shutil.rmtree(tmp_path / numbers[0])
+        await _begun(jobs, numbers[2])
+        assert not _processes(group) and [each["id"] for each in jobs.list()] == [numbers[2]]
+        shutil.rmtree(tmp_path)  # all of them
+        await asyncio.sleep(0.5)
+        await _until(jobs, jobs.submit(FAST, "d", []), "running")
+
+    _with(tmp_path, act)
+
+
+@pytest.mark.parametrize(
+    "content",
+    ["", "{", "[]", '{"state": 3}', '{"state": "queued", "verb": "app"}', "\ufeff{}", "[" * 100_000, None],
+    ids=["empty", "cut", "list", "number", "verb", "mark", "deep", "missing"],
+)
+def test_a_damaged_run_is_said_to_be_and_others_go_on(tmp_path: Path, content: str | None, quick: None) -> None:
+    numbers = [Jobs(tmp_path).submit(FAST, name, []) for name in "ab"]
+    state = tmp_path / numbers[0] / "state.json"
+    state.unlink()
+    if content is not None:
+        state.write_text(content, encoding="utf-8")
+
+    async def act(jobs: Jobs) -> None:
+        await _until(jobs, numbers[1], "done")
+        damaged = jobs.list()[1]
+        assert damaged["id"] == numbers[0] and damaged["state"] == "damaged" and "scenario.toml" in damaged["files"]
+        third = jobs.submit(FAST, "c", [])
+        (tmp_path / third / "state.json").write_text(content or "")  # also while it waits or runs
+        await asyncio.sleep(0.3)
+        assert jobs.state(third)["state"] in ("damaged", "done")
+        await _until(jobs, jobs.submit(FAST, "d", []), "done")
+
+    _with(tmp_path, act)
+
+
+def test_a_folder_in_place_of_a_file_fails_one_run(tmp_path: Path, quick: None) -> None:
+    numbers = [Jobs(tmp_path).submit(FAST, name, []) for name in "ab"]
+    (tmp_path / numbers[0] / "answer.json").mkdir()
+
+    async def act(jobs: Jobs) -> None:
+        await _until(jobs, numbers[1], "done")
+        assert jobs.state(numbers[0])["state"] == "failed"
+
+    _with(tmp_path, act)
+
+
+def test_runs_go_on_after_a_mistake_in_gbeam(
+    tmp_path: Path, quick: None, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def wrong(_: object) -> list[str]:
+        monkeypatch.undo()
+        raise KeyError("a mistake")
+
+    sound = module._command
+    monkeypatch.setattr(module, "_command", wrong)
+
+    async def act(jobs: Jobs) -> None:
+        first, second = jobs.submit(FAST, "a", []), jobs.submit(WRONG, "b", [])
+        assert await _until(jobs, first, "failed", "done") == "failed"
+        await _until(jobs, second, "refused")
+
+    _with(tmp_path, act)
+    assert sound is not wrong and "a mistake" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("trouble", [errno.ENOSPC, errno.EMFILE])
+def test_the_queue_waits_for_a_disk_and_forgets_nothing(
+    tmp_path: Path, quick: None, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], trouble: int
+) -> None:
+    sound, short = module.write, [False]
+
+    def write(file: Path, content: bytes) -> None:
+        if short[0]:
+            raise OSError(trouble, "there is none left")
+        sound(file, content)
+        short[0] = b'"running"' in content  # from there on
+
+    monkeypatch.setattr(module, "write", write)
+
+    async def act(jobs: Jobs) -> None:
+        first, second = jobs.submit(FAST, "a", []), jobs.submit(FAST, "b", [])
+        await _until(jobs, first, "done")
+        while "waits: there is none left" not in jobs.state(second)["progress"]:
+            await asyncio.sleep(0.02)
+        with pytest.raises(OSError, match="none left"):
+            jobs.submit(FAST, "c", [])
+        assert [each["state"] for each in jobs.list()] == ["queued", "done"]
+        assert [json.loads(file.read_text())["state"] for file in sorted(tmp_path.glob("*/state.json"))] == [
+            "running", "queued",
+        ]  # fmt: skip
+        monkeypatch.setattr(module, "write", sound)
+        await _until(jobs, second, "done")
+
+    _with(tmp_path, act)
+    assert [json.loads(file.read_text())["state"] for file in tmp_path.glob("*/state.json")] == ["done", "done"]
+    assert not [*tmp_path.glob(".*")] and capsys.readouterr().err.count("none left") == 1
+
+
+def test_runs_are_computed_in_the_order_in_which_they_came(tmp_path: Path) -> None:
+    jobs = Jobs(tmp_path)
+    numbers = [jobs.submit(FAST, "", []) for _ in range(6)]
+    assert numbers == sorted(numbers) and [each["id"] for each in jobs.list()] == numbers[::-1]
+
+
+def test_a_file_is_whole_or_as_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    order: list[str] = []
+    replace, sync = os.replace, os.fsync
+    monkeypatch.setattr(os, "fsync", lambda handle: (order.append("sync"), sync(handle)))
+    monkeypatch.setattr(os, "replace", lambda *names: (order.append("replace"), replace(*names)))
+    files.write(tmp_path / "state.json", b"one")
+    assert order == ["sync", "replace"]
+
+    def fail(handle: int) -> None:
+        raise OSError(errno.ENOSPC, "full")
+
+    monkeypatch.setattr(os, "fsync", fail)
+    with pytest.raises(OSError, match="full"):
+        files.write(tmp_path / "state.json", b"two")
+    assert [each.name for each in tmp_path.iterdir()] == ["state.json"]
+    assert (tmp_path / "state.json").read_text() == "one"
+
+
+@POSIX
+def test_all_of_a_run_is_for_its_owner_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    code = "import os; os.mkdir('out'); open('out/result.nc', 'w').write('x'); print('{}')"
+    monkeypatch.setattr(module, "_command", lambda _: [sys.executable, "-c", code, "--json"])
+    before = os.umask(0)  # of those who let everybody read
+    try:
+        record = files.store(tmp_path / "records", "a.csv", b"t,z")
+        numbers: list[str] = []
+
+        async def act(jobs: Jobs) -> None:
+            numbers.append(jobs.submit(FAST, "", [record], "place", ["--write"]))
+            await _until(jobs, numbers[0], "done")
+
+        _with(tmp_path / "runs", act)
+    finally:
+        os.umask(before)
+    place = tmp_path / "runs" / numbers[0]
+    every = [record.parent, record, place, *place.rglob("*")]
+    names = {"a.csv", "scenario.toml", ".before", "state.json", "answer.json", "messages.txt", "out", "result.nc"}
+    assert {each.name for each in every} >= names
+    assert [str(each) for each in every if each.stat().st_mode & 0o077] == []
+
+
+def test_runs_of_one_title_are_told_apart(tmp_path: Path) -> None:
+    jobs = Jobs(tmp_path)
+    assert jobs.last("fast") == ""
+    jobs.submit(FAST, "fast", [])
+    jobs.submit(WRONG, "another", [], changes="length")
+    assert jobs.last("fast") == FAST and [each["changes"] for each in jobs.list()] == ["length", ""]
+    after = FAST.replace("300 mm", "310 mm").replace("damping_ratio = 0.01\n", "")
+    assert changes(FAST, FAST) == "as before"
+    assert changes(FAST, after) == "beam.length = 310 mm, no beam.damping_ratio"
+    many = "title = 'a'\n" + "".join(f"[motion.m{i}]\nkind = 'flight'\n" for i in range(9))
+    said = changes("title = 'a'", many)
+    assert said == "motion.m0.kind = flight, motion.m1.kind = flight, motion.m2.kind = flight, and 6 more"
+    assert changes("", f"title = {'x' * 99!r}") == f"title = {'x' * 40}…" and changes("[", "") == ""
 
 
 @POSIX

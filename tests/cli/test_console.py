@@ -6,6 +6,7 @@ import io
 import re
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -33,6 +34,21 @@ def test_plain_lines_where_there_is_no_terminal(monkeypatch: pytest.MonkeyPatch)
     lines = sys.stderr.getvalue().splitlines()  # type: ignore[attr-defined]
     assert lines[0] == "gbeam: compiling" and lines[-1] == "gbeam: flight: run\\x1b[31m\\n: 25%"
     assert len(lines) >= 3
+
+
+def test_the_last_line_alone_in_a_file_that_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(sys, "stderr", io.StringIO())
+    monkeypatch.setenv(console.FILE, str(tmp_path / "progress.txt"))
+    for what in ("flight: run", "spin: run"):
+        with Watch() as watch:
+            watch(what, 0.25)
+            time.sleep(0.1)
+    assert (tmp_path / "progress.txt").read_text() == "spin: run: 25%\n"
+    monkeypatch.setenv(console.FILE, str(tmp_path / "none" / "progress.txt"))
+    with Watch() as watch:
+        watch("it goes on", 0.5)
+        time.sleep(0.05)
+    assert sys.stderr.getvalue() == ""  # type: ignore[attr-defined]
 
 
 def test_time_left_is_that_of_the_phase(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,12 +12,14 @@ from gbeam.app.form import form, known_at, new_table, value_at
 from gbeam.errors import GbeamError, InputError
 from gbeam.scenario import ScenarioError, build, loads
 from gbeam.scenario.text.diagnostics import Diagnostic
-from gbeam.scenario.text.revise import with_entry, without_entry
+from gbeam.scenario.text.revise import toml, with_entry, without_entry
 from gbeam.scenario.text.source import parse
 from gbeam.scenario.values.paths import Path as Place
 from gbeam.scenario.values.paths import parse_path, path_text, written_at
 
 NAME = "scenario.toml"
+CHANGES = 3  # between two scenarios that are told
+_LONG = 40  # characters of a value in them
 _MISSING = re.compile(r"(\w+) is missing")  # a message about a table, whose field that is
 
 
@@ -143,6 +145,23 @@ def _leaves(node: Any, path: Place = ()) -> Iterator[tuple[Place, Any]]:
             yield from _leaves(each, (*path, i))
     elif path:
         yield path, node
+
+
+def changes(before: str, after: str) -> str:
+    """What is otherwise in a scenario than in one before it, in a line."""
+    try:
+        then, now = ({path_text(path): value for path, value in _leaves(parse(NAME, text))} for text in (before, after))
+    except GbeamError:
+        return ""
+    made = [f"{path} = {_shown(value)}" for path, value in now.items() if then.get(path) != value]
+    made += [f"no {path}" for path in then if path not in now]
+    more = f", and {len(made) - CHANGES} more" if len(made) > CHANGES else ""
+    return ", ".join(made[:CHANGES]) + more if made else "as before"
+
+
+def _shown(value: Any) -> str:
+    text = value if isinstance(value, str) else toml(value)
+    return text if len(text) <= _LONG else f"{text[:_LONG]}…"
 
 
 def records(data: Any, folder: Path) -> list[Path]:

@@ -1,11 +1,14 @@
-"""Files of one folder by their plain names: nothing outside it is read or written."""
+"""Files of one folder by their plain names, for their owner only: nothing outside it is read or written."""
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import stat
+import tempfile
 from pathlib import Path
+from typing import BinaryIO
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import TEXT_BYTES
@@ -13,6 +16,8 @@ from gbeam.guards.limits import TEXT_BYTES
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._()-]{0,99}")
 LARGEST = TEXT_BYTES  # of one file
 MANY = 200  # files
+# What passes: a disk, descriptors or memory that are used up.
+SHORT = {errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN}
 
 
 def checked(name: str) -> str:
@@ -37,17 +42,40 @@ def regular(folder: Path, name: str) -> Path:
         If it is no regular file there: a link leads elsewhere.
     """
     file = folder / checked(name)
-    try:
-        sound = stat.S_ISREG(file.lstat().st_mode)
-    except OSError:
-        sound = False
-    if not sound:
+    if not _is_regular(file):
         raise InputError(name, "is not there", "drop the file on the page first")
     return file
 
 
+def made(folder: Path) -> Path:
+    """Make a folder for its owner only, unless it is there."""
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    return folder
+
+
+def private(file: Path) -> BinaryIO:
+    """Open a new file for writing, for its owner only; what is there is replaced."""
+    file.unlink(missing_ok=True)
+    return os.fdopen(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "wb")
+
+
+def write(file: Path, content: bytes) -> None:
+    """Write a file for its owner only: beside its place, onto the disk, then there; whole or not at all."""
+    # A link at its place is replaced and not followed.
+    handle, new = tempfile.mkstemp(prefix=f".{file.name}.", dir=file.parent)
+    try:
+        with os.fdopen(handle, "wb") as opened:
+            opened.write(content)
+            opened.flush()
+            os.fsync(opened.fileno())
+        os.replace(new, file)
+    except BaseException:
+        Path(new).unlink(missing_ok=True)
+        raise
+
+
 def store(folder: Path, name: str, content: bytes) -> Path:
-    """Write a file into a folder, whole or not at all.
+    """Write a file into a folder.
 
     Raises
     ------
@@ -57,20 +85,22 @@ def store(folder: Path, name: str, content: bytes) -> Path:
     file = folder / checked(name)
     if len(content) > LARGEST:
         raise InputError(name, f"has more than {LARGEST // 2**20} MiB", "cut or resample the record")
-    folder.mkdir(parents=True, exist_ok=True)
-    if len(list(folder.iterdir())) >= MANY:
+    if len(names(made(folder))) >= MANY:
         raise InputError(name, f"is one too many: {MANY} files are kept", f"delete some in {folder}")
-    new = folder / f".{name}.{os.getpid()}"
-    # A link of that name is replaced and not followed.
-    with os.fdopen(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "wb") as opened:
-        opened.write(content)
-    os.replace(new, file)
+    write(file, content)
     return file
 
 
 def names(folder: Path) -> list[str]:
     """The regular files of a folder."""
-    if not folder.is_dir():
+    try:
+        return sorted(each.name for each in folder.iterdir() if _NAME.fullmatch(each.name) and _is_regular(each))
+    except (FileNotFoundError, NotADirectoryError):
         return []
-    every = (each for each in folder.iterdir() if _NAME.fullmatch(each.name))
-    return sorted(each.name for each in every if stat.S_ISREG(each.lstat().st_mode))
+
+
+def _is_regular(file: Path) -> bool:
+    try:
+        return stat.S_ISREG(file.lstat().st_mode)
+    except (FileNotFoundError, NotADirectoryError, ValueError):  # ValueError: a null character in its name
+        return False

@@ -1,4 +1,8 @@
-"""Runs, one folder each: queued, computed one after the other in a process of their own, and kept."""
+"""Runs, one folder each: queued, computed one after the other in a process of their own, and kept.
+
+The queue is what the folders say: one that is deleted is forgotten, also while it waits or runs. Where the disk or the
+descriptors are used up the queue waits until they are not.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +14,15 @@ import secrets
 import shutil
 import signal
 import sys
+import threading
+import traceback
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from gbeam.app.files import names, regular
+from gbeam.app.files import SHORT, made, names, private, regular, write
 from gbeam.app.verbs import VERBS
 from gbeam.errors import InputError
 from gbeam.report.page.bodies import study
@@ -25,7 +31,9 @@ ID = re.compile(r"\d{8}-\d{6}-[0-9a-f]{8}")
 MEMORY = 16 * 2**30  # bytes of address space, of which compiled programs reserve far more than they use
 SECONDS = 3600  # of processor time, and of time altogether
 QUEUED = 100
-_STATE, _LOG, _ANSWER, _WORDS = "state.json", "progress.txt", "answer.json", "words.txt"
+PAUSE = 1.0  # s until what is used up is asked for again, and between looks at whether a run's folder is there
+DAMAGED = "damaged"  # state of a run of which nothing else is known
+_STATE, _LOG, _MESSAGES, _ANSWER, _WORDS = "state.json", "progress.txt", "messages.txt", "answer.json", "words.txt"
 _SCENARIO = "scenario.toml"
 _BEFORE = ".before"  # has the scenario as it came, of a verb that writes into it
 # What may be downloaded, by its name there, and where it is; besides, of what the verb writes, files of these kinds.
@@ -33,7 +41,7 @@ DOWNLOADS = {
     _SCENARIO: _SCENARIO,
     _ANSWER: _ANSWER,
     _WORDS: _WORDS,
-    "messages.txt": _LOG,
+    _MESSAGES: _MESSAGES,
     "found.toml": "found.toml",
     "command.json": "out/command.json",
 }
@@ -45,17 +53,23 @@ class Jobs:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self._queue: asyncio.Queue[str] = asyncio.Queue()
+        self._lock = threading.RLock()  # requests are answered in threads
+        self._unsaved: dict[str, dict[str, Any]] = {}  # what the disk did not take
         self._process: tuple[str, asyncio.subprocess.Process] | None = None
+        self._cancelled = ""
+        self._trouble = ""  # that the queue waits for
         self._task: asyncio.Task[None] | None = None
+        self._more = asyncio.Event()
+        self._loop: asyncio.AbstractEventLoop | None = None
 
     def start(self) -> None:
         """Take up what an earlier server left in the queue, and begin."""
-        for each in reversed(self.list()):
-            if each["state"] == "queued":
-                self._queue.put_nowait(each["id"])
-            elif each["state"] == "running":  # its process ended with the server
+        for left in self.folder.glob(".new-*"):  # an earlier server ended before it was whole
+            shutil.rmtree(left, ignore_errors=True)
+        for each in self.list():
+            if each["state"] == "running":  # its process ended with the server
                 self._note(each["id"], state="interrupted")
+        self._loop = asyncio.get_running_loop()
         self._task = asyncio.create_task(self._work())
 
     async def stop(self) -> None:
@@ -64,6 +78,8 @@ class Jobs:
             self._task.cancel()
             with suppress(asyncio.CancelledError):
                 await self._task
+        for each in [*self._unsaved]:
+            self._note(each)
 
     def submit(
         self,
@@ -73,6 +89,7 @@ class Jobs:
         verb: str = "run",
         arguments: Sequence[str] = (),
         case: str = "",
+        changes: str = "",
     ) -> str:
         """Queue a verb on a scenario, with copies of its records; return its id.
 
@@ -86,45 +103,68 @@ class Jobs:
             Of the verb.
         case : str
             Which case of which sweep it is; one that is there already is not run again.
+        changes : str
+            Of the scenario in that of the last run of its title, by which the two are told apart.
 
         Raises
         ------
         InputError
             If too many wait.
+        OSError
+            If it cannot be written; nothing is queued then.
         """
-        known = next((each["id"] for each in self.list() if case and each.get("case") == case), None)
-        if known is not None:
-            return str(known)
-        if self._queue.qsize() >= QUEUED:
-            raise InputError("runs", f"wait already, {QUEUED} of them", "cancel some")
-        number = f"{datetime.now():%Y%m%d-%H%M%S}-{secrets.token_hex(4)}"
-        place = self.folder / number
-        place.mkdir(parents=True)
-        for record in records:
-            shutil.copyfile(record, place / record.name, follow_symlinks=False)
-        (place / _SCENARIO).write_text(text, encoding="utf-8")  # whatever the records are called
-        if "--write" in arguments:
-            (place / _BEFORE).mkdir()
-            (place / _BEFORE / _SCENARIO).write_text(text, encoding="utf-8")
-        self._note(number, state="queued", title=title, verb=verb, case=case, arguments=list(arguments))
-        self._queue.put_nowait(number)
+        now = datetime.now()  # in the order of their names they are run
+        number = f"{now:%Y%m%d-%H%M%S}-{now.microsecond:05x}{secrets.randbelow(0x1000):03x}"
+        facts = {"title": title, "verb": verb, "case": case, "changes": changes, "arguments": list(arguments)}
+        new = made(self.folder / f".new-{number}")
+        try:
+            for record in records:
+                write(new / record.name, record.read_bytes())
+            scenario = text.encode("utf-8")
+            write(new / _SCENARIO, scenario)  # whatever the records are called
+            if "--write" in arguments:
+                write(made(new / _BEFORE) / _SCENARIO, scenario)
+            write(new / _STATE, json.dumps({"state": "queued", **facts}).encode())
+            with self._lock:
+                known = self.list()
+                same = next((each["id"] for each in known if case and each["case"] == case), None)
+                if same is not None:
+                    return str(same)
+                if sum(each["state"] == "queued" for each in known) >= QUEUED:
+                    raise InputError("runs", f"wait already, {QUEUED} of them", "cancel some")
+                new.rename(self.folder / number)
+        finally:
+            shutil.rmtree(new, ignore_errors=True)  # what is not queued
+        if self._loop is not None:
+            self._loop.call_soon_threadsafe(self._more.set)
         return number
+
+    def last(self, title: str) -> str:
+        """Return the scenario of the last run of a title; empty where there is none."""
+        alike = (each["id"] for each in self.list() if each["title"] == title and _SCENARIO in each["files"])
+        number = next(alike, None)
+        return "" if number is None else self.file(number, _SCENARIO).read_text(encoding="utf-8", errors="replace")
 
     def cancel(self, number: str) -> None:
         """End a run, or take it out of the queue."""
-        state = self.state(number)["state"]
-        if state == "queued":
-            self._note(number, state="cancelled")
-        elif state == "running" and self._process is not None and self._process[0] == number:
-            self._note(number, state="cancelled")
-            _end(self._process[1])
+        with self._lock:
+            state = self.state(number)["state"]
+            if state == "queued":
+                self._note(number, state="cancelled")
+            elif state == "running":
+                self._cancelled = number
+                if self._process is not None and self._process[0] == number:
+                    _end(self._process[1])
 
     def list(self) -> list[dict[str, Any]]:
         """All runs, the latest first."""
         if not self.folder.is_dir():
             return []
-        known = [each.name for each in self.folder.iterdir() if ID.fullmatch(each.name) and (each / _STATE).is_file()]
-        return [self.state(number) for number in sorted(known, reverse=True)]
+        found = []
+        for number in sorted((each.name for each in self.folder.iterdir() if ID.fullmatch(each.name)), reverse=True):
+            with suppress(InputError, FileNotFoundError):  # it has been deleted meanwhile
+                found.append(self.state(number))
+        return found
 
     def state(self, number: str) -> dict[str, Any]:
         """What is known of a run: its state, title, last line of progress, and the files that it has.
@@ -135,10 +175,12 @@ class Jobs:
             If there is none.
         """
         place = self._place(number)
-        known: dict[str, Any] = json.loads((place / _STATE).read_text(encoding="utf-8"))
-        log = place / _LOG
-        lines = log.read_text(encoding="utf-8", errors="replace").splitlines() if log.is_file() else []
-        return {"id": number, **known, "progress": lines[-1][:300] if lines else "", "files": [*_files(place)]}
+        known = _read(place / _STATE) | self._unsaved.get(number, {})
+        if known["state"] == "queued":
+            progress = f"waits: {self._trouble}" if self._trouble else ""
+        else:
+            progress = _last_line(place / _LOG)
+        return {"id": number, **known, "progress": progress, "files": [*_files(place)]}
 
     def file(self, number: str, name: str) -> Path:
         """The path of a file of a run.
@@ -153,57 +195,150 @@ class Jobs:
             raise InputError("file", "is none of this run's", f"choose of {', '.join(found)}")
         return regular(found[name].parent, found[name].name)
 
+    def complain(self, trouble: str) -> None:
+        """Say on the terminal what keeps the server from its work, once until it has passed."""
+        if trouble != self._trouble:
+            self._trouble = trouble
+            with suppress(OSError):
+                print(f"gbeam: waits until this has passed: {trouble}", file=sys.stderr, flush=True)
+
     def _place(self, number: str) -> Path:
         place = self.folder / number if ID.fullmatch(number) else None
-        if place is None or place.is_symlink() or not (place / _STATE).is_file():
+        if place is None or place.is_symlink() or not place.is_dir():
             raise InputError("run", "is not there", "choose one of the list")
         return place
 
-    def _note(self, number: str, **facts: Any) -> None:
+    def _note(self, number: str, **facts: Any) -> bool:
+        """Keep facts of a run, where the disk does not take them in memory; return whether it did."""
         file = self.folder / number / _STATE
-        known = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
-        new = file.with_suffix(".new")
-        new.write_text(json.dumps(known | facts), encoding="utf-8")
-        os.replace(new, file)
+        with self._lock:
+            unsaved = self._unsaved.pop(number, {}) | facts
+            try:
+                write(file, json.dumps(_read(file) | unsaved).encode())
+            except FileNotFoundError:  # it has been deleted
+                return True
+            except OSError as error:
+                self._unsaved[number] = unsaved
+                self.complain(error.strerror or str(error))
+                return False
+        return True
 
     async def _work(self) -> None:
         while True:
-            number = await self._queue.get()
-            if self.state(number)["state"] == "queued":
-                await self._run(number)
-
-    async def _run(self, number: str) -> None:
-        place = self.folder / number
-        self._note(number, state="running")
-        command = _command(self.state(number))
-        environment = {**os.environ, "GBEAM_PROGRESS": "0.5", "PYTHONUNBUFFERED": "1"}
-        if "--report" in command:  # which has the figures
-            environment["GBEAM_FIGURES"] = "none"
-        with (place / _LOG).open("wb") as log, (place / _stdout(command)).open("wb") as answer:
-            process = await asyncio.create_subprocess_exec(
-                *command,
-                cwd=place,
-                env=environment,
-                stdin=asyncio.subprocess.DEVNULL,
-                stdout=answer,
-                stderr=log,
-                start_new_session=True,
-            )
-            self._process = number, process
+            number = ""
             try:
-                status = await asyncio.wait_for(process.wait(), SECONDS)
-                outcome = {0: "done", 1: _failure(place), 2: "refused"}.get(status, "ended")
-            except TimeoutError:
-                outcome = "out of time"
-                _end(process)
-            except asyncio.CancelledError:  # the server ends
-                _end(process)
-                self._note(number, state="interrupted")
+                saved = all([self._note(each) for each in [*self._unsaved]])
+                number = next((each["id"] for each in reversed(self.list()) if each["state"] == "queued"), "")
+                if number and await self._run(number):
+                    continue
+                if not number and saved:
+                    self._trouble = ""
+                    self._more.clear()
+                    await self._more.wait()
+                    continue
+            except InputError:  # it has been deleted
+                continue
+            except OSError as error:
+                self.complain(error.strerror or str(error))
+            except Exception:  # a mistake in gbeam: the other runs go on
+                traceback.print_exc()
+                if number:
+                    self._note(number, state="failed")
+            await asyncio.sleep(PAUSE)
+
+    async def _run(self, number: str) -> bool:
+        """Compute a run to its end; False, and it stays in the queue, where it cannot begin."""
+        place = self._place(number)
+        with self._lock:
+            known = _read(place / _STATE)
+            if self.state(number)["state"] != "queued":
+                return True  # cancelled in this moment
+            if not self._note(number, state="running"):
+                self._unsaved.pop(number)
+                return False
+        try:
+            process = await _begun(place, _command(known))
+        except OSError as error:
+            passes = error.errno in SHORT
+            self._note(number, state="queued" if passes else "failed")
+            if passes:
                 raise
-            finally:
-                self._process = None
-        if self.state(number)["state"] == "running":
-            self._note(number, state=outcome)
+            return True
+        self._trouble = ""
+        self._process = number, process
+        if self._cancelled == number:  # while it was started
+            _end(process)
+        try:
+            state = await self._ended(place, process)
+        except asyncio.CancelledError:  # the server ends
+            self._note(number, **known | {"state": "interrupted"})
+            raise
+        finally:
+            _end(process)
+            self._process = None
+        if place.is_dir():
+            self._note(number, **known | {"state": state})
+        return True
+
+    async def _ended(self, place: Path, process: asyncio.subprocess.Process) -> str:
+        """Wait until a process has ended, its time is over or its folder gone; return the state of its run."""
+        end, deadline = asyncio.ensure_future(process.wait()), asyncio.get_running_loop().time() + SECONDS
+        while not end.done():
+            left = deadline - asyncio.get_running_loop().time()
+            if left <= 0 or not place.is_dir():
+                return "out of time"  # or deleted, and forgotten
+            await asyncio.wait([end], timeout=min(left, PAUSE))
+        if self._cancelled == place.name:
+            return "cancelled"
+        while end.result() == 1:
+            try:
+                return _failure(place)
+            except OSError as error:
+                self.complain(error.strerror or str(error))
+                await asyncio.sleep(PAUSE)
+        return {0: "done", 2: "refused"}.get(end.result(), "ended")
+
+
+async def _begun(place: Path, command: Sequence[str]) -> asyncio.subprocess.Process:
+    """Start a command in a run's folder, whose files are for their owner only."""
+    environment = {**os.environ, "GBEAM_PROGRESS": "0.5", "GBEAM_PROGRESS_FILE": _LOG, "PYTHONUNBUFFERED": "1"}
+    if "--report" in command:  # which has the figures
+        environment["GBEAM_FIGURES"] = "none"
+    with private(place / _MESSAGES) as messages, private(place / _stdout(command)) as answer:
+        return await asyncio.create_subprocess_exec(
+            *command,
+            cwd=place,
+            env=environment,
+            stdin=asyncio.subprocess.DEVNULL,
+            stdout=answer,
+            stderr=messages,
+            start_new_session=True,
+            umask=0o077,
+        )
+
+
+def _read(file: Path) -> dict[str, Any]:
+    """What is kept of a run; that it is damaged, where that cannot be read."""
+    nothing = {"state": DAMAGED, "title": "", "verb": "run", "case": "", "changes": "", "arguments": []}
+    try:
+        known = json.loads(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        if error.errno in SHORT:
+            raise
+        return nothing
+    except (ValueError, RecursionError):
+        return nothing
+    sound = isinstance(known, dict) and all(isinstance(known.get(key), type(value)) for key, value in nothing.items())
+    words = sound and known["verb"] in VERBS and all(isinstance(each, str) for each in known["arguments"])
+    return known if words else nothing
+
+
+def _last_line(log: Path) -> str:
+    try:
+        lines = log.read_text(encoding="utf-8", errors="replace").splitlines()
+    except FileNotFoundError:
+        return ""
+    return lines[-1][:300] if lines else ""
 
 
 def _command(state: Mapping[str, Any]) -> list[str]:
@@ -217,11 +352,13 @@ def _failure(place: Path) -> str:
     """Why a result is not the one that was wanted, in a word or two, where there is a reason."""
     try:
         answer = json.loads((place / _ANSWER).read_text(encoding="utf-8"))
-    except (OSError, ValueError):  # words, or nothing
+        return study.state(answer)[0] if "comparisons" in answer else str(answer.get("outcome", "failed"))
+    except OSError as error:
+        if error.errno in SHORT:
+            raise
         return "failed"
-    if "comparisons" in answer:
-        return study.state(answer)[0]
-    return str(answer.get("outcome", "failed"))
+    except (ValueError, LookupError, TypeError, AttributeError):  # words, or half an answer
+        return "failed"
 
 
 def _stdout(command: Sequence[str]) -> str:
@@ -232,15 +369,15 @@ def _files(place: Path) -> dict[str, Path]:
     """The files of a run by the names under which they are downloaded; its report has one name whatever the verb."""
     fixed = {name: file for name, inside in DOWNLOADS.items() if _holds(file := place / inside)}
     before = place / _BEFORE / _SCENARIO
-    if before.is_file():
+    if before.is_file() and _SCENARIO in fixed:
         changed = before.read_bytes() != fixed[_SCENARIO].read_bytes()
         fixed |= {_SCENARIO: before} | ({"placed.toml": fixed[_SCENARIO]} if changed else {})
     out = place / "out"
     written = {name: out / name for name in names(out)}
     report = next((file for name, file in written.items() if name.endswith(".html")), None)
-    made = fixed if report is None else fixed | {"report.html": report}
+    every = fixed if report is None else fixed | {"report.html": report}
     kinds = KINDS if report else (*KINDS, ".png")  # a report has the figures
-    return made | {name: file for name, file in written.items() if name.endswith(kinds)}
+    return every | {name: file for name, file in written.items() if name.endswith(kinds)}
 
 
 def _holds(file: Path) -> bool:
@@ -249,7 +386,9 @@ def _holds(file: Path) -> bool:
 
 
 def _end(process: asyncio.subprocess.Process) -> None:
-    """Kill a process and all that it has started."""
+    """Kill a process and all that it has started, unless it has ended."""
+    if process.returncode is not None:
+        return
     with suppress(ProcessLookupError):
         if os.name == "posix":
             os.killpg(process.pid, signal.SIGKILL)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
+import errno
 import secrets
-import socket
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
 from importlib.resources import files as resources
@@ -14,13 +15,16 @@ from fastapi import Body, FastAPI, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import FileResponse, JSONResponse, Response
 from pydantic import Field
+from starlette.requests import ClientDisconnect
 
 from gbeam.app import documents, files, verbs
 from gbeam.app.access import REPORT_POLICY, Door
+from gbeam.app.connections import AT_ONCE, Connections, listening
 from gbeam.app.jobs import Jobs
 from gbeam.app.preview import columns, load_curves
-from gbeam.errors import GbeamError
+from gbeam.errors import GbeamError, InputError
 from gbeam.guards.limits import SCENARIO_BYTES
+from gbeam.guards.lock import alone
 from gbeam.io.histories import csv_of
 from gbeam.io.stored import read_stored
 from gbeam.scenario.template import template
@@ -40,6 +44,7 @@ def create_app(folder: Path) -> FastAPI:
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        asyncio.get_running_loop().set_exception_handler(_once(jobs.complain))
         jobs.start()
         yield
         await jobs.stop()
@@ -47,11 +52,21 @@ def create_app(folder: Path) -> FastAPI:
     app = FastAPI(title="gbeam", docs_url=None, redoc_url=None, lifespan=lifespan)
 
     @app.exception_handler(GbeamError)
-    async def refuse(request: Request, error: GbeamError) -> JSONResponse:
+    async def refuse(request: Request, error: GbeamError, status: int = 422) -> JSONResponse:
         # The page shows it at its place, and asks for it as an answer: a status of failure would stand in the
         # browser's console as an error of the page.
-        status = 200 if REFUSALS in request.headers else 422
+        status = 200 if REFUSALS in request.headers else status
         return JSONResponse({"errors": documents.problems(error)}, status, {REFUSALS: "1"})
+
+    @app.exception_handler(OSError)
+    async def fail(request: Request, error: OSError) -> JSONResponse:
+        problem = f"cannot be reached: {error.strerror or error}"
+        fix = f"make room on the disk of {folder}" if error.errno == errno.ENOSPC else "try again in a moment"
+        return await refuse(request, InputError("folder", problem, fix), 503)
+
+    @app.exception_handler(ClientDisconnect)
+    async def leave(_: Request, __: ClientDisconnect) -> Response:
+        return Response("too large", 413)  # or gone, and does not hear it
 
     for name in ("index.html", "app.js", "app.css"):
         app.add_api_route("/" if name == "index.html" else f"/{name}", _asset(name), include_in_schema=False)
@@ -116,24 +131,27 @@ def create_app(folder: Path) -> FastAPI:
         return verbs.offered()
 
     @app.post("/api/runs")
-    async def submit(
+    def submit(
         text: Text,
         verb: Annotated[str, Body(embed=True, max_length=100)] = "run",
         options: Annotated[Sequence[Line], Body(embed=True, max_length=20)] = (),
         case: Annotated[str, Body(embed=True, max_length=100)] = "",
     ) -> dict[str, str]:
         """Queue a verb on a scenario; of a sweep's case the run that is there."""
-        found = await run_in_threadpool(documents.described, text, records, distributions=verb == "sweep")
+        found = documents.described(text, records, distributions=verb == "sweep")
         if found["errors"]:
             raise documents.Unfit(found["errors"])
         data = parse(documents.NAME, text)
         arguments = verbs.arguments(verb, options, data)
         title = str(data.get("title", ""))[:200]
         named = [files.regular(records, name) for name in verbs.records(verb, options)]
-        return {"id": jobs.submit(text, title, [*documents.records(data, records), *named], verb, arguments, case)}
+        every = [*documents.records(data, records), *named]
+        before = jobs.last(title)
+        changes = documents.changes(before, text) if before else ""
+        return {"id": jobs.submit(text, title, every, verb, arguments, case, changes)}
 
     @app.delete("/api/runs/{number}")
-    async def cancel(number: str) -> dict[str, Any]:
+    def cancel(number: str) -> dict[str, Any]:
         """End a run, or take it out of the queue."""
         jobs.cancel(number)
         return jobs.state(number)
@@ -149,11 +167,11 @@ def create_app(folder: Path) -> FastAPI:
     def download(number: str, name: str) -> FileResponse:
         """A file of a run."""
         file = jobs.file(number, name)
-        headers = {"content-security-policy": REPORT_POLICY}
+        there: dict[str, Any] = {"headers": {"content-security-policy": REPORT_POLICY}, "stat_result": file.stat()}
         if file.suffix == ".html":
-            return FileResponse(file, media_type="text/html; charset=utf-8", headers=headers)
+            return FileResponse(file, media_type="text/html; charset=utf-8", **there)
         kind = _BINARY.get(file.suffix, "text/plain; charset=utf-8")
-        return FileResponse(file, media_type=kind, filename=f"{number}-{name}", headers=headers)
+        return FileResponse(file, media_type=kind, filename=f"{number}-{name}", **there)
 
     return app
 
@@ -164,6 +182,19 @@ def _asset(name: str) -> Callable[[], Response]:
         return Response(content, media_type=_KINDS[name[name.rindex(".") :]])
 
     return asset
+
+
+def _once(complain: Callable[[str], None]) -> Callable[[asyncio.AbstractEventLoop, dict[str, Any]], None]:
+    """Handle what the event loop meets: that descriptors are used up is said once, not at every connection."""
+
+    def handle(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        error = context.get("exception")
+        if isinstance(error, OSError) and error.errno in files.SHORT:
+            complain(error.strerror or str(error))
+        else:
+            loop.default_exception_handler(context)
+
+    return handle
 
 
 def serve(folder: Path, port: int, announce: Callable[[str], None]) -> None:
@@ -177,13 +208,31 @@ def serve(folder: Path, port: int, announce: Callable[[str], None]) -> None:
         0 for any that is free.
     announce : callable
         Called with the address to open, once it is there.
+
+    Raises
+    ------
+    InputError
+        If the port or the folder is another program's.
     """
     import uvicorn
 
-    listening = socket.create_server(("127.0.0.1", port))
-    port = listening.getsockname()[1]
-    token = secrets.token_urlsafe(24)
-    guarded: Any = Door(create_app(folder), port, token)
-    config = uvicorn.Config(guarded, log_level="warning", access_log=False, ws="none", server_header=False)
-    announce(f"http://127.0.0.1:{port}/?token={token}")
-    uvicorn.Server(config).run(sockets=[listening])
+    with alone(files.made(folder) / ".lock", "--folder", "open the address that it printed, or name another folder"):
+        try:
+            opened = listening(port)
+        except OSError as error:
+            problem = f"cannot be listened on ({error.strerror})"
+            raise InputError("--port", problem, "leave it out, or give another") from None
+        port = opened.getsockname()[1]
+        token = secrets.token_urlsafe(24)
+        guarded: Any = Connections(Door(create_app(folder), port, token))
+        config = uvicorn.Config(
+            guarded,
+            http=guarded.protocol,
+            backlog=AT_ONCE,
+            log_level="error",
+            access_log=False,
+            ws="none",
+            server_header=False,
+        )
+        announce(f"http://127.0.0.1:{port}/?token={token}")
+        uvicorn.Server(config).run(sockets=[opened])

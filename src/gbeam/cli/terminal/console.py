@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
+from contextlib import suppress
+from pathlib import Path
 from threading import Event, Thread
 from time import monotonic
 from types import TracebackType
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from rich.progress import Progress
 
 INTERVAL = "GBEAM_PROGRESS"  # environment: seconds between lines, for programs that read them, on a terminal too
+FILE = "GBEAM_PROGRESS_FILE"  # environment: the file that has the last line, in place of stderr
 PATIENCE = 2.0  # s without a sign of life that need no explanation
 EVERY = 5.0  # s between lines where stderr is not a terminal
 _REDRAW = 0.1  # s
@@ -58,9 +61,17 @@ class Watch:
             self._draw()
             return
         while True:
-            print(f"gbeam: {self.line()}", file=sys.stderr, flush=True)
+            self._say()
             if self._over.wait(EVERY if every is None else every):
                 return
+
+    def _say(self) -> None:
+        file = os.environ.get(FILE)
+        if not file:
+            print(f"gbeam: {self.line()}", file=sys.stderr, flush=True)
+            return
+        with suppress(OSError):  # progress is not worth a failure
+            Path(file).write_text(f"{self.line()}\n", encoding="utf-8")
 
     def _draw(self) -> None:
         from rich.console import Console

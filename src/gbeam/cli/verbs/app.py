@@ -32,9 +32,5 @@ def app(
         if (error.name or "").partition(".")[0] not in ("fastapi", "starlette", "uvicorn"):
             raise
         raise InputError("app", f"needs {error.name}, which is not installed", "pip install 'gbeam[app]'") from None
-    try:
-        serve(place.resolve(), port, lambda address: print(printable(address), flush=True))
-    except OSError as error:
-        problem = f"cannot be listened on ({error.strerror})"
-        raise InputError("--port", problem, "leave it out, or give another") from None
+    serve(place.resolve(), port, lambda address: print(printable(address), flush=True))
     return 0
