@@ -19,11 +19,12 @@ HOST = f"http://127.0.0.1:{PORT}"
 
 @dataclass
 class Site:
-    """The app behind its door, and what calls it; `opened` has the session's cookie."""
+    """The app behind its door, and what calls it; `opened` has the session's cookie and key, `reader` opens files."""
 
     folder: Path
     call: Callable[..., Any]
     opened: dict[str, str]
+    reader: str
 
 
 @pytest.fixture
@@ -48,4 +49,5 @@ def site(tmp_path: Path) -> Site:
 
     answer = call("GET", "/?token=the-token")
     cookie = answer.headers["set-cookie"].split(";")[0]
-    return Site(tmp_path, call, {"cookie": cookie, "origin": HOST})
+    key, reader = answer.headers["location"].removeprefix("/#").split(".")
+    return Site(tmp_path, call, {"cookie": cookie, "origin": HOST, "x-gbeam-key": key}, reader)

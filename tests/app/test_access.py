@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 from pathlib import Path
 from typing import Any
 
 import pytest
+
+from gbeam.app.access import Door
 
 from ..scenarios import FAST
 from .conftest import HOST, PORT, Site
@@ -15,9 +18,10 @@ API = "/api/runs"
 
 def test_the_address_gives_a_strict_cookie_once(site: Site) -> None:
     answer = site.call("GET", "/?token=the-token")
-    assert answer.status_code == 303 and answer.headers["location"] == "/"  # the token stays in no history
+    assert answer.status_code == 303 and answer.headers["location"].startswith("/#")  # the token stays in no history
     cookie = answer.headers["set-cookie"]
-    assert "HttpOnly" in cookie and "SameSite=Strict" in cookie and "the-token" not in cookie
+    assert "HttpOnly" in cookie and "SameSite=Strict" in cookie
+    assert "the-token" not in cookie + answer.headers["location"]
     assert site.call("GET", "/", site.opened).status_code == 200
     assert site.call("GET", API, site.opened).json() == []
 
@@ -26,8 +30,8 @@ def test_the_address_gives_a_strict_cookie_once(site: Site) -> None:
     ("headers", "status"),
     [
         ({}, 401),
-        ({"cookie": "gbeam-session="}, 401),
-        ({"cookie": "gbeam-session=the-token"}, 401),
+        ({"cookie": f"gbeam-session-{PORT}="}, 401),
+        ({"cookie": f"gbeam-session-{PORT}=the-token"}, 401),
         ({"host": f"evil.example:{PORT}"}, 403),  # a name that was made to lead here
         ({"host": f"127.0.0.1:{PORT + 1}"}, 403),
         ({"host": "127.0.0.1"}, 403),
@@ -39,18 +43,55 @@ def test_the_address_gives_a_strict_cookie_once(site: Site) -> None:
     ],
 )
 def test_strangers_are_refused(site: Site, headers: dict[str, str], status: int) -> None:
-    own = {} if status == 401 else site.opened
+    own = {"x-gbeam-key": site.opened["x-gbeam-key"]} if status == 401 else site.opened
     answer = site.call("GET", API, {**own, **headers})
     assert answer.status_code == status
     if status == 401:
         assert site.call("GET", "/?token=wrong", headers).status_code == 401
 
 
+def test_a_server_on_another_port_can_use_no_cookie(site: Site) -> None:
+    """The browser sends it the cookie, with which it may read the page, in which nothing is secret."""
+    cookie = {"cookie": site.opened["cookie"]}
+    number = site.call("POST", API, site.opened, json={"text": FAST}).json()["id"]
+    file = f"{API}/{number}/scenario.toml"
+    assert site.call("GET", "/", cookie).status_code == 200
+    secrets = (site.opened["x-gbeam-key"], site.reader)
+    assert not any(secret in site.call("GET", name, cookie).text for name in ("/", "/app.js") for secret in secrets)
+    for path in (API, file, "/api/records", "/openapi.json"):
+        assert site.call("GET", path, cookie).status_code == 401
+    assert site.call("POST", API, {**cookie, "origin": HOST}, json={"text": FAST}).status_code == 401
+    # The key in the address of a file opens files, and nothing else.
+    read = {"params": {"key": site.reader}}
+    assert site.call("GET", file, cookie, **read).text == FAST
+    assert site.call("GET", file, **read).status_code == 401
+    assert site.call("GET", file, cookie, params={"key": "x" * 43}).status_code == 401
+    assert site.call("GET", API, cookie, **read).status_code == 401
+    for method in ("DELETE", "POST"):
+        assert site.call(method, f"{API}/{number}", {**cookie, "origin": HOST}, **read).status_code == 401
+
+
+def test_two_servers_leave_each_others_sessions(site: Site, tmp_path: Path) -> None:
+    pytest.importorskip("httpx")
+    names = []
+    for port in (PORT, PORT + 1):
+        door = Door(None, port, "the-token")
+        scope = {"type": "http", "method": "GET", "path": "/", "query_string": b"token=the-token"}
+        answer: list[dict[str, Any]] = []
+
+        async def keep(message: dict[str, Any], into: list[dict[str, Any]] = answer) -> None:
+            into.append(message)
+
+        asyncio.run(door({**scope, "headers": [(b"host", f"127.0.0.1:{port}".encode())]}, None, keep))
+        names.append(dict(answer[0]["headers"])[b"set-cookie"].split(b"=")[0])
+    assert len({*names}) == 2
+
+
 def test_changes_need_an_origin(site: Site) -> None:
-    without = {"cookie": site.opened["cookie"]}
+    without = {name: value for name, value in site.opened.items() if name != "origin"}
     assert site.call("POST", "/api/document", without, json={"text": ""}).status_code == 403
     assert site.call("POST", "/api/document", site.opened, json={"text": ""}).status_code == 200
-    localhost = {"cookie": site.opened["cookie"], "host": f"localhost:{PORT}", "origin": f"http://localhost:{PORT}"}
+    localhost = {**without, "host": f"localhost:{PORT}", "origin": f"http://localhost:{PORT}"}
     assert site.call("POST", "/api/document", localhost, json={"text": ""}).status_code == 200
 
 

@@ -1,4 +1,10 @@
-"""Who may talk to the server: this computer's browser, on the page that the server itself gave it."""
+"""Who may talk to the server: this computer's browser, on the page that the server itself gave it.
+
+A browser sends a cookie to every port of a computer, also to another user's server on one. The cookie opens therefore
+the page alone, in which nothing is secret. All else asks for a key too, which comes in the part of an address that is
+never sent and which the browser keeps for this port alone: the page's script says it in a header. In the addresses of
+files, which the browser itself fetches, it says another one, which opens files only.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +12,9 @@ import secrets
 from typing import Any
 from urllib.parse import parse_qs
 
-COOKIE = "gbeam-session"
+KEY = "x-gbeam-key"  # header
+_PAGE = ("/", "/app.js", "/app.css")
+_FILES = "/api/runs/"
 # Nothing inline, nothing from elsewhere; reports are shown in a frame with a policy of their own.
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
@@ -15,6 +23,7 @@ POLICY = (
 # A report comes from data: it may run its own script, in an origin of its own, without the session.
 REPORT_POLICY = "sandbox allow-scripts; frame-ancestors 'self'"
 _SAFE = ("GET", "HEAD")
+UNKNOWN = "open the address that `gbeam app` printed"
 LARGEST = 80 * 2**20  # bytes of a request: a record of 64 MiB, and what is around it
 
 
@@ -33,7 +42,9 @@ class Door:
     def __init__(self, app: Any, port: int, token: str) -> None:
         self._app = app
         self._hosts = {f"{name}:{port}" for name in ("127.0.0.1", "localhost")}
-        self._token, self._session = token, secrets.token_urlsafe(32)
+        self._cookie = f"gbeam-session-{port}"  # a name of its own: it replaces no other server's
+        self._token = token
+        self._session, self._key, self._reader = (secrets.token_urlsafe(32) for _ in range(3))
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         """Let a request pass, or answer it."""
@@ -69,17 +80,25 @@ class Door:
             return 403, "no origin", []
         if int(headers.get("content-length") or 0) > LARGEST:
             return 413, "too large", []
-        if scope["path"] == "/" and scope["method"] == "GET":
-            given = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])[0]
-            if given and secrets.compare_digest(given.encode(), self._token.encode()):
-                cookie = f"{COOKIE}={self._session}; HttpOnly; SameSite=Strict; Path=/"
-                # To the same place without the token, which is then in no history.
-                return 303, "", [(b"location", b"/"), (b"set-cookie", cookie.encode())]
+        query = parse_qs(scope["query_string"].decode("latin-1"))
+        if scope["path"] == "/" and scope["method"] == "GET" and _same(query.get("token", [""])[0], self._token):
+            cookie = f"{self._cookie}={self._session}; HttpOnly; SameSite=Strict; Path=/"
+            # To the same place without the token, which is then in no history; the page removes the keys from there.
+            place = f"/#{self._key}.{self._reader}"
+            return 303, "", [(b"location", place.encode()), (b"set-cookie", cookie.encode())]
         pairs = (each.strip().partition("=") for each in headers.get("cookie", "").split(";"))
-        session = next((value for name, _, value in pairs if name == COOKIE), "")
-        if not secrets.compare_digest(session.encode(), self._session.encode()):
-            return 401, "open the address that `gbeam app` printed", []
+        session = next((value for name, _, value in pairs if name == self._cookie), "")
+        if not _same(session, self._session):
+            return 401, UNKNOWN, []
+        reads = scope["method"] in _SAFE and scope["path"].startswith(_FILES)
+        known = scope["path"] in _PAGE or _same(headers.get(KEY, ""), self._key)
+        if not known and not (reads and _same(query.get("key", [""])[0], self._reader)):
+            return 401, UNKNOWN, []
         return None
+
+
+def _same(given: str, secret: str) -> bool:
+    return secrets.compare_digest(given.encode(), secret.encode())
 
 
 _HEADERS = [

@@ -81,8 +81,22 @@ export function problem(message: string): Problem {
   return { path: "", field: "", message, hint: "", line: null };
 }
 
+const KEYS = "gbeam-keys";
+/** That of requests, and that in the addresses of files. */
+let [key, reader] = ["", ""];
+
+/** Take the keys from behind the address, where they are never sent, or from what the browser keeps for this port alone. */
+export function takeKeys(): void {
+  const given = /^#([\w-]{43}\.[\w-]{43})$/.exec(location.hash);
+  if (given) {
+    localStorage.setItem(KEYS, given[1]!);
+    history.replaceState(null, "", "/"); // and from there into no history
+  }
+  [key = "", reader = ""] = (localStorage.getItem(KEYS) ?? "").split(".");
+}
+
 async function call<T>(path: string, method: string, body?: BodyInit, kind = "application/json"): Promise<T> {
-  const headers = { "x-gbeam-refusal": "1", ...(body === undefined ? {} : { "content-type": kind }) };
+  const headers = { "x-gbeam-key": key, "x-gbeam-refusal": "1", ...(body === undefined ? {} : { "content-type": kind }) };
   const response = await fetch(path, { method, headers, ...(body === undefined ? {} : { body }) }).catch(() => {
     throw new Refusal([problem("the server does not answer: start `gbeam app` again, and open the address that it prints")]);
   });
@@ -115,6 +129,6 @@ export const api = {
   submit: (text: string, verb = "run", options: string[] = [], of = "") =>
     post<{ id: string }>("/api/runs", { text, verb, options, case: of }),
   cancel: (id: string) => call<Run>(`/api/runs/${id}`, "DELETE"),
-  file: (id: string, name: string) => `/api/runs/${id}/${name}`,
-  text: async (id: string, name: string) => (await fetch(`/api/runs/${id}/${name}`)).text(),
+  file: (id: string, name: string) => `/api/runs/${id}/${encodeURIComponent(name)}?key=${reader}`,
+  text: async (id: string, name: string) => (await fetch(api.file(id, name))).text(),
 };

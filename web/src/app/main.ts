@@ -5,10 +5,11 @@ import "uplot/dist/uPlot.min.css";
 import "../gbeam.css";
 import "./app.css";
 import { reachable } from "../controls";
-import { api } from "./api";
+import { api, takeKeys } from "./api";
 import { Editor } from "./editor";
 import { Runs } from "./runs";
 
+takeKeys();
 const root = document.getElementById("app")!;
 const runs: Runs = new Runs((text) => void editor.read(text));
 const editor: Editor = new Editor((id) => void runs.watch(id));
