@@ -27,6 +27,12 @@ def test_columns_signs_and_units(tmp_path: Path) -> None:
     np.testing.assert_array_equal(read(tmp_path, [HEADER, *ROWS], z="0").values[:, 2], 0)
 
 
+def test_a_record_of_zeros_alone_is_none(tmp_path: Path) -> None:
+    (tmp_path / "record.csv").write_text("\n".join([HEADER, *ROWS]), encoding="utf-8")
+    with pytest.raises(InputError, match='takes nothing of the file: x, y and z are "0".*name a column'):
+        read_record(tmp_path / "record.csv", "t", "0", "0", "0", "g", quantity="acceleration")
+
+
 def test_f16_record() -> None:
     record = read_record(F16, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
     assert record.times.shape == (1600,) and record.values.shape == (1600, 3)

@@ -17,7 +17,7 @@ from gbeam.motion.bases.records.clock import check_interval, check_sampling
 from gbeam.motion.bases.records.hdf5 import read_hdf5
 from gbeam.motion.bases.records.mat import read_mat
 from gbeam.motion.bases.records.soundness import CHECKS, Samples, refuse_unsound
-from gbeam.motion.bases.records.table import Table
+from gbeam.motion.bases.records.table import NO_COLUMN, Table
 from gbeam.motion.bases.records.text import read_text
 from gbeam.motion.bases.records.uff import read_uff
 from gbeam.motion.bases.records.units import UNITS, unit_of
@@ -177,6 +177,8 @@ def read_flight(
     skip = conditioning.skipped
     names = {"x": x, "y": y, "z": z}
     turns = {} if rates is None else {"p": rates.p, "q": rates.q, "r": rates.r}
+    if {*names.values()} == {NO_COLUMN}:
+        raise InputError("record", 'takes nothing of the file: x, y and z are "0"', "name a column for one of them")
     table = _table(path)
 
     def scale(key: str, kind: str, declared: str | None, columns: dict[str, str], otherwise: str) -> tuple[str, float]:

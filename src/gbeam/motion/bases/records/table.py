@@ -16,7 +16,7 @@ from gbeam.guards.limits import COLUMNS, LARGEST
 
 Floats = NDArray[np.float64]
 
-_NO_COLUMN = "0"
+NO_COLUMN = "0"
 _LISTED = 30  # names in a message
 
 
@@ -154,7 +154,7 @@ class Table:
         known = {word for one in self.columns for word in (one.name, *one.aliases)}
         if name in known:
             return 1.0, name
-        if name == _NO_COLUMN:
+        if name == NO_COLUMN:
             return 1.0, None
         return (-1.0, name[1:].strip()) if name.startswith("-") else (1.0, name)
 
