@@ -1,7 +1,7 @@
 """Build the sdist and the wheel into dist/, and check what a release must hold: `make dist`.
 
 The wheel is built from the sdist. It has to be, byte by byte, the one that the tree gives, and to hold every file of
-the package and no test, benchmark or example.
+the package, the examples that the app offers, and no test, benchmark or other example.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tarfile
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -34,12 +35,12 @@ def main() -> int:
 def wheel_faults(wheel: Path) -> list[str]:
     with zipfile.ZipFile(wheel) as archive:
         held = {name for name in archive.namelist() if ".dist-info/" not in name}
-    package = ROOT / "src"
+    package, settings = ROOT / "src", tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     expected = {
         path.relative_to(package).as_posix()
         for path in (package / "gbeam").rglob("*")
         if path.is_file() and "__pycache__" not in path.parts
-    }
+    } | {*settings["tool"]["hatch"]["build"]["targets"]["wheel"]["force-include"].values()}
     return [f"{wheel.name} lacks {name}" for name in sorted(expected - held)] + [
         f"{wheel.name} should not hold {name}" for name in sorted(held - expected)
     ]

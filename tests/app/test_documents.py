@@ -148,7 +148,10 @@ def test_what_is_not_written_is_not_edited(site: Site, path: str) -> None:
 def test_a_record_takes_the_place_of_a_profile(site: Site) -> None:
     rows = "".join(f"{0.01 * i:.2f},{1 + 0.001 * i}\n" for i in range(101))
     answer = site.call("PUT", "/api/records/pull up.csv", site.opened, content=f"t,n_z\n{rows}".encode())
-    assert answer.json() == {"name": "pull up.csv", "columns": ["t", "n_z"]}
+    known = {"time": "t", "z": "n_z", "unit": "g"}
+    assert answer.json() == {"name": "pull up.csv", "columns": ["t", "n_z"], "suggested": known}
+    assert site.call("GET", "/api/records/pull up.csv", site.opened).json() == answer.json()
+    assert site.call("GET", "/api/records/other.csv", site.opened).status_code == 422
     record = {"file": "pull up.csv", "time": "t", "x": "0", "y": "0", "z": "n_z", "unit": "g"}
     text = FAST.replace(RAMPS, "").replace('level = "6 g"', 'level = "1.2 g"')
     for _ in range(2):  # the second time in place of the first
@@ -160,8 +163,60 @@ def test_a_record_takes_the_place_of_a_profile(site: Site) -> None:
     assert z[0] == pytest.approx(1, abs=1e-3) and z[-1] == pytest.approx(1.05, abs=2e-3)
 
 
+def test_a_record_of_which_nothing_is_taken_is_refused(site: Site, gbeam: Callable[..., Answer]) -> None:
+    """Zeros throughout are no flight, whatever they are said to hold."""
+    (site.folder / "records").mkdir()
+    (site.folder / "records" / "a.csv").write_text("t,z\n" + "".join(f"{0.01 * i:.2f},1\n" for i in range(101)))
+    record = {"file": "a.csv", "time": "t", "x": "0", "y": "0", "z": "0", "unit": "g", "quantity": "acceleration"}
+    text = FAST.partition("[motion.spin]")[0] + "[response]\nduration = '0.5 s'\n"
+    body = {"text": text, "motion": "flight", "record": record}
+    made = site.call("POST", "/api/record", site.opened, json=body).json()
+    (problem,) = made["errors"]
+    assert problem["path"] == "motion.flight.record" and 'x, y and z are "0"' in problem["message"]
+    assert site.call("POST", "/api/runs", site.opened, json={"text": made["text"]}).status_code == 422
+    scenario = site.folder / "records" / "zeros.toml"
+    scenario.write_text(made["text"])
+    answer = gbeam("check", scenario)
+    assert answer.status == 2 and "motion.flight.record" in answer.err and "name a column" in answer.err
+
+
+def test_another_column_leaves_what_else_is_written_of_a_record(site: Site) -> None:
+    written = 'record = { file = "a.csv", time = "t", x = "0", y = "0", z = "z", unit = "g"'
+    written += ', cutoff = "5 Hz", despike = true }'
+    text = FAST.replace('acceleration = { z = { profile = "constant", level = "6 g" } }', written)
+    record = {"file": "a.csv", "time": "t", "x": "0", "y": "0", "z": "-z", "unit": "g", "time_unit": "ms"}
+    for file, kept in (("a.csv", {"cutoff": "5 Hz", "despike": True}), ("b.csv", {})):
+        body = {"text": text, "motion": "flight", "record": {**record, "file": file}}
+        after = tomllib.loads(site.call("POST", "/api/record", site.opened, json=body).json()["text"])
+        assert after["motion"]["flight"]["record"] == {**record, "file": file, **kept}
+
+
+def test_examples_are_sound_and_come_with_their_records(site: Site) -> None:
+    offered = site.call("GET", "/api/examples", site.opened).json()
+
+    def taken(name: str) -> dict[str, Any]:
+        made: dict[str, Any] = site.call("POST", "/api/example", site.opened, json={"name": name}).json()
+        return made
+
+    for name in offered:
+        assert taken(name)["errors"] == []
+    flown = next(name for name in offered if "F-16" in name)
+    examples = Path(__file__).parents[2] / "examples"
+    record = site.folder / "records" / "f16_8g_turn.csv"
+    assert record.read_bytes() == (examples / "data" / "f16_8g_turn.csv").read_bytes()
+    expected = (examples / "f16_8g_turn.toml").read_text().replace("data/", "")
+    assert taken(flown)["text"] == expected and len([*record.parent.iterdir()]) == 1
+    # A file of one's own by that name stays.
+    record.write_text("t,z\n0,1\n")
+    again = taken(flown)
+    assert again["errors"] == [] and 'file = "example f16_8g_turn.csv"' in again["text"]
+    assert record.read_text() == "t,z\n0,1\n"
+    assert site.call("POST", "/api/example", site.opened, json={"name": "../../x"}).status_code == 422
+
+
 def test_a_record_takes_the_place_of_the_examples_profile(site: Site) -> None:
-    text = site.call("GET", "/api/examples", site.opened).json()["Flight and centrifuge"]
+    body = {"name": "Flight and centrifuge"}
+    text = site.call("POST", "/api/example", site.opened, json=body).json()["text"]
     site.call("PUT", "/api/records/a.csv", site.opened, content=b"t,z\n0,1\n1,1\n")
     record = {"file": "a.csv", "time": "t", "x": "0", "y": "0", "z": "z", "unit": "g"}
     body = {"text": text, "motion": "flight", "record": record}

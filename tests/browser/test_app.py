@@ -97,6 +97,13 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str, tmp_pa
     frame = page.frame_locator("iframe.report")
     frame.locator("html[data-gbeam]").wait_for(timeout=20_000)
     assert frame.locator(".gbeam-canvas").is_visible() and "fast" in frame.locator("h1").inner_text()
+    # The report is whole: nothing in it is scrolled by itself, so that the views and what plays them are seen together.
+    inside = "[document.documentElement.scrollHeight - innerHeight, innerHeight > window.screen.height]"
+    page.wait_for_function("() => document.querySelector('iframe.report').style.height")
+    assert page.frames[-1].evaluate(inside) == [0, True]
+    play = frame.locator(".gbeam-play")
+    play.scroll_into_view_if_needed()
+    assert play.bounding_box()["y"] + play.bounding_box()["height"] <= 1000
     frame.locator(".gbeam-time").press("Home")
     first = _picture(page)
     frame.locator(".gbeam-time").press("End")
@@ -124,6 +131,9 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str, tmp_pa
     for box in page.get_by_role("checkbox", name="compare").all():
         box.check()
     page.get_by_role("heading", name="Compared").wait_for()
+    # Of one title: told apart by what has been changed, and to the second.
+    assert page.locator(".run", has_text="beam.length = 310 mm").count() == 1
+    assert "beam.length = 310 mm" in page.locator(".compared").inner_text()
     row = page.locator("tr", has_text="flight: tip, mm").locator("td").all_inner_texts()
     assert len(row) == 2 and float(row[0]) < float(row[1])
     assert _violations(page) == []
@@ -141,8 +151,11 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str, tmp_pa
     text.fill(BIG)
     page.wait_for_function("() => document.querySelector('#app pre').textContent.includes('long')")
     page.get_by_role("button", name="Run", exact=True).click()
+    page.locator(".run", has_text="long").locator(".faint", has_text=": ").last.wait_for()  # how far it is
     page.get_by_role("button", name="Cancel").click()
     page.locator(".run", has_text="cancelled").wait_for()
+    page.get_by_role("button", name="Use this scenario").wait_for()
+    assert page.locator("pre.bad").count() == 0  # progress is no complaint
     page.reload()
     page.wait_for_selector("html[data-gbeam]")
     assert page.locator(".run").count() == 5
@@ -186,13 +199,45 @@ def test_a_person_maps_a_record_and_opens_what_a_verb_made(browser: Any, address
     text = page.get_by_label("scenario as TOML")
     page.get_by_role("button", name="Text").click()
     text.fill(FAST.replace(RAMPS, "").replace("6 g", "1.1 g"))
+    # Nothing is taken for granted: not the column, not the unit.
+    use = page.get_by_role("button", name="Use this record")
+    page.locator(".record", has_text="choose a column for x, y or z").wait_for()
+    assert use.is_disabled() and page.locator(".suggested select").evaluate_all("all => all.map(x => x.value)") == [
+        "Zeit"
+    ]
     page.get_by_label("z is").select_option(label="−N_z down")
+    page.locator(".record", has_text="choose the unit").wait_for()
+    page.locator(".record label", has_text="Unit choose").first.locator("select").select_option("g")
     page.get_by_label("Time in").select_option("ms")
-    page.get_by_role("button", name="Use this record").click()
+    use.click()
     page.locator("#app .uplot").wait_for()
     written = text.input_value()
     assert 'z = "-N_z down"' in written and 'time_unit = "ms"' in written
     _holds(page)
+
+    # The panel is of the record that the scenario on the page has, with what is written of it.
+    title = page.locator(".record h3")
+    page.get_by_role("heading", name="Record of flight: pull up 1.csv").wait_for()
+    page.get_by_label("Start from").select_option("F-16 turn of 8 g, with its record")
+    page.get_by_role("heading", name="Record of flight: f16_8g_turn.csv").wait_for()
+    assert page.get_by_label("y is").input_value() == "-n_y_g" and page.locator("#app .uplot").count() == 0
+    page.get_by_label("Start from").select_option("Hub")
+    title.wait_for(state="detached")
+    text.fill(written)
+    title.get_by_text("pull up 1.csv").wait_for()
+    assert page.get_by_label("z is").input_value() == "-N_z down"
+    # Names that say what they are, with their units, are suggested; a sign never is.
+    (tmp_path / "b.csv").write_text("t_ms,Acceleration Z [g],p_rad_s,q_rad_s,r_rad_s\n0,1,0,0,0\n10,1,0,0,0\n")
+    file.set_input_files(tmp_path / "b.csv")
+    title.get_by_text("b.csv, not used yet").wait_for()
+    suggested = page.locator(".suggested select").evaluate_all("all => all.map(x => x.value)")
+    assert suggested == ["t_ms", "ms", "Acceleration Z [g]", "g", "p_rad_s", "q_rad_s", "r_rad_s", "rad/s"]
+    assert page.get_by_label("x is").input_value() == "0" and use.is_enabled()
+    _holds(page)
+    page.reload()
+    page.wait_for_selector("html[data-gbeam]")
+    title.get_by_text("pull up 1.csv").wait_for()
+    page.get_by_role("button", name="Text").click()
 
     # A value that is wrong for a verb is said beside it.
     page.get_by_label("Compute").select_option("modes")

@@ -38,6 +38,7 @@ export function showPage(data: Data): void {
   themeSwitch();
   reachable(document.body);
   printing(plots);
+  sayHeight();
   window.gbeam = { viewer };
   document.documentElement.dataset["gbeam"] = "drawn";
 }
@@ -59,6 +60,14 @@ export function showModesIn(stage: HTMLElement, data: Data): { viewer: () => Vie
   stage.append(row, place);
   show(0);
   return { viewer: () => viewer, dispose: () => viewer?.dispose() };
+}
+
+/** Tell the page that shows this one in a frame, if any, how high it is. */
+function sayHeight(): void {
+  if (window.parent === window) return;
+  new ResizeObserver(() => {
+    window.parent.postMessage({ gbeamHeight: Math.ceil(document.body.getBoundingClientRect().height) }, "*");
+  }).observe(document.body);
 }
 
 /** Light or dark, whatever the system says. */

@@ -18,6 +18,8 @@ from gbeam.scenario.values.paths import Path as Place
 from gbeam.scenario.values.paths import parse_path, path_text, written_at
 
 NAME = "scenario.toml"
+# Of a record: what its columns are.
+COLUMNS = ("file", "time", "time_unit", "x", "y", "z", "unit", "quantity", "p", "q", "r", "rate_unit")
 CHANGES = 3  # between two scenarios that are told
 _LONG = 40  # characters of a value in them
 _MISSING = re.compile(r"(\w+) is missing")  # a message about a table, whose field that is
@@ -114,6 +116,8 @@ def removed(text: str, path: str) -> str:
 def with_record(text: str, motion: str, record: dict[str, str]) -> str:
     """Return the text with a flight's record in place of its acceleration, or of its record before.
 
+    What else is written of a record of the same file stays, such as its conditioning.
+
     Raises
     ------
     InputError
@@ -125,7 +129,10 @@ def with_record(text: str, motion: str, record: dict[str, str]) -> str:
         raise InputError(f"motion.{motion}"[:100], "is no flight of the scenario", "add a motion of kind flight")
     if written_at(data, (*place, "acceleration")) is not None:
         text = without_entry(text, (*place, "acceleration"))
-    return with_entry(text, (*place, "record"), record)
+    before = written_at(data, (*place, "record"))
+    same = isinstance(before, dict) and before.get("file") == record.get("file")
+    kept = {key: value for key, value in before.items() if key not in COLUMNS} if same else {}
+    return with_entry(text, (*place, "record"), record | kept)
 
 
 def _place(path: str) -> Place:

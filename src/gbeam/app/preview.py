@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.app.columns import suggested
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion import Flight
 from gbeam.motion.bases.records.record import READERS
@@ -14,12 +15,14 @@ from gbeam.motion.bases.records.text import read_text
 from gbeam.scenario import build, loads
 
 SAMPLES = 1500
+MOST = 500  # columns
 
 
-def columns(file: Path) -> list[str]:
-    """Names of the columns of a record."""
-    table = READERS.get(file.suffix.lower(), read_text)(file)
-    return [each.name for each in table.columns][:500]
+def head(file: Path) -> dict[str, Any]:
+    """Name of a record, its columns, and what these are by their names."""
+    columns = READERS.get(file.suffix.lower(), read_text)(file).columns[:MOST]
+    known = suggested((each.name, each.unit) for each in columns)
+    return {"name": file.name, "columns": [each.name for each in columns], "suggested": known}
 
 
 def load_curves(text: str, folder: Path) -> dict[str, Any]:

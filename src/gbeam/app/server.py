@@ -17,17 +17,16 @@ from fastapi.responses import FileResponse, JSONResponse, Response
 from pydantic import Field
 from starlette.requests import ClientDisconnect
 
-from gbeam.app import documents, files, verbs
+from gbeam.app import documents, examples, files, verbs
 from gbeam.app.access import REPORT_POLICY, Door
 from gbeam.app.connections import AT_ONCE, Connections, listening
 from gbeam.app.jobs import Jobs
-from gbeam.app.preview import columns, load_curves
+from gbeam.app.preview import head, load_curves
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.limits import SCENARIO_BYTES
 from gbeam.guards.lock import alone
 from gbeam.io.histories import csv_of
 from gbeam.io.stored import read_stored
-from gbeam.scenario.template import template
 from gbeam.scenario.text.source import parse
 
 _KINDS = {".js": "text/javascript", ".css": "text/css", ".html": "text/html; charset=utf-8"}
@@ -72,9 +71,14 @@ def create_app(folder: Path) -> FastAPI:
         app.add_api_route("/" if name == "index.html" else f"/{name}", _asset(name), include_in_schema=False)
 
     @app.get("/api/examples")
-    def examples() -> dict[str, str]:
-        """Scenarios to start from, by name."""
-        return {"Flight and centrifuge": template("flight"), "Hub": template("hub")}
+    def offered_examples() -> Sequence[str]:
+        """The names of scenarios to start from."""
+        return examples.NAMES
+
+    @app.post("/api/example")
+    def example(name: Short) -> dict[str, Any]:
+        """A scenario to start from, whose record is kept."""
+        return documents.described(examples.example(name, records), records)
 
     @app.post("/api/document")
     def document(text: Text) -> dict[str, Any]:
@@ -117,8 +121,12 @@ def create_app(folder: Path) -> FastAPI:
         """Keep a record; what its columns are."""
         files.checked(name)
         content = await request.body()
-        await run_in_threadpool(files.store, records, name, content)
-        return {"name": name, "columns": await run_in_threadpool(columns, files.regular(records, name))}
+        return await run_in_threadpool(lambda: head(files.store(records, name, content)))
+
+    @app.get("/api/records/{name}")
+    def described_record(name: str) -> dict[str, Any]:
+        """What the columns of a record are that is kept."""
+        return head(files.regular(records, name))
 
     @app.get("/api/runs")
     def runs() -> list[dict[str, Any]]:

@@ -60,8 +60,17 @@ export interface Run {
   verb: string;
   arguments: string[];
   title: string;
+  /** In the scenario of the last run of its title. */
+  changes: string;
   progress: string;
   files: string[];
+}
+
+/** A record's columns, and what their names and units say of them: keys of a scenario's record. */
+export interface Head {
+  name: string;
+  columns: string[];
+  suggested: Record<string, string>;
 }
 
 export interface Curves {
@@ -111,7 +120,8 @@ async function call<T>(path: string, method: string, body?: BodyInit, kind = "ap
 const post = <T>(path: string, body: unknown): Promise<T> => call<T>(path, "POST", JSON.stringify(body));
 
 export const api = {
-  examples: () => call<Record<string, string>>("/api/examples", "GET"),
+  examples: () => call<string[]>("/api/examples", "GET"),
+  example: (name: string) => post<Document>("/api/example", { name }),
   document: (text: string) => post<Document>("/api/document", { text }),
   edit: (text: string, path: string, value: string) => post<Document>("/api/edit", { text, path, value }),
   add: (text: string, path: string, choice: string) => post<Document>("/api/add", { text, path, choice }),
@@ -120,9 +130,8 @@ export const api = {
     post<Document>("/api/record", { text, motion, record }),
   preview: (text: string) => post<Curves>("/api/preview", { text }),
   upload: (file: File) =>
-    call<{ name: string; columns: string[] }>(
-      `/api/records/${encodeURIComponent(file.name)}`, "PUT", file, "application/octet-stream",
-    ),
+    call<Head>(`/api/records/${encodeURIComponent(file.name)}`, "PUT", file, "application/octet-stream"),
+  record: (name: string) => call<Head>(`/api/records/${encodeURIComponent(name)}`, "GET"),
   runs: () => call<Run[]>("/api/runs", "GET"),
   records: () => call<string[]>("/api/records", "GET"),
   verbs: () => call<Record<string, Verb>>("/api/verbs", "GET"),

@@ -7,6 +7,7 @@ import { axisStyle } from "../plots";
 import { api, type Document, type Problem, problem, Refusal, type Verb } from "./api";
 import { fileName } from "./command";
 import { Form } from "./form";
+import { flightsOf, RecordPanel } from "./record";
 import { Verbs } from "./verbs";
 
 const KEPT = "gbeam-document";
@@ -38,13 +39,16 @@ export class Editor {
   });
   private readonly problems = element("div", "problems");
   private readonly meaning = element("pre");
-  private readonly record = element("div", "record");
+  private readonly record = new RecordPanel(async (motion, record) => {
+    const used = await this.take(api.map(this.document.text, motion, record));
+    if (used) await this.preview();
+    return used;
+  });
   private readonly curves = element("div");
   private readonly views: HTMLButtonElement[];
   private readonly look: HTMLButtonElement;
   private readonly verbs: Verbs;
   private changes: Promise<unknown> = Promise.resolve();
-  private offerFlights: (flights: string[]) => void = () => {};
   private waiting = 0;
   private latest = 0;
 
@@ -61,19 +65,20 @@ export class Editor {
     this.look = button("Preview load", () => void this.preview());
     const acts = [this.look, button("Download", () => this.save())];
     this.verbs = new Verbs(() => this.document.text, submitted);
-    this.root.append(this.start(), this.record, this.verbs.root, this.row(...this.views, ...acts), this.problems);
+    this.root.append(this.start(), this.record.root, this.verbs.root, this.row(...this.views, ...acts), this.problems);
     this.root.append(this.curves, this.form.root, this.text, this.meaning);
     this.show(0);
   }
 
   /** Take up the document of the last visit, or the first example. */
-  async begin(examples: Record<string, string>, verbs: Record<string, Verb>): Promise<void> {
+  async begin(examples: string[], verbs: Record<string, Verb>): Promise<void> {
     this.verbs.begin(verbs);
     await this.verbs.refresh();
-    await this.read(sessionStorage.getItem(KEPT) ?? Object.values(examples)[0] ?? "");
-    const options = [["", "choose"], ...Object.keys(examples).map((name) => [name, name])] as [string, string][];
+    const kept = sessionStorage.getItem(KEPT);
+    await this.take(kept === null ? api.example(examples[0]!) : api.document(kept));
+    const options = ["", ...examples].map((name) => [name, name || "choose"] as const);
     const select = choice("Start from", options, "", (name) => {
-      if (examples[name]) void this.read(examples[name]);
+      if (name) void this.take(api.example(name)).then(() => this.verbs.refresh());
     });
     this.root.querySelector(".start")!.prepend(select);
   }
@@ -95,6 +100,7 @@ export class Editor {
       const made = await answer;
       await released(); // a click on what is made again before its end would be lost
       if (number !== this.latest) return false; // a later change has overtaken it
+      if (made.text !== this.document.text) this.curves.replaceChildren(); // those of the text before
       this.document = made;
       sessionStorage.setItem(KEPT, made.text);
       if (this.text.value !== made.text) this.text.value = made.text;
@@ -111,7 +117,7 @@ export class Editor {
     this.form.draw(form, errors);
     this.verbs.offer(form, errors.length === 0);
     this.look.disabled = errors.length > 0;
-    this.offerFlights(this.flights());
+    void this.record.offer(flightsOf(form));
     this.list(errors);
     this.meaning.textContent = meaning;
     this.meaning.hidden = !meaning;
@@ -165,53 +171,13 @@ export class Editor {
       try {
         if (/\.(toml|json)$/i.test(file.name)) await this.read(await file.text());
         else {
-          this.map(await api.upload(file));
+          this.record.open(await api.upload(file));
           await this.verbs.refresh();
         }
       } catch (error) {
         this.complain(error);
       }
     }
-  }
-
-  private flights(): string[] {
-    const motions = this.document.form.find((each) => each.path === "motion")?.inside ?? [];
-    return motions.filter((each) => each.choice === "flight").map((each) => each.key);
-  }
-
-  /** Columns, signs and units of a record, by hand; what is chosen stays as the flights change. */
-  private map({ name, columns }: { name: string; columns: string[] }): void {
-    const chosen: Record<string, string> = { file: name, time: columns[0] ?? "", x: "0", y: "0", z: "0", unit: "g" };
-    const listed = columns.map((each) => [each, each] as const);
-    const signed = [["0", "none"] as const, ...listed, ...columns.map((each) => [`-${each}`, `−${each}`] as const)];
-    const set = (key: string) => (value: string) => {
-      if (value) chosen[key] = value;
-      else delete chosen[key];
-    };
-    const parts = [
-      choice("Time", listed, chosen["time"]!, set("time")),
-      choice("Time in", [["", "the file's unit, or s"], ...["s", "ms", "us", "min"].map((each) => [each, each] as const)], "", set("time_unit")),
-      ...COMPONENTS.map((key) => choice(`${key} is`, signed, "0", set(key))),
-      choice("Unit", [["g", "g"], ["m/s^2", "m/s²"]], "g", set("unit")),
-      choice("Holds", [["specific-force", "specific force"], ["acceleration", "acceleration"]], "specific-force", set("quantity")),
-    ];
-    const which = element("span");
-    const act = button("Use this record", () => void use());
-    let motion = "";
-    const use = async (): Promise<void> => {
-      if (await this.take(api.map(this.document.text, motion, chosen))) await this.preview();
-    };
-    let offered: string | null = null;
-    this.offerFlights = (flights) => {
-      if (offered === flights.join("\n")) return; // nothing that has the focus is made again without need
-      offered = flights.join("\n");
-      if (!flights.includes(motion)) motion = flights[0] ?? "";
-      act.disabled = !motion;
-      const none = element("span", "bad", "the scenario has no flight that could follow it: add a motion of that kind");
-      which.replaceChildren(motion ? choice("Flight", flights.map((each) => [each, each]), motion, (value) => (motion = value)) : none);
-    };
-    this.offerFlights(this.flights());
-    this.record.replaceChildren(element("h3", "", `Record ${name}`), this.row(which, ...parts, act));
   }
 
   private async preview(): Promise<void> {

@@ -8,19 +8,34 @@ import { sweepMap } from "./sweeps";
 const ACTIVE = ["queued", "running"];
 /** Scenarios that verbs make. */
 const MADE = ["placed.toml", "found.toml", "command.json"];
-const PROGRESS = /: \d+%(, .*)?$/;
 const OFTEN = 700; // ms, while something runs
 const SELDOM = 5000;
+const HIGHEST = 200_000; // pixels
 
 interface Answer {
   motions?: Record<string, { outcome: string; tip?: { size: { max_abs: number } }; loads?: { root_moment: { size: { max_abs: number } }; stress?: { max: number } } }>;
   comparisons?: { verdict: string; accepted: boolean | null }[];
 }
 
-/** When a run was started, month, day and time, as its id has it. */
+/** When a run was submitted, month, day and time, as its id has it. */
 function when(id: string): string {
-  const [, , month, day, , hour, minute] = id.match(/\d\d|-/g)!;
-  return `${month}-${day} ${hour}:${minute}`;
+  const [, , month, day, , hour, minute, second] = id.match(/\d\d|-/g)!;
+  return `${month}-${day} ${hour}:${minute}:${second}`;
+}
+
+/** Make a frame as high as the report in it says that it is: scrolled by itself it would cut what belongs together. */
+function whole(frame: HTMLIFrameElement): void {
+  const listen = ({ source, data }: MessageEvent<unknown>): void => {
+    if (!frame.isConnected) return window.removeEventListener("message", listen);
+    const height = source === frame.contentWindow ? Number((data as { gbeamHeight?: unknown } | null)?.gbeamHeight) : NaN;
+    if (height > 0 && height < HIGHEST) frame.style.height = `${height}px`;
+  };
+  window.addEventListener("message", listen);
+}
+
+/** What tells a run from others of its title: its options, and what its scenario changes. */
+function apart(run: Run): string {
+  return [run.arguments.join(" "), run.changes].filter(Boolean).join("; ");
 }
 
 export class Runs {
@@ -72,12 +87,13 @@ export class Runs {
     const kind = run.state === "done" ? "good" : ACTIVE.includes(run.state) ? "" : "bad";
     const open = button(run.title || run.id, () => void this.watch(run.id));
     open.classList.add("open");
+    if (apart(run)) open.append(" ", element("span", "faint", apart(run)));
     open.dataset["key"] = `open-${run.id}`;
     open.setAttribute("aria-pressed", String(run.id === this.selected));
     row.append(open, element("span", "faint", when(run.id)));
     row.append(element("span", kind, run.verb === "run" ? run.state : `${run.verb} ${run.state}`));
     if (ACTIVE.includes(run.state)) {
-      row.append(element("span", "faint", run.progress.replace(/^gbeam: /, "")));
+      row.append(element("span", "faint", run.progress));
       const cancel = button("Cancel", () => void api.cancel(run.id).then(() => this.watch()));
       cancel.dataset["key"] = `cancel-${run.id}`;
       row.append(cancel);
@@ -99,7 +115,8 @@ export class Runs {
   }
 
   private async open(run: Run): Promise<void> {
-    this.shown.replaceChildren(element("h2", "", run.title || run.id));
+    const which = [run.verb, when(run.id), apart(run)].filter(Boolean).join("; ");
+    this.shown.replaceChildren(element("h2", "", run.title || run.id), element("p", "faint", which));
     if (ACTIVE.includes(run.state)) {
       this.shown.append(element("p", "faint", `${run.state}: the report appears here`));
       return;
@@ -119,9 +136,9 @@ export class Runs {
       }),
     );
     this.shown.append(links);
+    if (run.state === "damaged") this.shown.append(element("p", "bad", "Its state.json is missing or damaged: what it was is not known."));
     if (run.state !== "done" && run.files.includes("messages.txt")) {
-      const lines = (await api.text(run.id, "messages.txt")).split("\n");
-      const said = lines.filter((each) => !PROGRESS.test(each)).join("\n").trim();
+      const said = (await api.text(run.id, "messages.txt")).trim();
       if (said) this.shown.append(element("pre", "bad", said));
     }
     if (run.verb === "sweep" && run.files.includes("report.html")) {
@@ -133,6 +150,7 @@ export class Runs {
       frame.setAttribute("sandbox", "allow-scripts");
       frame.src = api.file(run.id, "report.html");
       this.shown.append(frame);
+      whole(frame);
     } else if (run.files.includes("words.txt")) {
       const words = await api.text(run.id, "words.txt");
       if (words.trim()) this.shown.append(element("pre", "words", words));
@@ -169,8 +187,11 @@ export class Runs {
     const table = element("table", "compared");
     const head = element("tr");
     const runs = (JSON.parse(this.drawn) as [Run[]])[0];
-    const titles = ids.map((id) => runs.find((each) => each.id === id)?.title ?? "");
-    head.append(element("td"), ...ids.map((id, i) => element("th", "", `${titles[i]} (${when(id)})`)));
+    const names = ids.map((id) => {
+      const run = runs.find((each) => each.id === id);
+      return run ? `${run.title} (${[when(id), apart(run)].filter(Boolean).join("; ")})` : id;
+    });
+    head.append(element("td"), ...names.map((name) => element("th", "", name)));
     table.append(head);
     for (const [name, values] of rows) {
       const line = element("tr");

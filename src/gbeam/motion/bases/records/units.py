@@ -95,3 +95,8 @@ def _canonical(text: str, quantity: str) -> str | None:
     words = text.strip().strip("[]()").replace("²", "^2").replace("**", "^").replace("µ", "u").replace("μ", "u")
     words = words.split(" since ")[0]  # "seconds since 2024-01-01", as netCDF has it
     return _SPELLINGS[quantity].get("".join(words.replace("·", "").replace("*", "").lower().split()))
+
+
+def spelled(text: str, quantity: str) -> str | None:
+    """Return the unit that a file's spelling stands for, whether a record may be in it or not; None for none."""
+    return _canonical(text, quantity)

@@ -1,0 +1,157 @@
+// The record that a flight follows: which columns of a file hold what, as the document has it, or as their names suggest.
+
+import { button, choice, element } from "../controls";
+import { api, type Entry, type Head } from "./api";
+
+type Mapping = Record<string, string>;
+type Options = (readonly [string, string])[];
+
+/** A flight of the document, with what is written of its record. */
+export interface Flight {
+  name: string;
+  record: Mapping | null;
+}
+
+/** The flights among the entries of a form. */
+export function flightsOf(form: Entry[]): Flight[] {
+  const motions = form.find((each) => each.path === "motion")?.inside ?? [];
+  return motions.filter((each) => each.choice === "flight").map((each) => {
+    const record = each.inside?.find((other) => other.key === "record" && other.written);
+    const values = record?.inside?.filter((value) => value.written).map((value) => [value.key, value.value ?? ""]);
+    return { name: each.key, record: values ? (Object.fromEntries(values) as Mapping) : null };
+  });
+}
+
+const AXES = ["x", "y", "z"];
+const RATES = ["p", "q", "r"];
+const TIMES: Options = [["", "the file's unit, or s"], ...["s", "ms", "us", "min"].map((each) => [each, each] as const)];
+const LOADS: Options = [["g", "g"], ["m/s^2", "m/s²"]];
+const TURNS: Options = [["rad/s", "rad/s"], ["deg/s", "°/s"]];
+const HOLDS: Options = [["specific-force", "specific force"], ["acceleration", "acceleration"]];
+
+/** What a record still lacks before it can be used, in words; nothing where it is whole. */
+export function lacking(chosen: Mapping): string {
+  const turns = RATES.filter((key) => chosen[key] && chosen[key] !== "0");
+  if (!chosen["time"]) return "choose the column of time";
+  if (AXES.every((key) => (chosen[key] ?? "0") === "0")) return "choose a column for x, y or z";
+  if (!chosen["unit"]) return "choose the unit of x, y and z";
+  if (turns.length && !chosen["rate_unit"]) return "choose the unit of p, q and r";
+  return "";
+}
+
+/** What is written of a record: rates all together, or none of them. */
+export function written(chosen: Mapping): Mapping {
+  const turning = RATES.some((key) => chosen[key] && chosen[key] !== "0");
+  const keys = ["file", "time", "time_unit", ...AXES, "unit", "quantity", ...(turning ? [...RATES, "rate_unit"] : [])];
+  const pairs = keys.map((key) => [key, chosen[key] || ([...AXES, ...RATES].includes(key) ? "0" : "")] as const);
+  return Object.fromEntries(pairs.filter(([, value]) => value));
+}
+
+export class RecordPanel {
+  readonly root = element("div", "record");
+  private flights: Flight[] = [];
+  private motion = "";
+  /** What has been dropped on the page and no flight follows yet. */
+  private dropped: Head | null = null;
+  private shown = "";
+  private judge: () => void = () => {};
+
+  /** `use` makes a flight follow a record, and says whether it does. */
+  constructor(private readonly use: (motion: string, record: Mapping) => Promise<boolean>) {}
+
+  /** Offer a file that has been dropped. */
+  open(head: Head): void {
+    this.dropped = head;
+    this.draw(head, { file: head.name, ...head.suggested }, Object.keys(head.suggested));
+  }
+
+  /** Show the record of a flight of the document, unless one that was dropped waits to be used. */
+  async offer(flights: Flight[]): Promise<void> {
+    this.flights = flights;
+    if (!flights.some((each) => each.name === this.motion)) this.motion = flights[0]?.name ?? "";
+    const record = this.dropped ? null : (flights.find((each) => each.name === this.motion)?.record ?? null);
+    const now = JSON.stringify([this.dropped?.name, record, this.motion, flights.map((each) => each.name)]);
+    if (now === this.shown) return; // nothing that has the focus, or was chosen, is made again without need
+    this.shown = now;
+    if (this.dropped) this.which();
+    else if (!record?.["file"]) this.root.replaceChildren();
+    else {
+      const head = await api.record(record["file"]).catch(() => null); // what is wrong is said of the document
+      if (now !== this.shown) return; // overtaken
+      if (head) this.draw(head, record, []);
+      else this.root.replaceChildren();
+    }
+  }
+
+  private draw(head: Head, record: Mapping, suggested: string[]): void {
+    const chosen: Mapping = { ...record };
+    const listed: Options = head.columns.map((each) => [each, each]);
+    const signed: Options = [["0", "none"], ...listed, ...head.columns.map((each) => [`-${each}`, `−${each}`] as const)];
+    const ready = element("span", "faint");
+    const act = button(this.dropped ? "Use this record" : "Change the record", () => void this.take(chosen));
+    this.judge = (): void => {
+      ready.textContent = lacking(chosen);
+      act.disabled = !this.motion || lacking(chosen) !== "";
+    };
+    const field = (key: string, name: string, options: Options, first = ""): HTMLElement => {
+      const known = options.some(([value]) => value === (chosen[key] ?? first));
+      const all = known ? options : ([["", "choose"], ...options] as Options);
+      const label = choice(name, all, known ? (chosen[key] ?? first) : "", (value) => {
+        chosen[key] = value;
+        label.classList.remove("suggested");
+        this.judge();
+      });
+      if (suggested.includes(key)) label.classList.add("suggested");
+      return label;
+    };
+    const rates = element("details");
+    rates.open = RATES.some((key) => chosen[key]);
+    rates.append(
+      element("summary", "", "Body rates"),
+      this.row(...RATES.map((key) => field(key, `${key} is`, signed, "0")), field("rate_unit", "Unit of rates", TURNS)),
+    );
+    const flight = element("span", "flight");
+    const words = this.dropped ? `Record ${head.name}, not used yet` : `Record of ${this.motion}: ${head.name}`;
+    this.root.replaceChildren(
+      element("h3", "", words),
+      ...(suggested.length ? [element("p", "faint", "Dashed: suggested by the columns' names and units. Check them, and choose the signs.")] : []),
+      this.row(
+        flight,
+        field("time", "Time", listed),
+        field("time_unit", "Time in", TIMES),
+        ...AXES.map((key) => field(key, `${key} is`, signed, "0")),
+        field("unit", "Unit", LOADS),
+        field("quantity", "Holds", HOLDS, "specific-force"),
+      ),
+      rates,
+      this.row(act, ready),
+    );
+    this.which();
+  }
+
+  /** Which flight follows the record, and whether it can. */
+  private which(): void {
+    const place = this.root.querySelector(".flight");
+    const options = this.flights.map((each) => [each.name, each.name] as const);
+    const none = element("span", "bad", "the scenario has no flight that could follow it: add a motion of that kind");
+    const select = choice("Flight", options, this.motion, (value) => {
+      this.motion = value;
+      void this.offer(this.flights);
+    });
+    place?.replaceChildren(this.motion ? select : none);
+    this.judge();
+  }
+
+  private async take(chosen: Mapping): Promise<void> {
+    const [waiting, motion] = [this.dropped, this.motion];
+    this.dropped = null; // the document that comes back shows it
+    if (await this.use(motion, written(chosen))) return;
+    this.dropped = waiting;
+  }
+
+  private row(...parts: HTMLElement[]): HTMLElement {
+    const row = element("div", "gbeam-row");
+    row.append(...parts);
+    return row;
+  }
+}
