@@ -15,6 +15,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(Path(__file__).parents[1] / ".cache" / "jax"))
 # As gbeam has it, in whichever order the tests that differentiate something themselves import JAX and gbeam.
 os.environ.setdefault("JAX_ENABLE_X64", "1")
+# A result that is written twice is written at the same time.
+os.environ["SOURCE_DATE_EPOCH"] = "1750000000"
 # A test runs most programs once: compiling costs more than running. The way in which these versions fuse loops, and the
 # optimization of machine code, take two thirds of it, and a program in parts for several cores a fifth of the rest; to
 # later versions, which do not know the flags, they are fatal.
