@@ -29,7 +29,7 @@ def test_columns_signs_and_units(tmp_path: Path) -> None:
 
 def test_a_record_of_zeros_alone_is_none(tmp_path: Path) -> None:
     (tmp_path / "record.csv").write_text("\n".join([HEADER, *ROWS]), encoding="utf-8")
-    with pytest.raises(InputError, match='takes nothing of the file: x, y and z are "0".*name a column'):
+    with pytest.raises(InputError, match=r'takes nothing of the file: x, y and z are "0".*name a column'):
         read_record(tmp_path / "record.csv", "t", "0", "0", "0", "g", quantity="acceleration")
 
 
