@@ -42,7 +42,7 @@ def test_page_says_what_the_run_says(study: Study) -> None:
     verdict = study.comparisons[0].verdict
     assert verdict[1:] in page and '<span class="badge good">done</span>' in page
     assert "axis 1 acceleration" in page and "89 %" in page
-    assert "Load followed within 0.600 m/s²" in page
+    assert "Target followed within 0.600 m/s²" in page
 
 
 def test_nothing_from_outside_is_obeyed(study: Study) -> None:

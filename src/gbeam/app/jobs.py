@@ -19,7 +19,7 @@ from typing import Any
 from gbeam.app.files import names, regular
 from gbeam.app.verbs import VERBS
 from gbeam.errors import InputError
-from gbeam.report.page.bodies import study
+from gbeam.results.imitation.criteria import GOOD
 
 ID = re.compile(r"\d{8}-\d{6}-[0-9a-f]{8}")
 MEMORY = 16 * 2**30  # bytes of address space, of which compiled programs reserve far more than they use
@@ -192,7 +192,7 @@ class Jobs:
             self._process = number, process
             try:
                 status = await asyncio.wait_for(process.wait(), SECONDS)
-                outcome = {0: "done", 1: _failure(place), 2: "refused"}.get(status, "ended")
+                outcome = {0: _state(place, "done"), 1: _state(place, "failed"), 2: "refused"}.get(status, "ended")
             except TimeoutError:
                 outcome = "out of time"
                 _end(process)
@@ -213,15 +213,14 @@ def _command(state: Mapping[str, Any]) -> list[str]:
     return [sys.executable, "-m", "gbeam.app.limited", str(MEMORY), str(SECONDS), *arguments]
 
 
-def _failure(place: Path) -> str:
-    """Why a result is not the one that was wanted, in a word or two, where there is a reason."""
+def _state(place: Path, otherwise: str) -> str:
+    """How an answer ended, in a few words: as its report says."""
     try:
         answer = json.loads((place / _ANSWER).read_text(encoding="utf-8"))
-    except (OSError, ValueError):  # words, or nothing
-        return "failed"
-    if "comparisons" in answer:
-        return study.state(answer)[0]
-    return str(answer.get("outcome", "failed"))
+        state = str(answer.get("state") or answer["outcome"])
+    except (OSError, ValueError, KeyError):  # words, or nothing
+        return otherwise
+    return "done" if state in GOOD else state
 
 
 def _stdout(command: Sequence[str]) -> str:

@@ -122,6 +122,9 @@ class AxesResult(Part):
         First and last time of the flight, s; before it the machine spins up, and after it it spins down.
     start : str
         How the machine begins: rest, pre-yawed or idle.
+    flight : (t, 3) or None
+        The flight's own load, base axes, m/s², which the target rounds off; before and after the flight that of its
+        first and last time.
     """
 
     angle: Floats
@@ -139,6 +142,7 @@ class AxesResult(Part):
     jerk: Floats | None = None
     span: tuple[float, float] = (-math.inf, math.inf)
     start: str = "idle"
+    flight: Floats | None = None
 
     @property
     def within_limits(self) -> bool:
