@@ -65,8 +65,8 @@ def study_facts(answer: Study) -> Facts:
     }
     facts["motions"] = {name: _limits_by_name(each) for name, each in facts["motions"].items()}
     facts["study"] = answer  # for histories
-    unfinished = answer.unfinished
-    facts["message"] = "; ".join(f"{name}: {failure.message}" for name, failure in unfinished.items())
+    reasons = {name: failure.message for name, failure in answer.unfinished.items()} or answer.refusals
+    facts["message"] = "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
     return facts
 
 

@@ -87,7 +87,8 @@ def sweep_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plot
     """How many cases ended how, a plot or a map of each measure, and every case."""
     counts = ", ".join(f"{count} {name}" for name, count in facts["counts"].items())
     outcomes = np.array(facts["outcomes"], dtype=object)
-    parts = [paragraph(f"figures of gbeam {facts['verb']}: {outcomes.size} cases: {counts}"), _varied(facts)]
+    kind = "" if facts["outcome"] == "done" else "bad"
+    parts = [paragraph(f"figures of gbeam {facts['verb']}: {outcomes.size} cases: {counts}", kind), _varied(facts)]
     parts += [_estimates(facts)]
     values = {name: np.array(each["values"], dtype=float) for name, each in facts["measures"].items()}
     drawn = any(each["distribution"] for each in facts["parameters"])
