@@ -11,7 +11,7 @@ from scipy.signal import find_peaks
 
 from gbeam import Comparison, InputError, Response, compare
 from gbeam.analysis.imitation.accounting import History, account
-from gbeam.report.study.accounting import lines, to_json
+from gbeam.report.machine.accounting import lines, to_json
 from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.response import BaseMotion
 
@@ -112,8 +112,9 @@ def test_verdict_begins_with_the_peak_that_is_missed(compared: Comparison) -> No
     assert "; preload: arm makes 3.16 g at 6.50 s, where flight has 0.5 g and idle is 1.4 g" in verdict
     assert "not the" not in compare(*reproduced()).verdict
     text = "\n".join(lines(compared.accounting))
-    assert "load peak 3.55 g at 6.00 s: not reproduced, 1.4 g (-61 %): left out" in text
-    assert "load peak 5 g at 8.00 s: not reproduced, 5 g (0.0 %, as a vector 52 %): gimbals" in text
+    assert "load peak 3.55 g at 6.00 s: not reproduced, 1.4 g (-61 %), 61 % off at the same instant: left out" in text
+    skew = "not reproduced, 5 g (0.0 %, as a vector 52 %), 52 % off at the same instant: gimbals"
+    assert f"load peak 5 g at 8.00 s: {skew}" in text
     assert "not followed 8.000 to 9.000 s: gimbals, flight's load up to 5 g" in text
 
 
@@ -129,8 +130,10 @@ def reproduced() -> tuple[Response, Response]:
 def test_verdict_of_what_is_reproduced() -> None:
     compared = compare(*reproduced())
     assert compared.verdict == (
+        "largest load anywhere on the specimen: flight 10 g at 4.00 s, arm 9.9 g at 4.00 s (-1.0 %); "
         "tip: flight's peak 9.807 mm at 4.00 s reproduced as 9.709 mm (-1.0 %); "
-        "1 of 1 load peak above 1.4 g reproduced within 1 %; 18 % of the time followed; the rest is below idle"
+        "1 of 1 load peak above 1.4 g reproduced within 1 %; "
+        "18 % of the time followed within 0.5 g (5 % of the largest load); the rest is below idle"
     )
     assert compared.accepted is None
     strict = compare(*reproduced(), accept={"tip": 0.005})
@@ -158,9 +161,42 @@ def test_limits_that_mean_nothing(accept: dict[str, float]) -> None:
 def test_the_tolerance_decides(pair: tuple[Response, Response]) -> None:
     wide = compare(*pair, tolerance=0.5).accounting
     assert wide.followed_share == pytest.approx(1.0) and not wide.missed and not wide.preloads
-    assert to_json(wide)["tolerance_load"] == pytest.approx(5 * G)
+    assert to_json(wide)["tolerance_load"] == pytest.approx(5 * G) and to_json(wide)["tolerance_of"] == "peak"
+    with pytest.raises(InputError, match="tolerance_of"):
+        compare(*pair, tolerance_of="time")
     with pytest.raises(InputError, match="tolerance"):
         compare(*pair, tolerance=0.0)
+
+
+def test_a_tolerance_of_the_load_at_the_time_does_not_take_1_4_g_for_1_2(pair: tuple[Response, Response]) -> None:
+    """Of the pieces above idle, 1.4 g for 1.2 is within 5 % of 10 g, and not within 5 % of 1.2 g."""
+    flown, spun = np.array([piece[1:3] for piece in PIECES]).T
+    turned = np.array([piece[3] == "gimbals" for piece in PIECES])
+    durations = np.array([piece[0] for piece in PIECES])
+    followed = (np.abs(spun - flown) <= 0.05 * flown) & ~turned
+    instant = compare(*pair, tolerance_of="instant", accept={"followed": 0.4})
+    expected = (durations * followed).sum() / durations.sum()
+    assert instant.accounting.followed_share == pytest.approx(expected, abs=1e-3) and expected < 0.1
+    assert compare(*pair).accounting.followed_share > 0.25
+    assert "followed within 5 % of the load at the time, " in instant.verdict and instant.accepted is False
+    # Below idle what the idling machine makes is no preload, whatever the load of the time is.
+    assert [each.time for each in instant.accounting.preloads] == [
+        each.time for each in compare(*pair).accounting.preloads
+    ]
+    assert instant.accounting.allowed == pytest.approx(0.5 * G)
+
+
+def test_the_error_of_a_peak_at_the_same_instant() -> None:
+    """A machine that makes every load 40 ms late: its peaks are right, and at no instant the load."""
+    time = 0.005 * np.arange(801)
+    load = along_z(5 + 4 * np.sin(2 * np.pi * time))
+    late = along_z(5 + 4 * np.sin(2 * np.pi * (time - 0.04)))
+    accounting = account(time, History(load, load, load), History(late, late, late), tolerance=0.05)
+    peak = accounting.peaks[1]
+    assert peak.error < 1e-3 and not peak.reason and peak.time_machine - peak.time == pytest.approx(0.04)
+    assert peak.instant_error == pytest.approx(4 * (1 - np.cos(2 * np.pi * 0.04)) / 9, rel=1e-9)
+    assert to_json(accounting)["peaks"][1]["instant_error"] == peak.instant_error
+    assert "9 g (0.0 %, 40 ms later), 1.4 % off at the same instant" in "\n".join(lines(accounting))
 
 
 def test_spread_along_a_specimen_on_an_arm() -> None:

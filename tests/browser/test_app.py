@@ -271,6 +271,18 @@ def test_a_person_maps_a_record_and_opens_what_a_verb_made(browser: Any, address
     page.locator(".gbeam-map button", has_text="–").click()
     page.locator(".gbeam-wide .bad", has_text="beyond the tip").wait_for()
     _holds(page)
+
+    # A sweep of which one case keeps its limits and the other does not says so, in the list and in its map.
+    page.get_by_label("over").first.fill("150 mm, 200 mm")
+    page.get_by_role("button", name="Text", exact=True).click()
+    limited = text.input_value() + '\n[motion.spin.accept]\nlargest_load = "0.37 %"\n'
+    text.fill(limited)
+    page.wait_for_function("() => sessionStorage.getItem('gbeam-document').includes('largest_load')")
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.locator(".run", has_text="sweep some cases not accepted").wait_for(timeout=60_000)
+    page.locator(".gbeam-wide", has_text="1 done, 1 not accepted").wait_for()
+    assert page.locator(".gbeam-map button", has_text="✗").count() == 1
+    _holds(page)
     context.close()
     assert faults == []
 

@@ -100,7 +100,7 @@ def test_accepted_or_not(fast: Path, gbeam: Call) -> None:
     # A smaller limit than the arm's geometry allows.
     bad = gbeam("run", fast, *accept, "--set", "motion.spin.accept.spread=0.01 %", "--json", "--ignore-limits")
     assert bad.status == 1 and bad.json["outcome"] == "done"
-    assert bad.err == "gbeam: motion.spin not accepted: spread 0.103 % (limit 0.01 %)\n"
+    assert bad.err == "gbeam: motion.spin not accepted: spread 0.103 % at the root at 0.00 s (limit 0.01 %)\n"
     (comparison,) = bad.json["comparisons"]
     assert comparison["accepted"] is False
     assert [each["passed"] for each in comparison["criteria"]] == [True, True, False]
@@ -173,7 +173,7 @@ def test_json_of_a_hub(hub: Path, gbeam: Call) -> None:
 def test_files(fast: Path, gbeam: Call) -> None:
     answer = gbeam("run", fast, "--set", "motion.flight.acceleration.z.level=3 g")
     assert answer.status == 0
-    assert "Tip: flight's peak 0.87" in " ".join(answer.out.split())
+    assert "; tip: flight's peak 0.87" in " ".join(answer.out.split())
     folder = Path("out/fast")
     pictures = ["tip", "tracking_spin", "comparison_spin", "shock_spin"]
     pictures += [f"axes_{each}_spin" for each in ("rate", "acceleration", "jerk")]

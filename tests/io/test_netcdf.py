@@ -58,11 +58,15 @@ FATIGUE = Fatigue(
     StressCycles(np.array([3.0, 2.0]), np.zeros(2), np.array([1.0, 0.5])),
     StressCycles(np.array([4.0, 3.0, 3.0]), np.ones(3), np.ones(3)),
 )
-PAIRS = {"tip": PeakPair(2.0, 2.1, 0.3, 0.4), "stress": PeakPair()}
+PAIRS = {
+    "largest_load": PeakPair(80.0, 90.0, 0.2, 0.3, "", "the root"),
+    "tip": PeakPair(2.0, 2.1, 0.3, 0.4),
+    "stress": PeakPair(),
+}
 ACCOUNTING = Accounting(
     0.05, 4.0, 14.0, (0.0, 1.0), 0.5,
-    (LoadPeak(0.2, 80.0, 0.2, 79.0, 0.02, (0.01, -0.02), (0.0, 0.0)),
-     LoadPeak(0.7, 60.0, 0.7, 30.0, 0.5, (0.01, -0.02), (0.0, 0.0), "corner")),
+    (LoadPeak(0.2, 80.0, 0.2, 79.0, 0.02, (0.01, -0.02), (0.0, 0.0), instant_error=0.03),
+     LoadPeak(0.7, 60.0, 0.7, 30.0, 0.5, (0.01, -0.02), (0.0, 0.0), "corner", 0.6)),
     (NotFollowed(0.5, 1.0, "corner", 60.0),),
 )  # fmt: skip
 
@@ -144,7 +148,12 @@ def test_xarray_reads_what_was_written(study: Study, tree: xr.DataTree) -> None:
     assert "error_estimate" not in flight.attrs  # none was made
     compared = tree["comparisons/spin"]
     assert compared.attrs["verdict"] == study.comparisons[0].verdict == tree.attrs["verdict"]
-    assert compared.attrs["accepted"] == "false" and "Study 'a title': done" in tree.attrs["summary"]
+    assert compared.attrs["accepted"] == "false" and "Study 'a title': not accepted" in tree.attrs["summary"]
+    assert list(compared["criterion_name"].values) == ["tip"] and float(compared["criterion_most_allowed"][0]) == 0.02
+    assert float(compared["criterion_value"][0]) == pytest.approx(0.05)
+    assert [float(compared[f"largest_load_{each}"]) for each in ("flight", "machine")] == [80.0, 90.0]
+    assert compared["largest_load_machine"].attrs["place"] == "the root"
+    np.testing.assert_array_equal(compared["load_peak_instant_error"], [0.03, 0.6])
     assert [float(compared[name]) for name in ("tip_flight", "tip_machine", "tip_time_machine")] == [2.0, 2.1, 0.4]
     assert "stress_flight" not in compared  # not known
     assert float(compared["followed_share"]) == 0.5

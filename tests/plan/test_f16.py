@@ -9,7 +9,7 @@ import pytest
 
 from gbeam.analysis.imitation.plan import plan
 from gbeam.cli import main
-from gbeam.results.machine import MachinePlan
+from gbeam.results.imitation.plan import MachinePlan
 from gbeam.scenario import build_machines, loads
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "f16_8g_turn.toml"
@@ -84,13 +84,14 @@ def test_what_an_arm_too_slow_for_the_load_misses_is_told() -> None:
 
 def test_exact_says_where_it_is_not(capsys: pytest.CaptureFixture[str]) -> None:
     sharp = ["--set", f"{MACHINE}.inverse=exact", "--set", f"{MACHINE}.smoothing=30 ms", "--ignore-limits"]
+    sharp += ["--set", f"{MACHINE}.accept.followed=89 %"]
     assert main(["plan", str(EXAMPLE), *sharp, "--json"]) == 0
     facts = json.loads(capsys.readouterr().out)["motions"]["centrifuge"]
     (warning,) = facts["warnings"]
     assert 1e-7 < facts["tracking_error"]["fraction"] < 1e-5
     assert f"{facts['tracking_error']['max']:.3g} m/s² at" in warning and "exact promises 1e-07" in warning
     assert main(["plan", str(EXAMPLE), *sharp]) == 0
-    assert "warning: the load is followed within" in capsys.readouterr().out
+    assert "warning: the target is followed within" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(("record", "last"), [("f16_8g_turn", 15.99), ("f16_pulls_and_push", 35.99)])

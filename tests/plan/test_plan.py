@@ -146,6 +146,90 @@ def test_a_broken_promise_is_told_by_every_verb(
             assert warning in stored.attrs["warnings"]
 
 
+SLOW = PLAN.replace('"flat"', '"planned"').replace("60 rpm", "30 rpm")
+
+
+def test_a_plan_that_misses_the_main_peak_is_never_done_alone(
+    scenario: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """6 g, of which the arm makes 3.4: within the machine's limits, and not the flight."""
+    scenario.write_text(SLOW, encoding="utf-8")
+    assert main(["plan", str(scenario)]) == 0
+    words = " ".join(capsys.readouterr().out.split())
+    assert "spin (3.3 m, tracks flight): done, largest load peak missed" in words
+    assert "Flight's load peak of 6 g at " in words and "is not reproduced: spin makes 3." in words
+    assert "(axis 1 rate)" in words and "0 of 1 load peak reproduced" in words
+    assert main(["plan", str(scenario), "--json", "--report", "--out", str(tmp_path / "there")]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    spin = facts["motions"]["spin"]
+    assert (facts["outcome"], facts["state"]) == ("done", "done, largest load peak missed")
+    (peak,) = spin["accounting"]["peaks"]
+    assert peak["reason"] == "axis 1 rate" and peak["ratio"] == pytest.approx(0.575, abs=0.01)
+    assert spin["accepted"] is None and spin["criteria"] == [] and spin["verdict"].startswith("flight's load peak of 6")
+    assert spin["peaks"]["largest_load"]["machine"] is None  # no beam says how long the specimen is
+    page = (tmp_path / "there" / "plan.html").read_text(encoding="utf-8")
+    assert '<span class="badge bad">done, largest load peak missed</span>' in page
+    assert "not reproduced: axis 1 rate" in page and "Peaks of the load at the control point" in page
+
+
+def test_limits_that_need_no_response_are_judged(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    accept = '[motion.spin.accept]\ntip = "1 %"\nfollowed = "10 %"\npeaks = "50 %"\nlargest_load = "50 %"\n'
+    scenario.write_text(SLOW + accept + BEAM, encoding="utf-8")
+    assert main(["plan", str(scenario)]) == 0
+    words = " ".join(capsys.readouterr().out.split())
+    assert "accepted: largest_load 8.5" in words and "not judged, as it needs the response" in words
+    for limit, value in {"peaks": "5 %", "followed": "99 %", "largest_load": "5 %", "spread": "0.05 %"}.items():
+        assert main(["plan", str(scenario), "--set", f"motion.spin.accept.{limit}={value}", "--json"]) == 1
+        answer = capsys.readouterr()
+        assert answer.err.startswith(f"gbeam: motion.spin not accepted: {limit} "), answer.err
+        facts = json.loads(answer.out)
+        assert (facts["outcome"], facts["state"]) == ("done", "not accepted")
+        spin = facts["motions"]["spin"]
+        assert spin["accepted"] is False and spin["not_judged"] == ["tip"]
+        assert [each["name"] for each in spin["criteria"] if not each["passed"]] == [limit]
+    scenario.write_text(SLOW + accept, encoding="utf-8")
+    assert main(["plan", str(scenario)]) == 1  # without a beam nothing is known of the specimen's ends
+    assert "not accepted: largest_load unknown (limit 50 %)" in capsys.readouterr().err
+
+
+def test_plan_run_and_place_agree_on_the_largest_load(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Between their own times: of the plan and the place every 2 ms, of the run its steps."""
+    scenario.write_text(PLAN + BEAM, encoding="utf-8")
+    found = []
+    for verb, *more in (("plan",), ("run", *STEP, "--ignore-limits"), ("place", "--no-proof", *STEP)):
+        assert main([verb, str(scenario), "--json", *more]) in (0, 1)
+        facts = json.loads(capsys.readouterr().out)
+        if verb == "place":
+            found.append(facts["before"]["largest_load"])
+            assert all(each["largest_load"]["machine"] > 0 for each in facts["options"])
+        else:
+            found.append(
+                (facts["motions"]["spin"] if verb == "plan" else facts["comparisons"][0])["peaks"]["largest_load"]
+            )
+    for name, accuracy in {"flight": 1e-9, "machine": 5e-4, "time_flight": 0.01, "time_machine": 0.01}.items():
+        assert [each[name] for each in found] == pytest.approx([found[0][name]] * 3, rel=accuracy)
+    assert {each["place_machine"] for each in found} == {"the tip"} and found[0]["ratio"] > 1.03
+
+
+def test_the_load_is_compared_with_the_flight_and_not_only_with_the_rounded_target(
+    scenario: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Exact follows its target to rounding, which rounds a corner of the flight's 4 g/s off."""
+    exact = ["--set", "motion.spin.inverse=exact", "--ignore-limits"]
+    assert main(["plan", str(scenario), *exact, "--json"]) == 0
+    spin = json.loads(capsys.readouterr().out)["motions"]["spin"]
+    assert spin["tracking_error"]["fraction"] < 1e-6
+    # At a corner the kernel w(s) = (1 + cos 2πs/W)/W leaves half the slope's change times ∫|s| w ds.
+    width, change = 0.1, 4 * 9.80665
+    s = np.linspace(-width / 2, width / 2, 2001)
+    rounding = change / 2 * np.trapezoid(np.abs(s) * (1 + np.cos(2 * np.pi * s / width)) / width, s)
+    off = 1e-3 * change / 2  # the nearest of the plan's times may be a millisecond away
+    assert rounding - off <= spin["flight_error"]["max"] <= 1.001 * rounding
+    assert main(["plan", str(scenario), *exact]) == 0
+    words = " ".join(capsys.readouterr().out.split())
+    assert f"; the flight's own load, whose corners it rounds, within {spin['flight_error']['max']:.3f} m/s²" in words
+
+
 def test_run_names_the_limits_too(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:
     scenario.write_text(PLAN.replace("60 rpm", "20 rpm") + BEAM, encoding="utf-8")
     for allow, status, mark in ((), 1, "%) at"), (("--ignore-limits",), 0, "(allowed)"):

@@ -30,7 +30,8 @@ from gbeam.plots import (
 from gbeam.plots.drawing.lines import FLIGHT
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.measures import Mismatch, RootHistory, RootLoads, Shock
-from gbeam.results.machine import LimitUse, MachinePlan
+from gbeam.results.imitation.plan import MachinePlan
+from gbeam.results.machine import LimitUse
 from gbeam.results.parts.section_forces import Loads
 from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.study import Study
@@ -314,7 +315,8 @@ def test_a_result_draws_itself(study: Study) -> None:
     assert hub._repr_png_()[:8] == b"\x89PNG\r\n\x1a\n"  # a notebook shows them
     with pytest.raises(InputError, match="choose from tip, base, tracking, axes_rate"):
         spin.plot("loads")
-    plan = MachinePlan("spin", "flight", 3.3, "done", "", spin.time, spin.axes)
+    accounting = study.comparisons[0].accounting
+    plan = MachinePlan("spin", "flight", 3.3, "done", "", spin.time, spin.axes, accounting)
     assert len(plan.plot()) == 3 and len(plan.plot("axes_jerk")) == 3
     x = np.linspace(0, 0.3, 5)
     along = Loads(x, *(np.ones((1, 5, 3)) for _ in range(4)), *np.ones((2, 1, 5)), np.ones((1, 5, 3)))

@@ -28,7 +28,7 @@ def test_summary_names_what_matters(study: Study) -> None:
     assert "spin (centrifuge): done" in text and "flight: done" in text
     assert "FOAM, newmark, 2000 steps of 1.000 ms; estimated error 0.0010 % (step 0.00080, model 0.00020)" in text
     # Largest while not held: at the end, not the 9 m/s² in between.
-    assert "load followed within 0.600 m/s² (1 % of the load there), at 2.000 s" in text
+    assert "target followed within 0.600 m/s² (1.0 % of it) at 2.000 s" in text
     assert "target held 0.505 to 0.795 s: below idle" in text
     assert "hub: angle at the end 2.000 rad, largest rate 4.000 rad/s" in text
     verdict = study.comparisons[0].verdict

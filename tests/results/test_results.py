@@ -14,8 +14,10 @@ import xarray as xr
 
 import gbeam as gb
 from gbeam.report.study import summary_json
+from gbeam.results.imitation.accounting import Accounting
 from gbeam.results.imitation.placement import Candidate, Placement
-from gbeam.results.machine import AxesResult, LimitUse, MachinePlan
+from gbeam.results.imitation.plan import MachinePlan
+from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.study import ModelRow, ModelStudy
 
 BEAM = gb.Beam(
@@ -47,11 +49,14 @@ def every() -> dict[str, Any]:
         "critical": gb.critical_speed(structure, hub, upper=30.0),
         "critical map": gb.critical_speed_map(BEAM, gb.Model("FOAM", 0, 1, 1), hub, [0.1], [0.1, 0.3], 30.0),
         "system": gb.linearize(structure, hub),
-        "plan": MachinePlan("arm", "flight", 3.3, "limits exceeded", axes.exceeding, time, axes),
+        "plan": MachinePlan(
+            "arm", "flight", 3.3, "limits exceeded", axes.exceeding, time, axes,
+            Accounting(0.05, 0.1, 0.0, (0.0, 1.0), 1.0, (), ()),
+        ),
         "placement": Placement("flight", "arm", {"tip": 1.0}, 0.3, options[0], options, 0.15, values),
         "models": ModelStudy("title", "exact", {"slew": "z"}, rows),
         "response": gb.simulate(structure, flight, duration=0.05, step=1e-3, name="flight"),
-    }
+    }  # fmt: skip
 
 
 KINDS = (
@@ -140,7 +145,8 @@ def test_a_study_prints_its_responses_and_comparisons(every: dict[str, Any]) -> 
     study = gb.Study("title", {"flight": response}, (gb.compare(response, response),))
     lines = repr(study).splitlines()
     assert lines[0] == "Study 'title': done" and lines[1].startswith("Response 'flight' (flight, FOAM): done")
-    assert lines[-1].startswith("Comparison: tip: flight's peak ") and "reproduced as" in lines[-1]
+    assert lines[-1].startswith("Comparison: largest load anywhere on the specimen: flight 1 g at 0.00 s, ")
+    assert "; tip: flight's peak " in lines[-1] and "reproduced as" in lines[-1]
 
 
 def test_a_response_states_its_errors(tmp_path: Path) -> None:

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
+from gbeam.results.imitation.criteria import RULES, SETTINGS
 from gbeam.scenario import ScenarioError, build, loads
+from gbeam.scenario.schema.common.accept import Accept
 
 from ..scenarios import FAST
 
@@ -26,7 +30,26 @@ def test_the_table_in_the_documents() -> None:
     page = Path(__file__).parents[2] / "docs" / "verdict.md"
     (block,) = re.findall(r"```toml\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
     case = build(loads(FAST + block.replace("motion.centrifuge", "motion.spin")))
-    assert set(case.accept["spin"]) == {"tip", "peaks", "spread", "followed", "tolerance"}
+    assert list(case.accept["spin"]) == [*RULES, *SETTINGS]
+
+
+def test_the_schema_has_every_criterion_and_nothing_else() -> None:
+    assert list(Accept.model_fields) == [*RULES, *SETTINGS]
+    assert all(Accept.model_fields[name].description == rule.words for name, rule in RULES.items())
+
+
+def test_reading_what_can_be_accepted_imports_no_numpy() -> None:
+    asked = "import sys, gbeam.scenario; print('numpy' in sys.modules)"
+    ran = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True)
+    assert ran.stdout == "False\n"
+
+
+def test_levels_are_ratios_in_decibels() -> None:
+    case = build(loads(with_accept('srs = ["-1.5 dB", "3 dB"]\ndamage = 2')))
+    assert case.accept["spin"] == {"srs": pytest.approx((10**-0.075, 10**0.15)), "damage": 2.0}
+    assert build(loads(with_accept('srs = "6 dB"'))).accept["spin"]["srs"] == pytest.approx(10**0.3)
+    assert build(loads(with_accept("srs = 1.4"))).accept["spin"]["srs"] == 1.4
+    assert build(loads(with_accept('tolerance_of = "instant"'))).accept["spin"] == {"tolerance_of": "instant"}
 
 
 @pytest.mark.parametrize(
@@ -35,10 +58,16 @@ def test_the_table_in_the_documents() -> None:
         ('tips = "2 %"', "motion.spin.accept.tips"),
         ('tip = "-2 %"', "is negative"),
         ('tip = "2 mm"', "ratio"),
-        ('followed = "120 %"', "more than all of the time"),
+        ('followed = "120 %"', "motion.spin.accept.followed: is 120 %, more than all of it"),
+        ('largest_load = "3 dB"', "unknown unit 'dB'"),
+        ("srs = 0.5", "motion.spin.accept.srs: is 0.5, and not above 1"),
+        ('srs = ["1 dB", "3 dB"]', "without 1 in between"),
+        ("damage = [0.5, 1.5, 2]", "has 3 entries"),
+        ('srs = "3 mm"', "ratio of amplitudes"),
+        ('tolerance_of = "time"', "peak, instant"),
     ],
 )
 def test_what_is_wrong_is_named(line: str, message: str) -> None:
     with pytest.raises(ScenarioError) as caught:
-        loads(with_accept(line))
+        build(loads(with_accept(line)))
     assert message in str(caught.value)

@@ -86,6 +86,48 @@ def test_every_case_is_computed_once(fast: Path) -> None:
     assert len(lengths) == 24 and found.counts == {"done": 24} and found.parameters[0].unit == "m"
 
 
+def test_cases_that_are_not_accepted_say_so_and_are_counted(fast: Path, gbeam: Call) -> None:
+    """The load along the specimen on a steady arm: near the control point at mid-span only 0.1 %."""
+    control = "--set", "motion.spin.accept.spread=0.15 %"
+    over = "--over", "motion.spin.control_point=0 mm, 150 mm, 300 mm"
+    command = (
+        "sweep",
+        fast,
+        *over,
+        "--measure",
+        "verdict.spread, verdict.accepted",
+        *control,
+        "--out",
+        "there",
+        "--report",
+    )
+    answer = gbeam(*command)
+    assert answer.status == 0 and "outcome" in answer.out.splitlines()[0]
+    rows = [line for line in answer.out.splitlines()[1:4]]
+    assert [line.endswith("not accepted") for line in rows] == [True, False, True] and rows[1].endswith("done")
+    assert "3 cases: 1 done, 2 not accepted" in answer.out
+    assert "1 × not accepted: spin: spread" in answer.out and "(limit 0.15 %)" in answer.out
+    with xr.open_zarr("there/sweep.zarr") as zarr:
+        assert zarr["outcome"].values.tolist() == ["not accepted", "done", "not accepted"]
+        assert (zarr["verdict.spread"].values > 1.5e-3).tolist() == [True, False, True]
+        assert zarr["verdict.accepted"].values.tolist() == [0, 1, 0]
+        assert zarr.attrs["outcome"] == "some cases not accepted"
+    page = Path("there/report.html").read_text(encoding="utf-8")
+    assert '<span class="badge bad">some cases not accepted</span>' in page
+    assert "3 cases: 1 done, 2 not accepted" in page
+    again = gbeam(*command, "--resume", "--json").json
+    assert again["counts"] == {"done": 1, "not accepted": 2} and again["outcome"] == "some cases not accepted"
+
+
+def test_a_case_beyond_the_machines_limits_has_an_answer_too(fast: Path, gbeam: Call) -> None:
+    rates = ("--over", "motion.spin.limits.axis1.rate=1 rad/s, 60 rad/s")
+    for verb, measure in (("run", "verdict.tip"), ("plan", "axis1.rate.used")):
+        answer = gbeam("sweep", fast, *rates, "--verb", verb, "--measure", measure, "--out", verb, "--json")
+        assert answer.status == 0 and None not in answer.json["measures"][measure]["values"]
+        assert answer.json["outcomes"] == [{"run": "machine limits exceeded", "plan": "limits exceeded"}[verb], "done"]
+        assert "exceeds axis 1 rate" in answer.json["messages"][0]
+
+
 def test_a_function_of_the_case_is_a_measure(fast: Path) -> None:
     found = gb.sweep(fast, {"beam.length": ["250 mm", "300 mm"]}, {"length": attrgetter("beam.length")})
     assert found.measures["length"] == pytest.approx([0.25, 0.3])

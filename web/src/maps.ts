@@ -4,6 +4,13 @@ import { css, GRADIENT, inkOn, shade } from "./colours";
 import { element } from "./controls";
 import { type Data, format, type HeatMap, view } from "./data";
 
+const MARK = " ✗";
+
+/** A figure as a map shows it: marked where its case, though computed, is not accepted. */
+export function marked(figure: string, outcome: string): string {
+  return outcome === "done" ? figure : figure + MARK;
+}
+
 export function heatMap(root: HTMLElement, data: Data, spec: HeatMap): void {
   const values = view(data.numbers, spec.values);
   const known = [...values].filter(Number.isFinite);
@@ -19,7 +26,9 @@ export function heatMap(root: HTMLElement, data: Data, spec: HeatMap): void {
     spec.x.ticks.forEach((_, column) => {
       const i = column * spec.y.ticks.length + row;
       const value = values[i]!;
-      const cell = element("td", "", Number.isFinite(value) ? format(value) : spec.outcomes[i]!);
+      const outcome = spec.outcomes[i]!;
+      const cell = element("td", "", Number.isFinite(value) ? marked(format(value), outcome) : outcome);
+      cell.title = outcome;
       if (Number.isFinite(value)) {
         const share = high > low ? (value - low) / (high - low) : 0.5;
         cell.style.background = css(shade(share));
@@ -37,5 +46,8 @@ export function heatMap(root: HTMLElement, data: Data, spec: HeatMap): void {
   const bar = element("span", "gbeam-bar");
   bar.style.background = GRADIENT;
   legend.append(element("span", "", format(low)), bar, element("span", "", `${format(high)} ${spec.unit}`));
+  if (spec.outcomes.some((each, i) => marked("", each) && Number.isFinite(values[i]!))) {
+    legend.append(element("span", "", `${MARK.trim()}: does not keep its limits`));
+  }
   root.append(legend);
 }

@@ -25,7 +25,7 @@ from typing import Any
 from gbeam.app.files import SHORT, made, names, private, regular, write
 from gbeam.app.verbs import VERBS
 from gbeam.errors import InputError
-from gbeam.report.page.bodies import study
+from gbeam.results.imitation.criteria import GOOD
 
 ID = re.compile(r"\d{8}-\d{6}-[0-9a-f]{8}")
 MEMORY = 16 * 2**30  # bytes of address space, of which compiled programs reserve far more than they use
@@ -290,13 +290,14 @@ class Jobs:
             await asyncio.wait([end], timeout=min(left, PAUSE))
         if self._cancelled == place.name:
             return "cancelled"
-        while end.result() == 1:
+        otherwise = {0: "done", 1: "failed", 2: "refused"}.get(end.result(), "ended")
+        while end.result() in (0, 1):
             try:
-                return _failure(place)
+                return _state(place, otherwise)
             except OSError as error:
                 self.complain(error.strerror or str(error))
                 await asyncio.sleep(PAUSE)
-        return {0: "done", 2: "refused"}.get(end.result(), "ended")
+        return otherwise
 
 
 async def _begun(place: Path, command: Sequence[str]) -> asyncio.subprocess.Process:
@@ -348,17 +349,18 @@ def _command(state: Mapping[str, Any]) -> list[str]:
     return [sys.executable, "-m", "gbeam.app.limited", str(MEMORY), str(SECONDS), *arguments]
 
 
-def _failure(place: Path) -> str:
-    """Why a result is not the one that was wanted, in a word or two, where there is a reason."""
+def _state(place: Path, otherwise: str) -> str:
+    """How an answer ended, in a few words: as its report says."""
     try:
         answer = json.loads((place / _ANSWER).read_text(encoding="utf-8"))
-        return study.state(answer)[0] if "comparisons" in answer else str(answer.get("outcome", "failed"))
+        state = str(answer.get("state") or answer["outcome"])
     except OSError as error:
         if error.errno in SHORT:
             raise
-        return "failed"
+        return otherwise
     except (ValueError, LookupError, TypeError, AttributeError):  # words, or half an answer
-        return "failed"
+        return otherwise
+    return "done" if state in GOOD else state
 
 
 def _stdout(command: Sequence[str]) -> str:

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 from scipy.io import savemat
 
-from gbeam.results.machine import Commands, MachinePlan
+from gbeam.results.imitation.plan import MachinePlan
+from gbeam.results.machine import Commands
 from gbeam.results.provenance import Provenance
 
 _UNITS = {"angle": "rad", "rate": "rad_per_s", "acceleration": "rad_per_s2"}

@@ -30,7 +30,7 @@ from gbeam.io.layout.tables import models_group, placement_group, state_space_gr
 from gbeam.io.provenance import provenance_attrs, provenance_variables
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.placement import Placement
-from gbeam.results.machine import MachinePlan
+from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result

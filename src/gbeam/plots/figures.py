@@ -26,7 +26,8 @@ from gbeam.plots.studies.sweep import plot_sweep
 from gbeam.plots.studies.uncertainty import plot_history, plot_indices, plot_probability
 from gbeam.plots.tip import plot_tip
 from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.machine import AxesResult, MachinePlan
+from gbeam.results.imitation.plan import MachinePlan
+from gbeam.results.machine import AxesResult
 from gbeam.results.response import Response
 from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.steady.modal import Campbell, Modes

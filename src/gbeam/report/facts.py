@@ -12,7 +12,7 @@ from gbeam.report.studies import sweep
 from gbeam.report.study import summary_json
 from gbeam.report.words import as_json
 from gbeam.results.imitation.placement import Placement
-from gbeam.results.machine import MachinePlan
+from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.steady.equilibrium import Deflection

@@ -1,4 +1,4 @@
-"""What a centrifuge does and what it cannot: frozen records of its axes, its limits, its plan and its commands."""
+"""What a centrifuge does and what it cannot: frozen records of its axes, its limits and its commands."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gbeam.results.result import Figured, Flags, Floats, Part
+from gbeam.results.result import Flags, Floats, Part
 
 
 @dataclass(frozen=True)
@@ -122,6 +122,9 @@ class AxesResult(Part):
         First and last time of the flight, s; before it the machine spins up, and after it it spins down.
     start : str
         How the machine begins: rest, pre-yawed or idle.
+    flight : (t, 3) or None
+        The flight's own load, base axes, m/s², which the target rounds off; before and after the flight that of its
+        first and last time.
     """
 
     angle: Floats
@@ -139,6 +142,7 @@ class AxesResult(Part):
     jerk: Floats | None = None
     span: tuple[float, float] = (-math.inf, math.inf)
     start: str = "idle"
+    flight: Floats | None = None
 
     @property
     def within_limits(self) -> bool:
@@ -177,50 +181,6 @@ class AxesResult(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class MachinePlan(Figured):
-    """What a centrifuge does to imitate a flight, without a beam.
-
-    Parameters
-    ----------
-    name, tracks : str
-        Of the motion, and of the flight.
-    arm : float
-        m.
-    outcome : str
-        done or limits exceeded.
-    message : str
-        Which limits, where the outcome is not done.
-    time : (t,) s
-    axes : AxesResult
-        At these times.
-    """
-
-    name: str
-    tracks: str
-    arm: float
-    outcome: str
-    message: str
-    time: Floats
-    axes: AxesResult
-
-    def __repr__(self) -> str:
-        of = f" {self.name!r}" if self.name else ""
-        tracks = f", tracks {self.tracks!r}" if self.tracks else ""
-        lines = [f"MachinePlan{of} (arm {self.arm:g} m{tracks}): {self.outcome}"]
-        lines += [self.message] if self.message else []
-        rate, acceleration = (np.abs(each).max(axis=0) for each in (self.axes.rate, self.axes.acceleration))
-        lines.append(f"axis rates up to {_listed(rate)} rad/s, accelerations {_listed(acceleration)} rad/s²")
-        error = self.axes.tracking_error[~self.axes.not_followed]
-        if error.size:
-            lines.append(f"load followed within {error.max():.3g} m/s², target held {self._held:.0%} of the time")
-        return "\n  ".join(lines)
-
-    @property
-    def _held(self) -> float:
-        return float(self.axes.not_followed.mean())
-
-
-@dataclass(frozen=True, repr=False, eq=False)
 class Commands(Part):
     """The axis motions at a controller's sample time.
 
@@ -238,7 +198,3 @@ class Commands(Part):
     angle: Floats
     rate: Floats
     acceleration: Floats
-
-
-def _listed(values: Floats) -> str:
-    return ", ".join(f"{value:.3g}" for value in values)

@@ -118,6 +118,8 @@ class Response(Figured):
         How it begins, in words.
     outline : Outline or None
         The beam's shape at some of the times, and what carries it; None where there is no beam.
+    bodies : (b, 3)
+        Centres of mass of the bodies on the undeformed beam, from the root, base axes, m.
     """
 
     name: str
@@ -147,6 +149,7 @@ class Response(Figured):
     damping_ratio: float | tuple[float, ...] = math.nan
     initial: str = ""
     outline: Outline | None = None
+    bodies: Floats = field(default_factory=lambda: np.empty((0, 3)))
 
     @property
     def tip(self) -> Floats:

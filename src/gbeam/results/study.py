@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.imitation.criteria import state_of
 from gbeam.results.response import Response
 from gbeam.results.result import Figured, Part, Result
 
@@ -49,11 +50,27 @@ class Study(Figured):
         """``done`` where every response is, else the first other outcome."""
         return next((failure.outcome for failure in self.unfinished.values()), "done")
 
+    @property
+    def refusals(self) -> dict[str, str]:
+        """Limits of acceptance that are not kept and limits of machines that are exceeded, by the motion's name."""
+        kept = {each.centrifuge: each.refusal for each in self.comparisons if each.refusal}
+        return kept or {
+            name: each.axes.exceeding
+            for name, each in self.responses.items()
+            if each.axes is not None and each.axes.exceeding
+        }
+
+    @property
+    def state(self) -> str:
+        """The outcome, with what limits of the machines and of acceptance make of it."""
+        exceeded = any(each.axes is not None and not each.axes.within_limits for each in self.responses.values())
+        return state_of(self.outcome, self.comparisons, exceeded=exceeded)
+
     def __repr__(self) -> str:
         parts = [repr(response) for response in self.responses.values()]
         parts += [f"{name}: {failure.outcome}\n  {failure.message}" for name, failure in self.failures.items()]
         parts += [repr(comparison) for comparison in self.comparisons]
-        return "\n".join([f"Study{f' {self.title!r}' if self.title else ''}: {self.outcome}", *parts])
+        return "\n".join([f"Study{f' {self.title!r}' if self.title else ''}: {self.state}", *parts])
 
 
 @dataclass(frozen=True, repr=False)

@@ -4,7 +4,7 @@ text/ reads quantities, places and overrides; schema/ declares the tables; load 
 explain and placing put every error at its line; template is for those who write scenarios.
 """
 
-from gbeam.scenario.build import build, build_machines, read_scenario
+from gbeam.scenario.build import build, build_machines, build_specimen, read_scenario
 from gbeam.scenario.load import load, load_environments, loads
 from gbeam.scenario.origin import provenance
 from gbeam.scenario.placing import placed
@@ -22,6 +22,7 @@ __all__ = [
     "argument",
     "build",
     "build_machines",
+    "build_specimen",
     "json_schema",
     "load",
     "load_environments",

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from gbeam.errors import InputError
+from gbeam.results.imitation.criteria import RULES
 from gbeam.scenario import schema
 from gbeam.scenario.load import change, load
 from gbeam.scenario.origin import provenance
@@ -74,6 +75,7 @@ def build(scenario: schema.Scenario, *, ahead: bool = False) -> Case:
     if response is not None:
         span = (response.start, response.start + response.duration)
         motions |= centrifuges(parts, scenario, motions, span, ahead=ahead)
+    accept = _acceptance(parts, scenario)
     if parts.errors or beam is None or model is None or response is None:
         raise placed(scenario, parts.errors)
     case = Case(
@@ -84,11 +86,7 @@ def build(scenario: schema.Scenario, *, ahead: bool = False) -> Case:
         response=response,
         tracks={name: table.tracks for name, table in scenario.motion.items() if isinstance(table, schema.Centrifuge)},
         stations=scenario.response.stations or (),
-        accept={
-            name: table.accept.given
-            for name, table in scenario.motion.items()
-            if isinstance(table, schema.Centrifuge) and table.accept is not None
-        },
+        accept=accept,
         provenance=provenance(scenario),
     )
     object.__setattr__(case, "scenario", scenario)
@@ -147,9 +145,38 @@ def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
     if response is not None:
         span = (response.start, response.start + response.duration)
         motions |= centrifuges(parts, scenario, motions, span, ahead=True)
+    _acceptance(parts, scenario)
     if parts.errors or response is None:
         raise placed(scenario, parts.errors)
     return {name: machine for name in scenario.motion if isinstance(machine := motions[name], Centrifuge)}
+
+
+def build_specimen(scenario: schema.Environments) -> Beam | None:
+    """Make the beam of a scenario alone; None where it has none.
+
+    Raises
+    ------
+    ScenarioError
+        With every InputError of its parts, each at its place in the file.
+    """
+    if not isinstance(scenario, schema.Scenario):
+        return None
+    parts = Collector()
+    beam = _beam(parts, scenario.beam)
+    if parts.errors:
+        raise placed(scenario, parts.errors)
+    return beam
+
+
+def _acceptance(parts: Collector, scenario: schema.Environments) -> dict[str, dict[str, Any]]:
+    """Limits of acceptance and their settings, by the centrifuge's name."""
+    machines = {name: each for name, each in scenario.motion.items() if isinstance(each, schema.Centrifuge)}
+    given = {name: each.limits_of_acceptance for name, each in machines.items() if each.limits_of_acceptance}
+    for name, limits in given.items():
+        for key, limit in limits.items():
+            if key in RULES:
+                parts.attempt(f"motion.{name}.accept", RULES[key].checked, limit)
+    return given
 
 
 def _beam(parts: Collector, table: schema.Beam) -> Beam | None:

@@ -74,7 +74,8 @@ smoothing = "60 ms"  # width of the kernel that rounds the corners of the load t
 tip = "2 %"  # change of the tip's peak displacement; likewise root_force, root_moment, stress
 root_moment = "5 %"
 peaks = "3 %"  # error of every peak of the load above idle
-# spread = "10 %"  # of the load along the specimen at these peaks; followed = "90 %" of the time
+# largest_load = "10 %"  # change of the largest load anywhere on the specimen; followed = "90 %" of the time
+# srs = "3 dB"  # of the tip's shock response spectra; damage = 2; spread, tolerance: docs/verdict.md
 
 [response]
 duration = "6 s"  # may be left out beside a record

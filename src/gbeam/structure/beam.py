@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import is_jax
 from gbeam.errors import InputError
@@ -84,3 +85,8 @@ class Beam:
                 raise InputError(
                     place, f"is {ratio:g}", "give a ratio of critical damping from 0 up to 1, such as 0.01"
                 )
+
+    @property
+    def body_centres(self) -> NDArray[np.float64]:
+        """Centres of mass of the bodies on the undeformed beam, from the root, axes of the section, (b, 3) m."""
+        return np.array([[m.at + m.offset[0], *m.offset[1:]] for m in self.masses], dtype=float).reshape(-1, 3)

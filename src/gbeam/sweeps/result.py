@@ -65,7 +65,7 @@ def with_statistics(sweep: Sweep, cases: Cases, truths: Mapping[str, bool], seed
     """The same with what its samples say; they are the last dimension of the measures."""
     first = slice(cases.independent)
     # A figure of a case that was cut off, such as the peak until it diverged, is none of the answer.
-    done = sweep.outcome == "done"
+    done = sweep.computed
     measures = {name: np.where(done, values, math.nan) for name, values in sweep.measures.items()}
     histories = {name: np.where(done[..., None], values, math.nan) for name, values in sweep.histories.items()}
     known = {name: statistics(values[..., first], truth=truths[name]) for name, values in measures.items()}

@@ -224,14 +224,14 @@ def _collected(
 ) -> list[Row]:
     """The rows found, each batch kept and reported before the next is awaited."""
     rows: list[Row] = []
-    failed = sum(row.outcome != "done" for row in before)
+    failed = sum(row.failed for row in before)
     if progress is not None:
         progress(len(before), failed, count)
     for some in found:
         if journal is not None:
             journal.add(some)
         rows += some
-        failed += sum(row.outcome != "done" for row in some)
+        failed += sum(row.failed for row in some)
         if progress is not None:
             progress(len(before) + len(rows), failed, count)
     return rows

@@ -3,6 +3,7 @@
 import { css, inkOn, shade } from "../colours";
 import { button, element } from "../controls";
 import { format } from "../data";
+import { marked } from "../maps";
 import { api, type Run } from "./api";
 
 interface Parameter {
@@ -16,6 +17,8 @@ interface Sweep {
   verb: string;
   parameters: Parameter[];
   measures: Record<string, { unit: string; values: unknown }>;
+  outcomes: unknown;
+  counts: Record<string, number>;
 }
 
 /** A table of a sweep's cases in the colours of its first figure; a click on one opens or starts its run. */
@@ -26,8 +29,8 @@ export async function sweepMap({ id, arguments: given }: Run, opened: (id: strin
   if (sweep.parameters.length > 2 || sweep.parameters.some((each) => each.distribution)) return element("div");
   const [rows, columns] = [sweep.parameters[0]!, sweep.parameters[1]];
   const [name, figure] = Object.entries(sweep.measures)[0]!;
-  const at = (i: number, j: number): number | null => {
-    const row = (figure.values as (number | null | (number | null)[])[])[i];
+  const entry = <T,>(values: unknown, i: number, j: number): T | null => {
+    const row = (values as (T | null | (T | null)[])[])[i];
     return Array.isArray(row) ? (row[j] ?? null) : (row ?? null);
   };
   const all = (figure.values as unknown[]).flat().filter((each): each is number => typeof each === "number");
@@ -61,21 +64,24 @@ export async function sweepMap({ id, arguments: given }: Run, opened: (id: strin
     const line = element("tr");
     line.append(element("th", "", short(rows, i)));
     for (let j = 0; j < (columns?.values.length ?? 1); j++) {
-      const value = at(i, j);
+      const value = entry<number>(figure.values, i, j);
+      const outcome = entry<string>(sweep.outcomes, i, j) ?? "";
       const cell = element("td");
-      const act = button(format(value), () => void open(i, j));
+      const act = button(value === null ? format(value) : marked(format(value), outcome), () => void open(i, j));
       const share = value === null ? 0 : high > low ? (value - low) / (high - low) : 0.5;
       if (value !== null) {
         act.style.background = css(shade(share));
         act.style.color = inkOn(shade(share));
       }
-      act.title = "open the run of this case";
+      act.title = `${outcome}: open the run of this case`;
       cell.append(act);
       line.append(cell);
     }
     table.append(line);
   });
   const box = element("div", "gbeam-wide");
-  box.append(element("p", "faint", `${name}${figure.unit ? `, ${figure.unit}` : ""}: a cell opens its run`), table, problem);
+  const counts = Object.entries(sweep.counts).map(([ended, count]) => `${count} ${ended}`).join(", ");
+  const about = `${name}${figure.unit ? `, ${figure.unit}` : ""}: a cell opens its run; ${counts}`;
+  box.append(element("p", "faint", about), table, problem);
   return box;
 }

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.guards.checks import choice, positive
 from gbeam.numerics.intervals import true_runs
 from gbeam.numerics.prominence import separate_peaks
-from gbeam.results.imitation.accounting import Accounting, LoadPeak, NotFollowed, Preload
+from gbeam.results.imitation.accounting import TOLERANCE_OF, Accounting, LoadPeak, NotFollowed, Preload
+from gbeam.results.machine import AxesResult
 from gbeam.results.result import Flags, Floats
 
 _DIP = 0.9  # of the lower of two maxima: a load that falls further between them makes them two peaks
@@ -40,6 +43,11 @@ class History:
     root: Floats
     tip: Floats
 
+    @classmethod
+    def of(cls, root: Floats, gradient: Floats, length: float, load: Floats | None = None) -> Self:
+        """Make the history of a specimen of a length, m, from the root's load and its growth (t, 3) along x."""
+        return cls(root if load is None else load, root, root + length * gradient)
+
     @property
     def size(self) -> Floats:
         """Of the load, (t,) m/s²."""
@@ -52,12 +60,47 @@ class History:
         return root, tip
 
 
+def account_of(
+    time: Floats,
+    flight: History,
+    machine: History,
+    axes: AxesResult | None,
+    during: slice,
+    *,
+    tolerance: float,
+    tolerance_of: str,
+) -> Accounting:
+    """Account for a flight on a machine, of whose axes the samples `during` the flight are at these times.
+
+    Raises
+    ------
+    InputError
+        If the tolerance is not positive, or of nothing that there is.
+    """
+    positive("tolerance", tolerance, "of the flight's load")
+    choice("tolerance_of", tolerance_of, TOLERANCE_OF)
+    if axes is None:
+        return account(time, flight, machine, tolerance=tolerance, tolerance_of=tolerance_of)
+    return account(
+        time,
+        flight,
+        machine,
+        tolerance=tolerance,
+        tolerance_of=tolerance_of,
+        idle=axes.idle,
+        target=axes.reference[during],
+        episodes=axes.episodes,
+        shares={name: each[during] for name, each in axes.limit_shares.items()},
+    )
+
+
 def account(
     time: Floats,
     flight: History,
     machine: History,
     *,
     tolerance: float,
+    tolerance_of: str = "peak",
     idle: float = 0.0,
     target: Floats | None = None,
     episodes: tuple[tuple[float, float, str], ...] = (),
@@ -72,7 +115,9 @@ def account(
     flight, machine : History
         At these times.
     tolerance : float
-        Share of the flight's largest load.
+        Share of the flight's load.
+    tolerance_of : str
+        ``peak``: of its largest; ``instant``: of that at each time.
     idle : float
         Least load that the machine makes, m/s².
     target : (t, 3), optional
@@ -87,7 +132,9 @@ def account(
     Accounting
     """
     size, made = flight.size, machine.size
-    allowed = tolerance * float(size.max())
+    instant = tolerance_of == "instant"
+    least = _SLACK * float(size.max())
+    allowed = np.maximum(tolerance * size, least) if instant else np.full(len(time), tolerance * float(size.max()))
     above = idle * (1 + _SLACK)
     edges = np.concatenate([time[:1], (time[1:] + time[:-1]) / 2, time[-1:]])
     low = (size < above) & (idle > 0)
@@ -109,19 +156,21 @@ def account(
     )
     duration = float(time[-1] - time[0])
     lost = sum(each.end - each.start for each in stretches)
-    floor = max(above, _SLACK * float(size.max()))
+    floor = max(above, least)
+    most = np.maximum(size, idle)
     return Accounting(
         tolerance=tolerance,
-        allowed=allowed,
+        tolerance_of=tolerance_of,
+        allowed=float(allowed.max()),
         idle=idle,
         span=(float(time[0]), float(time[-1])),
         followed_share=1 - lost / duration if duration > 0 else float(not missed.any()),
         peaks=tuple(
-            _peak(time, flight, machine, top, basin, allowed, _NAMES[reasons[top]], limits)
+            _peak(time, flight, machine, top, basin, float(allowed[top]), _NAMES[reasons[top]], limits)
             for top, basin in separate_peaks(size, floor, _DIP)
         ),
         not_followed=stretches,
-        preloads=tuple(_preloads(edges, time, size, made, np.maximum(size, idle) + allowed)),
+        preloads=tuple(_preloads(edges, time, size, made, most + (tolerance * most if instant else allowed))),
     )
 
 
@@ -195,6 +244,7 @@ def _peak(
         spread=machine.spread(basin.start + i),
         spread_flight=flight.spread(top),
         reason=_named(reason, shares, basin) if error * load > allowed else "",
+        instant_error=float(np.linalg.norm(machine.load[top] - flight.load[top])) / load,
     )
 
 

@@ -6,17 +6,17 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from gbeam.analysis.imitation.accounting import History, account
+from gbeam.analysis.imitation.accounting import History, account_of
 from gbeam.analysis.imitation.fatigue import fatigue
 from gbeam.analysis.imitation.peak_pairs import peak_pairs
 from gbeam.errors import InputError
-from gbeam.guards.checks import positive
 from gbeam.motion.bases.base import gradient
 from gbeam.numerics.filters.low_pass import low_pass
 from gbeam.numerics.filters.oscillators import largest_riding_acceleration
 from gbeam.numerics.interpolation import interpolated
-from gbeam.results.imitation.accounting import CRITERIA, TOLERANCE, Accounting
+from gbeam.results.imitation.accounting import TOLERANCE
 from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.imitation.criteria import Limit, checked_limits
 from gbeam.results.imitation.measures import Mismatch, RootHistory, RootLoads, Shock, Sizes, Statistics
 from gbeam.results.parts.section_forces import Influence
 from gbeam.results.response import Response
@@ -35,7 +35,8 @@ def compare(
     centrifuge: Response,
     *,
     tolerance: float = TOLERANCE,
-    accept: Mapping[str, float] | None = None,
+    tolerance_of: str = "peak",
+    accept: Mapping[str, Limit] | None = None,
 ) -> Comparison:
     """Compare the response on a centrifuge with that in the flight it imitates.
 
@@ -45,11 +46,13 @@ def compare(
         Sampled at any times; the flight's are interpolated where they differ. A response without a name goes by its
         environment.
     tolerance : float
-        Share of the flight's largest load by which the machine's may differ and count as following.
-    accept : mapping of str to float, optional
-        Limits that decide whether the imitation is accepted, as shares: ``tip``, ``root_force``, ``root_moment`` and
-        ``stress`` of the change of the largest size over the flight, ``peaks`` of the error of every peak of the load,
-        ``spread`` of the load along the specimen at these, ``followed`` the least share of the time.
+        Share of the flight's load by which the machine's may differ and count as following.
+    tolerance_of : str
+        ``peak``: of the flight's largest load; ``instant``: of its load at each time.
+    accept : mapping of str to float or tuple of float, optional
+        Limits that decide whether the imitation is accepted, by the names of ``[motion.NAME.accept]``: shares, such as
+        ``{"tip": 0.02}``; of ``srs`` and ``damage`` the largest ratio of machine to flight, either way, or the least
+        and the largest, ``{"srs": (0.84, 1.41)}``.
 
     Returns
     -------
@@ -61,10 +64,9 @@ def compare(
     Raises
     ------
     InputError
-        If a limit has no such name, or is not positive.
+        If a limit has no such name, or means nothing.
     """
-    limits = _limits(accept)
-    share = positive("tolerance", tolerance, "of the flight's largest load")
+    limits = checked_limits(accept)
     first, last = flight.time[0], flight.time[-1]
     slack = _ROUNDING * max(abs(first), abs(last))
     begin, end = np.searchsorted(centrifuge.time, (first - slack, last + slack))
@@ -76,8 +78,9 @@ def compare(
     def in_flight(values: Floats) -> Floats:
         return interpolated(time, flight.time, values)
 
+    length, axes = float(centrifuge.stations[-1]), centrifuge.axes
     reference, actual = in_flight(flight.displacement), centrifuge.displacement[during]
-    covered = np.ones(len(time), dtype=bool) if centrifuge.axes is None else ~centrifuge.axes.not_followed[during]
+    covered = np.ones(len(time), dtype=bool) if axes is None else ~axes.not_followed[during]
     difference = actual[:, -1] - reference[:, -1]
     root, shock = None, None
     if flight.loads is not None and centrifuge.loads is not None and covered.any():
@@ -101,7 +104,11 @@ def compare(
         peak_flight=_largest(reference[:, -1], covered),
         peak_centrifuge=_largest(actual[:, -1], covered),
         peaks=peak_pairs(flight, centrifuge, during),
-        accounting=_accounting(time, in_flight(flight.base.a_WO_B), flown, centrifuge, spun, during, share),
+        accounting=account_of(
+            time, History.of(in_flight(flight.base.a_WO_B), flown, length),
+            History.of(centrifuge.base.a_WO_B[during], spun, length, None if axes is None else axes.actual[during]),
+            axes, during, tolerance=tolerance, tolerance_of=tolerance_of,
+        ),
         accept=limits,
         stations=_statistics(time, covered, reference, actual, centrifuge),
         mismatch=_mismatch(covered, centrifuge, spun - flown),
@@ -109,37 +116,7 @@ def compare(
         shock=shock,
         fatigue=fatigue(flight, centrifuge),
         yield_strength=None if centrifuge.loads is None else centrifuge.loads.yield_strength,
-    )
-
-
-def _limits(accept: Mapping[str, float] | None) -> dict[str, float]:
-    limits = {}
-    for name, limit in ({} if accept is None else accept).items():
-        if name not in CRITERIA:
-            raise InputError("accept", f"has {name!r}", f"choose from {', '.join(CRITERIA)}")
-        limits[name] = float(positive(f"accept.{name}", limit, "(a share)"))
-    return limits
-
-
-def _accounting(
-    time: Floats, load: Floats, flown: Floats, centrifuge: Response, spun: Floats, during: slice, tolerance: float
-) -> Accounting:
-    """Of a flight's load at the root, and how it grows along the specimen in both, at the times `during` the flight."""
-    length, axes = float(centrifuge.stations[-1]), centrifuge.axes
-    root = centrifuge.base.a_WO_B[during]
-    flight = History(load, load, load + length * flown)
-    if axes is None:
-        return account(time, flight, History(root, root, root + length * spun), tolerance=tolerance)
-    return account(
-        time,
-        flight,
-        History(axes.actual[during], root, root + length * spun),
-        tolerance=tolerance,
-        idle=axes.idle,
-        target=axes.reference[during],
-        episodes=axes.episodes,
-        shares={name: each[during] for name, each in axes.limit_shares.items()},
-    )
+    )  # fmt: skip
 
 
 def _names(flight: Response, centrifuge: Response) -> tuple[str, str]:

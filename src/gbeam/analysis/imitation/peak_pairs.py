@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from gbeam.analysis.imitation.largest import largest_load, largest_pair, points_of
 from gbeam.analysis.response.peaks import vector_peaks
 from gbeam.numerics.peaks import maxima, near_maxima, seven_point
 from gbeam.results.imitation.accounting import PeakPair
@@ -23,13 +24,17 @@ def peak_pairs(flight: Response, centrifuge: Response, during: slice) -> dict[st
     Returns
     -------
     dict of str to PeakPair
-        Of the vectors ``tip``, ``root_force`` and ``root_moment``, and of the ``stress`` at any station; NaN where
-        either response does not have it.
+        Of the load anywhere on the specimen, ``largest_load``, on the machine over all of its run; of the vectors
+        ``tip``, ``root_force`` and ``root_moment``, and of the ``stress`` at any station; NaN where either response
+        does not have it.
     """
     last = centrifuge.time[during][-1]
     one = _peaks(flight, flight.time <= last + 1e-12 * abs(last))
     two = _peaks(centrifuge, during)
-    return {name: PeakPair(one[name][0], two[name][0], one[name][1], two[name][1]) for name in one}
+    points = points_of(float(centrifuge.stations[-1]), centrifuge.bodies)
+    loads = (largest_load(each.time, each.base, points) for each in (flight, centrifuge))
+    pairs = {name: PeakPair(one[name][0], two[name][0], one[name][1], two[name][1]) for name in one}
+    return {"largest_load": largest_pair(*loads)} | pairs
 
 
 def _peaks(response: Response, part: slice | Flags) -> dict[str, tuple[float, float]]:

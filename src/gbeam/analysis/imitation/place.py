@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gbeam.analysis.imitation.choice import Choice
+from gbeam.analysis.imitation.largest import largest_load, largest_pair, points_of, times_between
 from gbeam.analysis.imitation.place_check import verify
 from gbeam.analysis.imitation.place_measures import Answers, Histories
 from gbeam.analysis.response.settings import ResponseSettings
@@ -21,6 +22,7 @@ from gbeam.errors import InputError
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion import Centrifuge, Flight
+from gbeam.motion.centrifuge.machine.kinematics import forward
 from gbeam.motion.centrifuge.machine.limits import exceeded
 from gbeam.numerics.solvers.bounded_search import refine
 from gbeam.results.imitation.placement import EXCEEDED, MEASURES, Candidate, Placement
@@ -137,6 +139,10 @@ class _Trials:
         self.answers, self.length, self.flight = Answers(structure, flight, settings), structure.length, flight
         self.choice, self.weights = choice, weights
         self.span = settings.start, settings.start + settings.duration
+        bodies = np.empty((0, 3)) if structure.source is None else structure.source.beam.body_centres
+        self.points = points_of(structure.length, bodies)
+        times = times_between(*self.span)
+        self.in_flight = largest_load(times, flight.base(times), self.points)
         self.evaluated: dict[tuple[str, float], _Evaluated] = {}
         self.refused: list[str] = []
         self.reasons: list[InputError] = []
@@ -182,12 +188,15 @@ class _Trials:
                 ).x
             )
         uses = machine.usage()
+        times = times_between(*(float(end) for end in machine.extent))
+        at_c = forward(machine.axes(times), machine.geometry.arm, machine.geometry.gravity)
         most = max(uses, key=lambda use: use.share)
         return _Evaluated(
             Candidate(
                 machine.mounting, float(machine.smoothing or 0.0), at, size(at), size(at, True), accelerations,
                 most.share, exceeded(uses), most_used=most,
                 tracking=sum(w * histories[name].error for name, w in self.weights.items()),
+                largest_load=largest_pair(self.in_flight, largest_load(times, at_c, self.points, at)),
             ),
             histories,
             machine,

@@ -2,20 +2,40 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
 import numpy as np
 
+from gbeam.analysis.imitation.accounting import History, account_of
+from gbeam.analysis.imitation.largest import largest_load, largest_pair, points_of, times_between
 from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.motion import Centrifuge
+from gbeam.motion.bases.base import gradient
 from gbeam.motion.centrifuge.history import axes_result, columns
 from gbeam.motion.plausibility import implausible_motion
-from gbeam.results.machine import Commands, MachinePlan
+from gbeam.results.imitation.accounting import TOLERANCE, PeakPair
+from gbeam.results.imitation.criteria import Limit, checked_limits
+from gbeam.results.imitation.plan import MachinePlan
+from gbeam.results.machine import Commands
 
-_GRID, _MOST = 2e-3, 50_000  # s between the times of the result; most of them
+if TYPE_CHECKING:
+    from gbeam.structure.beam import Beam
+
 _FINE = 1e-3  # s: the angle of axis 1 is integrated on times no further apart
 
 
-def plan(name: str, motion: Centrifuge, tracks: str = "") -> MachinePlan:
-    """Plan one centrifuge over its whole motion.
+def plan(
+    name: str,
+    motion: Centrifuge,
+    tracks: str = "",
+    *,
+    beam: Beam | None = None,
+    tolerance: float = TOLERANCE,
+    tolerance_of: str = "peak",
+    accept: Mapping[str, Limit] | None = None,
+) -> MachinePlan:
+    """Plan one centrifuge over its whole motion, and account for the flight's load on it.
 
     Parameters
     ----------
@@ -25,22 +45,53 @@ def plan(name: str, motion: Centrifuge, tracks: str = "") -> MachinePlan:
         With the span of the flight that it tracks.
     tracks : str
         Name of the flight.
+    beam : Beam, optional
+        The specimen, whose size the load along it depends on.
+    tolerance, tolerance_of, accept
+        As for :func:`gbeam.compare`; limits that need a response are not judged.
 
     Raises
     ------
     InputError
-        If the motion has no span, or the load cannot be followed.
+        If the motion has no span, the load cannot be followed, or a limit means nothing.
     """
+    limits = checked_limits(accept)
     first, last = (float(end) for end in motion.extent)
-    count = min(int(np.ceil((last - first) / _GRID)), _MOST)
-    time = np.linspace(first, last, count + 1)
+    time = times_between(first, last)
     axes = axes_result(motion, time)
     outcome = "done" if axes.within_limits else "limits exceeded"
     where, span = f"motion.{name}" if name else "motion", motion.target.span
     warnings = implausible_motion(motion, where, span)
     warnings += implausible_motion(motion.flight, f"motion.{tracks}" if tracks else "flight", span)
-    arm = float(motion.geometry.arm)
-    return MachinePlan(name, tracks, arm, outcome, axes.exceeding, time, axes, warnings=(*warnings, *axes.warnings))
+    during = slice(*np.searchsorted(time, (span[0], np.nextafter(span[1], np.inf))))
+    flown, made = motion.flight.base(time[during]), motion.base(time)
+    length = np.nan if beam is None else beam.length
+    along = gradient(flown.w_WB_B, flown.alpha_WB_B), gradient(made.w_WB_B, made.alpha_WB_B)[during]
+    largest = PeakPair()
+    if beam is not None:
+        points = points_of(beam.length, beam.body_centres)
+        largest = largest_pair(largest_load(time[during], flown, points), largest_load(time, made, points))
+    return MachinePlan(
+        name=name,
+        tracks=tracks,
+        arm=float(motion.geometry.arm),
+        outcome=outcome,
+        message=axes.exceeding,
+        time=time,
+        axes=axes,
+        accounting=account_of(
+            time[during],
+            History.of(flown.a_WO_B, along[0], length),
+            History.of(made.a_WO_B[during], along[1], length, axes.actual[during]),
+            axes,
+            during,
+            tolerance=tolerance,
+            tolerance_of=tolerance_of,
+        ),
+        peaks={"largest_load": largest},
+        accept=limits,
+        warnings=(*warnings, *axes.warnings),
+    )
 
 
 def commands(motion: Centrifuge, sample: float) -> Commands:

@@ -136,6 +136,7 @@ def response_of(
         damping_ratio=structure.damping_ratio,
         initial=str(settings.begin),
         outline=outline_of(structure, motion, time, q[:, beam]) if settings.loads and not traced else None,
+        bodies=np.empty((0, 3)) if traced or structure.source is None else structure.source.beam.body_centres,
     )
 
 

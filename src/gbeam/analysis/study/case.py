@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
@@ -37,9 +37,9 @@ class Case:
         Name of the flight that each centrifuge tracks.
     stations : tuple of float
         Positions of output from the root besides the tip, m.
-    accept : mapping of str to mapping of str to float
-        By the centrifuge's name, the limits that decide whether it is accepted, and ``tolerance``: see
-        :func:`gbeam.compare`.
+    accept : mapping of str to mapping
+        By the centrifuge's name, the limits that decide whether it is accepted, and ``tolerance`` and ``tolerance_of``:
+        see :func:`gbeam.compare`.
     provenance : Provenance, optional
         Of the scenario; results of the whole case have it.
 
@@ -56,7 +56,7 @@ class Case:
     response: ResponseSettings
     tracks: Mapping[str, str] = field(default_factory=dict)
     stations: tuple[float, ...] = ()
-    accept: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    accept: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     provenance: Provenance | None = None
     # Not an argument, so that dataclasses.replace leaves it behind.
     scenario: Scenario | None = field(default=None, init=False, repr=False, compare=False)

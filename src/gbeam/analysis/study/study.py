@@ -11,8 +11,7 @@ from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.study.case import Case
 from gbeam.errors import ComputationError, InputError
-from gbeam.results.imitation.accounting import TOLERANCE
-from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.imitation.criteria import judging
 from gbeam.results.response import Response
 from gbeam.results.study import Failure, Study
 
@@ -69,7 +68,10 @@ def study_of(
             first.outcome, "; ".join(f"motion.{n}: {failure.message}" for n, failure in failures.items())
         )
     comparisons = tuple(
-        replace(_compared(responses[flight], responses[name], case.accept.get(name, {})), provenance=case.provenance)
+        replace(
+            compare(responses[flight], responses[name], **judging(case.accept.get(name, {}))),
+            provenance=case.provenance,
+        )
         for name, flight in case.tracks.items()
         if {flight, name} <= responses.keys() and responses[flight].outcome == responses[name].outcome == "done"
     )
@@ -106,8 +108,3 @@ def _lacks_shapes(responses: Mapping[str, Response], settings: ResponseSettings)
     """Whether more shapes would change a response by more than a third of the tolerance, or by 1e-3."""
     limit = min(settings.tolerance / 3, ENOUGH)
     return any(max(e.displacement.shapes, e.loads.shapes) > limit for e in (r.errors for r in responses.values()))
-
-
-def _compared(flight: Response, centrifuge: Response, accept: Mapping[str, float]) -> Comparison:
-    limits = dict(accept)
-    return compare(flight, centrifuge, tolerance=limits.pop("tolerance", TOLERANCE), accept=limits)

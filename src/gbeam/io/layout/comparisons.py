@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-from gbeam.io.groups import AXIS, Group, Variable, coordinate, flags, known, variable, words
-from gbeam.results.imitation.accounting import Accounting, PeakPair
+from gbeam.io.groups import AXIS, Group, Variable, coordinate, flags, known, variable
+from gbeam.io.layout.accounting import judged_attrs, judged_variables
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.fatigue import Fatigue
 from gbeam.results.imitation.measures import RootHistory, Shock, Statistics
 
 _A, _TA = ("axis",), ("time", "axis")
 _SECTION_AXES = "S: axes of the deformed root section"
-_LARGEST = {
-    "tip": ("m", "displacement of the tip"),
-    "root_force": ("N", "force at the root"),
-    "root_moment": ("N m", "moment at the root"),
-    "stress": ("Pa", "normal stress"),
-}
 
 
 def comparison_group(comparison: Comparison) -> Group:
@@ -48,10 +40,8 @@ def comparison_group(comparison: Comparison) -> Group:
         coordinates |= coordinate("frequency", comparison.shock.frequency, "Hz", "frequency of the oscillators")
     if comparison.fatigue is not None:
         data |= _fatigue(comparison.fatigue)
-    data |= _whole_flight(comparison.peaks) | _accounting(comparison.accounting)
-    accepted = {None: "", True: "true", False: "false"}[comparison.accepted]
-    attrs = {"flight": flight, "centrifuge": centrifuge, "verdict": comparison.verdict, "accepted": accepted}
-    return Group(known(data), coordinates, attrs)
+    data |= judged_variables(comparison)
+    return Group(known(data), coordinates, {"flight": flight, "centrifuge": centrifuge, **judged_attrs(comparison)})
 
 
 def _fatigue(fatigue: Fatigue) -> dict[str, Variable]:
@@ -64,45 +54,6 @@ def _fatigue(fatigue: Fatigue) -> dict[str, Variable]:
         data[f"stress_range_{place}"] = variable(dims, cycles.range, "Pa", f"range of the root's stress cycle, {place}")
         data[f"stress_mean_{place}"] = variable(dims, cycles.mean, "Pa", "its mean")
         data[f"stress_count_{place}"] = variable(dims, cycles.count, "1", "1 of a full cycle, 0.5 of a half")
-    return data
-
-
-def _whole_flight(peaks: Mapping[str, PeakPair]) -> dict[str, Variable]:
-    data = {}
-    for name, pair in peaks.items():
-        unit, what = _LARGEST[name]
-        for place in ("flight", "machine"):
-            data[f"{name}_{place}"] = variable((), getattr(pair, place), unit, f"largest {what}, {place}")
-            data[f"{name}_time_{place}"] = variable((), getattr(pair, f"time_{place}"), "s", f"when that is, {place}")
-    return data
-
-
-def _accounting(accounting: Accounting) -> dict[str, Variable]:
-    v = variable
-    data = {
-        "tolerance_load": v((), accounting.allowed, "m s-2", "error of the load that counts as following"),
-        "followed_share": v((), accounting.followed_share, "1", "share of the flight's time that is followed"),
-    }
-    if accounting.peaks:  # netCDF takes a dimension of length zero for an unlimited one
-        p, rows = ("load_peak",), accounting.peaks
-        data |= {
-            "load_peak_time": v(p, [each.time for each in rows], "s", "peak of the flight's load above idle"),
-            "load_peak_flight": v(p, [each.load for each in rows], "m s-2", "its size"),
-            "load_peak_machine": v(p, [each.reproduced for each in rows], "m s-2", "what the machine makes of it"),
-            "load_peak_error": v(p, [each.error for each in rows], "1", "difference as vectors over its size"),
-            "load_peak_spread": v(
-                ("load_peak", "end"), [each.spread for each in rows], "1", "load at root and tip over that, less one"
-            ),
-            "load_peak_reason": words(p, [each.reason for each in rows], "why it is not reproduced; empty where it is"),
-        }
-    if accounting.not_followed:
-        n, runs = ("not_followed",), accounting.not_followed
-        data |= {
-            "not_followed_from": v(n, [each.start for each in runs], "s", "start of a stretch that is not followed"),
-            "not_followed_to": v(n, [each.end for each in runs], "s", "its end"),
-            "not_followed_reason": words(n, [each.reason for each in runs], "why it is not followed"),
-            "not_followed_peak": v(n, [each.flight_peak for each in runs], "m s-2", "largest load of the flight in it"),
-        }
     return data
 
 

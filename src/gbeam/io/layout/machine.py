@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from gbeam.io.groups import AXIS, Group, Variable, coordinate, flags, variable, words
-from gbeam.results.machine import AxesResult, LimitUse, MachinePlan, Shortfall
+from gbeam.io.layout.accounting import judged_attrs, judged_variables
+from gbeam.results.imitation.plan import MachinePlan
+from gbeam.results.machine import AxesResult, LimitUse, Shortfall
 
 UNITS = {"rate": "rad s-1", "acceleration": "rad s-2", "jerk": "rad s-3", "power": "W"}
 MACHINE_AXIS = coordinate("machine_axis", [1, 2, 3], "1", "axis of the centrifuge")
@@ -13,8 +15,11 @@ MACHINE_AXIS = coordinate("machine_axis", [1, 2, 3], "1", "axis of the centrifug
 
 def plan_group(plan: MachinePlan) -> Group:
     """Return what a file holds of a plan."""
+    of_axes = machine_variables(plan.axes)
+    # Where the target is held, and where the load is not the flight's, are two things.
+    judged = {f"load_{name}" if name in of_axes else name: each for name, each in judged_variables(plan).items()}
     return Group(
-        machine_variables(plan.axes),
+        of_axes | judged,
         coordinate("time", plan.time, "s", "time") | AXIS | MACHINE_AXIS,
         {
             "name": plan.name,
@@ -22,6 +27,7 @@ def plan_group(plan: MachinePlan) -> Group:
             "arm": plan.arm,
             "outcome": plan.outcome,
             "message": plan.message,
+            **judged_attrs(plan),
             "warnings": "\n".join(plan.warnings),
         },
     )
@@ -37,6 +43,7 @@ def machine_variables(axes: AxesResult) -> dict[str, Variable]:
         **({} if axes.jerk is None else {"axis_jerk": v(tm, axes.jerk, "rad s-3", "jerk of the centrifuge's axes")}),
         "load_reference": v(ta, axes.reference, "m s-2", "load of the target at the control point"),
         "load_actual": v(ta, axes.actual, "m s-2", "load that the axes make at the control point"),
+        **({} if axes.flight is None else {"load_flight": v(ta, axes.flight, "m s-2", "load of the flight itself")}),
         "not_followed": flags(
             t, axes.not_followed, "whether the target is held instead of the flight's load", "follows_flight", "held"
         ),

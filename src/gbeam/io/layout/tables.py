@@ -45,6 +45,10 @@ def placement_group(placement: Placement) -> Group:
         "total_error": variable(
             o, [each.total_error for each in options], "1", "the same with what smoothing and tracking change"
         ),
+        "largest_load": variable(
+            o, [each.largest_load.machine for each in options], "m s-2", "largest load anywhere on the specimen"
+        ),
+        "largest_load_place": words(o, [each.largest_load.place_machine for each in options], "where that is"),
         "acceleration": variable(
             ("option", "machine_axis"), [each.accelerations for each in options], "rad s-2", "largest of each axis"
         ),

@@ -42,6 +42,7 @@ def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
         jerk=jerk,
         span=motion.target.span,
         start=motion.ends.start,
+        flight=np.asarray(motion.flight.base(np.clip(time, *motion.target.span)).a_WO_B),
     )
 
 
@@ -62,7 +63,7 @@ def _broken_promise(
     worst = int(np.argmax(np.where(missed, size, 0.0)))
     used = ", ".join(f"{use.axis} {use.quantity}" for use in limits if use.share > _USED_UP)
     return (
-        f"the load is followed within {share[worst]:.2g} of it only ({size[worst]:.3g} m/s² at {time[worst]:.3f} s), "
+        f"the target is followed within {share[worst]:.2g} of it only ({size[worst]:.3g} m/s² at {time[worst]:.3f} s), "
         f"where {type(motion.inverse).__name__.lower()} promises {motion.inverse.within:g}: {motion.inverse.unless}"
         + (f" (limits used up: {used})" if used else ""),
     )

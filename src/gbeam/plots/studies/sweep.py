@@ -41,8 +41,8 @@ def plot_sweep(sweep: Sweep, measure: str = "", title: str = "") -> Figure:
         raise InputError("measure", f"is {name!r}", f"choose {', '.join(sweep.measures)}")
     values = sweep.measures[name]
     power, label = scaled_label(name, sweep.units[name], values)
-    lost = sweep.outcome.size - sweep.counts.get("done", 0)
-    subject = name + (f" ({lost} of {sweep.outcome.size} cases are not done)" if lost else "")
+    ended = [f"{count} {each}" for each, count in sweep.counts.items() if each != "done"]
+    subject = name + (f" (of {sweep.outcome.size} cases {', '.join(ended)})" if ended else "")
     figure, (panel,) = panels(heading(title or sweep.title, subject, []), 1, heights=[2.0])
     scaled = values / 10.0**power
     if sweep.dimensions == (SAMPLE,):

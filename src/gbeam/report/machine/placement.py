@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from dataclasses import asdict
 from typing import Any
 
+from gbeam.report.machine.accounting import peaks_to_json
 from gbeam.report.words import sentence, warning_lines
+from gbeam.results.imitation.accounting import PeakPair
 from gbeam.results.imitation.placement import Candidate, Placement
+from gbeam.results.imitation.verdict import change, in_g
 
 _PLACES = ("current", "best", "middle")
 _LISTED = 6  # candidates of either kind
@@ -38,8 +42,8 @@ def to_json(placement: Placement, written: str | None = None) -> dict[str, Any]:
         "written": written,
         "mismatch": {place: dict(values) for place, values in placement.values.items()},
         "total_error": {place: dict(values) for place, values in placement.totals.items()},
-        "options": [asdict(candidate) for candidate in placement.options],
-        "before": None if placement.before is None else asdict(placement.before),
+        "options": [_option(candidate) for candidate in placement.options],
+        "before": None if placement.before is None else _option(placement.before),
         "verifications": {check.name: asdict(check) for check in placement.verifications},
         "vibration_gain_over_middle": placement.vibration_gain,
         "refused": list(placement.refused),
@@ -47,9 +51,13 @@ def to_json(placement: Placement, written: str | None = None) -> dict[str, Any]:
     }
 
 
+def _option(candidate: Candidate) -> dict[str, Any]:
+    return asdict(candidate) | peaks_to_json({"largest_load": candidate.largest_load})
+
+
 def text(placement: Placement, written: str | None = None) -> str:
     """The best placement and how to apply it, every measure before and after, the simulations, the other candidates."""
-    best = placement.best
+    best, before = placement.best, placement.before
     parts = {name: weight for name, weight in placement.weights.items() if weight}
     measure = (
         " + ".join(f"{weight:g} × {name}" for name, weight in parts.items()) if len(parts) > 1 else next(iter(parts))
@@ -59,6 +67,7 @@ def text(placement: Placement, written: str | None = None) -> str:
         f"{placement.centrifuge}, tracking {placement.flight}: least {measure}{nearest}",
         f"  control point  {1e3 * best.control_point:.2f} mm from the root, {placement.fraction:.4f} of the length "
         f"(now {1e3 * placement.current:.2f} mm)",
+        f"  largest load   {largest(best.largest_load, None if before is None else before.largest_load)}",
         f"  mounting       {best.mounting}",
         f"  smoothing      {1e3 * best.smoothing:.4g} ms{_range(placement)}",
     ]
@@ -70,6 +79,19 @@ def text(placement: Placement, written: str | None = None) -> str:
     if placement.message and placement.outcome == "done":
         lines += ["", *textwrap.wrap(sentence(placement.message), _WIDTH)]
     return "\n".join([*lines, *_measures(placement), *_verified(placement), *_candidates(placement, measure)])
+
+
+def largest(load: PeakPair, before: PeakPair | None) -> str:
+    """Largest load anywhere on the specimen as placed, in flight, and as it is mounted now."""
+    if not math.isfinite(load.machine):
+        return "not known"
+    now = "" if before is None else f"; now {_load(before)}"
+    return f"anywhere on the specimen {_load(load)}, {in_g(load.flight)} in flight{now}"
+
+
+def _load(load: PeakPair) -> str:
+    place = f" at {load.place_machine}" if load.place_machine else ""
+    return f"{in_g(load.machine)}{place} ({change(load.ratio)})"
 
 
 def _measures(placement: Placement) -> list[str]:
@@ -138,6 +160,8 @@ def _candidate(candidate: Candidate) -> str:
     if candidate.exceeded:
         worst, others = max(candidate.exceeded, key=lambda use: use.share), len(candidate.exceeded) - 1
         return words + f"exceeds {worst}" + (f" and {others} more" if others else "")
+    if math.isfinite(candidate.largest_load.machine):
+        words += f"largest load {_load(candidate.largest_load)}; "
     peaks = ", ".join(f"{acceleration:.3g}" for acceleration in candidate.accelerations)
     share = f", {candidate.share:.0%} of a limit" if candidate.share else ""
     return words + f"axis accelerations {peaks} rad/s²{share}"

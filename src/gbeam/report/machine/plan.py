@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gbeam.report.machine import limits
-from gbeam.report.machine.tracking import ends, ends_line, not_followed_stretches, tracking
-from gbeam.results.machine import MachinePlan
+from gbeam.report.machine.accounting import judged_json, judged_lines
+from gbeam.report.machine.tracking import ends, ends_line, followed, not_followed_stretches, tracking_json
+from gbeam.report.words import sentence
+from gbeam.results.imitation.criteria import GOOD, state_of
+from gbeam.results.imitation.plan import MachinePlan
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -26,9 +28,10 @@ def table(title: str, plans: Iterable[MachinePlan]) -> RenderableType:
 
     parts: list[RenderableType] = [Text(title, style="bold")] if title else []
     for plan in plans:
-        axes = plan.axes
-        parts += ["", Text(f"{plan.name} ({plan.arm:g} m, tracks {plan.tracks}): {plan.outcome}")]
-        words = ends_line(plan.time, axes), _followed(plan)
+        axes, colour = plan.axes, "green" if plan.state in GOOD else "bold red"
+        head = Text(f"{plan.name} ({plan.arm:g} m, tracks {plan.tracks}): ")
+        parts += ["", head.append(plan.state, style=colour)]
+        words = ends_line(plan.time, axes), followed(tracking_json(plan.time, axes))
         lines: list[RenderableType] = [limits.table(axes.limits), *map(Text, words)]
         lines += [
             Text(f"target held {start:.3f} to {end:.3f} s: {reason}")
@@ -38,24 +41,21 @@ def table(title: str, plans: Iterable[MachinePlan]) -> RenderableType:
         lines += [Text(f"warning: {shortfall}", style="yellow") for shortfall in axes.shortfalls[:SHORTFALLS]]
         if len(axes.shortfalls) > SHORTFALLS:
             lines.append(Text(f"and {len(axes.shortfalls) - SHORTFALLS} more: see --json"))
+        lines += ["", Text(sentence(plan.verdict), style="bold red" if colour != "green" else "bold")]
+        lines += map(Text, judged_lines(plan))
         parts += [Padding(line, (0, 0, 0, 2), expand=False) for line in lines]
     return Group(*parts)
-
-
-def _followed(plan: MachinePlan) -> str:
-    error = tracking(plan.time, plan.axes)
-    if not math.isfinite(error.max):
-        return "the target is held all the time"
-    return f"load followed within {error.max:.3g} m/s² ({error.fraction:.2%} of it) at {error.time_of_max:.3f} s"
 
 
 def to_json(title: str, plans: Iterable[MachinePlan], files: Iterable[Path] = ()) -> dict[str, Any]:
     """Plans by motion as JSON; SI."""
     by_name = {plan.name: plan for plan in plans}
     failed = [plan.outcome for plan in by_name.values() if plan.outcome != "done"]
+    outcome = failed[0] if failed else "done"
     return {
         "title": title,
-        "outcome": failed[0] if failed else "done",
+        "outcome": outcome,
+        "state": state_of(outcome, list(by_name.values())),
         "motions": {name: _plan(plan) for name, plan in by_name.items()},
         "files": [str(file) for file in files],
     }
@@ -69,9 +69,12 @@ def _plan(plan: MachinePlan) -> dict[str, Any]:
         **ends(plan.time, axes),
         "outcome": plan.outcome,
         "message": plan.message,
+        "verdict": plan.verdict,
+        **judged_json(plan),
+        "lines": list(judged_lines(plan)),
         "warnings": list(plan.warnings),
         "limits": limits.to_json(axes),
-        "tracking_error": asdict(tracking(plan.time, axes)),
+        **tracking_json(plan.time, axes),
         "not_followed": [{"start": start, "end": end, "reason": reason} for start, end, reason in axes.episodes],
         "shortfalls": [asdict(shortfall) for shortfall in axes.shortfalls],
     }

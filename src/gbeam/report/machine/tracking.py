@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 
+from gbeam.report.words import number, percent
 from gbeam.results.machine import AxesResult
 from gbeam.results.result import Floats
+
+_EXACT = 1e-9  # of the load: a smaller error is rounding
 
 
 @dataclass(frozen=True)
@@ -20,7 +26,7 @@ class Peak:
 
 @dataclass(frozen=True)
 class Tracking:
-    """Largest tracking error while the target is the flight's load.
+    """Largest error of the load while the target is the flight's.
 
     Parameters
     ----------
@@ -29,7 +35,7 @@ class Tracking:
     time_of_max : float
         s.
     fraction : float
-        Of the reference load at that time.
+        Of the load that it is an error of, at that time.
     """
 
     max: float
@@ -43,14 +49,40 @@ def peak(time: Floats, values: Floats) -> Peak:
     return Peak(float(abs(values[i])), float(time[i]))
 
 
-def tracking(time: Floats, axes: AxesResult) -> Tracking:
-    """Largest tracking error of a centrifuge, where its target is the flight's load."""
+def tracking(time: Floats, axes: AxesResult, load: Floats | None = None) -> Tracking:
+    """Largest error of a centrifuge's load against the target, or against another load (t, 3)."""
+    aim = axes.reference if load is None else load
     if axes.not_followed.all():
         return Tracking(np.nan, np.nan, np.nan)
-    error = np.where(axes.not_followed, -1.0, axes.tracking_error)
+    error = np.where(axes.not_followed, -1.0, np.linalg.norm(axes.actual - aim, axis=1))
     i = int(np.argmax(error))
-    size = float(np.linalg.norm(axes.reference[i]))
+    size = float(np.linalg.norm(aim[i]))
     return Tracking(float(error[i]), float(time[i]), float(error[i]) / size if size > 0 else np.nan)
+
+
+def tracking_json(time: Floats, axes: AxesResult) -> dict[str, Any]:
+    """Largest errors against the target, whose corners are rounded, and against the flight's own load, as JSON."""
+    own = None if axes.flight is None else asdict(tracking(time, axes, axes.flight))
+    return {"tracking_error": asdict(tracking(time, axes)), "flight_error": own}
+
+
+def followed(facts: Mapping[str, Any]) -> str:
+    """Both errors in words, from their JSON."""
+    error, own = facts["tracking_error"], facts.get("flight_error")
+    if error["max"] is None or math.isnan(error["max"]):
+        return "the target is held all the time"
+    if own is None:
+        return f"target followed {_within(error)}"
+    if math.isclose(own["max"], error["max"], rel_tol=1e-6, abs_tol=_EXACT):
+        return f"flight's own load followed {_within(own)}"  # the target does not round it
+    return f"target followed {_within(error)}; the flight's own load, whose corners it rounds, {_within(own)}"
+
+
+def _within(error: Mapping[str, Any]) -> str:
+    if error["fraction"] is not None and error["fraction"] < _EXACT:
+        return "exactly"
+    share = math.nan if error["fraction"] is None else error["fraction"]
+    return f"within {number(error['max'], 3)} m/s² ({percent(share)} of it) at {error['time_of_max']:.3f} s"
 
 
 def ends(time: Floats, axes: AxesResult) -> dict[str, float | str]:

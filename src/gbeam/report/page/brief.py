@@ -36,7 +36,7 @@ def html_of(result: Result) -> str:
 def _of_run(result: Study | Response) -> str:
     known = _known(result)
     title = known["title"] or (result.name if isinstance(result, Response) else "")
-    parts = [heading(title, 3) if title else "", f"<p>{badge(*study.state(known))}</p>"]
+    parts = [heading(title, 3) if title else "", f"<p>{badge(known['state'])}</p>"]
     parts += [paragraph(each["verdict"]) for each in known["comparisons"]]
     parts += [paragraph(f"{name}: {each['message']}") for name, each in known["motions"].items() if each["message"]]
     done = {name: each for name, each in known["motions"].items() if "tip" in each}

@@ -69,11 +69,17 @@ def html(facts: Mapping[str, Any], variables: Mapping[str, Any], origin: Mapping
     body = KINDS[kind][2](facts, variables, numbers, plots, header)
     header["plots"] = plots.specs
     title = facts.get("title") or _title(origin) or f"gbeam {kind}"
-    state = study.state(facts) if kind == "run" else (facts["outcome"], facts["outcome"] == "done")
     warnings = study.warnings(facts) if "motions" in facts else facts.get("warnings", [])
     if warnings:
         body = heading("Warnings") + listed(warnings, "warning") + body
-    return _page(title, badge(*state), _subject(kind, origin), body + _origin(origin), header, numbers)
+    return _page(
+        title,
+        badge(facts.get("state", facts["outcome"])),
+        _subject(kind, origin),
+        body + _origin(origin),
+        header,
+        numbers,
+    )
 
 
 def _subject(kind: str, origin: Mapping[str, Any]) -> str:

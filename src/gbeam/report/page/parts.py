@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from gbeam.printable import printable
 from gbeam.report.words import number, sentence
+from gbeam.results.imitation.criteria import GOOD
 
 
 def escaped(text: object) -> str:
@@ -91,9 +92,9 @@ def _breaking(name: str) -> str:
     return re.sub(r"(?<=[a-z\]])([._])(?=[a-z])", r"\1<wbr>", escaped(name))
 
 
-def badge(text: str, good: bool) -> str:
-    """A word that must not be overlooked."""
-    return f'<span class="badge {"good" if good else "bad"}">{escaped(text)}</span>'
+def badge(state: str) -> str:
+    """How a result ended, which must not be overlooked."""
+    return f'<span class="badge {"good" if state in GOOD else "bad"}">{escaped(state)}</span>'
 
 
 def plot_places(drawn: Iterable[tuple[str, str]]) -> str:

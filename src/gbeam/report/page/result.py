@@ -18,7 +18,7 @@ from gbeam.report.page.document import html
 from gbeam.report.page.scene import scene
 from gbeam.report.page.series import Numbers
 from gbeam.report.provenance import to_json as origin_json
-from gbeam.results.machine import MachinePlan
+from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.provenance import Provenance
 from gbeam.results.result import Result
 from gbeam.results.steady.modal import Modes

@@ -22,7 +22,7 @@ def to_json(sweep: Sweep, files: Iterable[Path] = ()) -> dict[str, Any]:
     """Sweep as JSON: nested lists along the parameters, in their order."""
     return {
         "title": sweep.title,
-        "outcome": "done" if set(sweep.counts) == {"done"} else "some cases failed",
+        "outcome": sweep.state,
         "verb": sweep.verb,
         "parameters": [
             {"path": each.path, "unit": each.unit, "distribution": each.drawn or None, "values": each.values.tolist()}
@@ -72,12 +72,11 @@ def text(sweep: Sweep) -> str:
     elif sweep.outcome.size > _ROWS:
         lines = columns(["", *measures], _quantiles(sweep))
     elif sweep.measures:
-        lines = columns([*heads, *measures], _cases(sweep))
+        lines = columns([*heads, *measures, *([] if sweep.state == "done" else ["outcome"])], _cases(sweep))
     else:
         lines = []
-    lost = sweep.outcome.size - sweep.counts.get("done", 0)
-    if sweep.statistics and lost:
-        lines += ["", f"{lost} of {sweep.outcome.size} cases are not done: the estimates are of the others"]
+    if sweep.statistics and sweep.lost:
+        lines += ["", f"{sweep.lost} of {sweep.outcome.size} cases are not done: the estimates are of the others"]
     ended = ", ".join(f"{count} {name}" for name, count in sweep.counts.items())
     return "\n".join([*lines, "", f"{sweep.outcome.size} cases: {ended}", *_failures(sweep)]).lstrip("\n")
 
@@ -87,12 +86,13 @@ def _headed(name: str, unit: str) -> str:
 
 
 def _cases(sweep: Sweep) -> list[list[str]]:
-    """Of a grid: the parameters and the figures of every case."""
+    """Of a grid: the parameters and the figures of every case, and how it ended where not all are done."""
     rows = []
     for at in np.ndindex(sweep.outcome.shape):
         places = [each.values[i] for each, i in zip(sweep.parameters, at, strict=True)]
         shown = [value if isinstance(value, str) else f"{value:.6g}" for value in places]
-        rows.append(shown + [number(float(values[at])) for values in sweep.measures.values()])
+        figures = [number(float(values[at])) for values in sweep.measures.values()]
+        rows.append(shown + figures + ([] if sweep.state == "done" else [str(sweep.outcome[at])]))
     return rows
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import asdict
 from typing import Any
 
-from gbeam.report.study import accounting
+from gbeam.report.machine import accounting
 from gbeam.report.words import number, xyz
 from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.imitation.criteria import RULES
 from gbeam.results.imitation.fatigue import Fatigue, StressCycles
 from gbeam.results.imitation.measures import Mismatch, RootLoads, Sizes
 from gbeam.results.imitation.verdict import metres, percent
@@ -23,16 +25,10 @@ def to_json(comparison: Comparison) -> dict[str, Any]:
         "flight": comparison.flight,
         "centrifuge": comparison.centrifuge,
         "verdict": comparison.verdict,
-        "accepted": comparison.accepted,
-        "criteria": [
-            {"name": each.name, "limit": each.limit, "value": each.value, "passed": each.passed}
-            for each in comparison.criteria
-        ],
-        "peaks": accounting.peaks_to_json(comparison.peaks),
+        **accounting.judged_json(comparison),
         "margin": None
         if comparison.margins is None
         else dict(zip(("flight", "machine"), comparison.margins, strict=True)),
-        "accounting": accounting.to_json(comparison.accounting),
         "covered": float(comparison.covered.mean()),
         "max_difference": xyz(comparison.max_difference),
         "rms_difference": xyz(comparison.rms_difference),
@@ -59,6 +55,7 @@ def to_json(comparison: Comparison) -> dict[str, Any]:
             "frequency": comparison.shock.frequency.tolist(),
             "flight": comparison.shock.flight.tolist(),
             "centrifuge": comparison.shock.centrifuge.tolist(),
+            "extremes": [asdict(each) for each in comparison.shock.extremes],
         }
     return values
 
@@ -96,9 +93,7 @@ def _fatigue(fatigue: Fatigue) -> dict[str, Any]:
 def lines(comparison: Comparison) -> Iterator[str]:
     """What was accepted, load peaks, differences, vibration, and a bound on what the mismatch field can do."""
     main = comparison.main_axis
-    if comparison.accept:
-        yield f"{'accepted' if comparison.accepted else 'not accepted'}: {', '.join(map(str, comparison.criteria))}"
-    yield from accounting.lines(comparison.accounting)
+    yield from accounting.judged_lines(comparison)
     yield from accounting.peak_lines(comparison.peaks)
     if comparison.covered.any():
         root = "" if comparison.root is None else f", root moment by up to {percent(comparison.root.moment_agreement)}"
@@ -112,6 +107,13 @@ def lines(comparison: Comparison) -> Iterator[str]:
         yield (
             "stress cycles of the root up to {:.4g} MPa in flight, {:.4g} MPa on the centrifuge: ".format(*ranges)
             + f"{number(fatigue.damage_ratio, 3)} times flight's damage (Wöhler exponent {fatigue.exponent:g})"
+        )
+    if comparison.shock is not None and comparison.shock.extremes:
+        least, most = sorted(comparison.shock.extremes, key=lambda each: each.ratio)
+        written = RULES["srs"].written
+        yield (
+            f"shock response spectra of the tip on the centrifuge {written(least.ratio)} {least} to "
+            f"{written(most.ratio)} {most}, beside flight's"
         )
     if comparison.stations is not None:
         both = comparison.stations.flight, comparison.stations.centrifuge

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gbeam.report.machine.tracking import ends_line, not_followed_stretches, tracking
+from gbeam.report.machine.tracking import ends_line, followed, not_followed_stretches, tracking_json
 from gbeam.report.words import error_words, number, percent, stress_words
 from gbeam.results.parts.peaks import LoadPeaks
 from gbeam.results.parts.section_forces import Loads
@@ -79,14 +79,7 @@ def of_machine(response: Response) -> Iterator[str]:
     if axes is None:
         return
     yield ends_line(response.time, axes)
-    error = tracking(response.time, axes)
-    if error.fraction < ROUNDING:
-        yield "load followed exactly"
-    elif math.isfinite(error.max):
-        yield (
-            f"load followed within {number(error.max, 3)} m/s² ({100 * error.fraction:.3g} % of the load there), "
-            f"at {error.time_of_max:.3f} s"
-        )
+    yield followed(tracking_json(response.time, axes))
     stretches = not_followed_stretches(axes)
     for start, end, reason in stretches[:EPISODES]:
         yield f"target held {start:.3f} to {end:.3f} s: {reason}"

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.report.machine import limits
-from gbeam.report.machine.tracking import ends, peak, tracking
+from gbeam.report.machine.tracking import ends, peak, tracking_json
 from gbeam.report.study import comparison, sentences
 from gbeam.results.machine import AxesResult
 from gbeam.results.parts.peaks import Extremes, LoadPeaks, VectorPeaks
@@ -32,11 +32,12 @@ def to_json(study: Study, files: Iterable[Path] = ()) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``title``, ``outcome``, ``motions`` by name, ``comparisons`` and ``files``; NaN where there is no number.
+        ``title``, ``outcome``, ``state``, ``motions`` by name, ``comparisons`` and ``files``; NaN where unknown.
     """
     return {
         "title": study.title,
         "outcome": study.outcome,
+        "state": study.state,
         "motions": {name: _response(response) for name, response in study.responses.items()}
         | {name: asdict(failure) for name, failure in study.failures.items()},
         "comparisons": [comparison.to_json(each) for each in study.comparisons],
@@ -145,7 +146,7 @@ def _centrifuge(time: Floats, axes: AxesResult) -> dict[str, Any]:
     return {
         **ends(time, axes),
         "axes": {str(i + 1): peaks(i) for i in range(3)},
-        "tracking_error": asdict(tracking(time, axes)),
+        **tracking_json(time, axes),
         "limits": limits.to_json(axes),
         "not_followed": [{"start": start, "end": end, "reason": reason} for start, end, reason in axes.episodes],
         "shortfalls": [asdict(shortfall) for shortfall in axes.shortfalls],

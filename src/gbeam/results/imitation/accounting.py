@@ -1,4 +1,4 @@
-"""What a machine makes of every part of a flight: its load's peaks, what is not followed and why, what was accepted."""
+"""Every part of a flight on a machine: peaks of its load, what is not followed and why, what comes on top."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from gbeam.results.result import Part
 
-TOLERANCE = 0.05  # of the flight's largest load
+TOLERANCE = 0.05  # of a load of the flight
+TOLERANCE_OF = ("peak", "instant")  # the flight's largest load, or its load at each time
 
 
 @dataclass(frozen=True, repr=False)
@@ -35,6 +36,8 @@ class LoadPeak(Part):
     reason : str
         Why it is not reproduced within the tolerance: gimbals, left out, a limit of the machine that is used up there,
         such as ``axis 2 acceleration``, or corner (smoothing, or the inverse's own error). Empty where it is.
+    instant_error : float
+        Size of the difference of both loads as vectors at `time`, over `load`.
     """
 
     time: float
@@ -45,6 +48,7 @@ class LoadPeak(Part):
     spread: tuple[float, float]
     spread_flight: tuple[float, float]
     reason: str = ""
+    instant_error: float = math.nan
 
     @property
     def ratio(self) -> float:
@@ -100,9 +104,9 @@ class Accounting(Part):
     Parameters
     ----------
     tolerance : float
-        Share of the flight's largest load by which the machine's may differ and count as following.
+        Share of the flight's load by which the machine's may differ and count as following.
     allowed : float
-        That difference, m/s².
+        That difference at the flight's largest load, m/s².
     idle : float
         Least load of the machine, m/s²; zero if there is none.
     span : tuple of float
@@ -114,6 +118,8 @@ class Accounting(Part):
     not_followed : tuple of NotFollowed
         In order of time; with the time followed they make up the flight.
     preloads : tuple of Preload
+    tolerance_of : str
+        ``peak``: `tolerance` is a share of the flight's largest load; ``instant``: of its load at each time.
     """
 
     tolerance: float
@@ -124,6 +130,7 @@ class Accounting(Part):
     peaks: tuple[LoadPeak, ...]
     not_followed: tuple[NotFollowed, ...]
     preloads: tuple[Preload, ...] = ()
+    tolerance_of: str = "peak"
 
     @property
     def main(self) -> LoadPeak | None:
@@ -144,65 +151,29 @@ class Accounting(Part):
         duration = self.span[1] - self.span[0]
         return {reason: total[reason] / duration for reason in sorted(total, key=lambda reason: -total[reason])}
 
-    @property
-    def largest_error(self) -> float:
-        """Of all peaks; zero where there is none."""
-        return max((peak.error for peak in self.peaks), default=0.0)
-
-    @property
-    def largest_spread(self) -> float:
-        """Of the load along the specimen on the machine, at any peak, without sign."""
-        return max((abs(each) for peak in self.peaks for each in peak.spread), default=0.0)
-
 
 @dataclass(frozen=True, repr=False)
 class PeakPair(Part):
-    """Largest size of a quantity over the whole flight, in flight and on the machine; NaN where it is unknown.
+    """Largest size of a quantity in flight and on the machine; NaN where it is unknown.
 
     Parameters
     ----------
     flight, machine : float
-        m, N, N m or Pa.
+        m, N, N m, Pa or m/s².
     time_flight, time_machine : float
         s.
+    place_flight, place_machine : str
+        Where on the specimen; empty where that is no question.
     """
 
     flight: float = math.nan
     machine: float = math.nan
     time_flight: float = math.nan
     time_machine: float = math.nan
+    place_flight: str = ""
+    place_machine: str = ""
 
     @property
     def ratio(self) -> float:
         """Machine over flight; NaN where there is none in flight."""
         return self.machine / self.flight if self.flight > 0 else math.nan
-
-
-@dataclass(frozen=True, repr=False)
-class Criterion(Part):
-    """One of the limits that decide whether a machine's imitation is accepted.
-
-    Parameters
-    ----------
-    name : str
-        tip, root_force, root_moment or stress: change of the peak; peaks: largest error of a load peak; spread: of the
-        load along the specimen at the peaks; followed: share of the time, of which the limit is the least.
-    limit, value : float
-        A value that is not known is NaN and does not pass.
-    """
-
-    name: str
-    limit: float
-    value: float
-
-    @property
-    def passed(self) -> bool:
-        """Whether the value keeps the limit."""
-        return self.value >= self.limit if self.name == "followed" else abs(self.value) <= self.limit
-
-    def __str__(self) -> str:
-        value = f"{100 * self.value:.3g} %" if math.isfinite(self.value) else "unknown"
-        return f"{self.name} {value} ({'at least' if self.name == 'followed' else 'limit'} {100 * self.limit:.3g} %)"
-
-
-CRITERIA = ("tip", "root_force", "root_moment", "stress", "peaks", "spread", "followed")

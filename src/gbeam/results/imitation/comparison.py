@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from gbeam.results.imitation.accounting import CRITERIA, Accounting, Criterion, PeakPair
+from gbeam.results.imitation.accounting import Accounting, PeakPair
+from gbeam.results.imitation.criteria import Judged, Limit
 from gbeam.results.imitation.fatigue import Fatigue
 from gbeam.results.imitation.measures import Mismatch, RootLoads, Shock, Statistics
 from gbeam.results.imitation.verdict import verdict
@@ -16,7 +17,7 @@ from gbeam.results.result import Figured, Flags, Floats
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Comparison(Figured):
+class Comparison(Judged, Figured):
     """How a centrifuge's response differs from the flight's that it imitates.
 
     Peaks and accounting are those of the whole flight; differences are taken where the target is the flight's load.
@@ -36,11 +37,12 @@ class Comparison(Figured):
         Largest displacement over the covered times, m.
     peaks : mapping of str to PeakPair
         Largest sizes over the whole flight of the vectors ``tip``, ``root_force`` and ``root_moment``, and of the
-        ``stress`` anywhere.
+        ``stress`` anywhere; ``largest_load`` is the base's load anywhere on the rigid specimen, on the machine from the
+        beginning of its spin-up to the end of its spin-down.
     accounting : Accounting
         Which parts of the flight's load the machine reproduces, and why not the others.
-    accept : mapping of str to float
-        Limits by name: ``tip``, ``root_force``, ``root_moment``, ``stress``, ``peaks``, ``spread``, ``followed``.
+    accept : mapping of str to float or tuple of float
+        Limits by name: docs/verdict.md, Pass or fail.
     stations : Statistics or None
         Displacement of every station, with trend and elastic vibration apart; None where the record is too short.
     mismatch : Mismatch or None
@@ -66,7 +68,7 @@ class Comparison(Figured):
     peak_centrifuge: Floats
     peaks: Mapping[str, PeakPair]
     accounting: Accounting
-    accept: Mapping[str, float] = field(default_factory=dict)
+    accept: Mapping[str, Limit] = field(default_factory=dict)
     stations: Statistics | None = None
     mismatch: Mismatch | None = None
     root: RootLoads | None = None
@@ -88,7 +90,8 @@ class Comparison(Figured):
     @property
     def verdict(self) -> str:
         """One sentence about the whole flight that a person can quote."""
-        within = self.accept.get("tip")
+        tip = self.accept.get("tip")
+        within = tip if isinstance(tip, float) else None
         return verdict(self.flight, self.centrifuge, self.peaks, self.accounting, within, self.margins)
 
     @property
@@ -99,26 +102,6 @@ class Comparison(Figured):
             return None
         flight, machine = yield_margin(self.yield_strength, np.array([stress.flight, stress.machine]))
         return float(flight), float(machine)
-
-    @property
-    def figures(self) -> dict[str, float]:
-        """What limits may be set on: relative changes of peaks, errors of load peaks, share of the time followed."""
-        return {name: pair.ratio - 1 for name, pair in self.peaks.items()} | {
-            "peaks": self.accounting.largest_error,
-            "spread": self.accounting.largest_spread,
-            "followed": self.accounting.followed_share,
-        }
-
-    @property
-    def criteria(self) -> tuple[Criterion, ...]:
-        """The limits of `accept`, with the values that are held against them."""
-        values = self.figures
-        return tuple(Criterion(name, self.accept[name], values[name]) for name in CRITERIA if name in self.accept)
-
-    @property
-    def accepted(self) -> bool | None:
-        """Whether every limit of `accept` is kept; None where there is none."""
-        return all(each.passed for each in self.criteria) if self.accept else None
 
     def __str__(self) -> str:
         return self.verdict[:1].upper() + self.verdict[1:]

@@ -8,6 +8,8 @@ import numpy as np
 
 from gbeam.results.result import Floats, Part
 
+_FELT = 0.1  # of the flight's largest spectrum: an axis with less is no part of the shock
+
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Sizes(Part):
@@ -176,6 +178,18 @@ class RootLoads(Part):
         return float(self.moment_difference[self.main]) / largest if largest > 0 else float("nan")
 
 
+@dataclass(frozen=True)
+class SpectrumRatio:
+    """Ratio of two shock response spectra, machine over flight, at one frequency (Hz) along one axis."""
+
+    ratio: float
+    frequency: float
+    axis: str
+
+    def __str__(self) -> str:
+        return f"at {self.frequency:.3g} Hz along {self.axis}"
+
+
 @dataclass(frozen=True, repr=False, eq=False)
 class Shock(Part):
     """Shock response spectra of the tip's acceleration: largest absolute acceleration of an oscillator riding on it.
@@ -197,3 +211,19 @@ class Shock(Part):
     frequency: Floats
     flight: Floats
     centrifuge: Floats
+
+    @property
+    def ratio(self) -> Floats:
+        """Machine over flight, (f, 3); an axis counts from a tenth of the flight's largest at the frequency on."""
+        least = _FELT * self.flight.max(axis=1, keepdims=True)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.asarray(np.maximum(self.centrifuge, least) / np.maximum(self.flight, least))
+
+    @property
+    def extremes(self) -> tuple[SpectrumRatio, ...]:
+        """The largest and the smallest ratio; empty where none is known."""
+        ratio = self.ratio
+        if not np.isfinite(ratio).any():
+            return ()
+        places = (np.unravel_index(find(ratio), ratio.shape) for find in (np.nanargmax, np.nanargmin))
+        return tuple(SpectrumRatio(float(ratio[f, k]), float(self.frequency[f]), "xyz"[k]) for f, k in places)

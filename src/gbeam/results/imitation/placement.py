@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from gbeam.results.imitation.accounting import PeakPair
 from gbeam.results.machine import LimitUse
 from gbeam.results.result import Part, Result
 
@@ -42,6 +43,9 @@ class Candidate(Part):
         The limit of which the largest share is used.
     tracking : float
         Weighted measure of what smoothing and tracking alone change of the load, which no control point changes.
+    largest_load : PeakPair
+        Of the base anywhere on the rigid specimen, m/s², on the machine from the beginning of its spin-up to the end of
+        its spin-down.
     """
 
     mounting: str
@@ -54,6 +58,7 @@ class Candidate(Part):
     exceeded: tuple[LimitUse, ...] = ()
     most_used: LimitUse | None = None
     tracking: float = math.nan
+    largest_load: PeakPair = field(default_factory=PeakPair)
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ def verdict(
     flight, machine : str
         Names of the motions.
     peaks : mapping of str to PeakPair
-        ``tip``, and where they are known ``root_moment``.
+        ``largest_load``, ``tip`` and ``root_moment``, where they are known.
     accounting : Accounting
     within : float, optional
         Share by which the tip's peak may differ and count as reproduced; by default the load's tolerance.
@@ -38,9 +38,10 @@ def verdict(
     Returns
     -------
     str
-        The flight's largest load peak first, where that is not reproduced; then the tip's and the root moment's peaks,
-        the margins on yield, how many load peaks are reproduced and how well, the time followed and why the rest is
-        not, and what the specimen is loaded with beyond flight and idle.
+        The flight's largest load peak first, where that is not reproduced; then the largest load anywhere on the
+        specimen, the tip's and the root moment's peaks, the margins on yield, how many load peaks are reproduced and
+        how well, the time followed and why the rest is not, and what the specimen is loaded with beyond flight and
+        idle.
     """
     within = accounting.tolerance if within is None else within
     return "; ".join(_parts(flight, machine, peaks, accounting, within, margins))
@@ -60,7 +61,11 @@ def _parts(
             f"{flight}'s load peak of {in_g(main.load)} at {main.time:.2f} s is not reproduced: {machine} makes "
             f"{in_g(main.reproduced)} ({main.reason})"
         )
-    yield _tip(flight, machine, peaks["tip"], within)
+    largest = peaks.get("largest_load", PeakPair())
+    if math.isfinite(largest.machine):
+        yield _largest(flight, machine, largest)
+    if "tip" in peaks:
+        yield _tip(flight, machine, peaks["tip"], within)
     moment = peaks.get("root_moment", PeakPair())
     if math.isfinite(moment.ratio):
         yield f"root moment {change(moment.ratio)}"
@@ -77,6 +82,18 @@ def _parts(
             f"preload: {machine} makes {in_g(worst.load)} at {worst.time:.2f} s, where {flight} has "
             f"{in_g(worst.flight)}{f' and idle is {in_g(accounting.idle)}' if accounting.idle else ''}"
         )
+
+
+def _largest(flight: str, machine: str, load: PeakPair) -> str:
+    ends = (
+        f"{name} {in_g(size)}{f' at {place}' if place else ''} at {time:.2f} s"
+        for name, size, place, time in (
+            (flight, load.flight, load.place_flight, load.time_flight),
+            (machine, load.machine, load.place_machine, load.time_machine),
+        )
+    )
+    by = f" ({change(load.ratio)})" if math.isfinite(load.ratio) else ""
+    return f"largest load anywhere on the specimen: {', '.join(ends)}{by}"
 
 
 def _tip(flight: str, machine: str, tip: PeakPair, within: float) -> str:
@@ -109,13 +126,21 @@ def _missed(accounting: Accounting, main: LoadPeak | None) -> Iterator[str]:
 
 
 def _time(accounting: Accounting) -> str:
-    followed = f"{100 * accounting.followed_share:.0f} % of the time followed"
+    followed = f"{100 * accounting.followed_share:.0f} % of the time followed within {against(accounting)}"
     shares = accounting.shares
     if len(shares) == 1:
         return f"{followed}; the rest is {next(iter(shares))}"
     # What rounds to nothing is listed among the stretches.
     parts = [f"{percent(share)} {reason}" for reason, share in shares.items() if share >= 0.005]
     return f"{followed}, {', '.join(parts)}" if parts else followed
+
+
+def against(accounting: Accounting) -> str:
+    """Write the difference from the flight's load within which it counts as followed."""
+    share = percent(accounting.tolerance)
+    if accounting.tolerance_of == "instant":
+        return f"{share} of the load at the time"
+    return f"{in_g(accounting.allowed)} ({share} of the largest load)"
 
 
 def in_g(load: float) -> str:

@@ -9,10 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.results.result import Figured, Floats, Part
+from gbeam.results.imitation.criteria import EXCEEDED, NOT_ACCEPTED
+from gbeam.results.result import Figured, Flags, Floats, Part
 from gbeam.results.studies.uncertainty import Indices, Statistics
 
 SAMPLE = "sample"  # the dimension of what is drawn from distributions
+# Outcomes of cases that are computed to the end, with every figure, and do not keep limits.
+ANSWERED = (NOT_ACCEPTED, EXCEEDED, "limits exceeded")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -64,10 +67,12 @@ class Sweep(Figured):
     units : mapping of str to str
         Of the measures; empty where there is none.
     outcome : (...) array of str
-        Of each case: that of its verb (done, diverged, not converged), ``refused`` where the scenario does not allow
-        its values, ``failed`` where the computation broke down, ``pending`` where it has not been computed.
+        Of each case: that of its verb (done, diverged, not converged), ``not accepted`` where limits of acceptance are
+        not kept, ``machine limits exceeded`` or, of plan and place, ``limits exceeded``, ``refused`` where the scenario
+        does not allow its values, ``failed`` where the computation broke down, ``pending`` where it has not been
+        computed.
     message : (...) array of str
-        Why a case is not done.
+        Why a case is not done, or which limits it does not keep.
     histories : mapping of str to (..., t) array
         At the times `time`, which all cases share; NaN where the case has no value. Units are in `units`.
     time : (t,)
@@ -101,6 +106,23 @@ class Sweep(Figured):
         names, numbers = np.unique(self.outcome.astype(str), return_counts=True)
         found = dict(zip(names.tolist(), numbers.tolist(), strict=True))
         return dict(sorted(found.items(), key=lambda each: (each[0] != "done", each[0])))
+
+    @property
+    def computed(self) -> Flags:
+        """Which cases are computed to the end, whether or not they keep limits, (...)."""
+        return np.isin(self.outcome.astype(str), ("done", *ANSWERED))
+
+    @property
+    def lost(self) -> int:
+        """How many cases are not computed to the end."""
+        return int((~self.computed).sum())
+
+    @property
+    def state(self) -> str:
+        """How the sweep ended: done, some cases failed, or some cases not accepted."""
+        if self.lost:
+            return "some cases failed"
+        return "done" if set(self.counts) <= {"done"} else "some cases not accepted"
 
     def __repr__(self) -> str:
         shape = " × ".join(f"{size} {name}" for name, size in zip(self.dimensions, self.outcome.shape, strict=True))

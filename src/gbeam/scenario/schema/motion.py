@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, StrictBool, model_validator
 from pydantic_core import PydanticCustomError
@@ -156,6 +156,11 @@ class Centrifuge(Table):
     )
     commands: Commands | None = Field(default=None, description="axis motions for the controller: { sample }")
     accept: Accept | None = Field(default=None, description="how well it must reproduce the flight: { tip, peaks }")
+
+    @property
+    def limits_of_acceptance(self) -> dict[str, Any]:
+        """What [accept] gives, by name; empty without the table."""
+        return {} if self.accept is None else self.accept.given
 
     @model_validator(mode="after")
     def _some_arm(self) -> Centrifuge:

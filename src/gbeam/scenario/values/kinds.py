@@ -54,6 +54,7 @@ KINDS: dict[str, Kind] = {
     "power": Kind("a power", "W", "50 kW"),
     "frequency": Kind("a frequency", "1/s", "20 Hz"),
     "ratio": Kind("a ratio", "", "1 %"),
+    "amplitude ratio": Kind("a ratio of amplitudes", "", "3 dB"),
 }
 
 # Importing pint takes longer than reading a whole scenario. These units, and each kind's SI unit, are read without it;
@@ -78,4 +79,5 @@ USUAL: dict[str, dict[str, float]] = {
     "power": {"kW": 1e3},
     "frequency": {"Hz": 1.0},
     "ratio": {"%": 0.01},
+    "amplitude ratio": {"%": 0.01},
 }

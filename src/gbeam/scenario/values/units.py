@@ -125,7 +125,7 @@ def quantity(value: object, kind: str) -> float:
         if not unit:
             raise UnitError(f"{shown} has no unit", _no_unit(match[1], expected))
         try:
-            number *= _factor(unit, kind)
+            number = _ratio(number) if unit == "dB" and kind == "amplitude ratio" else number * _factor(unit, kind)
         except UnitError as error:
             raise UnitError(f"{shown} {error.problem}", error.hint) from None
     else:
@@ -133,6 +133,11 @@ def quantity(value: object, kind: str) -> float:
     if not math.isfinite(number):
         raise UnitError(f"{shown} is not finite", f"expected {such_as}")
     return number
+
+
+def _ratio(decibels: float) -> float:
+    """Ratio of amplitudes of a level; infinite beyond every number."""
+    return math.inf if decibels > 6000 else 10.0 ** (decibels / 20)
 
 
 def argument(text: str, kind: str) -> float:

@@ -12,6 +12,7 @@ import numpy as np
 from gbeam.analysis.study.case import Case
 from gbeam.errors import ComputationError, GbeamError
 from gbeam.results.result import Floats
+from gbeam.results.studies.sweep import ANSWERED
 from gbeam.scenario.build import build
 from gbeam.scenario.load import change
 from gbeam.scenario.schema.scenario import Scenario
@@ -29,12 +30,17 @@ _VERDICT_WITHOUT_LOADS = (("verdict", "tip"), ("verdict", "followed"))
 
 @dataclass(frozen=True)
 class Row:
-    """What one case gave: its figures, how it ended, and why it is not done."""
+    """What one case gave: its figures, how it ended, and why it is not done or which limits it does not keep."""
 
     case: int
     values: tuple[float, ...]
     outcome: str
     message: str = ""
+
+    @property
+    def failed(self) -> bool:
+        """Whether it has come to nothing, or was cut off."""
+        return self.outcome not in ("done", *ANSWERED)
 
 
 @dataclass(frozen=True)
@@ -139,8 +145,9 @@ def _of_loads(keys: Keys) -> bool:
 
 
 def ended(facts: Facts) -> tuple[str, str]:
-    """Outcome of a case and its message."""
-    return str(facts["outcome"]), str(facts.get("message") or "")
+    """Outcome of a case, or what limits make of it, and its message."""
+    state = str(facts.get("state", facts["outcome"]))
+    return state if state in ANSWERED else str(facts["outcome"]), str(facts.get("message") or "")
 
 
 def without_figures(number: int, width: int, error: Exception) -> Row:

@@ -65,8 +65,8 @@ def study_facts(answer: Study) -> Facts:
     }
     facts["motions"] = {name: _limits_by_name(each) for name, each in facts["motions"].items()}
     facts["study"] = answer  # for histories
-    unfinished = answer.unfinished
-    facts["message"] = "; ".join(f"{name}: {failure.message}" for name, failure in unfinished.items())
+    reasons = {name: failure.message for name, failure in answer.unfinished.items()} or answer.refusals
+    facts["message"] = "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
     return facts
 
 
@@ -114,15 +114,23 @@ def _critical_speed(case: Case, motion: str | None, at: float | None, needs: Nee
 def _plan(case: Case, motion: str | None, at: float | None, needs: Needs) -> Facts:
     from gbeam.analysis.imitation.plan import plan
     from gbeam.report.machine import plan as report
+    from gbeam.results.imitation.criteria import judging
 
     if motion is not None:
         _prepared(case, motion)  # or there is none of that name
     machines = {name: m for name, m in case.motions.items() if m.kind == "centrifuge" and motion in (None, name)}
     if not machines:
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
-    plans = [plan(name, _prepared(case, name), case.tracks[name]) for name in machines]  # type: ignore[arg-type]
+    plans = [
+        plan(name, _prepared(case, name), case.tracks[name], beam=case.beam, **judging(case.accept.get(name, {})))  # type: ignore[arg-type]
+        for name in machines
+    ]
     facts = report.to_json(case.title, plans, [])
-    return {**facts, "motions": {name: _limits_by_name(each) for name, each in facts["motions"].items()}}
+    reasons = "; ".join(
+        f"{each.name}: {each.message or each.refusal}" for each in plans if each.message or each.refusal
+    )
+    motions = {name: _limits_by_name(each) for name, each in facts["motions"].items()}
+    return {**facts, "motions": motions, "message": reasons}
 
 
 def _place(case: Case, motion: str | None, at: float | None, needs: Needs) -> Facts:

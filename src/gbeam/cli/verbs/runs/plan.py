@@ -35,18 +35,20 @@ def plan(
 ) -> int:
     """Plan the axis motions of the centrifuges of a scenario; it needs no beam.
 
-    Prints what the axes do, what that uses of the machine's limits, how well the load is followed and where it cannot
-    be. With --out also writes the axis motions at the controller's sample time (commands_NAME.csv and .mat) and plots,
-    with --report plan.html. Exit status: 0 done, 1 a limit is exceeded, 2 the input is wrong.
+    Prints what the axes do, what that uses of the machine's limits, which peaks of the load are reproduced and why not
+    the others, and the largest load on the specimen, which a [beam] gives its length. Limits of [motion.NAME.accept]
+    that need no response are judged. With --out also writes the axis motions at the controller's sample time
+    (commands_NAME.csv and .mat) and plots, with --report plan.html. Exit status: 0 done, 1 a limit of the machine is
+    exceeded or one of acceptance not kept, 2 the input is wrong.
     """
     folder = folder_of(out, scenario, default=report)
     if folder is not None:
         refuse_unwritable(folder)
 
-    from gbeam.scenario import build_machines, load_environments, provenance, schema
+    from gbeam.scenario import build_machines, build_specimen, load_environments, provenance, schema
 
     given = load_environments(scenario, overrides)
-    machines = build_machines(given)
+    machines, beam = build_machines(given), build_specimen(given)
     if not machines:
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
     every = None if sample is None else number("--sample", sample, "time")
@@ -55,12 +57,16 @@ def plan(
 
     from gbeam.analysis.imitation import plan as analysis
     from gbeam.report.machine import plan as words
+    from gbeam.results.imitation.criteria import judging
 
     origin = provenance(given, command())
     tables = {name: table for name, table in given.motion.items() if isinstance(table, schema.Centrifuge)}
     plans = {
-        name: replace(analysis.plan(name, machine, tables[name].tracks), provenance=origin)
-        for name, machine in machines.items()
+        name: replace(
+            analysis.plan(name, machines[name], table.tracks, beam=beam, **judging(table.limits_of_acceptance)),
+            provenance=origin,
+        )
+        for name, table in tables.items()
     }
 
     def make(hidden: Path) -> None:
@@ -92,4 +98,7 @@ def plan(
     broken = [each for each in plans.values() if each.outcome != "done"]
     for each in broken:
         complain(f"motion.{each.name} {each.outcome}: {each.message}" + (" (allowed)" if ignore_limits else ""))
-    return FAILED if broken and not ignore_limits else 0
+    refused = [each for each in plans.values() if each.accepted is False]
+    for each in refused:
+        complain(f"motion.{each.name} not accepted: {each.refusal}")
+    return FAILED if refused or (broken and not ignore_limits) else 0

@@ -73,7 +73,7 @@ def run(
             complain(f"motion.{name} limits exceeded: {which}" + (" (allowed)" if ignore_limits else ""))
     refused = [each for each in answer.comparisons if each.accepted is False]
     for each in refused:
-        complain(f"motion.{each.centrifuge} not accepted: {', '.join(str(c) for c in each.criteria if not c.passed)}")
+        complain(f"motion.{each.centrifuge} not accepted: {each.refusal}")
     return 0 if answer.outcome == "done" and not refused and (ignore_limits or not any(broken.values())) else FAILED
 
 

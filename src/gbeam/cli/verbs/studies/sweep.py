@@ -71,8 +71,8 @@ def sweep(
 
     Every case is kept in --out (by default out/ and the scenario's name and -sweep) as soon as it is done: after an
     interruption --resume does what is missing. Writes sweep.zarr, which xarray opens, sweep.json, a plot of each
-    measure, and with --report report.html. A case that fails is recorded as such. Exit status: 0 all cases done, 1 some
-    are not, 2 the input is wrong.
+    measure, and with --report report.html. A case that fails is recorded as such. Exit status: 0 all cases computed,
+    those too that do not keep limits, which are counted as not accepted, 1 some are not done, 2 the input is wrong.
     """
     folder = out if out is not None else Path("out") / f"{scenario.stem}-sweep"
     refuse_unwritable(folder)
@@ -130,7 +130,6 @@ def sweep(
     show(words.text(answer), signed(words.to_json(answer, files), answer.provenance), json)
     if not json:
         list_files(folder, files)
-    lost = answer.outcome.size - answer.counts.get("done", 0)
-    if lost:
-        complain(f"{lost} of {answer.outcome.size} cases are not done")
-    return FAILED if lost else 0
+    if answer.lost:
+        complain(f"{answer.lost} of {answer.outcome.size} cases are not done")
+    return FAILED if answer.lost else 0

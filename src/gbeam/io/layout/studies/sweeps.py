@@ -45,7 +45,7 @@ def sweep_group(sweep: Sweep) -> Group:
             coordinates |= labels("statistic", each.names)
     for shares in sweep.indices.values():
         coordinates |= labels("parameter", shares.parameters) | labels("order", ORDERS)
-    return Group(data | outcome, coordinates, {"title": sweep.title, "verb": sweep.verb})
+    return Group(data | outcome, coordinates, {"title": sweep.title, "verb": sweep.verb, "outcome": sweep.state})
 
 
 def _statistics(sweep: Sweep) -> dict[str, Variable]:

@@ -7,9 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.report.page.parts import Cell, Value, heading, listed, paragraph, plot_places, table, verbatim
+from gbeam.constants import STANDARD_GRAVITY
+from gbeam.report.machine.placement import largest
+from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, plot_places, table, verbatim
 from gbeam.report.page.series import Numbers, Plots
 from gbeam.report.words import number
+from gbeam.results.imitation.accounting import PeakPair
 from gbeam.results.studies.uncertainty import BOUNDS
 
 Facts = Mapping[str, Any]
@@ -23,6 +26,7 @@ def placement_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: 
     now = f"{1e3 * facts['current_control_point']:.2f} mm"
     rows = [
         ("control point", f"{best} (now {now})"),
+        ("largest load", largest(_pair(facts["options"][0]), facts["before"] and _pair(facts["before"]))),
         ("mounting", facts["mounting"]),
         ("smoothing", f"{number(1e3 * facts['smoothing'])} ms"),
     ]
@@ -55,16 +59,24 @@ _CHECKS = {
 }
 
 
+def _pair(candidate: Facts) -> PeakPair:
+    """A candidate's largest load, from its JSON."""
+    load = candidate["largest_load"]
+    return PeakPair(known(load["flight"]), known(load["machine"]), place_machine=load["place_machine"])
+
+
 def _options(options: list[Facts]) -> str:
     def row(each: Facts) -> list[Value]:
         words = "; ".join(map(_use, each["exceeded"]))
         share = f"{100 * each['share']:.0f} % of a limit" if each["share"] else ""
         limits = Cell(f"exceeds {words}", "bad") if words else share
         point = 1e3 * each["control_point"]
-        return [each["mounting"], 1e3 * each["smoothing"], point, _percent(each["total_error"]), limits]
+        largest = each["largest_load"]
+        load = [known(largest["machine"]) / STANDARD_GRAVITY, largest["place_machine"].removeprefix("the ")]
+        return [each["mounting"], 1e3 * each["smoothing"], point, _percent(each["total_error"]), *load, limits]
 
-    head = ("mounting", "smoothing, ms", "control point, mm", "error", "limits")
-    return table(head, map(row, options), "Best first; those that break limits last", words=(0, 4))
+    head = ("mounting", "smoothing, ms", "control point, mm", "error", "largest load, g", "at", "limits")
+    return table(head, map(row, options), "Best first; those that break limits last", words=(0, 5, 6))
 
 
 def _use(use: Facts) -> str:
@@ -75,7 +87,8 @@ def sweep_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plot
     """How many cases ended how, a plot or a map of each measure, and every case."""
     counts = ", ".join(f"{count} {name}" for name, count in facts["counts"].items())
     outcomes = np.array(facts["outcomes"], dtype=object)
-    parts = [paragraph(f"figures of gbeam {facts['verb']}: {outcomes.size} cases: {counts}"), _varied(facts)]
+    kind = "" if facts["outcome"] == "done" else "bad"
+    parts = [paragraph(f"figures of gbeam {facts['verb']}: {outcomes.size} cases: {counts}", kind), _varied(facts)]
     parts += [_estimates(facts)]
     values = {name: np.array(each["values"], dtype=float) for name, each in facts["measures"].items()}
     drawn = any(each["distribution"] for each in facts["parameters"])
@@ -91,10 +104,11 @@ def sweep_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plot
 def _estimates(facts: Facts) -> str:
     """What samples say of each measure, where no grid makes many of it, with bounds of 95 % confidence."""
     rows: list[list[Value]] = []
-    for name, known in facts["statistics"].items():
-        if name in facts["measures"] and isinstance(known["draws"], int):
+    for name, estimates in facts["statistics"].items():
+        if name in facts["measures"] and isinstance(estimates["draws"], int):
             label = _labelled(name, facts["measures"][name]["unit"])
-            rows += [[label, each, *(known[each][bound] for bound in BOUNDS)] for each in known if each != "draws"]
+            named = {each: bounds for each, bounds in estimates.items() if each != "draws"}
+            rows += [[label, each, *(bounds[bound] for bound in BOUNDS)] for each, bounds in named.items()]
             shares = facts["indices"].get(name, {})
             rows += [
                 [label, f"share of the variance, {order}: {path}", *(each[order][bound] for bound in BOUNDS)]

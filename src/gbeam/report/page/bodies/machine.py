@@ -6,26 +6,28 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from gbeam.report import words
+from gbeam.report.machine.tracking import followed
 from gbeam.report.page import curves
-from gbeam.report.page.parts import Cell, Value, folded, heading, known, listed, paragraph, plot_places, raised, table
+from gbeam.report.page.bodies.verdict import verdict
+from gbeam.report.page.parts import Cell, Value, folded, heading, listed, paragraph, plot_places, raised, table
 from gbeam.report.page.series import Numbers, Plots
 
 Facts = Mapping[str, Any]
 
 
 def plan_body(facts: Facts, variables: Mapping[str, Any], _: Numbers, plots: Plots, header: dict[str, Any]) -> str:
-    """What the axes do, what that uses of the limits, and where the load is not followed."""
+    """The verdict, what the axes do, what that uses of the limits, and where the target is held."""
     parts = []
     if "time" in variables:  # of the file of one plan
         variables = {f"motions/{name}/{key}": each for name in facts["motions"] for key, each in variables.items()}
     for name, each in facts["motions"].items():
         if each["outcome"] != "done":
             parts.append(paragraph(f"motion {name} {each['outcome']}: {each['message']}", "bad"))
+        parts += [heading("Verdict"), verdict(each, (each["tracks"] or "flight", name))]
         parts.append(machine_section(name, each))
         rows = [[f"{part['start']:.3f}", f"{part['end']:.3f}", part["reason"]] for part in each["not_followed"]]
-        held = table(("from, s", "to, s", "why"), rows, "The flight is not followed", words=(2,))
-        parts.append(held if len(rows) <= 12 else folded(f"{len(rows)} stretches that are not followed", held))
+        held = table(("from, s", "to, s", "why"), rows, "The target is held", words=(2,))
+        parts.append(held if len(rows) <= 12 else folded(f"{len(rows)} stretches in which the target is held", held))
         lacks = [f"{part['reason']} at {part['time']:.3f} s: {part['remedy']}" for part in each["shortfalls"]]
         parts.append(listed(lacks[:12], "warning"))
     drawn = curves.of_plan(facts["motions"], variables, plots)
@@ -51,9 +53,6 @@ def machine_section(name: str, motion: Facts) -> str:
             f"{use['time']:.3f}" if use["used"] else "–",
         ]
 
-    error = motion["tracking_error"]
-    largest, when = words.number(known(error["max"]), 3), words.number(known(error["time_of_max"]))
-    followed = f"load followed within {largest} m/s², at {when} s"
     head = ("", "used", "allowed", "unit", "share", "at, s")
     rows = map(row, motion["limits"])
-    return heading(f"Machine: {name}") + table(head, rows, "Limits used", words=(0, 3)) + paragraph(followed)
+    return heading(f"Machine: {name}") + table(head, rows, "Limits used", words=(0, 3)) + paragraph(followed(motion))

@@ -6,23 +6,15 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from gbeam.constants import STANDARD_GRAVITY
 from gbeam.report import words
 from gbeam.report.page import curves
 from gbeam.report.page.bodies.machine import machine_section
-from gbeam.report.page.parts import Cell, Value, folded, heading, known, listed, paragraph, plot_places, table
+from gbeam.report.page.bodies.verdict import verdict
+from gbeam.report.page.parts import folded, heading, known, listed, paragraph, plot_places, table
 from gbeam.report.page.scene import scene
 from gbeam.report.page.series import Numbers, Plots
-from gbeam.results.imitation.verdict import change, percent
 
 Facts = Mapping[str, Any]
-
-_QUANTITIES = {
-    "tip": ("tip displacement, mm", 1e3),
-    "root_force": ("root force, N", 1.0),
-    "root_moment": ("root moment, N m", 1.0),
-    "stress": ("stress, MPa", 1e-6),
-}
 
 
 def body(facts: Facts, variables: Mapping[str, Any], numbers: Numbers, plots: Plots, header: dict[str, Any]) -> str:
@@ -50,19 +42,6 @@ _HINT = "Drag across a plot to zoom all of them, double-click to see all again, 
 _GREY = "Grey: the machine does not follow the flight."
 
 
-def state(facts: Facts) -> tuple[str, bool]:
-    """What the page says at its head, and whether that is good."""
-    broken = [each for each in facts["motions"].values() if any(use["exceeded"] for use in each.get("limits", ()))]
-    judged = [each["accepted"] for each in facts["comparisons"] if each["accepted"] is not None]
-    if facts["outcome"] != "done":
-        return str(facts["outcome"]), False
-    if judged and not all(judged):
-        return "not accepted", False
-    if broken:
-        return "machine limits exceeded", False
-    return ("accepted", True) if judged else ("done", True)
-
-
 def warnings(facts: Facts) -> list[str]:
     """Warnings of all motions, each once."""
     every = {warning: name for name, each in reversed(facts["motions"].items()) for warning in each.get("warnings", ())}
@@ -76,61 +55,8 @@ def _verdict(facts: Facts) -> str:
         if each["outcome"] != "done":
             parts.append(paragraph(f"motion {name} {each['outcome']}: {each['message']}", "bad"))
     for compared in facts["comparisons"]:
-        parts.append(paragraph(compared["verdict"], "verdict"))
-        tables = _criteria(compared), _peaks(compared), _load_peaks(compared), _not_followed(compared)
-        parts.append(f'<div class="gbeam-tables">{"".join(tables)}</div>')
-        parts.append(folded("In words", listed(compared["lines"])))
+        parts.append(verdict(compared, (compared["flight"], compared["centrifuge"])))
     return "".join([heading("Verdict"), *parts]) if parts else ""
-
-
-def _criteria(compared: Facts) -> str:
-    def row(each: Facts) -> list[Value]:
-        passed = each["passed"]
-        cell = Cell("kept" if passed else "not kept", "good" if passed else "bad")
-        return [each["name"].replace("_", " "), _percent(each["value"]), _percent(each["limit"]), cell]
-
-    head = ("limit on", "value", "limit", "")
-    return table(head, map(row, compared["criteria"]), "Accepted if every limit is kept", words=(0, 3))
-
-
-def _peaks(compared: Facts) -> str:
-    """Largest sizes over the whole flight."""
-    rows = []
-    for key, pair in compared["peaks"].items():
-        label, scale = _QUANTITIES[key]
-        flight, machine, ratio = (known(pair[name]) for name in ("flight", "machine", "ratio"))
-        if math.isfinite(flight):
-            rows.append([label, scale * flight, scale * machine, _change(ratio), pair["time_flight"]])
-    head = ("largest", compared["flight"], compared["centrifuge"], "change", "in flight at, s")
-    return table(head, rows, "Largest over the whole flight")
-
-
-def _load_peaks(compared: Facts) -> str:
-    def row(peak: Facts) -> list[Value]:
-        failed = peak["reason"]
-        return [
-            peak["time"],
-            peak["load"] / STANDARD_GRAVITY,
-            peak["reproduced"] / STANDARD_GRAVITY,
-            _change(peak["ratio"]),
-            _percent(peak["error"]),
-            Cell(f"not reproduced: {failed}", "bad") if failed else "",
-        ]
-
-    head = ("at, s", "flight, g", "machine, g", "change", "as a vector", "")
-    return table(head, map(row, compared["accounting"]["peaks"]), "Peaks of the load at the control point", words=(5,))
-
-
-def _not_followed(compared: Facts) -> str:
-    rows = [
-        [f"{each['start']:.3f}", f"{each['end']:.3f}", each["flight_peak"] / STANDARD_GRAVITY, each["reason"]]
-        for each in compared["accounting"]["not_followed"]
-    ]
-    followed = known(compared["accounting"]["followed_share"])
-    head = ("from, s", "to, s", "flight up to, g", "why")
-    caption = f"Not followed: {_percent(1 - followed)} of the flight's time ({_percent(followed)} is followed)"
-    shown = table(head, rows, caption, words=(3,))
-    return shown if len(rows) <= 12 else folded(f"{len(rows)} stretches that are not followed", shown)
 
 
 def tips_table(motions: Facts) -> str:
@@ -176,12 +102,3 @@ def _errors(motions: Facts) -> str:
     head = ("motion", "of", "total", "of the model", "of too few shapes", "of the time step")
     caption = "Estimated errors, of the largest size"
     return table(head, rows, caption, words=(0, 1)) or paragraph("no error estimate", "faint")
-
-
-def _change(ratio: float | None) -> str:
-    return change(known(ratio)) if math.isfinite(known(ratio)) else "–"
-
-
-def _percent(value: float | None) -> str:
-    share = known(value)
-    return percent(share if abs(share) > 5e-5 else 0.0) if math.isfinite(share) else "–"

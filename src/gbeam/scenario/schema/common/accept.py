@@ -1,44 +1,41 @@
-"""[motion.NAME.accept]: how well a centrifuge must reproduce its flight."""
+"""[motion.NAME.accept]: how well a centrifuge must reproduce its flight; its limits are those that are judged."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, Tag, create_model
 
-from gbeam.scenario.schema.common.fields import Quantity, Table, refuse, wrong
+from gbeam.results.imitation.criteria import RULES
+from gbeam.scenario.schema.common.fields import ONE_OR_LIST, Quantity, Table
 
 Share = Annotated[float, Quantity("ratio", "positive")]
+Ratio = Annotated[float, Quantity("ratio", "positive")]
+Level = Annotated[float, Quantity("amplitude ratio", "positive")]
+Ratios = Annotated[Annotated[Ratio, Tag("one")] | Annotated[tuple[Ratio, Ratio], Tag("list")], ONE_OR_LIST]
+Levels = Annotated[Annotated[Level, Tag("one")] | Annotated[tuple[Level, Level], Tag("list")], ONE_OR_LIST]
+
+_TYPES: dict[str, Any] = {"most": Share, "least": Share, "ratio": Ratios, "level": Levels}
+_FIELDS: dict[str, Any] = {
+    rule.name: (_TYPES[rule.kind] | None, Field(default=None, description=rule.words)) for rule in RULES.values()
+}
+_Limits = create_model("_Limits", __base__=Table, **_FIELDS)
 
 
-class Accept(Table):
+class Accept(_Limits):  # type: ignore[misc, valid-type]
     """Limits of the differences from flight; one that is not kept ends in exit status 1."""
 
-    tip: Share | None = Field(default=None, description="largest change of the tip's peak displacement, such as 2 %")
-    root_force: Share | None = Field(default=None, description="the same of the force at the root")
-    root_moment: Share | None = Field(default=None, description="the same of the moment at the root")
-    stress: Share | None = Field(default=None, description="the same of the largest stress")
-    peaks: Share | None = Field(
-        default=None, description="largest error of any peak of the flight's load above idle, as a vector"
-    )
-    spread: Share | None = Field(
-        default=None,
-        description="largest difference of the load at the root or the tip from the control point's at these peaks",
-    )
-    followed: Share | None = Field(default=None, description="least share of the flight's time that must be followed")
     tolerance: Share | None = Field(
         default=None,
-        description="difference from the flight's load, over its peak, within which it counts as followed; 5 % if left "
-        "out",
+        description="difference from the flight's load within which it counts as followed, as a share; 5 % if left out",
+    )
+    tolerance_of: Literal["peak", "instant"] | None = Field(
+        default=None,
+        description="what tolerance is a share of. peak: the flight's largest load, as where it is left out; instant: "
+        "its load at each time",
     )
 
-    @model_validator(mode="after")
-    def _possible(self) -> Accept:
-        if self.followed is not None and self.followed > 1:
-            refuse([(("followed",), wrong("{value} is more than all of the time", 'give "100 %" or less'))])
-        return self
-
     @property
-    def given(self) -> dict[str, float]:
+    def given(self) -> dict[str, Any]:
         """What is given, by name."""
         return {name: value for name, value in self if value is not None}

@@ -1,17 +1,42 @@
-"""What a machine makes of every part of a flight: as JSON, and as lines below the verdict."""
+"""What a machine makes of a flight, and what is accepted of it: as JSON, and as lines below the verdict."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import asdict
 from typing import Any
 
 from gbeam.results.imitation.accounting import Accounting, LoadPeak, PeakPair
+from gbeam.results.imitation.criteria import Judged
 from gbeam.results.imitation.verdict import change, in_g, percent
 
-UNITS = {"tip": "m", "root_force": "N", "root_moment": "N m", "stress": "Pa"}
+UNITS = {"largest_load": "m/s^2", "tip": "m", "root_force": "N", "root_moment": "N m", "stress": "Pa"}
+_PLACES = ("place_flight", "place_machine")
 SHORTEST = 0.005  # s, of a stretch that is listed
+_APART = 5e-4  # s: two peaks are at different times
+_NONE = 5e-5  # a smaller error is none
 SHOWN = 8  # peaks and stretches listed; a rough record has hundreds
+
+
+def judged_json(judged: Judged) -> dict[str, Any]:
+    """What is accepted, the largest sizes and the accounting of an imitation as JSON."""
+    return {
+        "accepted": judged.accepted,
+        "criteria": [asdict(each) | {"passed": each.passed} for each in judged.criteria],
+        "not_judged": list(judged.not_judged),
+        "peaks": peaks_to_json(judged.peaks),
+        "accounting": to_json(judged.accounting),
+    }
+
+
+def judged_lines(judged: Judged) -> Iterator[str]:
+    """Say what was accepted, then the accounting."""
+    if judged.criteria:
+        yield f"{'accepted' if judged.accepted else 'not accepted'}: {', '.join(map(str, judged.criteria))}"
+    if judged.not_judged:
+        yield f"not judged, as it needs the response, which `gbeam run` has: {', '.join(judged.not_judged)}"
+    yield from lines(judged.accounting)
 
 
 def to_json(accounting: Accounting) -> dict[str, Any]:
@@ -19,6 +44,7 @@ def to_json(accounting: Accounting) -> dict[str, Any]:
     return {
         "units": {"load": "m/s^2", "time": "s"},
         "tolerance": accounting.tolerance,
+        "tolerance_of": accounting.tolerance_of,
         "tolerance_load": accounting.allowed,
         "idle": accounting.idle,
         "followed_share": accounting.followed_share,
@@ -45,24 +71,19 @@ def _peak(peak: LoadPeak) -> dict[str, Any]:
         "reason": peak.reason or None,
         "time_machine": peak.time_machine,
         "error": peak.error,
+        "instant_error": peak.instant_error,
         "spread": dict(zip(ends, peak.spread, strict=True)),
         "spread_flight": dict(zip(ends, peak.spread_flight, strict=True)),
     }
 
 
 def peaks_to_json(peaks: Mapping[str, PeakPair]) -> dict[str, Any]:
-    """Largest sizes over the flight: m, N, N m, Pa, s."""
-    return {
-        name: {
-            "flight": pair.flight,
-            "machine": pair.machine,
-            "ratio": pair.ratio,
-            "time_flight": pair.time_flight,
-            "time_machine": pair.time_machine,
-            "unit": UNITS[name],
-        }
-        for name, pair in peaks.items()
-    }
+    """Largest sizes over the flight: m/s², m, N, N m, Pa, s; a place where it is one of the specimen."""
+    made = {}
+    for name, pair in peaks.items():
+        values = asdict(pair) | {"ratio": pair.ratio, "unit": UNITS[name]}
+        made[name] = {key: value for key, value in values.items() if key not in _PLACES or name == "largest_load"}
+    return made
 
 
 def lines(accounting: Accounting) -> Iterator[str]:
@@ -71,7 +92,11 @@ def lines(accounting: Accounting) -> Iterator[str]:
     for peak in sorted(listed, key=lambda peak: peak.time):
         # Where the size hides a difference of direction, that is said too.
         turned = f", as a vector {percent(peak.error)}" if peak.error > abs(peak.ratio - 1) + 0.01 else ""
-        made = f"{in_g(peak.reproduced)} ({change(peak.ratio)}{turned})"
+        apart = peak.time_machine - peak.time
+        later = f", {abs(1e3 * apart):.0f} ms {'later' if apart > 0 else 'earlier'}" if abs(apart) >= _APART else ""
+        made = f"{in_g(peak.reproduced)} ({change(peak.ratio)}{turned}{later})"
+        if math.isfinite(peak.instant_error):
+            made += f", {percent(peak.instant_error if peak.instant_error > _NONE else 0.0)} off at the same instant"
         yield (
             f"load peak {in_g(peak.load)} at {peak.time:.2f} s: "
             f"{f'not reproduced, {made}: {peak.reason}' if peak.reason else made}"
@@ -80,7 +105,8 @@ def lines(accounting: Accounting) -> Iterator[str]:
         yield f"load peaks {len(accounting.peaks) - SHOWN} more: see --json"
     if accounting.peaks:
         root, tip = (max((peak.spread[i] for peak in accounting.peaks), key=abs) for i in range(2))
-        yield f"load at these peaks over the control point's: root {change(1 + root)}, tip {change(1 + tip)}"
+        if math.isfinite(tip):  # of a specimen whose length is known
+            yield f"load at these peaks over the control point's: root {change(1 + root)}, tip {change(1 + tip)}"
     # Those below idle are many, and the machine's own lines have them.
     stretches = [
         each for each in accounting.not_followed if each.reason != "below idle" and each.end - each.start > SHORTEST

@@ -1,0 +1,344 @@
+"""What an imitation is accepted by: every criterion declared once, for scenarios, checks, words and documents.
+
+The schema of scenarios reads it, so that importing it loads no NumPy.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+from gbeam.errors import InputError
+
+if TYPE_CHECKING:
+    from gbeam.results.imitation.accounting import Accounting, PeakPair
+    from gbeam.results.imitation.fatigue import Fatigue
+    from gbeam.results.imitation.measures import Shock
+
+Limit = float | tuple[float, float]
+Value = tuple[float, str]  # and where it occurs
+SETTINGS = ("tolerance", "tolerance_of")  # beside the limits in a table of acceptance
+NOT_ACCEPTED, EXCEEDED = "not accepted", "machine limits exceeded"
+GOOD = ("done", "accepted")  # states of which nothing is to be said
+
+
+class Judged:
+    """An imitation that limits of acceptance decide about."""
+
+    peaks: Mapping[str, PeakPair]
+    accounting: Accounting
+    accept: Mapping[str, Limit]
+    shock: Shock | None = None
+    fatigue: Fatigue | None = None
+    with_response = True
+
+    @property
+    def verdict(self) -> str:
+        """One sentence about the whole flight that a person can quote."""
+        raise NotImplementedError
+
+    @property
+    def figures(self) -> dict[str, float]:
+        """Value of every criterion that can be judged, by its name."""
+        rules = (rule for rule in RULES.values() if self.with_response or not rule.response)
+        return {rule.name: rule.worst(self, rule.bounds(rule.usual))[0] for rule in rules}
+
+    @property
+    def criteria(self) -> tuple[Criterion, ...]:
+        """The limits of `accept` that can be judged, with the values that are held against them."""
+        return tuple(
+            Criterion(name, self.accept[name], *rule.worst(self, rule.bounds(self.accept[name])))
+            for name, rule in RULES.items()
+            if name in self.accept and name not in self.not_judged
+        )
+
+    @property
+    def not_judged(self) -> tuple[str, ...]:
+        """The limits of `accept` that need a response, where there is none."""
+        return tuple(name for name in self.accept if RULES[name].response and not self.with_response)
+
+    @property
+    def accepted(self) -> bool | None:
+        """Whether every limit that can be judged is kept; None where there is none."""
+        return all(each.passed for each in self.criteria) if self.criteria else None
+
+    @property
+    def refusal(self) -> str:
+        """The limits that are not kept, in words; empty where every one is."""
+        return ", ".join(str(each) for each in self.criteria if not each.passed)
+
+
+def state_of(outcome: str, imitations: Sequence[Judged], *, exceeded: bool = False) -> str:
+    """Say how an answer with imitations ended, in a few words, of which only :data:`GOOD` are to be shown as good.
+
+    Parameters
+    ----------
+    outcome : str
+        Of the computation.
+    imitations : sequence of Judged
+    exceeded : bool
+        Whether a limit of the machine is.
+    """
+    if outcome != "done":
+        return outcome
+    if any(each.accepted is False for each in imitations):
+        return NOT_ACCEPTED
+    if exceeded:
+        return EXCEEDED
+    whole = [each.accepted for each in imitations if each.accepted is not None and not each.not_judged]
+    missed = any(main is not None and main.reason for main in (each.accounting.main for each in imitations))
+    return ("accepted" if whole else "done") + (", largest load peak missed" if missed else "")
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A quantity that a limit of acceptance is set on, and how a value is held against the limit.
+
+    Parameters
+    ----------
+    name : str
+        Key of the limit.
+    words : str
+        Description for the reference of scenarios.
+    kind : str
+        most: a share whose size may be at most the limit; least: one that may be no smaller; level, ratio: machine over
+        flight, which may be at most the limit and no less than its reciprocal, or lies between two; levels are written
+        in decibels.
+    usual : float
+        A limit as an example.
+    values : callable
+        Values of an imitation, each with where it occurs; the worst of them is judged.
+    response : bool
+        Whether it needs the responses; the others follow from what the machine does alone.
+    """
+
+    name: str
+    words: str
+    kind: Literal["most", "least", "level", "ratio"]
+    usual: float
+    values: Callable[[Judged], Iterator[Value]]
+    response: bool = True
+
+    @property
+    def band(self) -> bool:
+        """Whether a limit is one of the ratio of machine to flight, either way."""
+        return self.kind in ("level", "ratio")
+
+    def checked(self, limit: object) -> Limit:
+        """Return a limit as floats.
+
+        Raises
+        ------
+        InputError
+            If it means nothing.
+        """
+        from gbeam.guards.checks import positive
+
+        if not self.band or not isinstance(limit, (tuple, list)):
+            size = positive(self.name, limit, "(a ratio)" if self.band else "(a share)")
+            if self.kind == "least" and size > 1:
+                raise InputError(self.name, f"is {100 * size:g} %, more than all of it", 'give "100 %" or less')
+            if self.band and size <= 1:
+                self._refuse(f"is {size:g}, and not above 1")
+            return float(size)
+        if len(limit) != 2:
+            self._refuse(f"has {len(limit)} entries")
+        low, high = (float(positive(self.name, end, "(a ratio)")) for end in limit)
+        if not low < 1 < high:
+            self._refuse(f"is {low:g} to {high:g}, without 1 in between")
+        return low, high
+
+    def _refuse(self, problem: str) -> None:
+        example = '"3 dB", or ["-1.5 dB", "3 dB"]' if self.kind == "level" else "2, or [0.5, 2]"
+        fix = f"give the largest ratio of machine to flight, either way, or the least and the largest: {example}"
+        raise InputError(self.name, problem, fix)
+
+    def bounds(self, limit: Limit) -> tuple[float, float]:
+        """Least and largest value that a limit allows."""
+        if isinstance(limit, tuple):
+            return limit
+        if self.kind == "least":
+            return limit, math.inf
+        return (1 / limit, limit) if self.band else (-limit, limit)
+
+    def worst(self, judged: Judged, bounds: tuple[float, float]) -> Value:
+        """The value that comes nearest to its bound, or lies furthest beyond, and where; NaN where none is known."""
+        low, high = bounds
+
+        def used(value: Value) -> float:
+            size = value[0]
+            if not self.band:
+                return abs(size)
+            if not size > 0:
+                return math.inf
+            return math.log(size) / math.log(high if size > 1 else low)
+
+        known = [value for value in self.values(judged) if not math.isnan(value[0])]
+        return max(known, key=used, default=(math.nan, ""))
+
+    def written(self, value: float) -> str:
+        """Return a value in its unit."""
+        if not math.isfinite(value):
+            return "unknown"
+        if self.kind == "level":
+            return f"{_decibels(value):+.3g} dB" if value > 0 else "nothing"
+        return f"{value:.3g}" if self.kind == "ratio" else f"{100 * value:.3g} %"
+
+    def limit_written(self, limit: Limit) -> str:
+        """Return a limit in its unit."""
+        if not isinstance(limit, tuple):
+            if not self.band:
+                return f"{'at least' if self.kind == 'least' else 'limit'} {self.written(limit)}"
+            if self.kind == "level":
+                return f"limit ±{_decibels(limit):.3g} dB"
+        return f"limit {' to '.join(self.written(end) for end in self.bounds(limit))}"
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """One of the limits that decide whether a machine's imitation is accepted.
+
+    Parameters
+    ----------
+    name : str
+        Key of the limit; docs/verdict.md, Pass or fail.
+    limit : float or tuple of float
+        As given.
+    value : float
+        NaN where it is not known, which does not pass.
+    where : str
+        When, and at which place or frequency, the value occurs; empty where it belongs to the whole flight.
+    """
+
+    name: str
+    limit: Limit
+    value: float
+    where: str = ""
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Least and largest value that is accepted."""
+        return RULES[self.name].bounds(self.limit)
+
+    @property
+    def passed(self) -> bool:
+        """Whether the value is within its bounds."""
+        low, high = self.bounds
+        return low <= self.value <= high
+
+    def __str__(self) -> str:
+        rule = RULES[self.name]
+        where = f" {self.where}" if self.where else ""
+        return f"{self.name} {rule.written(self.value)}{where} ({rule.limit_written(self.limit)})"
+
+
+def judging(accept: Mapping[str, Any]) -> dict[str, Any]:
+    """Arguments of :func:`gbeam.compare` and :func:`gbeam.plan` that a table of acceptance gives."""
+    limits = {name: value for name, value in accept.items() if name not in SETTINGS}
+    return {name: value for name, value in accept.items() if name in SETTINGS} | {"accept": limits}
+
+
+def checked_limits(accept: Mapping[str, object] | None) -> dict[str, Limit]:
+    """Return limits by name, as floats.
+
+    Raises
+    ------
+    InputError
+        If one has no such name, or means nothing.
+    """
+    limits = {}
+    for name, limit in ({} if accept is None else accept).items():
+        if name not in RULES:
+            raise InputError("accept", f"has {name!r}", f"choose from {', '.join(RULES)}")
+        try:
+            limits[name] = RULES[name].checked(limit)
+        except InputError as error:
+            raise error.within("accept") from None
+    return limits
+
+
+def _decibels(ratio: float) -> float:
+    return 20 * math.log10(ratio)
+
+
+def _change(name: str) -> Callable[[Judged], Iterator[Value]]:
+    """Relative change of a largest size from flight to machine."""
+
+    def values(judged: Judged) -> Iterator[Value]:
+        if name in judged.peaks:
+            pair = judged.peaks[name]
+            yield pair.ratio - 1, f"at {pair.place_machine} at {pair.time_machine:.2f} s" if pair.place_machine else ""
+
+    return values
+
+
+def _peaks(judged: Judged) -> Iterator[Value]:
+    yield 0.0, ""  # there may be none
+    for peak in judged.accounting.peaks:
+        yield peak.error, f"at {peak.time:.2f} s"
+
+
+def _spread(judged: Judged) -> Iterator[Value]:
+    if not judged.accounting.peaks:
+        yield 0.0, ""
+    for peak in judged.accounting.peaks:
+        for end, spread in zip(("root", "tip"), peak.spread, strict=True):
+            yield spread, f"at the {end} at {peak.time_machine:.2f} s"
+
+
+def _followed(judged: Judged) -> Iterator[Value]:
+    yield judged.accounting.followed_share, ""
+
+
+def _srs(judged: Judged) -> Iterator[Value]:
+    if judged.shock is not None:
+        for extreme in judged.shock.extremes:
+            yield extreme.ratio, str(extreme)
+
+
+def _damage(judged: Judged) -> Iterator[Value]:
+    yield math.nan if judged.fatigue is None else judged.fatigue.damage_ratio, ""
+
+
+RULES = {
+    rule.name: rule
+    for rule in (
+        Rule("tip", "largest change of the tip's peak displacement", "most", 0.02, _change("tip")),
+        Rule("root_force", "largest change of the peak force at the root", "most", 0.05, _change("root_force")),
+        Rule("root_moment", "largest change of the peak moment at the root", "most", 0.05, _change("root_moment")),
+        Rule("stress", "largest change of the peak stress", "most", 0.05, _change("stress")),
+        Rule(
+            "largest_load",
+            "largest change of the largest load anywhere on the specimen, which is that of the machine's whole run, "
+            "spin-up and spin-down included",
+            "most", 0.1, _change("largest_load"), response=False,
+        ),
+        Rule(
+            "peaks", "largest error of any peak of the flight's load above idle, as a vector", "most", 0.03, _peaks,
+            response=False,
+        ),
+        Rule(
+            "spread",
+            "largest difference of the load at the root or the tip from the control point's at these peaks",
+            "most", 0.1, _spread, response=False,
+        ),
+        Rule(
+            "followed", "least share of the flight's time that must be followed", "least", 0.7, _followed,
+            response=False,
+        ),
+        Rule(
+            "srs",
+            "shock response spectra of the tip: largest ratio of machine and flight, either way, at any frequency "
+            "along any axis; or the least and the largest of machine to flight, such as [-1.5 dB, 3 dB]",
+            "level", 10 ** (3 / 20), _srs,
+        ),
+        Rule(
+            "damage",
+            "fatigue damage of the root: largest ratio of machine and flight, either way; or the least and the "
+            "largest of machine to flight, such as [0.5, 2]",
+            "ratio", 2.0, _damage,
+        ),
+    )
+}  # fmt: skip
