@@ -5,6 +5,7 @@
 # make web: the viewer and the app's page, from web/ into the package (needs Node; users of the package do not);
 # make web-check: their tests, and whether what is built in the package is that of web/;
 # make mutants: whether the tests catch deliberate errors in the physics (minutes);
+# make audit: whether what is locked has known vulnerabilities (needs a network);
 # make dist: sdist and wheel into dist/; make wheels: the wheel in empty environments on every Python that is there;
 # make benchmark: how long commands take, and a comparison with Exudyn (minutes; nothing else should run).
 PYTHON ?= python3
@@ -19,7 +20,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # Folders that ruff reads.
 CODE := src tests validation fuzz mutants benchmarks examples docs .ci
 
-.PHONY: demo test web web-check check validate fuzz docs benchmark mutants dist wheels lock clean
+.PHONY: demo test web web-check check validate fuzz docs benchmark mutants dist wheels lock audit clean
 
 demo: .venv/installed
 	$(BIN)/gbeam run $(EXAMPLE) --out out/f16_8g_turn
@@ -80,24 +81,32 @@ wheels: dist
 
 .venv/installed: pyproject.toml requirements.lock
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps -e .
 	@touch $@
 
 .venv/dev-installed: .venv/installed requirements-dev.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements-dev.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-dev.lock
 	@touch $@
 
 .venv/uv-installed: .venv/installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check uv
 	@touch $@
 
-# After a change of the dependencies: one lock for every supported Python and platform.
+# After a change of the dependencies: one lock for every supported Python and platform, with the hash of every file.
 lock: .venv/uv-installed
-	$(BIN)/uv pip compile --quiet --universal --no-header --no-emit-index-url --no-annotate \
+	$(BIN)/uv pip compile --quiet --universal --no-header --no-emit-index-url --no-annotate --generate-hashes \
 		pyproject.toml -o requirements.lock
-	$(BIN)/uv pip compile --quiet --universal --no-header --no-emit-index-url --no-annotate \
+	$(BIN)/uv pip compile --quiet --universal --no-header --no-emit-index-url --no-annotate --generate-hashes \
 		pyproject.toml --group dev -o requirements-dev.lock
+
+# The database is that of PyPI's advisories; without a network there is no answer, which is said and is a failure.
+audit: .venv/audit-installed
+	$(BIN)/python .ci/audit.py requirements.lock requirements-dev.lock
+
+.venv/audit-installed: .venv/installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check pip-audit
+	@touch $@
 
 clean:
 	rm -rf .venv .cache out dist web/node_modules

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import importlib.util
+import json
 import re
+import subprocess
 import tomllib
 from pathlib import Path
+from typing import Any
+
+import pytest
 
 import gbeam
 
@@ -42,3 +48,56 @@ def test_reports_say_the_version_and_the_scenario() -> None:
     for name in ("wrong_answer", "fault"):
         form = (ROOT / ".github" / "ISSUE_TEMPLATE" / f"{name}.yml").read_text(encoding="utf-8")
         assert "gbeam --version" in form and "label: The scenario\n" in form
+
+
+@pytest.mark.parametrize("name", ["requirements.lock", "requirements-dev.lock"])
+def test_every_file_that_is_installed_has_its_hash(name: str) -> None:
+    lines = (ROOT / name).read_text(encoding="utf-8").replace(" \\\n", " ").splitlines()
+    assert len(lines) > 50
+    for line in lines:
+        assert re.match(r"[A-Za-z0-9._-]+==\S+ .*--hash=sha256:[0-9a-f]{64}\b", line), line[:80]
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    assert f"--require-hashes -r {name}\n" in makefile and makefile.count("--generate-hashes") == 2
+
+
+def test_actions_are_pinned_by_commit() -> None:
+    workflow = (ROOT / ".github" / "workflows" / "ci.yml").read_text(encoding="utf-8")
+    used = re.findall(r"uses: (.*)", workflow)
+    assert used and all(re.fullmatch(r"[\w-]+/[\w-]+@[0-9a-f]{40}  # v\d+\.\d+\.\d+", each) for each in used)
+
+
+@pytest.fixture
+def audit(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """The script behind `make audit`, and what pip-audit would answer: none where there is no network."""
+    spec = importlib.util.spec_from_file_location("audit", ROOT / ".ci" / "audit.py")
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    module.known = {}
+
+    def answered(command: list[Any], **_: Any) -> Any:
+        lines = Path(command[command.index("--requirement") + 1]).read_text(encoding="utf-8").split()
+        if module.known is not None:
+            each = [line.split("==") for line in lines]
+            facts = [{"name": n, "version": v, "vulns": module.known.get((n, v), [])} for n, v in each]
+            Path(command[-1]).write_text(json.dumps({"dependencies": facts}), encoding="utf-8")
+        return subprocess.CompletedProcess(command, 1, "", "x\nConnectionError: pypi.org")
+
+    monkeypatch.setattr(module.subprocess, "run", answered)
+    return module
+
+
+def test_the_audit_says_what_is_known_and_that_nothing_is(
+    audit: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lock = tmp_path / "a.lock"
+    lock.write_text("a==1 ; python_version < '3.12' \\\n    --hash=sha256:0\na==2\nb==3 \\\n", encoding="utf-8")
+    assert audit.rounds(audit.pinned([lock])) == [[("a", "1"), ("b", "3")], [("a", "2")]]
+    assert audit.main([str(lock), str(lock)]) == 0
+    assert capsys.readouterr().out == "3 versions, no known vulnerabilities\n"
+    audit.known = {("a", "2"): [{"id": "PYSEC-1", "fix_versions": ["2.1"]}]}
+    assert audit.main([str(lock)]) == 1
+    assert capsys.readouterr().out == "a 2: PYSEC-1, mended in 2.1\n3 versions, 1 known vulnerabilities\n"
+    audit.known = None
+    assert audit.main([str(lock)]) == 2
+    assert "no answer, so nothing is known: ConnectionError: pypi.org; is there a network?" in capsys.readouterr().err
