@@ -12,6 +12,7 @@ import time
 from collections import Counter
 from pathlib import Path
 
+from fuzz.app import app
 from fuzz.cases import Case, make
 from fuzz.commands import command
 from fuzz.judge import judge
@@ -22,7 +23,7 @@ from fuzz.sweeps import sweep
 from fuzz.worker import Answer, call, warm_up
 from gbeam.printable import shortened
 
-KINDS = {"scenario": scenario, "record": record, "command": command, "result": result, "sweep": sweep}
+KINDS = {"scenario": scenario, "record": record, "command": command, "result": result, "sweep": sweep, "app": app}
 FINDINGS = Path(__file__).parent / "findings"
 
 

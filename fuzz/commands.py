@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fuzz.cases import Case, Random
+from fuzz.cases import ROOT, Case, Random
 from fuzz.scenarios import NUMBERS, UNITS, WORDS, texts
 from gbeam.cli.program import VERBS
 
@@ -13,8 +13,23 @@ OPTIONS: dict[str, str | None] = {
     "--positions": "2 m, 5 m", "--rate": "2 rad/s", "--modes": "2", "--balanced": "2", "--strain-at": "10 mm",
     "--inputs": "torque", "--outputs": "tip_y", "--speed": "60 rpm", "--measure": "tip=1", "--smoothing": "60 ms",
     "--no-proof": None, "--sample": "5 ms", "--kind": "hub", "--markdown": None, "--help": None, "--version": None,
-    "--write": None,
+    "--write": None, "--of": "tip.y", "--with": "beam.length", "--minimise": "tip.y", "--subject-to": "limits",
+    "--over": "beam.length=1 m:2 m", "--bounds": "beam.length=1 m:2 m", "--verb": "static", "--starts": "1",
+    "--angle": "1 rad", "--duration": "2 s", "--limit": "45 N m", "--robust": "10 %", "--check": "FOAM",
+    "--data": "s.toml", "--free": "beam.length", "--report": None, "--samples": "2", "--seed": "1", "--resume": None,
 }  # fmt: skip
+# Sound words of the verbs that compute longer; one of them changes.
+STUDIES = {
+    "run": ["--set", "response.duration=0.05 s"],
+    "models": ["--set", "response.duration=0.05 s", "--set", "model.kind=FOAM"],
+    "place": ["--no-proof"],
+    "sensitivity": ["--of", "tip.y", "--with", "beam.length", "--verb", "static"],
+    "optimize": ["--minimise", "tip.y", "--over", "beam.length=7 m:8 m", "--verb", "static", "--starts", "1"],
+    "fit": ["--data", "d.csv", "--free", "beam.material.youngs_modulus", "--starts", "1"],
+    "shape": ["--angle", "0.1 rad", "--duration", "2 s"],
+    "sweep": ["--over", "beam.length=7 m, 8 m", "--measure", "tip.y", "--verb", "static", "--out", "out"],
+}
+MEASURED = b"mode,frequency [Hz]\n1,1.1\n2,6.5\n"
 KEYS = [
     "beam.length", "beam", "model.modes.y", "model.modes", "model", "motion.slew.radius", "beam.masses[0].at",
     "beam[0]", "title", "response.duration", "response.step", "a.b.c", "motion.x.kind", "", ".", "beam..length",
@@ -25,7 +40,11 @@ QUICK = ("check", "static", "modes", "campbell", "critical-speed", "linearize", 
 
 def command(chosen: Random) -> Case:
     """A command line of sound and wrong words."""
-    verb = chosen.choice(QUICK if chosen.random() < 0.9 else (*WORDS, "rnu", *VERBS))
+    if chosen.random() < 0.15:
+        return _study(chosen)
+    verb = chosen.choice(
+        QUICK if chosen.random() < 0.9 else (*WORDS, "rnu", *(each for each in VERBS if each != "app"))
+    )
     words = [verb]
     if chosen.random() < 0.9:
         words.append("s.toml" if chosen.random() < 0.8 else chosen.choice((*WORDS, "t.toml", "s.tml", "-", "new.toml")))
@@ -45,6 +64,29 @@ def command(chosen: Random) -> Case:
     text = chosen.choice(texts()[1:6] + texts()[-1:])
     # The system passes no null character.
     return Case("command", [word.replace("\0", "\\0") for word in words], {"s.toml": text.encode()})
+
+
+def _study(chosen: Random) -> Case:
+    """A verb that computes longer, with a word or two changed, left out or too much."""
+    verb = chosen.choice(list(STUDIES))
+    words = list(STUDIES[verb])
+    for _ in range(chosen.choice((1, 1, 2))):
+        option, value = chosen.choice(list(OPTIONS.items()))
+        match chosen.randrange(4):
+            case 0:
+                words[chosen.randrange(len(words))] = _value(chosen)
+            case 1:
+                first = chosen.randrange(len(words))
+                del words[first : first + 2]
+            case 2:
+                words += [f"--set={chosen.choice(KEYS)}={_value(chosen)}"]
+            case _:
+                words += [option] if value is None else [option, chosen.choice((value, _value(chosen)))]
+        if not words:
+            break
+    example = "zhang2020_example1" if verb == "place" else "hubbeam2009_slew_3"
+    files = {"s.toml": (ROOT / "examples" / f"{example}.toml").read_bytes(), "d.csv": MEASURED}
+    return Case("command", [verb, "s.toml", *(word.replace("\0", "\\0") for word in words)], files)
 
 
 def _value(chosen: Random) -> str:

@@ -104,7 +104,7 @@ def disturbed(folder: Path, number: int, delay: float) -> tuple[int, str]:
 
 def unsound(folder: Path, *, hidden: bool = False) -> Iterator[str]:
     """What is wrong with what is in a folder after a fault."""
-    from gbeam.io import netcdf
+    from gbeam.io.stored import read_stored
 
     out = folder / "out"
     names = {each.name for each in out.iterdir()} if out.exists() else set()
@@ -112,7 +112,7 @@ def unsound(folder: Path, *, hidden: bool = False) -> Iterator[str]:
     expected = {each.name for each in (folder / "undisturbed").iterdir()}
     if shown and shown != expected:
         yield f"files are missing: {sorted(expected - shown)[:3]}, or too many: {sorted(shown - expected)[:3]}"
-    if (out / "result.nc").exists() and netcdf.read(out / "result.nc").attrs["outcome"] != "done":
+    if (out / "result.nc").exists() and read_stored(out / "result.nc").attrs[""]["outcome"] != "done":
         yield "the result is not whole"
     left = [each.name for place in (folder, out) if place.exists() for each in place.glob(".*")]
     if left and not hidden:

@@ -9,12 +9,11 @@ import signal
 from fuzz.cases import Case
 from fuzz.worker import MEMORY, PATIENCE, SECONDS, Answer
 
-LONG = ("run", "rerun")
 LONGEST = 40_000  # characters of a message: a hundred problems at their lines
 _TERMINAL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
 # A scenario's problems begin with their place, all else with the program's name.
 _PLACED = re.compile(r"(gbeam: \S|--set .|[^\n]+\.\w+(:\d+:\d+)?: .|\S[^\n]*: .)", re.DOTALL)
-_PROGRESS = re.compile(r"^gbeam: (compiling|.*\d+ ?%.*)$", re.MULTILINE)
+_SAID = re.compile(r"^gbeam: \S.*$", re.MULTILINE)  # what is under way, or a warning
 
 
 def judge(case: Case, answer: Answer) -> str:
@@ -22,10 +21,8 @@ def judge(case: Case, answer: Answer) -> str:
     everything = answer.out + answer.err
     if answer.status < 0:
         number = signal.Signals(-answer.status)
-        if number in (signal.SIGXCPU, signal.SIGALRM) and case.arguments[0] in LONG:
-            return ""  # what is still valid may take long
-        if number in (signal.SIGXCPU, signal.SIGALRM) and case.arguments[0] == "sweep" and answer.files:
-            return ""  # it had begun, with many cases
+        if number in (signal.SIGXCPU, signal.SIGALRM) and _SAID.search(answer.err):
+            return ""  # what is still valid may take long, and says so
         if number in (signal.SIGXCPU, signal.SIGALRM):
             return f"hang: more than {SECONDS} s of processor time, or {PATIENCE} s"
         return f"killed by {number.name}"
@@ -39,7 +36,7 @@ def judge(case: Case, answer: Answer) -> str:
         return f"warning: {next(line for line in answer.err.splitlines() if 'Warning:' in line).rpartition('/')[2]}"
     if answer.status == 2:
         return _of_refusal(case, answer)
-    if answer.status == 0 and _PROGRESS.sub("", answer.err).strip():
+    if answer.status == 0 and _SAID.sub("", answer.err).strip():
         return f"words on stderr of a success: {_first_line(answer.err)}"
     if answer.status == 1 and not answer.err.strip():
         return "failed without a word"

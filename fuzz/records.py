@@ -9,22 +9,30 @@ from typing import Any
 import numpy as np
 
 from fuzz.cases import Case, Random
+from fuzz.damage import damaged
 from fuzz.scenarios import corrupted
 
 ROWS = 200
-SUFFIXES = (".csv", ".csv", ".csv", ".txt", ".mat", ".h5", ".nc", ".uff")
+TEXTS = (".csv", ".csv", ".txt")
+# Each suffix with the kinds of files that have it.
+BINARIES = {
+    ".mat": ("structure", "plain", "nested", "cells", "version 4", "version 7.3"),
+    ".h5": ("hdf5", "hdf5 of words"),
+    ".nc": ("netcdf 3", "netcdf 4"),
+    ".uff": ("uff", "uff in binary"),
+}
 CELLS = [
     "", "nan", "inf", "-inf", "1e999", "1,5", "1;5", '"', '"1', "x", "٣", "\x1b[31m", "0x10", "1_0", "--1",
-    "9" * 500, " ",
+    "9" * 500, " ", "12:34:56.7", "2024-02-30T25:00:00",
 ]  # fmt: skip
 KEYS = [
     "time", "x", "y", "z", "unit", "time_unit", "cutoff", "resample", "despike", "skip_checks", "quantity", "p",
-    "rate_unit",
+    "rate_unit", "from", "to",
 ]  # fmt: skip
 VALUES = [
     '"0"', '"-"', '""', '"none"', '"-t"', '"ms"', '"s"', '"g"', '"m/s^2"', '"0.1 Hz"', '"3 Hz"', '"1e9 Hz"',
     '"1e-9 Hz"', "true", '["spikes"]', '["unit", "sign", "sampling"]', '"acceleration"', '"ax"', '"rad/s"', "-1",
-    '"\\u001b"',
+    '"\\u001b"', '"1 s"', '"99:12:34:56"', "12:34:56.5", "2024-05-03T12:34:56Z", '["columns"]',
 ]  # fmt: skip
 
 
@@ -36,10 +44,10 @@ def columns(rows: int = ROWS) -> dict[str, Any]:
 
 def record(chosen: Random) -> Case:
     """A scenario with a record that is malformed, or with a wrong word about a sound one."""
-    suffix = chosen.choice(SUFFIXES)
-    data = text(chosen) if suffix in (".csv", ".txt") else binary(suffix)
+    suffix = chosen.choice((*TEXTS, *BINARIES))
+    data = text(chosen) if suffix in TEXTS else binary(chosen.choice(BINARIES[suffix]))
     for _ in range(chosen.choice((0, 1, 1, 2, 4, 20))):
-        data = corrupted(chosen, data)
+        data = corrupted(chosen, data) if suffix in TEXTS else damaged(chosen, data)
     entry = {"file": f'"r{suffix}"', "time": '"t"', "x": '"ax"', "y": '"ay"', "z": '"az"', "unit": '"g"'}
     if suffix == ".uff":
         entry |= {"time": '"time"'}
@@ -99,33 +107,59 @@ def number(row: list[str], column: int) -> float:
 
 
 @cache
-def binary(suffix: str) -> bytes:
-    """A sound file of a kind by its suffix."""
+def binary(kind: str) -> bytes:
+    """A sound file of a kind."""
     table, file = columns(), io.BytesIO()
-    if suffix == ".mat":
-        from scipy.io import savemat
+    match kind:
+        case "structure" | "plain" | "nested" | "cells" | "version 4":
+            from scipy.io import savemat
 
-        savemat(file, {"rec": table, **table}, do_compression=True)
-    elif suffix == ".h5":
-        import h5py
+            cells = np.array([*table.values(), "words", {"deep": table}], dtype=object)
+            content = {
+                "structure": {"rec": table, **table}, "nested": {"a": {"b": {"c": {"d": table}}}, **table},
+                "cells": {"rec": cells, **table},
+            }.get(kind, table)  # fmt: skip
+            savemat(file, content, do_compression=kind == "structure", format="4" if kind == "version 4" else "5")
+        case "version 7.3" | "hdf5" | "hdf5 of words":
+            import h5py
 
-        with h5py.File(file, "w") as opened:
+            with h5py.File(file, "w", userblock_size=512 if kind == "version 7.3" else 0) as opened:
+                for name, values in table.items():
+                    each = opened.create_dataset(name, data=values, compression="gzip", chunks=True)
+                    each.attrs["units"] = "s" if name == "t" else "g"
+                opened["matrix"] = np.zeros((ROWS, 3))
+                if kind == "hdf5 of words":
+                    opened["words"] = np.array(["a", "bc"], dtype=h5py.string_dtype())
+                    opened["rows"] = np.zeros(5, dtype=[("t", "f8"), ("name", "S5")])
+                    opened["again"] = h5py.SoftLink("/t")
+        case "netcdf 3":
+            from scipy.io import netcdf_file
+
+            opened = netcdf_file(file, "w")
+            opened.createDimension("t", ROWS)
             for name, values in table.items():
-                opened.create_dataset(name, data=values, compression="gzip", chunks=True).attrs["units"] = (
-                    "s" if name == "t" else "g"
-                )
-            opened["matrix"] = np.zeros((ROWS, 3))
-    elif suffix == ".nc":
-        from scipy.io import netcdf_file
+                opened.createVariable(name, "f8", ("t",))[:] = values
+            opened.flush()
+        case "netcdf 4":
+            import h5netcdf
 
-        opened = netcdf_file(file, "w")
-        opened.createDimension("t", ROWS)
-        for name, values in table.items():
-            opened.createVariable(name, "f8", ("t",))[:] = values
-        opened.flush()
-    else:
-        return b"".join(_set_58(name, table["t"], values) for name, values in table.items() if name != "t")
-    return file.getvalue()
+            with h5netcdf.File(file, "w") as opened:
+                opened.dimensions = {"t": ROWS}
+                for name, values in table.items():
+                    opened.create_variable(name, ("t",), data=values).attrs["units"] = "s" if name == "t" else "g"
+        case _:
+            sets = (_set_58(name, table["t"], each) for name, each in table.items() if name != "t")
+            return b"".join(map(_as_58b, sets) if kind == "uff in binary" else sets)
+    head = b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM" if kind == "version 7.3" else b""
+    return head + file.getvalue()[len(head) :]
+
+
+def _as_58b(text: bytes) -> bytes:
+    """Universal data set 58 with its values as numbers of eight bytes."""
+    lines = text.split(b"\n")
+    numbers = np.array(b" ".join(lines[13:-2]).split(), dtype="<f8")
+    lines[1] = f"{58:6d}b{1:6d}{2:6d}{11:12d}{8 * len(numbers):12d}{0:6d}{0:6d}{0:12d}{0:12d}".encode()
+    return b"\n".join([*lines[:13], numbers.tobytes() + lines[-2], b""])
 
 
 def _set_58(name: str, t: Any, values: Any) -> bytes:

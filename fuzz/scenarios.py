@@ -68,7 +68,8 @@ def scenario(chosen: Random) -> Case:
     verb = chosen.choice(VERBS)
     arguments = [verb, "s.toml"]
     if verb == "run":  # what is still valid is to end soon
-        arguments += ["--set", "response.duration=0.2 s", "--out", "out"]
+        part = "motion.flight.record.to" if b".csv" in changed else "response.duration"
+        arguments += ["--set", f"{part}=0.2 s", "--out", "out"]
     elif chosen.random() < 0.2:
         arguments += ["--json"]
     if b".csv" in changed:

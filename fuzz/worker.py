@@ -39,14 +39,13 @@ def warm_up() -> None:
     """Import what most cases need, once: a fork has it."""
     for name in ("h5py", "scipy.interpolate", "scipy.io"):
         import_module(name)
-    from fuzz.results import sound, sound_json
+    from fuzz.results import ANSWERS, written
     from gbeam.cli import main
 
     scenario = str(ROOT / "examples" / "hubbeam2009_slew_3.toml")
     with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
-        sound()
-        sound_json()
-        import_module("xarray")
+        for verb in (*ANSWERS, "run"):
+            written(verb)
         main(["check", scenario, "--json"])
         for words in ([], ["--set", "beam.length=x"], ["--set", "beam.length=99 inch"]):
             for verb in ("check", "static", "modes", "campbell", "critical-speed", "linearize"):
@@ -91,7 +90,10 @@ def _child(arguments: list[str], folder: Path, aside: str, out: Path, err: Path)
         resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, MEMORY))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         signal.alarm(PATIENCE)
-        from gbeam.cli import main
+        if arguments[0] == "app":
+            from fuzz.app import play as main
+        else:
+            from gbeam.cli import main
 
         status = main(arguments)
         sys.stdout.flush()
