@@ -106,7 +106,7 @@ def measure(load: Any, minimise: Callable[..., Any]) -> str:
         began = time.process_time()
         machine = Centrifuge(
             flight, arm=MACHINE.arm, control_point=0.15, inverse="planned", limits=LIMITS, gravity=True, idle=IDLE,
-            span=(0.0, LAST),
+            smoothing=0.06, span=(0.0, LAST),
         )  # fmt: skip
         spent = time.process_time() - began
     finally:

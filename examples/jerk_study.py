@@ -174,7 +174,9 @@ def jerk_study(
             return from_rest(structure, jerk, arm, at)
         corner = 0.5 * level / jerk
         flight = Flight(z=tabulated([0.0, corner], [0.5 * level, level]))
-        motion = Centrifuge(flight, arm=arm, control_point=at, inverse="flat", smoothing=width, start="idle")
+        motion = Centrifuge(
+            flight, arm=arm, control_point=at, inverse="flat", gravity=False, smoothing=width, start="idle"
+        )
         return after_corner(structure, motion, corner, width)
 
     simulated = np.vectorize(vibration, otypes=[float])(j, r)

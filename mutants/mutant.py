@@ -95,14 +95,12 @@ def judge(mutant: Mutant) -> Verdict:
 
 def run_tests(tests: tuple[str, ...], source: Path) -> tuple[int, str]:
     """pytest's exit status and output for tests of the package in the folder `source`."""
-    environment = {
-        **os.environ,
-        "PYTHONPATH": str(source),
-        "OPENBLAS_NUM_THREADS": "1",
-        "HYPOTHESIS_STORAGE_DIRECTORY": str(source / "hypothesis"),  # no example of a mutant stays for the real tests
-    }
     command = [sys.executable, "-m", "pytest", "-q", "-x", "--tb=no", "-p", "no:cacheprovider", *tests]
-    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=TIME_LIMIT)
+    # No example of a mutant stays for the real tests.
+    with tempfile.TemporaryDirectory(prefix="gbeam-hypothesis-") as examples:
+        more = {"PYTHONPATH": str(source), "OPENBLAS_NUM_THREADS": "1", "HYPOTHESIS_STORAGE_DIRECTORY": examples}
+        environment = {**os.environ, **more}
+        done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=TIME_LIMIT)
     return done.returncode, done.stdout + done.stderr
 
 

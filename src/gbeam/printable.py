@@ -6,12 +6,18 @@ import re
 
 # Control characters but tab and line feed, C1's included; lone surrogates; marks that reverse the direction of writing.
 _UNPRINTABLE = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
+_NOT_STORABLE = re.compile("[\0\ud800-\udfff]")
 LONGEST = 200  # characters of one value in a message
 
 
 def printable(text: str) -> str:
     """Return the text with control characters written out, ``\\x1b`` for ESC: a terminal obeys what is left to it."""
     return _UNPRINTABLE.sub(_escaped, text)
+
+
+def storable(text: str) -> str:
+    """Return the text with what no file of text holds written out: null characters, and bytes that are no text."""
+    return _NOT_STORABLE.sub(_escaped, text)
 
 
 def on_one_line(text: str) -> str:

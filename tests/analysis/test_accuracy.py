@@ -9,13 +9,16 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.analysis.accuracy.correction import RESOLVED
+from gbeam.analysis.accuracy.correction import RESOLVED, OfSamples, Vibration, operator
 from gbeam.analysis.accuracy.reference import Sampled, complete_residual
+from gbeam.analysis.accuracy.response_errors import Parts, Quantities, lacking
 from gbeam.mechanics.equations import sampled
+from gbeam.mechanics.equations.hub import free_hub, ground_of
 from gbeam.motion.bases.base import Base
 
+from ..differences import jacobian
 from ..literature.test_elastica import PLANAR
-from ..residuals import on_base
+from ..residuals import HUB, MOUNTED_HUB, on_base
 from ..specimens import appendage, laden, states
 
 EI, LENGTH = 1.0, 1.0  # N m², m; 1 kg/m
@@ -93,7 +96,7 @@ def test_error_of_a_mode_that_the_results_do_not_resolve_is_stated(integrator: s
             (found.loads.root_moment, truth.loads.root_moment),
         )
     ]
-    assert found.errors.loads.total == pytest.approx(max(errors), rel=0.3)
+    assert found.errors.loads.slender == pytest.approx(max(errors), rel=0.3)
     assert found.errors.loads.shapes > 5 * found.errors.loads.step
 
 
@@ -117,11 +120,39 @@ def test_error_of_a_release_is_that_of_too_few_shapes(initial: gb.Initial) -> No
         )
         for n, how in ((2, {"step": 2e-5}), (12, {"step": 4e-6, "estimate": False}))
     )
-    for name, stated in (("tip", few.errors.displacement.total), ("root_force", few.errors.loads.total)):
+    for name, stated in (("tip", few.errors.displacement.slender), ("root_force", few.errors.loads.slender)):
         ours, theirs = (getattr(each if name == "tip" else each.loads, name) for each in (few, many))
         true = np.linalg.norm(theirs[::5] - ours, axis=1).max() / np.linalg.norm(ours, axis=1).max()
         assert 0.5 * true < stated < 2 * true
     assert few.errors.loads.shapes > 10 * few.errors.loads.model
+
+
+def test_errors_of_step_shapes_and_model_add_up() -> None:
+    """The total is no less than the step's and that against the exact model with more shapes together."""
+    found = gb.simulate(
+        gb.assemble(appendage(), "FOAM", axial=1, y=2), gb.Flight(y=gb.Sine(3.0, 4.0)), duration=5.0, step=0.1
+    )
+    for part in (found.errors.displacement, found.errors.loads):
+        assert part.step > 2 * part.model > 0.01  # all are seen
+        assert part.model - part.shapes <= part.slender - part.step <= part.model + part.shapes
+
+
+def test_a_solution_far_from_the_exact_models_has_a_bound(monkeypatch: pytest.MonkeyPatch) -> None:
+    """2 (v/L)² is the largest law of its class: docs/theory.md."""
+
+    def nothing(*given: Any, **more: Any) -> Any:
+        parts, rings = lacking(*given, **more)
+        return Parts(*(Quantities(*(np.full_like(each, np.nan) for each in part)) for part in parts)), rings
+
+    structure = gb.assemble(beam(), "FOAM", axial=1, y=3)
+    monkeypatch.setattr("gbeam.analysis.accuracy.estimate.lacking", nothing)
+    far = gb.simulate(structure, gb.Flight(y=-1.2), duration=0.5, step=1e-3)
+    moved = float(np.linalg.norm(far.tip, axis=1).max()) / LENGTH
+    error = far.errors.displacement
+    assert moved > 0.1 and error.model == pytest.approx(2 * moved**2, rel=1e-6)
+    assert error.total == pytest.approx(error.step + error.model, rel=1e-12) and np.isnan(error.shapes)
+    assert "it is the bound 2 (v/L)² of its class" in far.errors.note
+    assert np.isnan(far.errors.loads.total)
 
 
 def test_exact_with_one_shape_says_so() -> None:
@@ -142,6 +173,48 @@ def test_a_complete_residual_at_many_times_is_the_compiled_one() -> None:
     first = Base(base.a_WO_B[0], base.w_WB_B[0], base.alpha_WB_B[0])
     theirs = on_base(structure, q[0], qd[0], qdd[0], first, loaded=True)
     np.testing.assert_allclose(ours[0], theirs, rtol=0, atol=1e-8 * np.abs(theirs).max())
+
+
+@pytest.mark.parametrize("mounted", [False, True], ids=["bent", "with weight and springs"])
+def test_the_linear_equations_of_a_free_hub_are_derivatives_of_the_others(mounted: bool) -> None:
+    """About any motion; about a bent beam the mass and the weight are the straight one's."""
+    structure, hub = laden("FOAM"), MOUNTED_HUB if mounted else HUB
+    n = structure.size
+    p, pd, pdd = (states(n, 1, size, seed) for seed, size in enumerate((0.0 if mounted else 0.1, 0.3, 2.0)))
+    about = np.array([[0.6, 1.3, -0.7]])
+    base = hub.mount.base(*about.T)
+    ours = operator(structure, Sampled(np.zeros(1), base, p, pd, pdd, about, hub))
+    equations = free_hub(structure.coefficients, hub.mount, ground_of(hub))
+    y = [np.append(angle, each[0]) for angle, each in zip(about[0], (p, pd, pdd), strict=True)]
+    derivatives = []
+    for k in range(3):
+
+        def residual(changed: np.ndarray, k: int = k) -> np.ndarray:
+            return np.asarray(equations.residual(*(changed if i == k else each for i, each in enumerate(y)), 0.0))
+
+        derivatives.append(jacobian(residual, y[k]))
+    stiffness, velocity, mass = derivatives
+    size = np.abs(velocity).max()
+    np.testing.assert_allclose(ours.velocity[0], velocity, rtol=1e-7, atol=1e-7 * size)
+    rows = slice(None) if mounted else slice(0, 1)
+    np.testing.assert_allclose(ours.stiffness[0][rows], stiffness[rows], rtol=1e-7, atol=1e-9 * np.abs(stiffness).max())
+    if mounted:
+        np.testing.assert_allclose(ours.mass, mass, rtol=1e-7, atol=1e-7)
+
+
+def test_modes_of_a_beam_that_is_unstable_on_the_average_are_those_of_its_start() -> None:
+    """The symmetric part is taken, of which a follower load has another."""
+    mass, coupling = np.diag([1.0, 2.0]), np.array([[0.0, 3.0], [-3.0, 0.0]])
+    stiffness = np.array([np.diag([4.0, 18.0]) + coupling, -100 * np.eye(2), -100 * np.eye(2)])
+    modes = Vibration.of(OfSamples(mass, np.zeros((3, 2, 2)), stiffness), np.array([0.0, 0.1, 0.2]))
+    np.testing.assert_allclose(modes.square, [4.0, 9.0])
+
+
+def test_a_rigid_mode_that_rounding_makes_negative_is_not_unstable() -> None:
+    mean, start = np.diag([-1e-6, 1.0, 1e6]), np.diag([1.0, 2.0, 3.0])
+    stiffness = np.array([start, 2 * mean - start])
+    modes = Vibration.of(OfSamples(np.eye(3), np.zeros((2, 3, 3)), stiffness), np.array([0.0, 0.1]))
+    np.testing.assert_allclose(modes.square, np.diag(mean), rtol=1e-6, atol=1e-9)
 
 
 def test_errors_of_frequencies_are_stated() -> None:

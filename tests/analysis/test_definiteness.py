@@ -1,16 +1,39 @@
-"""When a linear model's stiffness stops being positive definite."""
+"""When a run stops being stable, by how much a disturbance grows meanwhile, and what a run says of it.
+
+Critical values in closed form: Euler, Greenhill, Beck; see tests/analysis_verbs/test_critical_loads.py.
+"""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 import pytest
 
-from gbeam.analysis.equilibrium.definiteness import first_loss, lowest_over_time
+from gbeam import (
+    Beam,
+    Flight,
+    Load,
+    Material,
+    Model,
+    Response,
+    Section,
+    Sine,
+    SmoothStep,
+    assemble,
+    simulate,
+    vector,
+)
+from gbeam.analysis.equilibrium.definiteness import Drive, lowest_over_time, worst_loss
+from gbeam.analysis.vibration.stability import critical_load
+from gbeam.motion import constant
 from gbeam.results.response import BaseMotion
 
-from .helpers import LENGTH, OMEGA, strip
+from .helpers import EI, LENGTH, LINE, OMEGA, SECTION, strip
 
-TLAM = strip("TLAM").coefficients
+TLAM = strip("TLAM")
+EULER, GREENHILL, BECK = np.pi**2 / 4, 7.8373, 20.051
+AGREES = 5e-3  # of FOAM with four clamped-free shapes
 
 
 def spin(rate: np.ndarray) -> BaseMotion:
@@ -19,34 +42,139 @@ def spin(rate: np.ndarray) -> BaseMotion:
     return BaseMotion(np.stack([o, o, o], 1), np.stack([o, rate, o], 1), np.stack([o, rate, o], 1))
 
 
+def base_of(history: BaseMotion) -> tuple[Any, Any, Any]:
+    return history.a_WO_B, history.w_WB_B, history.alpha_WB_B
+
+
+def at_rest(structure: Any, time: np.ndarray) -> np.ndarray:
+    return np.zeros((len(time), structure.size))
+
+
 def test_tlam_softens_by_the_square_of_the_rate() -> None:
     """TLAM without foreshortening has K − Ω²M in the plane of rotation: lost at Ω = ω₁."""
     rate = np.array([0.0, 0.5, 1.0]) * OMEGA
-    base = spin(rate)
-    found = lowest_over_time(TLAM, base, np.arange(3))
+    found = lowest_over_time(TLAM.coefficients, Drive(*base_of(spin(rate))))
     np.testing.assert_allclose(found, OMEGA**2 - rate**2, atol=1e-8 * OMEGA**2)
 
 
-def test_first_loss_is_found_between_the_samples() -> None:
-    time = np.linspace(0, 2, 9)
-    when, rate = first_loss(TLAM, time, spin(time * OMEGA)) or (np.nan, np.nan)
-    assert when == pytest.approx(1.0, abs=1e-6)
-    assert rate == pytest.approx(OMEGA, rel=1e-6)
-    between = np.linspace(0, 2, 100)
-    when, rate = first_loss(TLAM, between, spin(between * OMEGA)) or (np.nan, np.nan)
-    assert rate == pytest.approx(OMEGA, rel=1e-3)
-    assert when == pytest.approx(1.0, rel=1e-3)
+@pytest.mark.parametrize("count", [9, 100])
+def test_the_loss_is_found_between_the_samples(count: int) -> None:
+    time = np.linspace(0, 2, count)
+    loss = worst_loss(TLAM, time, spin(time * OMEGA), at_rest(TLAM, time))
+    assert loss is not None and loss.start == pytest.approx(1.0, abs=1e-3) and not loss.flutter
+    assert loss.end == 2.0
 
 
 def test_no_loss_and_loss_from_the_start() -> None:
     time = np.linspace(0, 1, 5)
-    assert first_loss(TLAM, time, spin(0.9 * OMEGA * time)) is None
-    assert first_loss(TLAM, time, spin((2 - time) * OMEGA)) == (0.0, pytest.approx(2 * OMEGA))
+    q = at_rest(TLAM, time)
+    assert worst_loss(TLAM, time, spin(0.9 * OMEGA * time), q) is None
+    loss = worst_loss(TLAM, time, spin((2 - time) * OMEGA), q)
+    assert loss is not None and loss.start == 0.0 and loss.causes == (f"the base turns at {2 * OMEGA:.4g} rad/s",)
 
 
 def test_foam_does_not_lose_it_on_a_hub() -> None:
-    foam = strip().coefficients
-    rate = np.linspace(0, 5 * OMEGA, 20)
+    rate, time = np.linspace(0, 5 * OMEGA, 20), np.linspace(0, 1, 20)
     base = spin(rate)
     on_rim = BaseMotion(np.outer(rate**2, [-LENGTH, 0, 0]), base.w_WB_B, base.alpha_WB_B)
-    assert first_loss(foam, np.linspace(0, 1, 20), on_rim) is None
+    assert worst_loss(strip(), time, on_rim, at_rest(strip(), time)) is None
+
+
+def column(kind: str, *loads: Load, damping: float = 0.0, counts: tuple[int, int, int] = (0, 0, 4)) -> Any:
+    """The strip, loaded."""
+    beam = Beam(LENGTH, SECTION, Material(2700.0, 7e10), damping_ratio=damping, loads=loads)
+    return assemble(beam, Model(kind, *counts))
+
+
+def ran(structure: Any, motion: Any = None, duration: float = 2.0) -> Response:
+    motion = Flight(z=constant(0.0)) if motion is None else motion
+    return simulate(structure, motion, duration=duration, step=duration / 500, integrator="gauss", estimate=False)
+
+
+def axial(profile: Any) -> Any:
+    return vector(x=profile)
+
+
+def unstable(response: Response) -> bool:
+    return response.outcome != "done" or any("definite" in each or "not stable" in each for each in response.warnings)
+
+
+def test_the_growth_is_that_of_one_shape() -> None:
+    """q̈ = ω²(P/P₁ − 1) q of a column with one shape under a constant load."""
+    one = {"counts": (0, 0, 1)}
+    limit = critical_load(column("FOAM", Load(LENGTH, force=(-1.0, 0.0, 0.0)), **one)).value
+    assert limit is not None
+    structure = column("FOAM", Load(LENGTH, force=(-1.5 * limit, 0.0, 0.0)), **one)
+    time = np.linspace(0, 0.3, 50)
+    still = BaseMotion(*np.zeros((3, 50, 3)))
+    loss = worst_loss(structure, time, still, at_rest(structure, time))
+    assert loss is not None and loss.growth == pytest.approx(0.3 * OMEGA * np.sqrt(0.5), rel=1e-6)
+    assert (loss.start, loss.end) == (0.0, 0.3)
+
+
+PUSHES = {
+    # An axial load at the tip, dead; along the beam; the base's own push; its weight on a shaker that stands.
+    "Euler": (lambda p: [Load(LENGTH, force=axial(p))], EULER * EI / LENGTH**2, -1.0),
+    "Greenhill": (lambda p: [Load(None, force=axial(p))], GREENHILL * EI / LENGTH**3, -1.0),
+    "push": (None, GREENHILL * EI / (LINE * LENGTH**3), 1.0),
+}
+
+
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+@pytest.mark.parametrize("name", PUSHES)
+def test_a_straight_column_that_is_pressed_too_far_is_lost(kind: str, name: str) -> None:
+    """The load grows evenly: the loss is at the share that the closed form gives; just below it there is none."""
+    loads, critical, sign = PUSHES[name]
+    for most, lost in ((0.98, False), (1.25, True)):
+        ramp = SmoothStep(sign * most * critical, 2.0)
+        structure = column(kind, *(loads(ramp) if loads else ()), counts=(1, 0, 4))
+        found = ran(structure, None if loads else Flight(x=ramp, z=constant(0.0)))
+        assert unstable(found) == lost
+        if lost:
+            assert found.outcome == "diverged" and "stiffness is not positive definite from t = " in found.message
+            at = float(found.message.partition("t = ")[2].partition(" s")[0])
+            assert abs(float(ramp(at))) == pytest.approx(critical, rel=AGREES)
+            assert ("beam.loads[0] acts with" if loads else "the root is pushed with") in found.message
+            assert ("use exact" in found.message) == (
+                kind == "FOAM"
+            ) and "a small load across the beam" in found.message
+
+
+def test_an_exact_column_that_gives_way_is_followed() -> None:
+    """A small load across decides where it goes: it bends far and rests where it is stable."""
+    ramp = SmoothStep(-1.2 * EULER * EI / LENGTH**2, 1.0)
+    found = ran(column("exact", Load(LENGTH, force=vector(x=ramp, z=constant(1e-3))), damping=0.05, counts=(1, 0, 4)))
+    assert found.outcome == "done" and not unstable(found)
+    assert np.abs(found.tip[:, 2]).max() > 0.3 * LENGTH
+
+
+@pytest.mark.parametrize(("load", "lost"), [(0.95, False), (1.1, True)])
+def test_a_follower_force_has_no_divergence_but_flutter(load: float, lost: bool) -> None:
+    """Eight times Euler's load is nothing to a load that follows; Beck's is its limit."""
+    push = Load(LENGTH, force=(-load * BECK * EI / LENGTH**2, 0.0, 0.0), follower=True)
+    found = ran(column("FOAM", push, damping=1e-6))
+    assert unstable(found) == lost
+    if lost:
+        assert found.outcome == "diverged" and "equilibrium is not stable from t = 0 s" in found.message
+
+
+@pytest.mark.parametrize(("share", "words"), [(0.005, ""), (0.15, "-fold meanwhile")])
+def test_a_load_that_acts_briefly_is_no_loss(share: float, words: str) -> None:
+    """Ten times Euler's load for shares of the first period: nothing has the time to grow a thousandfold."""
+    period = 2 * np.pi / OMEGA
+    knock = Sine(-10 * EULER * EI / LENGTH**2, 2 * share * period, start=0.02)  # pushes, then pulls
+    found = ran(column("FOAM", Load(LENGTH, force=axial(knock)), damping=0.01), duration=0.2)
+    assert found.outcome == "done" and unstable(found) == bool(words)
+    assert all(words in each for each in found.warnings if "definite" in each)
+
+
+def test_a_shaft_above_its_critical_speed_is_held_by_its_spin() -> None:
+    """K − Ω²M is indefinite for a round beam that spins about its axis; seen from outside it only spins."""
+    round_beam = Beam(LENGTH, Section.circle(0.004), Material(2700.0, 7e10), damping_ratio=0.0)
+    structure = assemble(round_beam, Model("FOAM", 0, 2, 2))
+    base = Flight(x=0.0, rates=vector(x=constant(1.5 * float(structure.rest[0][0])))).base(
+        time := np.linspace(0, 1, 20)
+    )
+    history = BaseMotion(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
+    assert (lowest_over_time(structure.coefficients, Drive(*base_of(history))) < 0).all()
+    assert worst_loss(structure, time, history, at_rest(structure, time)) is None

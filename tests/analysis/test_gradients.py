@@ -6,50 +6,163 @@ from collections.abc import Callable
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
 import gbeam.arrays.jax_setup  # noqa: F401
-from gbeam import Beam, Hub, InputError, Material, Model, PointMass, Sine, SmoothStep, assemble, simulate
+from gbeam import (
+    Beam,
+    Centrifuge,
+    Flight,
+    Hub,
+    Initial,
+    InputError,
+    Load,
+    Material,
+    Model,
+    PointMass,
+    Sine,
+    SmoothStep,
+    Sum,
+    assemble,
+    constant,
+    simulate,
+    trapezoid,
+)
+from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
+from gbeam.arrays.namespace import namespace
+from gbeam.motion import Base
 
 from ..lagrange import quickly_compiled
 from ..specimens import ALUMINIUM, BOX, HUB_INERTIA, HUB_RADIUS, LENGTH, METAL, STRIP
 
-AGREES = 1e-5  # relative, with central differences
+AGREES = 1e-6  # relative, with central differences
 E = METAL.youngs_modulus
-MOTIONS: dict[str, Hub] = {
-    "slew": Hub(radius=HUB_RADIUS, rate=SmoothStep(3.0, 2.0)),
-    "torque": Hub(radius=HUB_RADIUS, inertia=HUB_INERTIA, torque=Sine(200.0, 2.0)),
+KINDS = {"FOAM": (0, 1, 1), "CFOAM": (1, 1, 1), "exact": (1, 1, 1)}
+OF_BEAM = {"modulus": E, "density": METAL.density, "damping": 0.2}
+Values = dict[str, Any]
+
+
+def slew(at: Values) -> Hub:
+    return Hub(radius=at["radius"], rate=SmoothStep(at["rate"], 2.0))
+
+
+def torque(at: Values) -> Hub:
+    return Hub(radius=at["radius"], inertia=at["inertia"], torque=Sine(200.0, 2.0))
+
+
+def machine(at: Values) -> Centrifuge:
+    """The load rises, in 0.1 s, when the machine is up to speed."""
+    flight = Flight(z=Sum((constant(2.0), trapezoid(1.0, jerk=10.0, start=0.5037, hold=9.0))))
+    ends = {"spin_up": 4.0, "spin_down": 4.0}
+    return Centrifuge(flight, arm=at["arm"], control_point=0.1, inverse="flat", gravity=False, smoothing=0.1, **ends)
+
+
+BASES: dict[str, tuple[Callable[[Values], Any], Values]] = {
+    "slew": (slew, {"rate": 3.0, "radius": HUB_RADIUS}),
+    "torque": (torque, {"radius": HUB_RADIUS, "inertia": HUB_INERTIA}),
+    "machine": (machine, {"arm": 3.3}),
 }
 
 
-def tip_of(motion: Hub) -> Callable[[Any], Any]:
-    """Tip displacement along y over time, as a function of Young's modulus."""
+def tip_of(kind: str, base: str, *, step: float = 0.02) -> Callable[[Values], Any]:
+    """Sum of the tip's displacements over time, in lengths, as a function of what beam and base are made of."""
+    motion, counts = BASES[base][0], KINDS[kind]
 
-    def tip(modulus: Any) -> Any:
-        beam = Beam(LENGTH, BOX, Material(METAL.density, modulus), [PointMass(LENGTH, 0.1)], damping_ratio=0.01)
-        return simulate(assemble(beam, Model("FOAM", 0, 2, 0)), motion, duration=3.0, step=0.02).tip[:, 1]
+    def tip(at: Values) -> Any:
+        material = Material(at.get("density", METAL.density), at.get("modulus", E))
+        damping = at.get("damping", 0.2)
+        length, section, mass = (0.3, STRIP, 0.01) if base == "machine" else (LENGTH, BOX, 0.1)
+        beam = Beam(length, section, material, [PointMass(length, mass)], damping_ratio=damping)
+        response = simulate(assemble(beam, Model(kind, *counts)), motion(at), duration=3.0, step=step)
+        return (response.tip / length).sum(axis=1)
 
     return tip
 
 
-@pytest.mark.parametrize("name", MOTIONS)
-def test_derivative_of_the_peak_with_respect_to_youngs_modulus(name: str) -> None:
-    tip, h = tip_of(MOTIONS[name]), 1e-4 * E
-    slope = quickly_compiled(jax.grad(lambda modulus: jnp.abs(tip(modulus)).max()))(E)
-    ends = [np.abs(tip(E + sign * h)).max() for sign in (1, -1)]
-    assert slope < 0  # the stiffer, the less
-    assert float(slope) == pytest.approx((ends[0] - ends[1]) / (2 * h), rel=AGREES)
+def agree(function: Callable[[Values], Any], at: Values) -> None:
+    """The derivative along a change of every value is a central difference of fourth order, of runs without JAX."""
+    shares = {name: value * (0.5 + k) for k, (name, value) in enumerate(sorted(at.items()))}
+    slopes, h = quickly_compiled(jax.grad(function))(at), 1e-3
+
+    def apart(steps: int) -> float:
+        """Difference of the function over twice so many steps."""
+        ends = [{name: value + sign * steps * h * shares[name] for name, value in at.items()} for sign in (1, -1)]
+        return float(function(ends[0])) - float(function(ends[1]))
+
+    finite = (8 * apart(1) - apart(2)) / (12 * h)
+    assert sum(float(slopes[name]) * shares[name] for name in at) == pytest.approx(finite, rel=AGREES, abs=0.0)
+    assert all(slopes.values())
 
 
-@pytest.mark.parametrize("name", MOTIONS)
-def test_a_batch_of_moduli_is_as_many_runs(name: str) -> None:
-    tip, moduli = tip_of(MOTIONS[name]), np.array([0.8, 1.0, 1.3]) * E
-    together = quickly_compiled(jax.vmap(tip))(moduli)
+@pytest.mark.parametrize(
+    ("kind", "base"), [(kind, base) for kind in KINDS for base in BASES if (kind, base) != ("exact", "machine")]
+)
+def test_derivatives_of_a_deflection_with_respect_to_what_beam_and_base_are_made_of(kind: str, base: str) -> None:
+    tip = tip_of(kind, base)
+    agree(lambda at: (tip(at)[-50:] ** 2).sum(), OF_BEAM | BASES[base][1])
+
+
+@pytest.mark.parametrize("base", ["slew", "torque"])
+def test_a_batch_of_moduli_is_as_many_runs(base: str) -> None:
+    tip, moduli = tip_of("FOAM", base), np.array([0.8, 1.0, 1.3]) * E
+    at = BASES[base][1]
+    together = quickly_compiled(jax.vmap(lambda modulus: tip(at | {"modulus": modulus})))(moduli)
     for batched, modulus in zip(together, moduli, strict=True):
-        alone = tip(modulus)
+        alone = tip(at | {"modulus": modulus})
         np.testing.assert_allclose(batched, alone, atol=1e-8 * np.abs(alone).max())
+
+
+def test_steps_too_long_for_a_few_corrections_have_a_derivative() -> None:
+    """They were NaN, and their derivative 0.0, as if the tip did not mind."""
+    tip = tip_of("CFOAM", "slew", step=0.2)
+    agree(lambda at: tip(at)[-1], OF_BEAM | BASES["slew"][1])
+
+
+def test_a_run_that_is_no_number_has_no_derivative() -> None:
+    tip = tip_of("CFOAM", "slew", step=0.2)
+    slope = quickly_compiled(jax.grad(lambda rate: tip({"rate": rate, "radius": HUB_RADIUS})[-1]))(1e160)
+    assert np.isnan(slope)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_derivatives_of_where_a_loaded_beam_rests(kind: str) -> None:
+    """With respect to the modulus, a force and the acceleration of the root."""
+
+    def tip(at: Values) -> Any:
+        load = Load(LENGTH, force=[0.0, at["force"], 2.0])
+        structure = assemble(
+            Beam(LENGTH, BOX, Material(METAL.density, at["modulus"]), loads=[load]), Model(kind, *KINDS[kind])
+        )
+        nothing = np.zeros(3)
+        base = Base(namespace(at["pull"]).stack([0.3, at["pull"], 0.2]), nothing, nothing)
+        return structure.tip(solve_equilibrium(structure, base).q)[1] * 100
+
+    agree(tip, {"modulus": E, "force": 1.5, "pull": 2.0})
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_derivatives_of_a_run_from_a_displaced_tip(kind: str) -> None:
+    rest = [0.02] * (sum(KINDS[kind]) - 1)
+
+    def tip(at: Values) -> Any:
+        beam = Beam(0.3, STRIP, Material(METAL.density, at["modulus"]), damping_ratio=[at["first"], *rest])
+        initial = Initial(tip_displacement={"z": 0.02}, tip_velocity={"z": 0.2})
+        hub = Hub(radius=HUB_RADIUS, rate=constant(1.0))
+        response = simulate(assemble(beam, Model(kind, *KINDS[kind])), hub, duration=0.1, step=0.005, initial=initial)
+        return (response.tip[5:] ** 2).sum()
+
+    agree(tip, {"modulus": E, "first": 0.01})
+
+
+def test_a_held_target_is_turned_by_the_arms_number() -> None:
+    def turned(arm: Any) -> Any:
+        flight = Flight(z=Sine(20.0, 1.0))
+        held = Centrifuge(flight, arm=arm, control_point=0.1, gravity=False, smoothing=0.1, idle=20.0)
+        return held.over(0.0, 3.0).base(1.0).a_WO_B.sum()
+
+    with pytest.raises(InputError, match="arm is traced by JAX, and by its number the target turns"):
+        jax.grad(turned)(3.3)
 
 
 @pytest.mark.parametrize(

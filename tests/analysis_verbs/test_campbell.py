@@ -56,7 +56,7 @@ def test_crossings_state_their_errors(kind, counts):
     assert len(alike) >= 3
     for key in alike:
         errors, true = few[key].errors, abs(few[key].speed / many[key].speed - 1)
-        assert errors.total == pytest.approx(true, rel=0.05, abs=1e-5)  # and the stretch
+        assert errors.slender == pytest.approx(true, rel=0.05, abs=1e-5)  # and the stretch
         assert (errors.model > errors.shapes) == (kind == "TLAM")
     assert any("the speed at which mode" in each for each in found.warnings) == (kind == "TLAM")
 

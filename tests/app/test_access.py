@@ -167,8 +167,9 @@ def test_uploads_are_limited(site: Site, monkeypatch: pytest.MonkeyPatch) -> Non
         for _ in range(5):
             yield b"0" * 900
 
-    answer = site.call("PUT", "/api/records/a.csv", site.opened, content=unannounced())
-    assert answer.status_code >= 400 and not list((site.folder / "records").glob("*"))
+    for method, path in (("PUT", "/api/records/a.csv"), ("POST", "/api/document"), ("POST", "/api/runs")):
+        assert site.call(method, path, site.opened, content=unannounced()).status_code == 413
+    assert not list((site.folder / "records").glob("*"))
     assert site.call("PUT", "/api/records/b.csv", site.opened, content=b"t,z\n0,1\n1,1\n").status_code == 200
     monkeypatch.setattr(files, "MANY", 1)
     assert site.call("PUT", "/api/records/c.csv", site.opened, content=b"t,z\n0,1\n").status_code == 422

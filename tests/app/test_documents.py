@@ -158,9 +158,17 @@ def test_a_record_takes_the_place_of_a_profile(site: Site) -> None:
         body = {"text": text, "motion": "flight", "record": record}
         text = site.call("POST", "/api/record", site.opened, json=body).json()["text"]
         assert tomllib.loads(text)["motion"]["flight"] == {"kind": "flight", "record": record}
+    assert "duration" not in tomllib.loads(text).get("response", {})  # which was that of the profile, half the record's
     curves = site.call("POST", "/api/preview", site.opened, json={"text": text}).json()
     z = curves["flights"]["flight"][2]
-    assert z[0] == pytest.approx(1, abs=1e-3) and z[-1] == pytest.approx(1.05, abs=2e-3)
+    assert z[0] == pytest.approx(1, abs=1e-3) and z[-1] == pytest.approx(1.1, abs=2e-3)
+    for value in ("0.2 s", "12:00:00"):
+        body = {"text": text, "path": "motion.flight.record.from", "value": value}
+        part = site.call("POST", "/api/edit", site.opened, json=body).json()
+        assert tomllib.loads(part["text"])["motion"]["flight"]["record"]["from"] == value
+        field = {each["path"]: each for each in _entries(part["form"])}["motion.flight.record.from"]
+        assert (field["value"], field["unit"], field["example"]) == (value, "s", "16 s")
+    assert "give a time of the record's own clock, 0 to 1 s" in part["errors"][0]["hint"]
 
 
 def test_a_record_of_which_nothing_is_taken_is_refused(site: Site, gbeam: Callable[..., Answer]) -> None:
@@ -222,7 +230,7 @@ def test_a_record_takes_the_place_of_the_examples_profile(site: Site) -> None:
     body = {"text": text, "motion": "flight", "record": record}
     after = tomllib.loads(site.call("POST", "/api/record", site.opened, json=body).json()["text"])
     expected = tomllib.loads(text)
-    del expected["motion"]["flight"]["acceleration"]
+    del expected["motion"]["flight"]["acceleration"], expected["response"]["duration"]
     expected["motion"]["flight"]["record"] = record
     assert after == expected
 

@@ -17,9 +17,9 @@ import pytest
 from gbeam.analysis.response import simulation
 from gbeam.cli import main
 from gbeam.errors import ComputationError
-from gbeam.io import netcdf as store
 from gbeam.results.response import Response
 
+from ..files import opened
 from ..scenarios import FAST, RAMPS
 
 Call = Callable[..., Any]
@@ -181,7 +181,7 @@ def test_files(fast: Path, gbeam: Call) -> None:
     expected = {"result.nc"} | {f"{name}.{kind}" for name in pictures for kind in ("png", "svg")}
     assert {file.name for file in folder.iterdir()} == expected
     assert str(folder) in answer.out
-    tree = store.read(folder / "result.nc")
+    tree = opened(folder / "result.nc")
     assert tree.attrs["overrides"] == "motion.flight.acceleration.z.level=3 g"
     assert tree.attrs["command"].endswith("--set 'motion.flight.acceleration.z.level=3 g'")
     assert str(tree["scenario"].values) == fast.read_text(encoding="utf-8")
@@ -201,7 +201,7 @@ def test_diverged_is_reported_stored_and_drawn(fast: Path, gbeam: Call) -> None:
     assert answer.json["outcome"] == "diverged"
     assert answer.json["motions"]["flight"]["outcome"] == "diverged"
     assert "motion.flight diverged" in answer.err and "exceeded the beam's length" in answer.err
-    assert store.read("bad/result.nc").attrs["outcome"] == "diverged" and Path("bad/tip.png").exists()
+    assert opened("bad/result.nc").attrs["outcome"] == "diverged" and Path("bad/tip.png").exists()
 
 
 def test_diverged_in_words(fast: Path, gbeam: Call, without_figures: None) -> None:
@@ -240,7 +240,7 @@ def test_what_one_motion_lacks_the_others_keep(
         "outcome": "not converged",
         "message": "no relative equilibrium; use exact",
     }
-    tree = store.read("half/result.nc")
+    tree = opened("half/result.nc")
     assert tree.attrs["failure_spin"].startswith("not converged: no relative") and list(tree["motions"]) == ["flight"]
     assert "spin: not converged\n  No relative equilibrium" in gbeam("run", fast).out
 

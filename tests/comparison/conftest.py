@@ -44,7 +44,7 @@ def settings() -> ResponseSettings:
 def spin(flight: Flight) -> Callable[..., Centrifuge]:
     def make(smoothing: float = 0.0596, control_point: float = 0.15, sign: int = 1) -> Centrifuge:
         return Centrifuge(
-            flight, arm=3.3, control_point=control_point, inverse="flat", smoothing=smoothing,
+            flight, arm=3.3, control_point=control_point, inverse="flat", gravity=False, smoothing=smoothing,
             mounting="upright" if sign == 1 else "inverted", span=(0.2, 2.3),
         )  # fmt: skip
 

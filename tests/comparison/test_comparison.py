@@ -113,7 +113,7 @@ def test_a_response_without_a_name_goes_by_its_environment(pair: tuple[Any, Any]
     flight, arm = (replace(each, name="") for each in pair)
     compared = compare(flight, arm)
     assert (compared.flight, compared.centrifuge) == ("flight", "centrifuge")
-    assert str(compared).startswith("Largest load anywhere on the specimen: flight 10 g at 1.2")
+    assert str(compared).startswith("0.5 to 2 of 2 s; largest load anywhere on the specimen: flight 10 g at 1.2")
     assert "; tip: flight's peak 2.88" in str(compared) and " mm on centrifuge (+" in str(compared)
     assert compare(flight, flight).centrifuge == "the second flight"
 

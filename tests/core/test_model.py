@@ -24,7 +24,7 @@ REFUSED: list[tuple[str, str, Callable[[], object]]] = [
     ("kind", "is 'foam'", lambda: Model("foam", 1, 1, 1)),
     ("modes.axial", "is -1", lambda: Model("FOAM", -1, 1, 1)),
     ("modes.y", "is 1.5", lambda: Model("FOAM", 1, 1.5, 1)),  # type: ignore[arg-type]
-    ("modes.z", "is '3'", lambda: Model("FOAM", 1, 1, "3")),  # type: ignore[arg-type]
+    ("z", "is '3'", lambda: Model("FOAM", 1, 1, "3")),  # type: ignore[arg-type]
     ("modes", "are all zero", lambda: Model("exact", 0, 0, 0)),
     ("modes.axial", "is 1 for SFOAM", lambda: Model("SFOAM", 1, 1, 1)),
     ("stations[1]", "is 0.31 m, off the beam", lambda: assemble(strip(), Model("FOAM", 0, 0, 1), [0.1, 0.31])),

@@ -9,12 +9,15 @@ import pytest
 
 from gbeam import (
     Flight,
+    Gauge,
     Hub,
+    Initial,
     InputError,
     SmoothStep,
     Structure,
     campbell,
     critical_speed,
+    linearize,
     modes,
     simulate,
     static,
@@ -212,7 +215,63 @@ def test_pendulum_that_points_inward_falls_over() -> None:
     assert fallen.frequency.size == 0 and not fallen.stable
 
 
-def test_one_particle_has_a_length_to_move_by() -> None:
-    """A run ends where the structure moves by its length: that of one particle is its distance from the root."""
-    turned = simulate(pendulum(), Hub(radius=0.5, rate=SmoothStep(10.0, 2.0)), duration=3.0, step=0.01)
-    assert turned.outcome == "done" and 0 < turned.peaks.max_size < 0.4
+def carriage(spring: float = 100.0) -> Structure:
+    """A kilogram on a spring across the root, 10 mm out."""
+    slope = np.array([[[0.0], [1.0], [0.0]]])
+    return Structure.of_particles(
+        np.ones(1),
+        np.array([[0.01, 0.0, 0.0]]),
+        slope,
+        np.array([[spring]]),
+        second=np.zeros((1, 3, 1, 1)),
+        damping_ratio=0.05,
+    )
+
+
+def test_a_particle_moves_farther_than_it_rests_from_the_root() -> None:
+    """2 F / k but for the damping; a beam's length had stopped it at 10 mm, and told it to use exact."""
+    pulled = simulate(carriage(), Flight(y=constant(10.0)), duration=0.5, step=0.01, initial="undeformed")
+    overshoot = 1 + np.exp(-np.pi * 0.05 / np.sqrt(1 - 0.05**2))
+    assert pulled.outcome == "done" and pulled.peaks.max_size == pytest.approx(0.1 * overshoot, rel=2e-3)
+    assert any("no particle rests farther than 0.01 m" in each for each in pulled.warnings)
+
+
+def test_particles_that_fall_over_have_diverged_and_are_told_of_no_other_model() -> None:
+    inward = Hub(radius=0.5, pointing="inward", rate=SmoothStep(20.0, 0.5))
+    fallen = simulate(pendulum(), inward, duration=10.0, step=0.01, initial=Initial(acceleration=(0.0, 1.0, 0.0)))
+    assert fallen.outcome == "diverged" and "exceeded 1e+09 m" in fallen.message
+    assert "stiffness is not positive definite" in fallen.message and "exact" not in fallen.message
+
+
+@pytest.mark.parametrize(
+    ("by_stress", "motion"),
+    [
+        (False, Flight(z=constant(1.0))),
+        *((by, Hub(radius=HUB_RADIUS, rate=constant(2.0))) for by in (False, True)),
+        *((by, Hub(radius=HUB_RADIUS, inertia=200.0, torque=constant(0.0))) for by in (False, True)),
+    ],
+)
+def test_particles_of_a_beam_are_linearized_as_the_beam(by_stress: bool, motion: Flight | Hub) -> None:
+    ours, whole = (linearize(s, motion) for s in (particles(by_stress=by_stress), beam()))
+    for name in "abcd":
+        theirs = getattr(whole, name)
+        np.testing.assert_allclose(getattr(ours, name), theirs, atol=1e-12 * np.abs(theirs).max())
+    assert (ours.inputs, ours.outputs) == (whole.inputs, whole.outputs)
+    assert [each.name for each in ours.states if "q_1" in each.name] == ["q_1", "rate_q_1"]
+    with pytest.raises(InputError, match="gauges are given of particles"):
+        linearize(particles(by_stress=by_stress), motion, gauges=[Gauge(1.0)])
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"mass": np.array([-1.0])}, r"mass\[0\] is -1 kg"),
+        ({"mass": np.array([0.0])}, "leaves a motion of the coordinates without mass"),
+        ({"r0": np.zeros((1, 2))}, r"r0 has the shape \(1, 2\); give \(1, 3\)"),
+        ({"stiffness": np.array([[np.nan]])}, "stiffness has values that are not finite"),
+    ],
+)
+def test_particles_that_cannot_be_are_refused(changed: dict[str, np.ndarray], words: str) -> None:
+    sound = {"mass": np.ones(1), "r0": np.zeros((1, 3)), "first": np.ones((1, 3, 1)), "stiffness": np.eye(1)}
+    with pytest.raises(InputError, match=words):
+        Structure.of_particles(**(sound | changed), second=np.zeros((1, 3, 1, 1)))

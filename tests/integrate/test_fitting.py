@@ -88,3 +88,23 @@ def test_a_scheme_that_does_not_fit_and_a_mode_without_vibration_add_nothing() -
     small = added(equations, gauss(), STEP / 100), added(equations, gauss(), STEP / 50)
     for few, twice in zip(*small, strict=True):
         assert np.abs(twice).max() == pytest.approx(16 * np.abs(few).max(), rel=1e-2)
+
+
+def test_a_mode_that_grows_without_turning_is_left_as_it_is() -> None:
+    """A hub's own rotation has no stiffness but rounding's, and the base's motion may feed it: NaN came of it."""
+    equations = LinearEquations(
+        np.eye(2), lambda _: (), lambda t: t, rest=(np.diag([-2e-5, 0.1]), np.diag([4e-12, 5.0]))
+    )
+    mass, damping = added(equations, gauss(), 0.04)
+    assert np.isfinite(mass).all() and np.isfinite(damping).all()
+    assert mass[0, 0] == damping[0, 0] == 0.0 != mass[1, 1]
+
+
+@pytest.mark.parametrize("rate", [1e-4, -1e-4])
+def test_a_mode_that_hardly_vibrates_is_left_as_it_is(rate: float) -> None:
+    """A free hub's rigid mode: of a frequency that is rounding, and a decay, or a growth, that is many times that."""
+    damping, stiffness = np.diag([rate, 0.1]), np.diag([1e-12, 9.0])
+    equations = replace(vibrating(0.0), mass=np.eye(2), rest=(damping, stiffness))
+    mass, decay = added(equations, gauss(), STEP)
+    assert np.isfinite(mass).all() and np.isfinite(decay).all()
+    assert not mass[0].any() and not decay[0].any() and mass[1, 1] != 0

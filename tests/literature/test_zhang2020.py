@@ -102,15 +102,15 @@ def in_flight(g: float) -> Base:
 
 def on_centrifuge(g: float, control_point: float = MIDDLE) -> Base:
     machine = Centrifuge(
-        Flight(z=g * G0), arm=ARM, control_point=control_point, inverse="flat", smoothing=None, span=(0.0, 1.0)
+        Flight(z=g * G0), arm=ARM, control_point=control_point, inverse="flat", gravity=False, span=(0.0, 1.0)
     )
     return machine.base(np.array(0.5))
 
 
 def rounded(load: Profile, corner: float, control_point: float) -> Centrifuge:
     return Centrifuge(
-        Flight(acceleration=load), arm=ARM, control_point=control_point, inverse="flat", smoothing=KERNEL,
-        span=(-0.4, corner + 0.5),
+        Flight(acceleration=load), arm=ARM, control_point=control_point, inverse="flat", gravity=False,
+        smoothing=KERNEL, span=(-0.4, corner + 0.5),
     )  # fmt: skip
 
 

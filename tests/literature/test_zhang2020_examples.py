@@ -57,7 +57,7 @@ def flight(level: float) -> float:
 
 def centrifuge(level: float) -> float:
     return tip(
-        Centrifuge(Flight(z=level * G), arm=ARM, control_point=0.15, inverse="flat", smoothing=None, span=(0.0, 1.0))
+        Centrifuge(Flight(z=level * G), arm=ARM, control_point=0.15, inverse="flat", gravity=False, span=(0.0, 1.0))
     )
 
 

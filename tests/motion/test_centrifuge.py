@@ -26,8 +26,8 @@ SPAN = (0.0, 12.0)
 
 
 def machine(**options: Any) -> Centrifuge:
-    given = {"arm": R, "control_point": XC, "inverse": "flat", "gravity": True, "idle": 1.4 * G, "span": SPAN}
-    return Centrifuge(TRAPEZOID, **{**given, **options})
+    given = {"arm": R, "control_point": XC, "inverse": "flat", "gravity": True, "idle": 1.4 * G, "smoothing": 0.06}
+    return Centrifuge(TRAPEZOID, **{**given, "span": SPAN, **options})
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +35,7 @@ def f16() -> Centrifuge:
     record = read_record(F16, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
     return Centrifuge(
         Flight(acceleration=record), arm=R, control_point=XC, inverse="flat", gravity=True, idle=1.4 * G,
-        span=(0.0, 15.99),
+        smoothing=0.06, span=(0.0, 15.99),
     )  # fmt: skip
 
 
@@ -49,7 +49,7 @@ def test_root_has_the_control_points_motion_moved() -> None:
 
 
 def test_steady_load_at_the_root_is_less_the_centrifugal_one() -> None:
-    still = Centrifuge(Flight(z=6 * G), arm=R, control_point=XC, inverse="flat", smoothing=None, span=(0.0, 1.0))
+    still = Centrifuge(Flight(z=6 * G), arm=R, control_point=XC, inverse="flat", gravity=False, span=(0.0, 1.0))
     base = still.base(0.5)
     # C is at rest in the turning axes, the root XC nearer the tip of r = (−XC, 0, 0): a_O = a_C + XC Ω² e1
     np.testing.assert_allclose(base.a_WO_B, [XC * 6 * G / R, 0, 6 * G], atol=1e-12)
@@ -93,8 +93,9 @@ def test_like_scenarios_share_one_compiled_function() -> None:
         flight = Flight(z=trapezoid(level * G, jerk=level * 0.4 * G, start=1.0, hold=4.0))
         idle = 0.14 * level * G
         like = Centrifuge(
-            flight, arm=arm, control_point=XC, inverse="flat", gravity=True, idle=idle, mounting=mounting, span=SPAN
-        )
+            flight, arm=arm, control_point=XC, inverse="flat", gravity=True, idle=idle, smoothing=0.06,
+            mounting=mounting, span=SPAN,
+        )  # fmt: skip
         np.testing.assert_allclose(base(like, t).w_WB_B, like.base(t).w_WB_B, atol=1e-12)
     assert len(traces) == 1
 
@@ -159,11 +160,12 @@ def test_the_target_is_built_for_the_span_that_is_asked_of_it() -> None:
 
 def test_an_example_machine_tells_its_arm_limits_and_idle() -> None:
     example = machines["specimen-3.3m"]
-    spin = Centrifuge(TRAPEZOID, control_point=XC, inverse="flat", limits=example, span=SPAN)
+    options: Any = {"control_point": XC, "inverse": "flat", "gravity": False, "smoothing": 0.06, "span": SPAN}
+    spin = Centrifuge(TRAPEZOID, limits=example, **options)
     assert spin.geometry.arm == example.arm and spin.idle == example.idle
     assert spin.episodes()[0].reason == "below idle"  # the flight begins with no load
     assert {use.axis for use in spin.usage() if np.isfinite(use.allowed)} == {"axis 1", "axis 2", "axis 3"}
-    own = Centrifuge(TRAPEZOID, arm=4.0, control_point=XC, inverse="flat", limits=example, idle=2 * G, span=SPAN)
+    own = Centrifuge(TRAPEZOID, arm=4.0, limits=example, idle=2 * G, **options)
     assert own.geometry.arm == 4.0 and own.idle == 2 * G
 
 

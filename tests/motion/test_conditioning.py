@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from gbeam import Flight, InputError
-from gbeam.motion.bases.conditioning import dropout
+from gbeam.motion.bases.conditioning import dropout, flat_tops, spikes
 from gbeam.motion.bases.flight import body_rates
 from gbeam.motion.bases.records.record import Conditioning, FlightRecord, Rates, read_flight
 
@@ -83,11 +83,15 @@ def test_a_start_far_from_level_flight_is_the_wrong_unit(
         tmp_path,
         lambda rows: [[row[0], "0", "0", f"{-level - 1e-5 * i % 0.001:.5f}", *row[4:]] for i, row in enumerate(rows)],
     )
+    # By their names these columns are in g.
+    calm.write_text(calm.read_text().replace("_g,", ","))
+    names = ("time_s", "n_x", "-n_y", "-n_z")
     with pytest.raises(InputError, match=f'begins at .*wants unit = "{right}"'.replace("^", r"\^")):
-        fly(calm, declared)
-    assert fly(calm, declared, skip_checks=True).acceleration.times.size == 1600
+        read_flight(calm, *names, declared)
+    trusted = Conditioning(skip_checks=True)
+    assert read_flight(calm, *names, declared, conditioning=trusted).acceleration.times.size == 1600
     if level != 6.0:
-        assert fly(calm, right).acceleration.times.size == 1600
+        assert read_flight(calm, *names, right).acceleration.times.size == 1600
 
 
 def test_plateaus_are_no_dropouts() -> None:
@@ -138,7 +142,55 @@ def test_body_rates_turn_the_base() -> None:
     # A pull-up turns the nose up: about −y of a y axis that points left, while the load is upwards.
     pull = np.argmax(base.a_WO_B[:, 2])
     assert base.w_WB_B[pull, 1] < 0 < base.a_WO_B[pull, 2]
-    degrees = fly(F16, rates=Rates("p_rad_s", "-q_rad_s", "0", "deg/s"))
+    with pytest.raises(InputError, match=r"record.rate_unit is deg/s, and the file gives column 'p_rad_s' in rad/s"):
+        fly(F16, rates=Rates("p_rad_s", "-q_rad_s", "0", "deg/s"))
+    degrees = fly(F16, rates=Rates("p_rad_s", "-q_rad_s", "0", "deg/s"), skip_checks=("unit",))
     assert degrees.rates is not None
     np.testing.assert_allclose(degrees.rates.values[:, 1], record.rates.values[:, 1] * np.pi / 180)
     np.testing.assert_array_equal(degrees.rates.values[:, 2], 0)
+
+
+@pytest.mark.parametrize("size", [0.5, 1.0, 2.0])
+@pytest.mark.parametrize("record", ["f16_8g_turn.csv", "f16_pulls_and_push.csv"])
+def test_a_single_sample_off_is_found_on_a_flank_and_at_a_peak(record: str, size: float) -> None:
+    """One of 1 g passed at 53 samples above 5 g: on a flank the samples around it are as far from their median."""
+    table = np.genfromtxt(F16.parent / record, delimiter=",", names=True)
+    load = 9.80665 * np.stack([table[name] for name in ("n_x_g", "n_y_g", "n_z_g")], axis=1)
+    assert not spikes(load).any()
+    for i in np.flatnonzero(load[:, 2] < -5 * 9.80665)[::20]:
+        around = load[i - 300 : i + 300].copy()
+        around[300, 2] -= size * 9.80665
+        assert np.argwhere(spikes(around)).tolist() == [[300, 2]]
+
+
+def test_noise_is_no_spike() -> None:
+    """Of seven samples of noise one was found far off in a hundred."""
+    noise = np.random.default_rng(0).normal(0, 0.98, (50_000, 3))
+    assert spikes(noise).sum() <= 2
+    assert spikes(noise.cumsum(axis=0) / 10).sum() <= 2
+
+
+def test_a_sensor_at_the_end_of_its_range_is_named(tmp_path: Path) -> None:
+    def clipped(rows: Rows) -> Rows:
+        return column(rows, 3, slice(None), lambda cell: f"{max(float(cell), -7.98):g}")
+
+    (note,) = fly(spoilt(tmp_path, clipped)).notes
+    assert note == (
+        "z, column 'n_z_g', stands at its extreme, 7.98 g, from 4.43 to 6.59 s (rows 445 to 661): "
+        "its sensor seems to be at the end of its range, and what is beyond is lost"
+    )
+    assert fly(F16).notes == ()
+
+
+def test_flat_tops_are_those_of_curves_that_are_cut_off() -> None:
+    t = np.arange(0, 10, 0.01)
+    wave = 60 * np.sin(2 * np.pi * 0.3 * t)
+    assert list(flat_tops(wave)) == []
+    (top,) = flat_tops(np.minimum(wave, 50.0))
+    assert top[0] == 50.0 and [round(t[run.start], 2) for run in top[1]] == [0.53, 3.86, 7.19]
+    assert [value for value, _ in flat_tops(np.clip(wave, -50.0, 50.0))] == [50.0, -50.0]
+    # A coarse sensor, level flight before the first manoeuvre, a channel that is zero for a while, and a dead one.
+    assert list(flat_tops(np.round(wave))) == []
+    assert list(flat_tops(np.where(t < 1, 9.80665, 9.80665 + np.abs(wave)))) == []
+    assert list(flat_tops(np.where((t > 2) & (t < 4), 0.0, np.abs(wave)))) == []
+    assert list(flat_tops(np.full(100, 60.0))) == []

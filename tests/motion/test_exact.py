@@ -58,6 +58,11 @@ def test_forward_of_inverse_is_the_identity_on_a_smooth_load(gravity: bool, sign
     assert np.isfinite(base.alpha_WB_B).all()
 
 
+def test_a_smooth_load_is_solved_on_the_coarsest_knots() -> None:
+    lag = machine(swinging(), (0.0, 2.0)).inverse.lag  # type: ignore[union-attr]
+    assert lag.step == pytest.approx(8e-3)
+
+
 @pytest.mark.parametrize("width", [0.06, 0.2, 0.8])
 def test_a_rounded_trapezoid_up_and_down_is_tracked_to_5e_7(width: float) -> None:
     raw = vector(z=Sum((constant(2 * G), trapezoid(8 * G, jerk=4 * G, start=1.0, hold=4.0))))

@@ -43,7 +43,7 @@ def test_components_are_profiles_or_numbers_and_vectors_go_by_name() -> None:
         ({"z": 1.0, "acceleration": (0.0, 0.0, 1.0)}, "z", "beside acceleration"),
         ({"x": constant([1.0, 2.0, 3.0])}, "x", "acceleration = "),
         ({"acceleration": 9.8}, "acceleration", "give x, y and z"),
-        ({"z": "fast"}, "z", "a profile or a number"),
+        ({"z": "fast"}, "z", "give numbers"),
         ({"z": np.nan}, "z", "finite"),
     ],
 )

@@ -217,7 +217,7 @@ def test_packed_values_are_unpacked_and_missing_ones_refused(tmp_path: Path) -> 
     ("text", "where", "words"),
     [
         (lines(header=("t", "a_x", "a_y", "a_z [m/s²]")), "record.unit", ["is g", "'a_z' in m/s²", 'unit = "m/s^2"']),
-        (lines(units="s,ft/s^2,ft/s^2,ft/s^2"), "record.unit", ["ft/s^2", "convert"]),
+        (lines(units="s,in/s^2,in/s^2,in/s^2"), "record.unit", ["in/s^2", "convert"]),
         (lines(header=("t [h]", *NAMES[1:])), "record.time_unit", ["in h", "convert"]),
         (lines(";", ",").replace("\n0,5;", "\n0.5;"), "record.time", ["row 3", "'0,01'"]),
         (lines(header=("1", "2", "3", "4")), "record.file", ["no header line"]),

@@ -111,8 +111,8 @@ def test_no_sample_of_the_record_is_replaced() -> None:
     pull = tabulated([0, 3.5, 4.3, 5.1, 12, 16], np.array([1.5, 1.5, 10, 1.5, 3, 3]) * G)
     flight = Flight(z=pull)
     spin = Centrifuge(
-        flight, arm=7.6, control_point=0.3, inverse="flat", gravity=True, idle=1.4 * G, start="rest", spin_up=10.0,
-        span=(0.0, 16.0),
+        flight, arm=7.6, control_point=0.3, inverse="flat", gravity=True, idle=1.4 * G, smoothing=0.06, start="rest",
+        spin_up=10.0, span=(0.0, 16.0),
     )  # fmt: skip
     assert spin.extent[0] == pytest.approx(-10.0, abs=1e-12)
     t = np.linspace(0, 16, 1601)
@@ -204,7 +204,8 @@ def test_idle_begins_and_ends_with_the_flight() -> None:
 def test_the_f16_record_from_standstill_to_standstill() -> None:
     record = read_record(F16, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
     options = {
-        "arm": R, "control_point": 0.15, "inverse": "flat", "gravity": True, "idle": 1.4 * G, "span": (0.0, 15.99)
+        "arm": R, "control_point": 0.15, "inverse": "flat", "gravity": True, "idle": 1.4 * G,
+        "smoothing": 0.06, "span": (0.0, 15.99),
     }  # fmt: skip
     spin = Centrifuge(Flight(acceleration=record), **options)
     assert spin.ends.start == "rest"  # unless told otherwise

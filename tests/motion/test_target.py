@@ -8,6 +8,8 @@ import pytest
 from gbeam.errors import InputError
 from gbeam.motion import (
     STANDARD_GRAVITY,
+    Centrifuge,
+    Flight,
     PiecewiseLinear,
     Profile,
     Sine,
@@ -378,3 +380,41 @@ def test_knots_that_rounding_parts_make_no_corner() -> None:
     load = vector(x=constant(3.0), y=smoothed(Sine(15.0, 4.0), 0.04), z=z)
     target = build_target(load, span=(0.0, 4.0), idle=17.0, smoothing=0.12, gravity=True, arm=7.6)
     assert np.isfinite(target.load(np.linspace(0, 4, 41))).all()
+
+
+@pytest.mark.parametrize("length", [60.0, 1200.0])
+def test_a_long_flight_is_diagnosed_as_a_short_one(length: float) -> None:
+    """A grid of 2 ms, of more points than a plan may have, refused a sound flight of 1,200 s."""
+    knots = np.arange(0.0, length + 1, 20.0)
+    level = np.where(np.arange(knots.size) % 2, 45.0, 20.0)
+    corner = length - 11.0  # a quick pull in between
+    times = np.union1d(knots, [corner - 0.2, corner, corner + 0.2])
+    values = np.interp(times, knots, level)
+    flat, pulled = (
+        Centrifuge(
+            Flight(z=tabulated(times, values + pull * (times == corner))), arm=3.3, control_point=0.2, inverse="flat",
+            gravity=True, smoothing=0.5, span=(0.0, length),
+        )
+        for pull in (0.0, 40.0)
+    )  # fmt: skip
+    assert flat.shortfalls() == ()
+    (sharp,) = pulled.shortfalls()
+    assert sharp.reason == "too sharp for the arm" and sharp.time == pytest.approx(corner, abs=0.3)
+
+
+def test_a_long_curve_is_held_by_as_many_knots_as_a_short_one() -> None:
+    """Knots every 2 ms along a curve of 1,150 s were more than a target may have."""
+    slow = Flight(z=Sum((constant(15.0), SmoothStep(30.0, 1150.0, 10.0))))
+    machine = Centrifuge(slow, arm=3.3, control_point=0.2, inverse="flat", gravity=True, smoothing=0.5)
+    assert not machine.over(0.0, 1200.0).target.episodes()
+
+
+def test_many_times_at_once_are_many_times_apart() -> None:
+    rng = np.random.default_rng(0)
+    table = PiecewiseLinear(np.arange(0.0, 100.0, 0.01), rng.normal(size=(10_000, 3)))
+    for profile, count in ((table.smoothed(0.5), 60_000), (SmoothStep(1.0, 3.0).smoothed(0.5), 60_000)):
+        t = np.linspace(-1.0, 99.0, count)
+        for at_once, apart in zip(
+            profile.derivatives(t, 3), profile.derivatives(t[::600].reshape(10, 10), 3), strict=True
+        ):
+            np.testing.assert_allclose(at_once[::600], apart.reshape(-1, *apart.shape[2:]), rtol=1e-12, atol=1e-9)

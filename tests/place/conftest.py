@@ -46,8 +46,8 @@ def spin(flight: Flight) -> Callable[..., Centrifuge]:
         smoothing: float = 0.0596, control_point: float = 0.15, sign: int = 1, limits: MachineLimits | None = None
     ) -> Centrifuge:
         return Centrifuge(
-            flight, arm=3.3, control_point=control_point, inverse="flat", limits=limits, smoothing=smoothing,
-            mounting="upright" if sign == 1 else "inverted", span=(0.2, 2.3),
+            flight, arm=3.3, control_point=control_point, inverse="flat", gravity=False, limits=limits,
+            smoothing=smoothing, mounting="upright" if sign == 1 else "inverted", span=(0.2, 2.3),
         )  # fmt: skip
 
     return make

@@ -102,6 +102,30 @@ def test_commands_are_the_axes_at_the_samples(scenario: Path, tmp_path: Path, mo
     assert (tmp_path / "out" / "axes_jerk_spin.svg").is_file()
 
 
+def test_commands_say_what_they_are_made_for(scenario: Path, tmp_path: Path) -> None:
+    assert main(["plan", str(scenario), "--out", str(tmp_path), "--json"]) == 0
+    mat = loadmat(tmp_path / "commands_spin.mat", simplify_cells=True)
+    head = (tmp_path / "commands_spin.csv").read_text(encoding="utf-8")
+    for line in (
+        "# Scenario: plan\n",
+        "# Gravity 9.80665 m/s^2 on the machine is a part of the load, which is specific force.\n",
+        "# Control point 0.15 m from the root along the beam; mounting upright.\n",
+        "# Limits: axis 1 rate 6.28319 rad/s, axis 1 acceleration 5 rad/s^2, arm power 50000 W.\n",
+        "# Time is the flight's: it lasts from 0 to 3 s.\n",
+    ):
+        assert line in head
+    assert (mat["title"], mat["mounting"], mat["gravity"]) == ("plan", "upright", 9.80665)
+    assert mat["control_point"] == 0.15 and mat["arm"] == 3.3
+    assert mat["limits"]["rate"].tolist() == pytest.approx([2 * np.pi, np.inf, np.inf])
+    assert mat["limits"]["power"] == 50e3 and np.isinf(mat["limits"]["jerk"]).all()
+    without = ["--set", "motion.spin.gravity=false", "--set", "motion.spin.mounting=inverted", "--ignore-limits"]
+    cut = ["--set", "response.duration=2.5 s"]
+    assert main(["plan", str(scenario), *without, *cut, "--out", str(tmp_path), "--json"]) == 0
+    head = (tmp_path / "commands_spin.csv").read_text(encoding="utf-8")
+    assert "# NO GRAVITY: the load is acceleration; a machine on the earth adds its gravity" in head
+    assert "mounting inverted" in head and "# Time is the flight's, of which this is a PART: 0 to 2.5 of 3 s." in head
+
+
 def test_sample_of_the_command_line_wins_and_the_values_are_no_interpolation(scenario: Path, tmp_path: Path) -> None:
     for sample in ("4 ms", "20 ms"):
         assert main(["plan", str(scenario), "--sample", sample, "--out", str(tmp_path / sample), "--json"]) == 0
@@ -325,7 +349,8 @@ def test_the_spin_up_that_the_limits_need_is_named(
         return status, json.loads(capsys.readouterr().out)["motions"]["spin"]
 
     status, spin = to_json()
-    (warning,) = spin["warnings"]
+    part, warning = spin["warnings"]
+    assert part == "motion.flight: 0 to 6 of 20 s are flown, and the rest is left out"
     assert status == 1 and spin["outcome"] == "limits exceeded"
     assert f"the machine exceeds its limits in the {name.replace('_', '-')}" in warning
     enough = float(warning.split('"')[1].split()[0])

@@ -316,7 +316,7 @@ def test_a_result_draws_itself(study: Study) -> None:
     with pytest.raises(InputError, match="choose from tip, base, tracking, axes_rate"):
         spin.plot("loads")
     accounting = study.comparisons[0].accounting
-    plan = MachinePlan("spin", "flight", 3.3, "done", "", spin.time, spin.axes, accounting)
+    plan = MachinePlan("spin", "flight", 3.3, "done", "", spin.time, spin.axes, accounting, 9.80665, "upright")
     assert len(plan.plot()) == 3 and len(plan.plot("axes_jerk")) == 3
     x = np.linspace(0, 0.3, 5)
     along = Loads(x, *(np.ones((1, 5, 3)) for _ in range(4)), *np.ones((2, 1, 5)), np.ones((1, 5, 3)))

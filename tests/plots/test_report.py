@@ -65,6 +65,14 @@ def test_json(study: Study) -> None:
     assert facts["comparisons"][0]["relative"]["z"] == pytest.approx(0.1)
 
 
+def test_a_hub_that_turns_backwards_has_the_size_of_its_largest_rate(study: Study) -> None:
+    slew = study.responses["slew"]
+    assert slew.hub is not None
+    backwards = replace(slew, hub=replace(slew.hub, angle=-slew.hub.angle, rate=-slew.hub.rate))
+    facts = json.loads(as_json(to_json(Study("", {"slew": backwards}, ()))))
+    assert facts["motions"]["slew"]["hub"] == {"angle_end": -2.0, "rate_max": 4.0, "rate_end": -4.0}
+
+
 def test_json_has_null_for_what_is_no_number(study: Study) -> None:
     axes = replace(study.responses["spin"].axes, not_followed=np.ones(201, dtype=bool))
     response = replace(study.responses["spin"], axes=axes, step=float("nan"), error_estimate=float("inf"))

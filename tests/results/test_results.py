@@ -51,7 +51,7 @@ def every() -> dict[str, Any]:
         "system": gb.linearize(structure, hub),
         "plan": MachinePlan(
             "arm", "flight", 3.3, "limits exceeded", axes.exceeding, time, axes,
-            Accounting(0.05, 0.1, 0.0, (0.0, 1.0), 1.0, (), ()),
+            Accounting(0.05, 0.1, 0.0, (0.0, 1.0), 1.0, (), ()), 0.0, "upright",
         ),
         "placement": Placement("flight", "arm", {"tip": 1.0}, 0.3, options[0], options, 0.15, values),
         "models": ModelStudy("title", "exact", {"slew": "z"}, rows),

@@ -24,7 +24,7 @@ def test_values_are_si(text: str) -> None:
     scenario = loads(text)
     assert scenario.beam.length == 0.3
     assert scenario.beam.section.model_dump() == {
-        "shape": "rectangle", "width": 0.02, "thickness": 0.004, "stations": (),
+        "shape": "rectangle", "width": 0.02, "thickness": 0.004, "stations": (), "plate": False,
     }  # fmt: skip
     assert scenario.motion["slew"].model_dump()["rate"]["level"] == pytest.approx(6.283185307179586)
     assert scenario.response.step == "auto"

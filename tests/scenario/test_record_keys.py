@@ -22,7 +22,7 @@ def refused(*overrides: str) -> tuple[str, str]:
 def test_the_unit_of_the_f16_is_guarded_and_can_be_overridden() -> None:
     path, words = refused(f"{RECORD}unit=m/s^2")
     assert path == f"{RECORD}unit"
-    assert "begins at 1.289 m/s^2" in words and 'skip_checks = ["unit"]' in words
+    assert "column 'n_x_g' in g; write unit = \"g\"" in words and 'skip_checks = ["unit"]' in words
     build(load(F16, [f"{RECORD}unit=m/s^2", f'{RECORD}skip_checks=["unit"]']))
     build(load(F16, [f"{RECORD}unit=m/s^2", f"{RECORD}skip_checks=true"]))
 
@@ -30,7 +30,7 @@ def test_the_unit_of_the_f16_is_guarded_and_can_be_overridden() -> None:
 @pytest.mark.parametrize(
     ("override", "path", "words"),
     [
-        ("time_unit=ms", "time", 'time_unit = "s"'),
+        ("time_unit=ms", "time_unit", 'time_unit = "s"'),
         ("time_unit=hours", "time_unit", "unknown choice 'hours'"),
         ("z=n_z_g", "z", 'z = "-n_z_g"'),
         ('skip_checks=["sing"]', "skip_checks[0]", "did you mean 'sign'?"),

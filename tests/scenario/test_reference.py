@@ -10,7 +10,7 @@ import pytest
 from gbeam.cli import main
 from gbeam.scenario import schema
 from gbeam.scenario.reference import reference
-from gbeam.scenario.schema.common.fields import Table
+from gbeam.scenario.schema.common.fields import Table, fields_of
 from gbeam.scenario.values.kinds import KINDS
 
 PAGE = Path(__file__).parents[2] / "docs" / "scenario.md"
@@ -36,7 +36,7 @@ def test_the_committed_page_is_that_of_the_schema(capsys: pytest.CaptureFixture[
 def test_every_key_is_there(table: type[Table]) -> None:
     words = table.__doc__ or ""
     section = next(part for part in reference().split("\n### ") if f"\n\n{words}\n" in part)
-    for key, field in table.model_fields.items():
+    for key, field in fields_of(table).items():
         (row,) = [line for line in section.splitlines() if line.startswith(f"| `{key}` | ")]
         assert row.endswith(f" | {field.description} |")
         assert ("| required |" in row) is field.is_required()

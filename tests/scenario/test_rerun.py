@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -29,7 +30,8 @@ RECORDED = (
     + SPECIMEN
     + model("FOAM", 0, 1, 1)
     + '[motion.flight]\nkind = "flight"\n'
-    + 'record = { file = "turn.csv", time = "time_s", x = "n_x_g", y = "-n_y_g", z = "-n_z_g", unit = "g" }\n'
+    + 'record = { file = "turn.csv", time = "time_s", x = "n_x_g", y = "-n_y_g", z = "-n_z_g", unit = "g", '
+    + 'to = "1 s" }\n'
     + response("1 s", step="5 ms")
 )
 
@@ -229,9 +231,21 @@ def test_the_json_of_a_verb_is_computed_again(
     assert answer.status == 1 and "was TLAM, is FOAM" in answer.out
 
 
+def test_whole_numbers_beyond_floats_are_differences(tmp_path: Path, gbeam: Callable[..., Answer]) -> None:
+    file = tmp_path / "s.toml"
+    file.write_text(EVERY_MOTION.replace("4 s", "0.5 s"), encoding="utf-8")
+    assert gbeam("modes", file, "--motion", "flight", "--out", tmp_path).status == 0
+    facts = json.loads((tmp_path / "modes.json").read_text(encoding="utf-8"))
+    facts["modes"][0]["frequency"] = 10**400
+    (tmp_path / "modes.json").write_text(json.dumps(facts), encoding="utf-8")
+    assert gbeam("rerun", tmp_path / "modes.json").status == 1
+
+
 def test_json_that_is_none_of_gbeams_is_refused(tmp_path: Path, gbeam: Callable[..., Answer]) -> None:
-    for text in ("{}", "[1]", "no JSON", '{"provenance": {"command": "rm"}}'):
+    text, none, other = "is no JSON of a result", "is not the JSON of a result", "is no JSON of gbeam with a provenance"
+    texts = {"{}": other, "[1]": none, "no JSON": text, '{"provenance": {"command": "rm"}}': other}
+    for text, problem in texts.items():
         (tmp_path / "x.json").write_text(text, encoding="utf-8")
         answer = gbeam("rerun", tmp_path / "x.json")
-        assert answer.status == 2 and "is no JSON of gbeam with a provenance" in answer.err
+        assert answer.status == 2 and problem in answer.err
     assert gbeam("rerun", tmp_path / "none.json").status == 2

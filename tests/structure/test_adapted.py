@@ -7,6 +7,8 @@ import pytest
 from exact_beams import AREA, DENSITY, INERTIA, LENGTH, MODULUS, truncated_wedge, with_bodies
 
 from gbeam import Beam, InputError, Material, Model, PointMass, Section, assemble
+from gbeam.mechanics.fields.adapted import adapted_shapes
+from gbeam.mechanics.fields.basis import quadrature
 from gbeam.structure.support import Root
 
 BOX, METAL = Section.general(AREA, INERTIA, INERTIA), Material(DENSITY, MODULUS)
@@ -63,3 +65,14 @@ def test_they_keep_the_closed_forms_normalisation_and_sign() -> None:
 def test_unknown_shapes_are_refused() -> None:
     with pytest.raises(InputError, match="shapes is 'best'"):
         Model("FOAM", 0, 0, 3, "best")
+
+
+def test_their_sign_is_that_of_the_root_whatever_the_nodes_are() -> None:
+    """The third shape's curvature changes its sign within 1 mm of this root, between the first nodes of two rules."""
+    root = Root(rotation_y=50.0, rotation_z=100.0, translation_z=1e4)
+    beam, tip = Beam(0.3, Section.rectangle(0.02, 0.004), Material(2700.0, 70e9), root=root), np.array([0.3])
+    shapes = [adapted_shapes(beam, quadrature(0.3, nodes), (0, 3, 3)) for nodes in (20, 24, 30)]
+    for along in (1, 2):
+        first, *others = (each[along](tip).value for each in shapes)
+        for other in others:
+            np.testing.assert_allclose(other, first, rtol=1e-6)

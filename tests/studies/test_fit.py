@@ -12,6 +12,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 import gbeam as gb
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.report.studies.fit import text
 
 from ..scenarios import FLIGHT, SPECIMEN, model, response
@@ -105,6 +106,20 @@ def test_frequencies_and_damping_give_the_values_and_their_errors(released: Path
     assert found.modal and found.at.tolist() == [1, 2]
 
 
+def test_errors_and_intervals_of_few_data_are_those_of_linear_least_squares(released: Path) -> None:
+    """Every frequency goes as the root of the stiffness: by hand, with n − 1 in the variance and Student's quantile."""
+    own = gb.modes(gb.read_scenario(released).assemble(), gb.read_scenario(released).motions["flight"]).frequency
+    measured = own * [1.004, 0.999]
+    found = gb.fit(released, written("modes.csv", "mode,frequency [Hz]", [1, 2], measured), [E])
+    weights = 1 / measured  # a frequency's noise is a share of it
+    root = (weights**2 * own * measured).sum() / (weights**2 * own**2).sum()
+    variance = (((measured - root * own) * weights) ** 2).sum() / (2 - 1)
+    error = np.sqrt(variance / (weights**2 * own**2).sum()) * 2 * root * 70e9
+    assert found.values[0] == pytest.approx(70e9 * root**2, rel=1e-7)
+    assert found.errors[0] == pytest.approx(error, rel=1e-4)
+    assert found.intervals[0] - found.values[0] == pytest.approx(12.7062 * error * np.array([-1, 1]), rel=1e-4)
+
+
 def test_what_the_data_cannot_tell_is_named(released: Path) -> None:
     data = written("modes.csv", "mode,frequency", [1, 2], [34.0, 213.0])
     with pytest.raises(gb.ComputationError, match=f"cannot tell ({E} and {DENSITY}|{DENSITY} and {E}) apart") as raised:
@@ -130,6 +145,23 @@ def test_a_value_on_its_bound_has_no_error(released: Path) -> None:
     found = gb.fit(released, data, [E, DAMPING], bounds={DAMPING: ("0.5 %", "1.2 %")})
     assert found.at_bound.tolist() == [False, True] and np.isnan(found.errors[1])
     assert found.values[1] == pytest.approx(0.012) and "lies on its bound" in found.warnings[0]
+
+
+def test_two_times_of_a_gauge_are_a_history_and_feel_what_pulls_the_beam(released: Path) -> None:
+    """Pulled along its axis a beam has the strain ρ a (L − x) / E all around."""
+    weightless = FLIGHT.replace("6 g", "0 g")
+    pulled = weightless.replace("z = {", "x = {").replace("0 g", "50 g")
+    text = RELEASED.replace(weightless, pulled).partition("initial")[0]
+    released.write_text(text, encoding="utf-8")
+    strain = -2800 * 50 * STANDARD_GRAVITY * (0.3 - 0.01) / 70e9
+    for times in ([0.0, 0.25], [0.1]):
+        data = written("data.csv", "time,strain.z@10 mm,strain.-y@10 mm", times, *2 * [[strain] * len(times)])
+        if len(times) > 1:
+            found = gb.fit(released, data, [DENSITY])
+            assert found.values == pytest.approx([2800.0]) and found.correlation == pytest.approx(1.0)
+        else:
+            with pytest.raises(gb.InputError, match=r"data\.csv has one time; give two or more"):
+                gb.fit(released, data, [DENSITY])
 
 
 @pytest.mark.parametrize(
@@ -174,6 +206,18 @@ def test_the_command_writes_a_scenario_with_the_values(released: Path, gbeam: Ca
     assert gb.read_scenario("fitted.toml").beam.material.youngs_modulus == pytest.approx(TRUE[E], rel=1e-6)
     assert sorted(path.name for path in Path("found").iterdir()) == ["fit.nc", "fit.png", "fit.svg"]
     assert gbeam(*words, "--write", "x.toml", "--set", "beam.length=0.2").status == 2
+
+
+def test_the_values_of_a_loads_profile_are_found(released: Path) -> None:
+    profile = 'profile = "smooth-step", level = "2 N", duration = "50 ms", start = "10 ms"'
+    loaded = RELEASED.replace("[model]", f'[[beam.loads]]\nat = "300 mm"\nforce = {{ z = {{ {profile} }} }}\n[model]')
+    released.write_text(loaded, encoding="utf-8")
+    level, duration = "beam.loads[0].force.z.level", "beam.loads[0].force.z.duration"
+    case = gb.read_scenario(released, [f"{level}=2.3 N", f"{duration}=42 ms"])
+    run = gb.simulate(case.assemble(), case.motions["flight"], case.response)
+    data = written("data.csv", "time,tip.z", TIME, CubicSpline(run.time, run.tip[:, 2])(TIME))
+    found = gb.fit(released, data, [level, duration])
+    assert found.values == pytest.approx([2.3, 0.042], rel=1e-5) and found.units == ("N", "s")
 
 
 def test_several_starts_find_a_valley_that_one_does_not(released: Path) -> None:

@@ -40,6 +40,30 @@ def test_of_a_verdict_the_size_is_minimised(fast: Path) -> None:
     assert (np.diff(np.abs(found.history)) < 0).all() and found.path.shape == (len(found.history), 1)
 
 
+def test_the_name_of_a_motion_decides_nothing(fast: Path) -> None:
+    """A motion called torque had a tip in N m, whose limit in mm was refused; one called step had no derivatives."""
+    text = fast.read_text(encoding="utf-8")
+    subject, bounds = ["tip.z >= -2 mm"], {THICKNESS: ("2 mm", "8 mm")}
+    least = {}
+    for name in ("torque", "step"):
+        file = fast.with_name(f"{name}.toml")
+        file.write_text(text.replace("[motion.flight]", f"[motion.{name}]").replace('"flight"\narm', f'"{name}"\narm'))
+        required = [f"{name}.{each}" for each in subject]
+        found = gb.optimise(
+            file,
+            f"{name}.loads.root_force.z",
+            [THICKNESS],
+            subject_to=required,
+            verb="static",
+            motion=name,
+            bounds=bounds,
+        )
+        assert (found.unit, found.requirements[0].unit) == ("N", "m")
+        least[name] = found.values
+        assert gb.sensitivity(file, [f"{name}.tip.z.max_abs"], [THICKNESS]).units == ("m",)
+    assert least["torque"] == least["step"]
+
+
 def test_requirements_that_no_values_keep_are_said(fast: Path, gbeam: Call) -> None:
     words = ("optimize", fast, "--verb", "static", "--minimise", "flight.loads.root_force.z", "--over", THICKNESS)
     done = gbeam(*words, "--bounds", f"{THICKNESS}=3 mm:5 mm", "--subject-to", "flight.tip.z >= -0.1 mm", "--json")

@@ -12,9 +12,11 @@ import numpy as np
 import pytest
 
 import gbeam as gb
+from gbeam.scenario.load import loads
 from gbeam.studies.derivatives import Neighbourhood
+from gbeam.sweeps.computing.evaluate import Question
 
-from ..scenarios import FREE_HUB, SLEWING
+from ..scenarios import FLIGHT, FREE_HUB, SLEWING, SPECIMEN, model, response
 
 Call = Callable[..., Any]
 E, DENSITY, LENGTH = "beam.material.youngs_modulus", "beam.material.density", "beam.length"
@@ -64,6 +66,18 @@ def _figures(file: Path, overrides: list[str]) -> list[float]:
     return [flight.peaks.max_abs[2], spin.peaks.max_abs[2], moment, gb.compare(flight, spin).peaks["tip"].ratio - 1]
 
 
+@pytest.mark.parametrize("tolerance", ["1 %", "0.01 %"])
+def test_derivatives_are_of_as_many_shapes_as_their_run_needs(tolerance: str) -> None:
+    text = f'title = "shapes"\n{SPECIMEN}[model]\nkind = "SFOAM"\n{FLIGHT}{response("0.1 s", tolerance=tolerance)}'
+    base = loads(text, "scenario.toml")
+    assert base.source is not None
+    question = Question(base.source, "run", None, None)
+    about = Neighbourhood(question, [])
+    shapes = about.answer.responses["flight"].q.shape[1]
+    assert about.case.assemble().size == shapes
+    assert (shapes > question.case(()).assemble().size) == (tolerance == "0.01 %")
+
+
 def test_what_tracks_another_motion_feels_its_values_and_only_that(fast: Path) -> None:
     found = gb.sensitivity(fast, ["flight.tip.z.max_abs", "spin.tip.z.max_abs"], [LEVEL, ARM])
     assert found.derivatives[0, 1] == 0 and (found.derivatives[[0, 1, 1], [0, 0, 1]] != 0).all()
@@ -103,8 +117,34 @@ def test_where_a_jump_moves_the_derivative_is_a_difference(tmp_path: Path) -> No
     assert abs(found.derivatives[1, 0]) < 1e-4 * found.figures[1]
 
 
+def test_values_of_a_loads_profile_are_values_like_others(tmp_path: Path) -> None:
+    """They were no values to a sensitivity, and missing without a word where it chose."""
+    profile = 'profile = "trapezoid", level = "3 N", jerk = "30 N/s", start = "50 ms", hold = "0.1 s"'
+    summed = '{ profile = "sum", terms = [{ profile = "sine", amplitude = "-0.1 N m", duration = "0.2 s" }] }'
+    loads = f'loads = [{{ at = "300 mm", force = {{ z = {{ {profile} }} }}, moment = {{ y = {summed} }} }}]\n'
+    file = tmp_path / "loaded.toml"
+    file.write_text(SPECIMEN + loads + model("FOAM", 0, 1, 1) + FLIGHT + response("0.5 s"), encoding="utf-8")
+    step = ["response.integrator=gauss", "response.step=1 ms"]
+    found = gb.sensitivity(file, ["tip.z.max_abs", "tip.z.time_of_max"], overrides=step)
+    paths = [f"beam.loads[0].force.z.{key}" for key in ("level", "jerk", "start", "hold")]
+    paths += [f"beam.loads[0].moment.y.terms[0].{key}" for key in ("amplitude", "duration")]
+    assert [each for each in found.parameters if each.startswith("beam.loads[0].")] == paths
+    assert dict(zip(found.parameters, found.parameter_units, strict=True))[paths[1]] == "N/s"
+    for path in paths:
+        j = found.parameters.index(path)
+        h = 1e-4 * abs(found.values[j])
+        ends = []
+        for sign in (1, -1):
+            case = gb.read_scenario(file, [*step, f"{path}={float(found.values[j] + sign * h)!r}"])
+            peaks = gb.simulate(case.assemble(), case.motions["flight"], case.response).peaks
+            ends.append(np.array([peaks.max_abs[2], peaks.time_of_max[2]]))
+        difference = (ends[0] - ends[1]) / (2 * h)
+        assert found.methods[j] == "exact"
+        assert found.derivatives[:, j] == pytest.approx(difference, rel=1e-4, abs=1e-6 * found.figures.max())
+
+
 def test_positions_at_the_tip_move_with_the_length(fast: Path) -> None:
-    massive = ['beam.masses=[{ at = "300 mm", mass = "0.1 kg" }]', f"{DENSITY}=1e-6"]
+    massive = ['beam.masses=[{ at = "300 mm", mass = "0.1 kg" }]', f"{DENSITY}=1e-5"]
     found = gb.sensitivity(fast, ["flight.tip.z"], [LENGTH, E], verb="static", overrides=[*massive, "model.modes.z=6"])
     # m a L³ / 3 E I, of a beam that weighs nothing.
     assert list(relative(found, "flight.tip.z").values()) == pytest.approx([3, -1], abs=1e-6)
@@ -179,3 +219,14 @@ def test_exact_derivatives_come_with_the_error_of_their_run(fast: Path) -> None:
     errors = gb.study(gb.read_scenario(fast)).responses["flight"].errors
     assert found.methods == ("exact",) and found.run_error == max(errors.displacement.total, errors.loads.total) > 0
     assert np.isnan(gb.sensitivity(fast, ["flight.tip.z"], [E], verb="static").run_error)
+
+
+def test_the_error_of_a_run_is_that_of_its_loads_where_that_is_larger(tmp_path: Path) -> None:
+    file = tmp_path / "torque.toml"
+    file.write_text(FREE_HUB, encoding="utf-8")
+    step = ["response.step=20 ms", "model.modes.y=2"]
+    errors = gb.study(gb.read_scenario(file, step)).responses["slew"].errors
+    assert errors.loads.total > 1.2 * errors.displacement.total
+    assert (
+        gb.sensitivity(file, ["tip.y.max_abs"], ["motion.slew.radius"], overrides=step).run_error == errors.loads.total
+    )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,8 +11,9 @@ import numpy as np
 import pytest
 
 import gbeam as gb
+from gbeam.studies.shape import scenario_with
 
-from ..scenarios import APPENDAGE, FREE_HUB, SLEW, model, response
+from ..scenarios import APPENDAGE, FREE_HUB, SLEW, SPECIMEN, model, response
 
 Call = Callable[..., Any]
 QUICK = SLEW.replace("60 rpm", "1 rad/s").replace('"2 s"', '"6 s"')
@@ -40,6 +42,17 @@ def test_a_command_does_what_the_slew_does_and_its_scenario_leaves_what_it_says(
     amplitude = np.ptp(own.tip[after, 1]) / 2
     assert amplitude > 0.3 * left["smooth-step"] and shaped.residual_from == 6.0
     assert shaped.peaks.residual_amplitude[1] < left["shaped"] + 1e-3 * left["smooth-step"]
+
+
+def test_a_command_decides_how_long_its_scenario_lasts_where_that_says_nothing(slewing: Path) -> None:
+    """As it may where a record of another motion has the duration."""
+    samples = "".join(f"{k / 10},{k % 3}\n" for k in range(40))
+    Path("record.csv").write_text(f"t,z\n{samples}", encoding="utf-8")
+    record = '{ file = "record.csv", time = "t", x = "0", y = "0", z = "z", unit = "g" }'
+    flown = f'{SPECIMEN}{model("FOAM", 0, 2, 0)}{SLEW}[motion.flight]\nkind = "flight"\nrecord = {record}\n'
+    slewing.write_text(flown, encoding="utf-8")
+    written = json.loads(scenario_with(gb.shape(slewing, duration=0.4), slewing))
+    assert written["response"] == {"duration": pytest.approx(0.5), "residual_from": 0.4} and len(written["motion"]) == 1
 
 
 def test_other_goals_and_times(slewing: Path) -> None:

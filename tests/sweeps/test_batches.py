@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import gbeam as gb
+from gbeam.analysis.response.batch import simulate_batch
 from gbeam.scenario.load import load
 from gbeam.sweeps.computing.batches import may_share, rows, settled
 from gbeam.sweeps.computing.evaluate import Question
@@ -56,6 +58,32 @@ def test_a_case_that_fails_leaves_its_batch_as_it_is(fast: Path) -> None:
     assert all(found.measures[name][0, 0] == fine.measures[name][0, 0] for name in MEASURES)
 
 
+def test_each_case_of_a_batch_that_fails_is_computed_once(fast: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The batch of a case that raises is halved until that one is alone; every other has its own figures."""
+    source, computed = load(fast).source, []
+    assert source is not None
+    whole = Question(source, "run", None, keys=(("motions", "flight", "tip", "z", "max_abs"),), together=True)
+    tasks = [(k, (*FIXED, f"{LEVEL}={2 + k / 2} g", f"beam.length={200 + k} mm")) for k in range(11)]
+    alone = [rows(whole, [task])[0] for task in tasks]
+    real = simulate_batch
+
+    def failing(cases: Any, *args: Any, **more: Any) -> Any:
+        some = list(cases)
+        if any(abs(structure.length - 0.206) < 1e-9 for structure, _ in some):
+            raise RuntimeError("case 6 fails")
+        computed.extend(round(1e3 * structure.length) for structure, motion in some if motion.kind == "flight")
+        return real(iter(some), *args, **more)
+
+    monkeypatch.setattr("gbeam.sweeps.computing.batches.simulate_batch", failing)
+    found = rows(whole, tasks)
+    assert [row.case for row in found] == list(range(11)) and sorted(computed) == [*range(200, 206), *range(207, 211)]
+    for row, own in zip(found, alone, strict=True):
+        if row.case == 6:
+            assert row.outcome == "failed" and row.message == "RuntimeError: case 6 fails"
+        else:
+            assert row == own and row.outcome == "done"
+
+
 def test_what_no_measure_needs_changes_no_digit(fast: Path) -> None:
     source = load(fast).source
     assert source is not None
@@ -73,6 +101,21 @@ def test_loads_that_are_not_measured_change_no_digit(fast: Path) -> None:
     whole = gb.sweep(fast, over, [*tips, MEASURES[3]], overrides=FIXED)
     assert all(np.array_equal(lean.measures[name], whole.measures[name]) for name in tips)
     assert np.isfinite([lean.measures[name] for name in tips]).all()
+
+
+@pytest.mark.parametrize(
+    ("keys", "loads"),
+    [
+        ("motions.flight.tip.z.max_abs", False),
+        ("motions.spin.step", False),
+        ("comparisons.spin.verdict.tip", False),
+        ("motions.flight.loads.root_moment.y.max_abs", True),
+        ("comparisons.spin.verdict.stress", True),
+    ],
+)
+def test_loads_are_computed_where_a_figure_is_one_of_them(fast: Path, keys: str, loads: bool) -> None:
+    source = load(fast).source
+    assert source is not None and Question(source, "run", None, keys=(tuple(keys.split(".")),)).needs.loads == loads
 
 
 def test_few_cases_of_an_automatic_step_are_computed_one_by_one(fast: Path) -> None:

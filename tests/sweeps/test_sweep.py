@@ -13,7 +13,9 @@ import pytest
 import xarray as xr
 
 import gbeam as gb
-from gbeam.sweeps.figures.measures import find, unit_at, value_at
+from gbeam.sweeps.computing.evaluate import Question
+from gbeam.sweeps.figures.answers import Facts
+from gbeam.sweeps.figures.measures import find, value_at
 
 Call = Callable[..., Any]
 ARM = ("--over", "motion.spin.arm=1:2:2")
@@ -162,7 +164,15 @@ def test_files_and_words(fast: Path, gbeam: Call) -> None:
     answer = gbeam("sweep", fast, *arguments, "--out", "there")
     assert answer.status == 0 and "4 cases: 4 done" in answer.out and "flight.tip.z, m" in answer.out
     names = {file.name for file in Path("there").iterdir()}
-    assert names == {"cases.jsonl", "flight.tip.z.png", "flight.tip.z.svg", "sweep.json", "sweep.nc", "sweep.zarr"}
+    assert names == {
+        ".lock",
+        "cases.jsonl",
+        "flight.tip.z.png",
+        "flight.tip.z.svg",
+        "sweep.json",
+        "sweep.nc",
+        "sweep.zarr",
+    }
     with xr.open_zarr("there/sweep.zarr") as zarr, xr.open_dataset("there/sweep.nc") as netcdf:
         assert zarr["flight.tip.z"].attrs["units"] == "m" and set(zarr["outcome"].values.tolist()) == {"done"}
         assert np.array_equal(zarr["flight.tip.z"], netcdf["flight.tip.z"])
@@ -206,12 +216,31 @@ def test_bad_input_is_refused_and_nothing_written(
 
 
 def test_figures_are_found_by_the_end_of_their_path() -> None:
-    facts = json.loads(
-        '{"a": {"tip": {"z": 1.5}, "loads": [{"z": 2}, {"z": null}]}, "peaks": {"m": {"unit": "N m", "f": 3}}}'
-    )
+    facts = json.loads('{"a": {"tip": {"z": 1.5}, "loads": [{"z": 2}, {"z": null}]}}')
     assert find(facts, "tip.z") == ("a", "tip", "z") and find(facts, "loads[1].z") == ("a", "loads", 1, "z")
     assert value_at(facts, ("a", "tip", "z")) == 1.5 and np.isnan(value_at(facts, ("a", "loads", 1, "z")))
-    assert np.isnan(value_at(facts, ("a", "gone"))) and unit_at(facts, ("peaks", "m", "f")) == "N m"
+    assert np.isnan(value_at(facts, ("a", "gone")))
+    with pytest.raises(gb.InputError, match="did you mean 'outcome_of'"):
+        find({"outcome_of": 1.0, "a": {"z": 2.0}}, "outcom_of")
+
+
+def test_a_first_case_that_is_not_done_is_none_of_what_the_figures_are_called(
+    fast: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answers: list[Any] = []
+    facts = Question.facts
+
+    def answered(question: Question, case: gb.Case) -> Facts:
+        answers.append(case)
+        return {"outcome": "diverged"} if len(answers) == 1 else facts(question, case)
+
+    monkeypatch.setattr(Question, "facts", answered)
+    found = gb.sweep(fast, {LEVEL: ["2 g", "4 g"]}, ["flight.tip.z"], verb="static")
+    assert found.outcome.tolist() == ["diverged", "done"]
+    answers[:] = [None]  # the next is no first one
+    with pytest.raises(gb.InputError, match=r"'flight\.tip\.w' is no figure"):
+        gb.sweep(fast, {LEVEL: ["2 g", "4 g"]}, ["flight.tip.w"], verb="static")
+    assert len(answers) == 2
 
 
 @pytest.mark.parametrize("verb", ["static", "modes", "plan"])

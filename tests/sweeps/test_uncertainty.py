@@ -51,6 +51,14 @@ def test_few_draws_have_fewer_bounds_and_none_has_nothing() -> None:
     assert np.isnan(few["5 %"][0, 1]) and np.isnan(few["95 %"][0, 2])
 
 
+def test_the_deviation_of_few_draws_is_estimated_without_bias_of_its_square() -> None:
+    """By n − 1, and the mean's bounds by Student's quantile of two degrees of freedom, 4.303."""
+    few = statistics(np.array([1.0, 2.0, 4.5]))
+    deviation = np.sqrt(((np.array([1.0, 2.0, 4.5]) - 2.5) ** 2).sum() / 2)
+    assert few["standard deviation"][0] == pytest.approx(deviation, rel=1e-12)
+    assert few["mean"] == pytest.approx(2.5 + 4.302653 * deviation / np.sqrt(3) * np.array([0, -1, 1]), rel=1e-6)
+
+
 def test_sobol_indices_of_ishigamis_function() -> None:
     """Ishigami and Homma, 1990: a = 7, b = 0.1."""
     a, b = 7.0, 0.1

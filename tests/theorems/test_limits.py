@@ -91,7 +91,7 @@ def test_a_long_arm_is_a_flight(beam: Beam, level: float, share: float, side: fl
     flight = Flight(x=0.3 * level, y=level * np.cos(side), z=level * np.sin(side))
 
     def gap(arm: float) -> float:
-        machine = Centrifuge(flight, arm=arm, control_point=share * beam.length, inverse="flat", smoothing=None,
+        machine = Centrifuge(flight, arm=arm, control_point=share * beam.length, inverse="flat", gravity=False,
                              span=(0.0, 1.0))  # fmt: skip
         one, other = (static(structure, motion, time=0.5).tip for motion in (machine, flight))
         # On the machine the specimen is turned about its axis by axis 3 until the load is along its own axes.
@@ -108,5 +108,5 @@ def test_a_control_point_at_the_root_feels_the_flights_load_alone(level: np.ndar
     """At the control point itself the machine's load is the flight's, whatever the arm."""
     load = level + np.where(level < 0, -12.0, 12.0)
     flight = Flight(x=load[0], y=load[1], z=load[2])
-    machine = Centrifuge(flight, arm=3.3, control_point=0.0, inverse="flat", smoothing=None, span=(0.0, 1.0))
+    machine = Centrifuge(flight, arm=3.3, control_point=0.0, inverse="flat", gravity=False, span=(0.0, 1.0))
     np.testing.assert_allclose(machine.base(np.array(at)).a_WO_B, load, atol=1e-9 * np.linalg.norm(load))

@@ -101,6 +101,6 @@ def _motion(
         level = 0.15 * acceleration
         change = gb.smoothed(gb.trapezoid(0.5 * level, jerk=level / rise, start=rise, hold=0.3 * duration), period)
         flight = gb.Flight(y=gb.Sum((gb.constant(level), change)))
-        how = {"inverse": "flat", "start": "idle", "idle": 0.5 * level}
+        how = {"inverse": "flat", "start": "idle", "idle": 0.5 * level, "gravity": False, "smoothing": 0.06}
         return gb.Centrifuge(flight, arm=20 * length, control_point=0.7 * length, **how).over(0.0, duration)
     return gb.Flight(y=0.0)

@@ -1,5 +1,6 @@
 """200 random scenarios: the error that is stated against the error that is there. The truth is the exact model with
 eight adapted shapes by Gauss's method with 150 steps to the lowest period or more; other codes above agree with it.
+What the theory of slender beams leaves out is in neither.
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ def judge(seed: int, scenario: Scenario) -> Judged | None:
     pairs = ("root_force", "root_moment")
     loads = max(error(getattr(found.loads, name), getattr(truth.loads, name)) for name in pairs)
     tip = error(found.tip, truth.tip)
-    return Judged(seed, scenario, (found.errors.displacement.total, tip), (found.errors.loads.total, loads))
+    return Judged(seed, scenario, (found.errors.displacement.slender, tip), (found.errors.loads.slender, loads))
 
 
 def ratios(pairs: list[tuple[float, float]]) -> np.ndarray:

@@ -101,7 +101,7 @@ def flight_2020(level: float) -> Flight:
 def centrifuge_2020(level: float, control_point: float = MIDDLE_2020) -> Centrifuge:
     """The machine that imitates it."""
     return Centrifuge(
-        flight_2020(level), arm=ARM_2020, control_point=control_point, inverse="flat", smoothing=None, span=(0.0, 1.0)
+        flight_2020(level), arm=ARM_2020, control_point=control_point, inverse="flat", gravity=False, span=(0.0, 1.0)
     )
 
 

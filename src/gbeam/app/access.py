@@ -12,6 +12,8 @@ import secrets
 from typing import Any
 from urllib.parse import parse_qs
 
+from fastapi import HTTPException
+
 KEY = "x-gbeam-key"  # header
 _PAGE = ("/", "/app.js", "/app.css")
 _FILES = "/api/runs/"
@@ -119,7 +121,7 @@ def _limited(receive: Any) -> Any:
         message = await receive()
         size += len(message.get("body", b""))
         if size > LARGEST:
-            return {"type": "http.disconnect"}
+            raise HTTPException(413, "too large")  # which every reader of a body hands on
         return message
 
     return limited

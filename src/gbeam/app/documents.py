@@ -22,6 +22,7 @@ NAME = "scenario.toml"
 COLUMNS = ("file", "time", "time_unit", "x", "y", "z", "unit", "quantity", "p", "q", "r", "rate_unit")
 CHANGES = 3  # between two scenarios that are told
 _LONG = 40  # characters of a value in them
+_DURATION: Place = ("response", "duration")
 _MISSING = re.compile(r"(\w+) is missing")  # a message about a table, whose field that is
 
 
@@ -116,7 +117,8 @@ def removed(text: str, path: str) -> str:
 def with_record(text: str, motion: str, record: dict[str, str]) -> str:
     """Return the text with a flight's record in place of its acceleration, or of its record before.
 
-    What else is written of a record of the same file stays, such as its conditioning.
+    What else is written of a record of the same file stays, such as its conditioning and the part that is
+    flown. The duration of the response goes: it was that of another flight, and a record is flown to its end.
 
     Raises
     ------
@@ -132,6 +134,8 @@ def with_record(text: str, motion: str, record: dict[str, str]) -> str:
     before = written_at(data, (*place, "record"))
     same = isinstance(before, dict) and before.get("file") == record.get("file")
     kept = {key: value for key, value in before.items() if key not in COLUMNS} if same else {}
+    if written_at(data, _DURATION) is not None:
+        text = without_entry(text, _DURATION)
     return with_entry(text, (*place, "record"), record | kept)
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import sys
 
+from gbeam.guards.resources import restrict
+
 
 def main() -> None:
     """Set the limits, which stay, and become `python -m gbeam ARGUMENTS`."""
@@ -14,11 +16,7 @@ def main() -> None:
         import subprocess
 
         sys.exit(subprocess.call(command))
-    import resource
-
-    resource.setrlimit(resource.RLIMIT_CPU, (int(seconds), int(seconds) + 5))
-    if sys.platform != "darwin":  # whose kernel does not know it
-        resource.setrlimit(resource.RLIMIT_AS, (int(memory), int(memory)))
+    restrict(int(memory), int(seconds))
     os.execv(sys.executable, command)
 
 

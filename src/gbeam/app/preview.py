@@ -10,8 +10,7 @@ import numpy as np
 from gbeam.app.columns import suggested
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion import Flight
-from gbeam.motion.bases.records.record import READERS
-from gbeam.motion.bases.records.text import read_text
+from gbeam.motion.bases.records.files import read_table
 from gbeam.scenario import build, loads
 
 SAMPLES = 1500
@@ -20,7 +19,7 @@ MOST = 500  # columns
 
 def head(file: Path) -> dict[str, Any]:
     """Name of a record, its columns, and what these are by their names."""
-    columns = READERS.get(file.suffix.lower(), read_text)(file).columns[:MOST]
+    columns = read_table(file).columns[:MOST]
     known = suggested((each.name, each.unit) for each in columns)
     return {"name": file.name, "columns": [each.name for each in columns], "suggested": known}
 

@@ -13,8 +13,9 @@ from typing import Annotated, Any
 
 from fastapi import Body, FastAPI, Request
 from fastapi.concurrency import run_in_threadpool
+from fastapi.exceptions import RequestValidationError
 from fastapi.responses import FileResponse, JSONResponse, Response
-from pydantic import Field
+from pydantic import AfterValidator, Field
 from starlette.requests import ClientDisconnect
 
 from gbeam.app import documents, examples, files, verbs
@@ -32,9 +33,19 @@ from gbeam.scenario.text.source import parse
 _KINDS = {".js": "text/javascript", ".css": "text/css", ".html": "text/html; charset=utf-8"}
 _BINARY = {".nc": "application/octet-stream", ".mat": "application/octet-stream", ".png": "image/png"}
 REFUSALS = "x-gbeam-refusal"  # of a request: it may be answered by one; of an answer: it is one
-Text = Annotated[str, Body(embed=True, max_length=SCENARIO_BYTES)]
-Line = Annotated[str, Field(max_length=1000)]
-Short = Annotated[str, Body(embed=True, max_length=1000)]
+
+
+def _whole(text: str) -> str:
+    """Refuse half a character, which JSON can name and nothing can write."""
+    if any("\ud800" <= each <= "\udfff" for each in text):
+        raise ValueError("half a character")
+    return text
+
+
+Word = Annotated[str, AfterValidator(_whole)]
+Text = Annotated[Word, Body(embed=True, max_length=SCENARIO_BYTES)]
+Line = Annotated[Word, Field(max_length=1000)]
+Short = Annotated[Word, Body(embed=True, max_length=1000)]
 
 
 def create_app(folder: Path) -> FastAPI:
@@ -65,7 +76,13 @@ def create_app(folder: Path) -> FastAPI:
 
     @app.exception_handler(ClientDisconnect)
     async def leave(_: Request, __: ClientDisconnect) -> Response:
-        return Response("too large", 413)  # or gone, and does not hear it
+        return Response(status_code=400)  # which nobody hears
+
+    @app.exception_handler(RequestValidationError)
+    async def misread(_: Request, error: RequestValidationError) -> JSONResponse:
+        # Without what was given, as FastAPI has it: that may be what no answer can hold.
+        problems = [{"loc": each["loc"], "msg": each["msg"], "type": each["type"]} for each in error.errors()]
+        return JSONResponse({"detail": problems}, 422)
 
     for name in ("index.html", "app.js", "app.css"):
         app.add_api_route("/" if name == "index.html" else f"/{name}", _asset(name), include_in_schema=False)
@@ -101,7 +118,7 @@ def create_app(folder: Path) -> FastAPI:
         return documents.described(documents.removed(text, path), records)
 
     @app.post("/api/record")
-    def map_record(text: Text, motion: Short, record: Annotated[dict[str, str], Body(embed=True)]) -> dict[str, Any]:
+    def map_record(text: Text, motion: Short, record: Annotated[dict[Word, Word], Body(embed=True)]) -> dict[str, Any]:
         """A scenario whose flight follows a record."""
         return documents.described(documents.with_record(text, motion, record), records)
 
@@ -141,9 +158,9 @@ def create_app(folder: Path) -> FastAPI:
     @app.post("/api/runs")
     def submit(
         text: Text,
-        verb: Annotated[str, Body(embed=True, max_length=100)] = "run",
+        verb: Annotated[Word, Body(embed=True, max_length=100)] = "run",
         options: Annotated[Sequence[Line], Body(embed=True, max_length=20)] = (),
-        case: Annotated[str, Body(embed=True, max_length=100)] = "",
+        case: Annotated[Word, Body(embed=True, max_length=100)] = "",
     ) -> dict[str, str]:
         """Queue a verb on a scenario; of a sweep's case the run that is there."""
         found = documents.described(text, records, distributions=verb == "sweep")

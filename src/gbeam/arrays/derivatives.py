@@ -24,3 +24,8 @@ def with_slope(function: Callable[[Array], Any]) -> Callable[[Array], tuple[Any,
         return values, slope
 
     return both
+
+
+def linear_root(function: Callable[[Array], Array], right: Array) -> Array:
+    """x of g(x) = y of a linear function g: what :func:`jax.lax.custom_root` differentiates a solution by."""
+    return jax.numpy.linalg.solve(jax.jacfwd(function)(right), right)

@@ -34,9 +34,21 @@ def namespace(*values: Any) -> Any:
     return np
 
 
+def has_unit(value: Any) -> bool:
+    """Whether a value is a quantity of pint, astropy or unyt, whose unit NumPy would drop."""
+    if type(value).__module__ in _PLAIN:
+        return False
+    of_pint = hasattr(value, "dimensionality")  # a unit alone as well
+    return of_pint or (hasattr(value, "to") and (hasattr(value, "units") or hasattr(value, "unit")))
+
+
 def as_array(value: Any) -> Any:
-    """A float64 array of the value's own library."""
-    return namespace(value).asarray(value, dtype=float)
+    """A float64 array of the library of a value, or of what it lists; TypeError of what is no bare number."""
+    listed = value if isinstance(value, (tuple, list)) else (value,)
+    for each in listed:
+        if isinstance(each, str) or has_unit(each):
+            raise TypeError(f"{each!s:.60} is not a bare number in SI")
+    return namespace(*listed).asarray(value, dtype=float)
 
 
 def is_traced(*values: Any) -> bool:

@@ -12,6 +12,10 @@ import sys
 from collections.abc import Callable
 from typing import Any, TypeVar, dataclass_transform
 
+import numpy as np
+
+from gbeam.arrays.namespace import is_traced
+
 _T = TypeVar("_T")
 _records: list[type] = []
 _register: Callable[[type], None] | None = None
@@ -24,17 +28,46 @@ def static(**options: Any) -> Any:
 
 @dataclass_transform(frozen_default=True, field_specifiers=(static, dataclasses.field))
 def record(cls: type[_T]) -> type[_T]:
-    """Make a class a frozen dataclass that is a pytree; it compares by identity, since arrays have no one truth.
+    """Make a class a frozen dataclass that is a pytree; it compares by its fields, arrays number by number.
 
-    A class with an ``__init__`` of its own keeps it, and sets its fields by :func:`assign`.
+    A class with an ``__init__`` of its own keeps it, and sets its fields by :func:`assign`. Only fields are pickled.
     """
     made = dataclasses.dataclass(frozen=True, eq=False, init="__init__" not in cls.__dict__)(cls)
+    for method in (__eq__, __hash__, __getstate__):
+        setattr(made, method.__name__, method)
     _records.append(made)
     if _register is not None:
         _register(made)
     elif "jax" in sys.modules:  # whoever imported it may hand records to it before any array
         import gbeam.arrays.jax_setup  # noqa: F401
     return made
+
+
+def __eq__(self: Any, other: Any) -> bool:
+    if type(other) is not type(self):
+        return NotImplemented
+    return all(_same(getattr(self, f.name), getattr(other, f.name)) for f in dataclasses.fields(self))
+
+
+def __hash__(self: Any) -> int:
+    return hash((type(self), *(getattr(self, name) for name in leaves_and_statics(type(self))[1])))
+
+
+def __getstate__(self: Any) -> dict[str, Any]:
+    return {f.name: getattr(self, f.name) for f in dataclasses.fields(self)}
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Whether two values are alike; NaN is like NaN, and what JAX traces only like itself."""
+    if one is other:
+        return True
+    if isinstance(one, tuple | list):
+        return type(one) is type(other) and len(one) == len(other) and all(map(_same, one, other))
+    if is_traced(one, other):
+        return False
+    if hasattr(one, "shape") or hasattr(other, "shape"):
+        return np.shape(one) == np.shape(other) and bool(np.all((one == other) | ((one != one) & (other != other))))
+    return bool(one == other)
 
 
 def assign(instance: Any, **fields: Any) -> None:

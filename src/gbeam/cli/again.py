@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import shlex
 from collections.abc import Iterator
 from contextlib import redirect_stdout
@@ -45,23 +46,18 @@ def answer_again(file: Path) -> Reproduction:
 
 
 def _read(file: Path) -> tuple[dict[str, Any], Provenance]:
-    from gbeam.guards.limits import BINARY_BYTES, refuse_large_file
+    from gbeam.guards.json_files import read_json
     from gbeam.results.provenance import Environment, Provenance, RecordFile
 
     fix = "give the JSON that a verb of gbeam wrote into --out, or a result.nc"
+    facts = read_json(file, fix)
     try:
-        refuse_large_file("", file, BINARY_BYTES, fix)
-        facts = json.loads(file.read_text(encoding="utf-8"))
         origin = facts["provenance"]
         environment = Environment(origin["gbeam"], origin["python"], origin["platform"], origin["dependencies"])
         records = tuple(RecordFile(**each) for each in origin["records"])
         words = origin["scenario"], tuple(origin["overrides"]), origin["scenario_sha256"], records, origin["command"]
         return facts, Provenance(*words, environment, str(origin.get("date", "")))
-    except OSError as error:
-        raise InputError(str(file), f"cannot be read ({error.strerror})", fix) from None
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
-        if isinstance(error, InputError):
-            raise
+    except (ValueError, KeyError, TypeError):
         raise InputError(str(file), "is no JSON of gbeam with a provenance", fix) from None
 
 
@@ -94,6 +90,14 @@ def _leaves(value: Any, place: str = "") -> Iterator[tuple[str, Any]]:
             if key not in _ABOUT:
                 yield from _leaves(each, f"{place}.{key}" if place else str(key))
     elif isinstance(value, list):
-        yield place, [float("nan") if each is None else float(each) for each in value]
+        yield place, [math.nan if each is None else _number(each) for each in value]
     else:
-        yield place, float(value) if isinstance(value, (int, float)) else str(value)
+        yield place, _number(value) if isinstance(value, (int, float)) else str(value)
+
+
+def _number(value: float) -> float:
+    """A float, infinite where a JSON's whole number is beyond all of them."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf

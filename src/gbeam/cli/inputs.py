@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from gbeam.cli.invocation import command
 from gbeam.cli.publication import refuse_unwritable
+from gbeam.cli.terminal.console import Watch
 from gbeam.errors import InputError
 
 if TYPE_CHECKING:
@@ -120,8 +121,9 @@ def read(verb: str, file: Path, overrides: Sequence[str], out: Path | None = Non
         refuse_unwritable(out)
     from gbeam.scenario import build, load, provenance  # not needed, nor imported, for help
 
-    scenario = load(file, overrides, distributions=verb == "check")
-    case = build(scenario, ahead=verb in _MOVING)
+    with Watch(f"reading {file}" + (" and planning its machines" if verb in _MOVING else "")):
+        scenario = load(file, overrides, distributions=verb == "check")
+        case = build(scenario, ahead=verb in _MOVING)
     return Input(scenario, replace(case, provenance=provenance(scenario, command())))
 
 

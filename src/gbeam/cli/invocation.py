@@ -5,6 +5,8 @@ from __future__ import annotations
 import shlex
 from contextvars import ContextVar
 
+from gbeam.printable import storable
+
 _TOKENS: ContextVar[tuple[str, ...]] = ContextVar("tokens", default=())
 
 
@@ -14,5 +16,5 @@ def begin(tokens: list[str]) -> None:
 
 
 def command() -> str:
-    """The command line, as a shell takes it."""
-    return shlex.join(["gbeam", *_TOKENS.get()])
+    """The command line, as a shell takes it; what is no text in it is written out."""
+    return storable(shlex.join(["gbeam", *_TOKENS.get()]))

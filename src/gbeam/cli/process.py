@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import sys
 
 _MADE = 20_000  # objects between two looks for circles of unused ones: Python's own 700 suit a smaller heap
 FIGURES = "GBEAM_FIGURES"  # environment: "none" leaves out the files of figures, as where a report draws its own
@@ -15,6 +16,14 @@ def begin() -> None:
     global _own
     gc.set_threshold(_MADE, 20, 10)
     _own = True
+
+
+def end_at_once(status: int) -> None:
+    """End a process of the command line's own as it is: libraries that lack memory may hang as they are taken down."""
+    if _own:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
 
 
 def figures_wanted() -> bool:

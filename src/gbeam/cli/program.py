@@ -16,8 +16,10 @@ from cyclopts import App, CycloptsError
 import gbeam
 from gbeam.arrays.memory import keep_memory
 from gbeam.cli import invocation
-from gbeam.cli.terminal.failures import report, report_defect, report_memory, report_syntax
+from gbeam.cli.process import end_at_once
+from gbeam.cli.terminal.failures import lacks_memory, report, report_defect, report_memory, report_syntax
 from gbeam.errors import GbeamError
+from gbeam.guards.limits import WORDS
 
 # Each verb's room, and its help: not only in its own docstring, so that `gbeam --help` imports no verb.
 VERBS = {
@@ -64,6 +66,8 @@ def run(tokens: list[str]) -> int:
         If a file or a stream cannot be read or written.
     """
     as_json = "--json" in tokens
+    if len(tokens) > WORDS:
+        return report_syntax(f"The command line has {len(tokens)} words, and {WORDS} are read at most.", as_json)
     keep_memory()
     invocation.begin(tokens)
     try:
@@ -78,9 +82,11 @@ def run(tokens: list[str]) -> int:
         return _INTERRUPTED
     except OSError:
         raise
-    except MemoryError as error:
-        return report_memory(error, as_json)
     except Exception as error:
+        if lacks_memory(error):
+            status = report_memory(error, as_json)
+            end_at_once(status)
+            return status
         return report_defect(error, tokens, as_json)
     return status if isinstance(status, int) else 0
 

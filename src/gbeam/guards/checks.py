@@ -9,8 +9,9 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
-from gbeam.arrays.namespace import is_jax
+from gbeam.arrays.namespace import as_array, is_jax
 from gbeam.errors import InputError
+from gbeam.printable import shortened
 
 
 def positive(where: str, value: Any, unit: str, *, zero: bool = False) -> Any:
@@ -35,8 +36,25 @@ def finite(where: str, value: Any) -> Any:
     return number
 
 
+def array(where: str, value: Any) -> Any:
+    """Return `value` as an array of float64 of its own library."""
+    try:
+        if _holds_text(value):
+            raise TypeError(value)
+        return as_array(value)
+    except (TypeError, ValueError):
+        raise InputError(where, f"is {shortened(repr(value))}", "give numbers in SI") from None
+
+
+def _holds_text(value: Any) -> bool:
+    """Whether a value is a text, or a list of some: NumPy would read them."""
+    return isinstance(value, str) or (isinstance(value, (list, tuple)) and any(map(_holds_text, value)))
+
+
 def _number(where: str, value: Any, fix: str) -> float:
     try:
+        if _holds_text(value):
+            raise TypeError(value)
         return float(value)
     except (TypeError, ValueError):
         raise InputError(where, f"is {value!r}", fix) from None

@@ -11,9 +11,12 @@ from pathlib import Path
 
 from gbeam.errors import InputError
 
+WORDS = 2000  # of a command line: the parser takes the square of it
+
 # Text of a scenario.
 SCENARIO_BYTES = 2**20  # of a file, or of one override: 50,000 knots; parsing takes a second
 NESTING = 32  # tables and lists in one another
+KEYS = 1000  # of one table, and tables in one list: motions, masses and loads are the most
 NUMBER = 400  # characters of a number: any float has fewer
 QUANTITY = 100  # characters of a quantity with its unit
 LARGEST, SMALLEST = 1e50, 1e-50  # of any quantity in SI, but zero: products of several are numbers still
@@ -27,15 +30,23 @@ ENTRIES = 1000  # masses, loads, stations of a section or of the output
 NODES = 5000  # of integration along the beam: 12 and four for every shape, between two stations of the section
 KNOTS = 500_000  # of a centrifuge's target: about 4 kB each while it is planned
 STEPS = 4_000_000  # in time
+BOUNDLESS = 1e9  # m, that particles move by at most
 WORKERS = 512  # processes of a sweep: each imports gbeam
 HISTORY_BYTES = 4 * 10**9  # of a response: coordinates, displacements and loads at every step
 
 # Records of flights.
 TEXT_BYTES = 64 * 2**20  # about 25 bytes of memory each
 BINARY_BYTES = 512 * 2**20
+EMBEDDED = 8 * 2**20  # bytes of one that go with a result; of a larger one only its hash
 COLUMNS = 10_000  # of one matrix
 ELEMENTS = 32_000_000  # of one array of a file
 SAMPLES = 4_000_000
+
+# Of the process that reads a file by a library in C; besides, three times the file's size, and a second for each
+# READER_RATE bytes of it.
+READER_BYTES = 2**30  # of address space, of which the libraries take 0.2 GB
+READER_SECONDS = 10  # of processor time
+READER_RATE = 2**24
 
 
 def refuse_more(where: str, what: str, count: float, most: int, each: float, fix: str) -> None:

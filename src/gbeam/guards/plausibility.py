@@ -47,6 +47,7 @@ RANGES = {
     "density": Range(10.0, 3e4, 1e-15, 1e15, "kg/m^3", (("g/cm^3", 1e3), ("t/mm^3", 1e12))),
     "modulus": Range(1e5, 2e12, 1e-9, 1e24, "Pa", _PRESSURES),
     "strength": Range(1e5, 2e10, 1e-9, 1e24, "Pa", _PRESSURES),
+    "shear coefficient": Range(0.05, 1.2, 1e-6, 1e3, ""),
     "damping": Range(0.0, 0.3, 0.0, 1.0, "", (("%", 1e-2),)),
     "radius": Range(0.0, 200.0, 0.0, 1e9, "m", _LENGTHS),
     "arm": Range(0.02, 100.0, 1e-9, 1e9, "m", _LENGTHS),

@@ -125,23 +125,21 @@ def _nonlinear(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, s
         return newton.Carry(scheme.tableau(length).first @ xp.stack([q, qd, qdd]), x, x)
 
     carry, corrections = begun(q, qd, qdd, steps.length[0]), newton.CORRECTIONS[scheme.order]
+    if traced:
+        yield _traced(equations, scheme, carry, steps)
+        return
     sound = True
     for chunk in chunks(drive, scheme, stretches(scheme, steps, newton.PER_JACOBIAN[scheme.order])):
-        if traced:
-            after, (*piece, left) = newton.steps(residual, *chunk.given(carry), corrections)
-            fine = xp.max(left[chunk.inside]) <= newton.ACCEPTED
-            piece, solved = [xp.where(fine, values, xp.nan) for values in piece], np.ones(len(chunk.inside), dtype=bool)
+        for tries in (corrections, *newton.PATIENT):
+            after, (*piece, left) = newton.quick(residual, *chunk.given(carry), tries, chunk.count)
+            if np.all(np.asarray(left)[chunk.inside] <= newton.ACCEPTED):  # NaN is not
+                solved = np.ones(len(chunk.inside), dtype=bool)
+                break
         else:
-            for tries in (corrections, *newton.PATIENT):
-                after, (*piece, left) = newton.quick(residual, *chunk.given(carry), tries, chunk.count)
-                if np.all(np.asarray(left)[chunk.inside] <= newton.ACCEPTED):  # NaN is not
-                    solved = np.ones(len(chunk.inside), dtype=bool)
-                    break
-            else:
-                after, (*piece, solved) = newton.safe(residual, *chunk.one_by_one(scheme, carry), chunk.inside)
-            piece = [np.asarray(values) for values in piece]
+            after, (*piece, solved) = newton.safe(residual, *chunk.one_by_one(scheme, carry), chunk.inside)
+        piece = [np.asarray(values) for values in piece]
         carry, end = after, chunk.end
-        if scheme.ends and end.anew and not traced:
+        if scheme.ends and end.anew:
             q, qd = (values[chunk.inside][-1] for values in piece[:2])
             begin, there = (
                 np.asarray(newton.accelerations(residual, q[None], qd[None], drive(np.array([t]))))[0]
@@ -154,3 +152,20 @@ def _nonlinear(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, s
         solved = np.logical_and.accumulate(np.append(sound, np.asarray(solved)[chunk.inside]))[1:]
         sound = bool(solved[-1])
         yield *(values[chunk.kept] for values in piece), solved[chunk.steps.kept[chunk.inside]]
+
+
+def _traced(equations: NonlinearEquations, scheme: Scheme, carry: Any, steps: Steps) -> Piece:
+    """All steps in one program; from one that fails on, the values are NaN, and so are their derivatives."""
+    import jax
+    import jax.numpy as jnp
+
+    from gbeam.integrate.compiled import newton
+
+    times = np.stack([steps.times(offset) for offset in scheme.offsets], axis=1)
+    inputs = jax.tree.map(lambda leaf: leaf.reshape(*times.shape, *leaf.shape[1:]), equations.drive(times.ravel()))
+    at_ends = None if scheme.ends else equations.drive(steps.end)
+    every = np.ones(len(steps), dtype=bool)
+    tableau = scheme.tableau(steps.length)
+    _, (*piece, solved) = newton.safe(equations.residual, tableau, carry, inputs, at_ends, every)
+    sound = jnp.where(jnp.cumprod(solved), 1.0, jnp.nan)[:, None]
+    return *(sound * values for values in piece), every

@@ -30,7 +30,7 @@ def added(equations: LinearEquations, scheme: Scheme, step: float) -> tuple[Floa
     square, modes = symmetric_modes(stiffness, equations.mass)
     frequency = np.sqrt(np.maximum(square, 0.0))
     rate = np.einsum("ia,ij,ja->a", modes, damping, modes)
-    fits = (frequency > 0) & (rate < 2 * frequency)
+    fits = (frequency > 0) & (np.abs(rate) < 2 * frequency)
     frequency, rate, modes = frequency[fits], rate[fits], modes[:, fits]
     angle = np.minimum(frequency * step, FITTED)
     ratio = rate / (2 * frequency)

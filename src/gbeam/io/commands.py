@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
 from scipy.io import savemat
 
+from gbeam.printable import storable
 from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.machine import Commands
 from gbeam.results.provenance import Provenance
+from gbeam.results.result import part_words
 
 _UNITS = {"angle": "rad", "rate": "rad_per_s", "acceleration": "rad_per_s2"}
 _STILL = 1e-9  # rad/s, rad/s²: what is slower stands still
@@ -40,7 +43,8 @@ def write_commands(plan: MachinePlan, commands: Commands, folder: Path) -> list[
     -------
     list of Path
         ``commands_NAME.csv``, whose first lines begin with # and the first without names the columns, and
-        ``commands_NAME.mat``: time (t, 1); angle, rate, acceleration (t, 3), columns for axes 1, 2, 3; sample, arm;
+        ``commands_NAME.mat``: time (t, 1); angle, rate, acceleration (t, 3), columns for axes 1, 2, 3; sample, arm,
+        control_point, gravity; title, mounting; limits, of each quantity for the axes, infinite where none is given;
         conventions.
     """
     lines_above = header(plan, commands)
@@ -60,6 +64,11 @@ def write_commands(plan: MachinePlan, commands: Commands, folder: Path) -> list[
             "acceleration": commands.acceleration,
             "sample": commands.sample,
             "arm": plan.arm,
+            "title": plan.title,
+            "control_point": plan.axes.control_point,
+            "gravity": plan.gravity,
+            "mounting": plan.mounting,
+            "limits": _limits(plan),
             "conventions": "\n".join(lines_above),
         },
         do_compression=True,
@@ -68,12 +77,20 @@ def write_commands(plan: MachinePlan, commands: Commands, folder: Path) -> list[
 
 
 def header(plan: MachinePlan, commands: Commands) -> list[str]:
-    """What frame, units, zeros and signs the numbers have."""
+    """What the motions are made for, and what frame, units, zeros and signs the numbers have."""
     first, last = plan.axes.span
     lines = [
         f"gbeam: axis motions of {plan.name}" + (f", which imitates {plan.tracks}" if plan.tracks else ""),
+        *([f"Scenario: {plan.title}"] if plan.title else []),
+        f"Gravity {plan.gravity:g} m/s^2 on the machine is a part of the load, which is specific force."
+        if plan.gravity
+        else "NO GRAVITY: the load is acceleration; a machine on the earth adds its gravity of 9.80665 m/s^2.",
+        f"Control point {plan.axes.control_point:g} m from the root along the beam; mounting {plan.mounting}.",
+        _limit_words(plan),
         f"Arm {plan.arm:g} m; sample time {commands.sample:g} s; {len(commands.time)} samples.",
-        f"Time is the flight's: it lasts from {first:.6g} to {last:.6g} s.",
+        f"Time is the flight's: it lasts from {first:.6g} to {last:.6g} s."
+        if plan.whole is None
+        else f"Time is the flight's, of which this is a PART: {part_words(plan.axes.span, plan.whole)}.",
         f"Beginning, {_state(commands, 0)}.",
         f"End, {_state(commands, -1)}.",
         "Units: time s, angles rad, rates rad/s, accelerations rad/s^2.",
@@ -87,12 +104,27 @@ def header(plan: MachinePlan, commands: Commands) -> list[str]:
     return lines
 
 
+def _limits(plan: MachinePlan) -> dict[str, list[float]]:
+    """What is allowed of each quantity, of axes 1, 2, 3; of the power, of the arm."""
+    allowed: dict[str, list[float]] = {}
+    for use in plan.axes.limits:
+        allowed.setdefault(use.quantity, []).append(use.allowed)
+    return allowed
+
+
+def _limit_words(plan: MachinePlan) -> str:
+    uses = [use for use in plan.axes.limits if math.isfinite(use.allowed)]
+    words = [f"{use.axis} {use.quantity} {use.allowed:.6g} {use.unit}" for use in uses]
+    return f"Limits: {', '.join(words)}." if words else "Limits: none are given."
+
+
 def origin_lines(provenance: Provenance) -> list[str]:
     """Where the numbers come from."""
     provenance, environment = provenance.stated()
     records = [f"Record of {each.motion}: {each.file}, SHA-256 {each.sha256}." for each in provenance.records]
     made = f"Made by gbeam {environment.gbeam}, Python {environment.python}, {environment.platform}"
-    return [f"{made}: {provenance.command}", f"Scenario SHA-256 {provenance.sha256}.", *records]
+    lines = [f"{made}: {provenance.command}", f"Scenario SHA-256 {provenance.sha256}.", *records]
+    return [storable(line) for line in lines]
 
 
 def _state(commands: Commands, sample: int) -> str:

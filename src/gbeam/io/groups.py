@@ -61,6 +61,34 @@ def labels(name: str, values: list[str] | tuple[str, ...]) -> dict[str, Variable
     return {name: Variable((name,), np.array(values, dtype=object), {})}
 
 
+def whole_flight(whole: tuple[float, float] | None) -> dict[str, Variable]:
+    """First and last time of a whole flight, s, of which a result is a part; nothing where it is none."""
+    if whole is None:
+        return {}
+    first, last = whole
+    return {
+        "whole_from": variable((), first, "s", "first time of the whole flight"),
+        "whole_to": variable((), last, "s", "last time of the whole flight"),
+    }
+
+
+def thinned(group: Group, every: int) -> Group:
+    """The group with one of so many samples of its histories, and with words that say so."""
+    if every == 1:
+        return group
+
+    def some(of: dict[str, Variable]) -> dict[str, Variable]:
+        cuts = {name: tuple(slice(None, None, every if dim == "time" else 1) for dim in of[name].dims) for name in of}
+        return {
+            name: each._replace(values=np.ascontiguousarray(each.values[cuts[name]])) if "time" in each.dims else each
+            for name, each in of.items()
+        }
+
+    count = len(group.coordinates["time"].values)
+    said = {"histories": f"one of {every} samples, of {count}; peaks, errors and comparisons are of all"}
+    return Group(some(group.variables), some(group.coordinates), group.attrs | said | {"histories_every": every})
+
+
 def known(variables: dict[str, Variable]) -> dict[str, Variable]:
     """The variables but those of which no value is known: a file has no column of nothing."""
     return {name: each for name, each in variables.items() if not _unknown(each.values)}

@@ -1,4 +1,4 @@
-"""Groups written to a netCDF-4 file by h5py alone.
+"""Groups written to a netCDF-4 file by h5py alone, and what such a file holds.
 
 netCDF-4 is HDF5 with rules: a dimension is a dimension scale, which is its coordinate variable where it has one; every
 variable has the scales of its dimensions attached; things are kept in the order of their creation. xarray and h5netcdf
@@ -8,18 +8,19 @@ know the rules as well, but importing the one and the bookkeeping of the other t
 from __future__ import annotations
 
 import os
-import re
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
 
+from gbeam.errors import InputError
 from gbeam.io.groups import Group, Variable
-from gbeam.printable import printable
+from gbeam.printable import storable
 
-_NOT_STORABLE = re.compile("[\0\ud800-\udfff]")
+_BOOKKEEPING = ("DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME", "_Netcdf4Dimid", "_Netcdf4Coordinates")
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable.{:10d}"  # the format's words
 
 
@@ -76,6 +77,46 @@ def image(groups: Mapping[str, Group]) -> bytes:
         return bytes(file.id.get_file_image())
 
 
+def contents(path: str) -> dict[str, Any]:
+    """Return the variables of a file by path, and the attributes of variables and groups, undecoded.
+
+    Raises
+    ------
+    InputError
+        If it is no netCDF-4 file.
+    """
+    try:
+        with h5py.File(path) as file:
+            return contents_of(file)
+    except MemoryError:
+        raise
+    except Exception:  # a damaged file leads HDF5 to any
+        fix = "give a result.nc written by gbeam run"
+        raise InputError(path, "is not a netCDF-4 file that can be read", fix) from None
+
+
+def contents_of(file: h5py.File) -> dict[str, Any]:
+    """Return the variables and the attributes of an open file; see :func:`contents`."""
+    variables: dict[str, Any] = {}
+    attrs = {"": _attrs(file)}
+
+    def visit(name: str, node: h5py.Group | h5py.Dataset) -> None:
+        attrs[name] = _attrs(node)
+        if isinstance(node, h5py.Dataset):
+            variables[name] = _present(node.asstr()[()] if node.dtype.kind == "O" else node[()])
+
+    file.visititems(visit)
+    return {"variables": variables, "attrs": attrs}
+
+
+def _attrs(node: h5py.Group | h5py.Dataset) -> dict[str, Any]:
+    return {name: _present(value) for name, value in node.attrs.items() if name not in _BOOKKEEPING}
+
+
+def _present(value: Any) -> Any:
+    return "" if isinstance(value, h5py.Empty) else value
+
+
 def _fill(place: h5py.Group, group: Group, dimensions: int) -> int:
     """Write a group's dimensions, then its variables; return the number of dimensions so far."""
     scales: dict[str, h5py.Dataset] = {}
@@ -117,8 +158,3 @@ def _create(place: h5py.Group, name: str, variable: Variable) -> h5py.Dataset:
 def _describe(place: h5py.Group | h5py.Dataset, key: str, value: str | float | np.ndarray) -> None:
     """Set an attribute: text, or numbers, which netCDF keeps in arrays of one dimension."""
     place.attrs[key] = storable(value) if isinstance(value, str) else np.atleast_1d(value)
-
-
-def storable(text: str) -> str:
-    """Return the text without what HDF5 cannot hold: null characters and lone surrogates, written out."""
-    return _NOT_STORABLE.sub(lambda match: printable(match[0]), text)

@@ -10,12 +10,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from gbeam.errors import InputError
-from gbeam.io.groups import Group, Variable
+from gbeam.io.groups import Group, Variable, thinned
 from gbeam.io.hdf5 import write_groups
 from gbeam.io.layout.comparisons import comparison_group
 from gbeam.io.layout.machine import plan_group
@@ -45,9 +44,6 @@ from gbeam.results.studies.shaping import ShapedCommand
 from gbeam.results.studies.sweep import Sweep
 from gbeam.results.study import ModelStudy, Study
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 FACTS = "facts"  # the variable of the root with the figures as JSON
 _GROUPS: dict[type, Callable[[Any], Group]] = {
     Response: response_group,
@@ -70,7 +66,7 @@ _GROUPS: dict[type, Callable[[Any], Group]] = {
 
 
 def save(result: Any, path: str | os.PathLike[str], facts: str = "") -> None:
-    """Write any result to a netCDF file, whole or not at all.
+    """Write any result to a netCDF file, whole or not at all; of histories so many samples as the result says.
 
     Parameters
     ----------
@@ -84,7 +80,7 @@ def save(result: Any, path: str | os.PathLike[str], facts: str = "") -> None:
     OSError
         If it cannot be written.
     """
-    groups = groups_of(result)
+    groups = groups_of(result, every=False)
     if facts:
         root = groups[""]
         text = Variable((), np.array(facts, dtype=object), {"long_name": "figures, as --json prints them"})
@@ -92,9 +88,16 @@ def save(result: Any, path: str | os.PathLike[str], facts: str = "") -> None:
     write_groups(groups, path)
 
 
-def groups_of(result: Result) -> dict[str, Group]:
-    """What a file holds of any result, by path: the root says what it is and where it comes from."""
-    groups = _study(result) if isinstance(result, Study) else {"": _GROUPS[type(result)](result)}
+def groups_of(result: Result, *, every: bool = True) -> dict[str, Group]:
+    """What a result holds, by path: the root says what it is and where it comes from.
+
+    Parameters
+    ----------
+    result : Result
+    every : bool
+        Every sample of its histories; else those that a file keeps.
+    """
+    groups = _study(result, every=every) if isinstance(result, Study) else {"": _group(result, every=every)}
     origin = result.provenance or Provenance()
     root = groups[""]
     about = provenance_attrs(origin) | {"warnings": "\n".join(result.warnings)}
@@ -114,34 +117,12 @@ def to_xarray(result: Any) -> Any:
     return xr.DataTree.from_dict({f"/{path}": each for path, each in every.items()}) if len(every) > 1 else every[""]
 
 
-def read(path: str | os.PathLike[str]) -> xr.DataTree:
-    """Read a file that :func:`write` or :func:`save` wrote, into memory.
-
-    Parameters
-    ----------
-    path : path
-
-    Returns
-    -------
-    xarray.DataTree
-        For example ``tree["motions/flight"]["displacement"].sel(axis="z")``.
-
-    Raises
-    ------
-    InputError
-        If there is no such file, or it is not netCDF.
-    """
-    import xarray as xr
-
-    try:
-        with xr.open_datatree(path, engine="h5netcdf") as tree:
-            return tree.load()
-    except OSError as error:
-        reason = error.strerror or "not a netCDF-4 file"
-        raise InputError(str(path), f"cannot be read ({reason})", "give a result.nc written by gbeam run") from None
+def _group(result: Result, *, every: bool) -> Group:
+    group = _GROUPS[type(result)](result)
+    return thinned(group, result.kept_every) if isinstance(result, (Response, Comparison)) and not every else group
 
 
-def _study(study: Study) -> dict[str, Group]:
+def _study(study: Study, *, every: bool) -> dict[str, Group]:
     attrs = {
         "title": study.title,
         "outcome": study.outcome,
@@ -150,6 +131,6 @@ def _study(study: Study) -> dict[str, Group]:
     }
     attrs |= {f"failure_{name}": f"{failed.outcome}: {failed.message}" for name, failed in study.failures.items()}
     groups = {"": Group({}, {}, attrs)}
-    groups |= {f"motions/{name}": response_group(response) for name, response in study.responses.items()}
-    groups |= {f"comparisons/{each.centrifuge}": comparison_group(each) for each in study.comparisons}
+    groups |= {f"motions/{name}": _group(response, every=every) for name, response in study.responses.items()}
+    groups |= {f"comparisons/{each.centrifuge}": _group(each, every=every) for each in study.comparisons}
     return groups

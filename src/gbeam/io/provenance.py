@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.guards.limits import BINARY_BYTES
+from gbeam.guards.limits import EMBEDDED
 from gbeam.io.groups import Variable
 from gbeam.results.provenance import Environment, Provenance, RecordFile
 
@@ -63,7 +63,7 @@ def provenance_of(variables: Mapping[str, Any], attrs: Mapping[str, Mapping[str,
     for name, values in variables.items():
         if name.startswith(RECORD) and "sha256" in attrs[name]:
             packed = values.tobytes()
-            content = zlib.decompressobj().decompress(packed, BINARY_BYTES) if len(packed) > 1 else None
+            content = zlib.decompressobj().decompress(packed, EMBEDDED) if len(packed) > 1 else None
             file, digest = (str(attrs[name][key]) for key in ("file", "sha256"))
             records.append(RecordFile(name.removeprefix(RECORD), file, digest, content))
     return Provenance(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.guards.limits import NODES, refuse_more
 from gbeam.mechanics.damping import damping_matrix
 from gbeam.mechanics.equations.inertia import Elasticity, Inertia
@@ -24,11 +26,12 @@ from gbeam.mechanics.models import KINDS, Kind, Model
 from gbeam.mechanics.structure import Sections, Source, Structure
 from gbeam.motion.profiles.piecewise import constant
 from gbeam.structure.beam import Beam
-from gbeam.structure.plausibility import implausible_beam
+from gbeam.structure.plausibility import implausible_beam, refuse_disparate
 
 Array = Any
 
 
+@typed
 def assemble(
     beam: Beam,
     model: Model | str,
@@ -57,14 +60,15 @@ def assemble(
     Raises
     ------
     InputError
-        If a station lies off the beam, the list of damping ratios does not fit the model, or the section has too many
-        stations to integrate between.
+        If a station lies off the beam, the list of damping ratios does not fit the model, the section has too many
+        stations to integrate between, or numbers do not hold a body or a spring beside the beam.
     """
     if isinstance(model, str):
         given = axial or y or z
         model = Model(model, axial, y, z, shapes or "clamped-free") if given else Model.of(model, shapes)
     row, counts = model.row, model.counts
     _refuse_traced_places(beam, adapted=model.shapes == "adapted")
+    refuse_disparate(beam)
     at = _stations(beam, stations)
     bodies = [m.at for m in beam.masses]
     adapted = model.shapes == "adapted"
@@ -114,7 +118,9 @@ def assembled(
     inertia, station = _inertia(beam, field, rule)
     elasticity = Elasticity(field, _rigidity(beam, rule))
     history = _history(beam)
-    work, loaded_at = _work(beam, field, rule, len(rule.node) + len(bodies)) if beam.loads else (None, np.zeros(0, int))
+    work, loaded_at = None, np.zeros(0, int)
+    if beam.loads:
+        work, loaded_at = load_work(beam, field, rule, len(rule.node) + len(bodies))
     places = inertia.places()
     c = coefficients(
         inertia.mass,
@@ -138,7 +144,7 @@ def assembled(
         elasticity=elasticity,
         field=field,
         first_station=first_station,
-        sections=_sections(beam, at, field, (inertia.mass, station), loaded_at, first_station),
+        sections=sections_of(beam, at, field, (inertia.mass, station), loaded_at, first_station),
         history=history,
         work=work,
         load_values=None if history is None else history(np.zeros(())),
@@ -146,6 +152,13 @@ def assembled(
         warnings=implausible_beam(beam, (counts[1] > 0, counts[2] > 0)),
         source=None if is_jax(c.mass) else Source(beam, shapes),
     )
+
+
+def at_stations(structure: Structure, stations: ArrayLike) -> Structure:
+    """Return the same structure of a beam with other stations of output, m; the tip is added last."""
+    assert structure.source is not None
+    model = Model(structure.kind, *structure.counts, structure.source.shapes)
+    return replace(assemble(structure.source.beam, model, stations), load_values=structure.load_values)
 
 
 def _nodes(kind: Kind, shapes: int) -> int:
@@ -166,9 +179,8 @@ def _refuse_traced_places(beam: Beam, *, adapted: bool) -> None:
     for where, value in places.items():
         if is_jax(value):
             raise InputError(where, "is traced by JAX, and the shapes are placed by its number", "give a number")
-    if adapted and holds_jax(
-        beam.material.youngs_modulus, beam.material.density, list(beam.section.dimensions.values())
-    ):
+    material, dimensions = beam.material, list(beam.section.dimensions.values())
+    if adapted and holds_jax(material.youngs_modulus, material.density, material.poissons_ratio, dimensions):
         fix = 'give shapes = "clamped-free"'
         raise InputError("shapes", "adapted to a beam that JAX traces would be traced with it", fix)
 
@@ -198,12 +210,12 @@ def _inertia(beam: Beam, field: Field, rule: Quadrature) -> tuple[Inertia, Array
 
 def _rigidity(beam: Beam, rule: Quadrature) -> Strains:
     """EA, EI_y, EI_z times the quadrature's weights, and the springs of the root."""
-    section, e = beam.section.at(rule.node), beam.material.youngs_modulus
     springs = [*beam.root.springs.values()]
+    axial, about_y, about_z = beam.rigidities(rule.node)
     return Strains(
-        e * section.area * rule.weight,
-        e * section.inertia_y * rule.weight,
-        e * section.inertia_z * rule.weight,
+        axial * rule.weight,
+        about_y * rule.weight,
+        about_z * rule.weight,
         namespace(*springs).asarray(springs, dtype=float) if springs else np.zeros(0),
     )
 
@@ -217,7 +229,7 @@ def _history(beam: Beam) -> LoadHistory | None:
     return LoadHistory(tuple((profile(load.force), profile(load.moment)) for load in beam.loads))
 
 
-def _work(beam: Beam, field: Field, rule: Quadrature, first: int) -> tuple[LoadWork, Array]:
+def load_work(beam: Beam, field: Field, rule: Quadrature, first: int) -> tuple[LoadWork, Array]:
     """Where the loads act: at a point of their own, counted from `first`, or on all quadrature nodes; those points."""
     station, which, weight = [], [], []
     for k, load in enumerate(beam.loads):
@@ -234,7 +246,7 @@ def _work(beam: Beam, field: Field, rule: Quadrature, first: int) -> tuple[LoadW
     return LoadWork(field.sampled(at), of_load, np.concatenate(weight), follower), at
 
 
-def _sections(
+def sections_of(
     beam: Beam,
     at: Array,
     field: Field,

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.namespace import as_array, is_jax, namespace
 from gbeam.errors import InputError
 from gbeam.numerics.solvers.eigen import symmetric_modes
 
@@ -32,8 +32,8 @@ def damping_matrix(ratio: Any, mass: Array, stiffness: Array) -> Array:
     InputError
         If a list of ratios does not fit the number of modes.
     """
-    n = mass.shape[0]
-    if np.ndim(ratio) and len(ratio) != n:
+    n, ratio = mass.shape[0], as_array(ratio)
+    if ratio.ndim and len(ratio) != n:
         raise InputError(
             "damping_ratio",
             f"lists {len(ratio)} values for the {n} modes of the model",
@@ -42,12 +42,12 @@ def damping_matrix(ratio: Any, mass: Array, stiffness: Array) -> Array:
     xp = namespace(ratio, mass, stiffness)
     if not is_jax(ratio) and not np.any(ratio):
         return xp.zeros((n, n))
-    if xp is not np and np.ndim(ratio) == 0:
+    if xp is not np and ratio.ndim == 0:
         # With one ratio for all, 2ζ M √(M⁻¹K): a function of matrices that has a derivative where frequencies meet.
         return 2 * ratio * _weighted_root(mass, stiffness)
     frequency, modes = rest_modes(mass, stiffness)
     weighted = mass @ modes
-    return (weighted * (2 * xp.asarray(ratio) * frequency)) @ weighted.T
+    return (weighted * (2 * ratio * frequency)) @ weighted.T
 
 
 def _weighted_root(mass: Array, stiffness: Array) -> Array:

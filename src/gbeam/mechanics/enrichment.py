@@ -65,7 +65,7 @@ class Enrichment:
         panels = len(quadrature(beam.length, 1, breaks).edges) - 1
         self.rule = quadrature(beam.length, max(PER_PANEL, -(-(NODES + 2 * max(own)) // panels)), breaks)
         self.spaces = space(beam, self.rule, 0), space(beam, self.rule, 1), space(beam, self.rule, 2)
-        self.families, self.new = enriched_shapes(beam, self.spaces, _own(structure, beam, self.rule), force)
+        self.families, self.new = enriched_shapes(beam, self.spaces, own_families(structure, beam, self.rule), force)
         self.beam = beam
         self._made: dict[Any, tuple[Structure, NDArray[np.int_]]] = {}
 
@@ -112,7 +112,7 @@ class Enrichment:
         return replace(rich, compiled=False), index.astype(int)
 
 
-def _own(structure: Structure, beam: Beam, rule: Quadrature) -> Families:
+def own_families(structure: Structure, beam: Beam, rule: Quadrature) -> Families:
     """The functions that the structure's shapes are."""
     if structure.source is not None and structure.source.shapes == "adapted":
         return adapted_shapes(beam, rule, structure.counts)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,7 @@ KINDS = {
 }
 
 
+@typed
 @dataclass(frozen=True)
 class Model:
     """Which model to use and how many coordinates.

@@ -13,6 +13,7 @@ from gbeam.motion.plausibility import implausible_values, times
 from gbeam.motion.protocol import Motion
 
 NOTICED = 0.01  # of the largest: a smaller share along a direction without shapes is none
+STIFF = 10.0  # times the other direction: from there on the driven one should be meant
 SLOWEST, FASTEST = 1e-3, 1e6  # Hz, of a beam's lowest natural frequency
 
 
@@ -49,7 +50,8 @@ def input_warnings(
             base = motion.base(times(motion, span))
         elif base is None and motion.free:
             base = motion.mount.base(*np.zeros((3, 1)))  # type: ignore[attr-defined]
-    return (*found, *_without_shapes(structure, base, where, span), *_twisting(structure, span))
+    found += _without_shapes(structure, base, where, span)
+    return (*found, *_twisting(structure, span), *_on_edge(structure, motion, base, where))
 
 
 def _frequency(structure: Structure) -> Iterator[str]:
@@ -91,6 +93,21 @@ def _twisting(structure: Structure, span: tuple[float, float]) -> Iterator[str]:
         yield (
             f"beam.loads[{i}].moment twists the beam about x with up to {values[i, 0]:.3g} N m: no model here has "
             "torsion, and none turns by it"
+        )
+
+
+def _on_edge(structure: Structure, motion: Any, base: Any, where: str) -> Iterator[str]:
+    """A beam that a hub speeds up or slows down against its stiff direction, where nothing says that this is meant."""
+    if motion is None or motion.kind != "hub" or motion.set or structure.source is None:
+        return
+    if not (motion.free or (base is not None and np.any(base.alpha_WB_B))):
+        return
+    beam = structure.source.beam
+    _, along_z, along_y = (np.mean(each) for each in beam.rigidities(np.linspace(0, beam.length, 41)))
+    if along_y > STIFF * along_z:
+        yield (
+            f"{where} bends the beam along y, in its plane of rotation, where it is {along_y / along_z:.3g} times as "
+            f'stiff as along z; give {where}.setting_angle = "90 deg" to turn it, or "0 deg" if this is meant'
         )
 
 

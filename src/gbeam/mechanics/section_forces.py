@@ -148,8 +148,10 @@ def sections(
 
 def _of_polynomial(structure: Structure, count: int, q: Array, qd: Array, qdd: Array) -> tuple[Any, ...]:
     """Paths of particles and of the last `count` stations, rotations there, places and rotations of loaded points."""
-    assert structure.field is not None
     particles, stations = structure.places.paths(q, qd, qdd), structure.station_places[-count:].paths(q, qd, qdd)
+    if structure.field is None:
+        xp = namespace(q)
+        return particles, stations, xp.broadcast_to(xp.eye(3), (len(q), count, 3, 3)), None
     loaded = None
     if structure.work is not None:
         loaded = structure.load_places.positions(q), structure.work.field.rotation(q)

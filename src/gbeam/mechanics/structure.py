@@ -11,6 +11,8 @@ import numpy as np
 from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
+from gbeam.guards.checks import positive
 from gbeam.mechanics.damping import damping_matrix, rest_modes
 from gbeam.mechanics.equations import sampled
 from gbeam.mechanics.equations.hub import FreeHub, free_hub, ground_of
@@ -18,7 +20,7 @@ from gbeam.mechanics.equations.linear import Coefficients, Geometric, LoadTerms,
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.rotation import Field
 from gbeam.mechanics.fields.taylor import Places
-from gbeam.structure.section import SectionValues
+from gbeam.numerics.solvers.eigen import positive_definite
 
 if TYPE_CHECKING:
     from gbeam.mechanics.equations.dalembert import Complete, CompleteHub
@@ -34,8 +36,8 @@ class Sections:
 
     Parameters
     ----------
-    values : SectionValues
-        Areas, second moments and extreme fibres, (s,) each.
+    values : SectionValues or None
+        Areas, second moments and extreme fibres, (s,) each; None of particles, cut nowhere but at the root and the tip.
     mass : (s, particles) kg
         Of the particles outboard of each section.
     loaded : (s, loaded points)
@@ -45,7 +47,7 @@ class Sections:
     fatigue_exponent : float
     """
 
-    values: SectionValues
+    values: Any
     mass: Array
     loaded: Array
     yield_strength: Any = None
@@ -144,6 +146,7 @@ class Structure:
         return f"Structure({self.kind}, {self.size} coordinates{f' ({shapes})' if shapes else ''}, {size})"
 
     @classmethod
+    @typed
     def of_particles(
         cls,
         mass: Array,
@@ -179,13 +182,28 @@ class Structure:
         Raises
         ------
         InputError
-            If neither or both of `second` and `geometric` are given.
+            If neither or both of `second` and `geometric` are given, an array has another shape, a mass is negative, or
+            a motion of the coordinates moves no mass.
         """
         if (second is None) == (geometric is None):
             raise InputError("second", "and geometric are one in place of the other", "give exactly one of them")
-        n = first.shape[-1]
+        k, n = len(mass), np.shape(first)[-1]
+        arrays = (mass, r0, first, stiffness, second)
+        names, shapes = ("mass", "r0", "first", "stiffness", "second"), ((k,), (k, 3), (k, 3, n), (n, n), (k, 3, n, n))
+        for name, value, shape in zip(names, arrays, shapes, strict=True):
+            if value is None:
+                continue
+            if np.shape(value) != shape:
+                raise InputError(name, f"has the shape {np.shape(value)}", f"give {shape}, as mass and first have")
+            if not (is_jax(value) or np.isfinite(value).all()):
+                raise InputError(name, "has values that are not finite", "give finite ones")
+        for i, each in enumerate(() if is_jax(mass) else mass):
+            positive(f"mass[{i}]", each, "kg", zero=True)
         places = Places(r0, first, np.zeros((*first.shape, n)) if second is None else second)
         c = coefficients(mass, places, stiffness, geometric=geometric)
+        if not (is_jax(c.mass) or positive_definite(c.mass)):
+            fix = "give the particles mass, or leave out the coordinates that move none"
+            raise InputError("mass", "leaves a motion of the coordinates without mass", fix)
         c = c.damped(damping_matrix(damping_ratio, c.mass, c.stiffness))
         chosen = np.array([-1]) if stations is None else np.asarray(stations)
         return cls(
@@ -219,7 +237,8 @@ class Structure:
     @property
     def traced(self) -> bool:
         """Whether JAX traces its values, which then have no numbers to decide anything by."""
-        return is_jax(self.coefficients.mass)
+        c = self.coefficients
+        return is_jax(c.mass) or is_jax(c.damping) or is_jax(c.stiffness)
 
     @cached_property
     def holds_jax(self) -> bool:
@@ -321,6 +340,10 @@ class Structure:
         """Derivatives of the stations' places with respect to coordinates `q` (n,), (s, 3, n)."""
         if self.linear:
             return self.station_places.slopes(q)
+        if is_jax(q):
+            import jax
+
+            return jax.jacfwd(self.station_field.position)(q)
         return sampled.slopes(self.station_field.position, q)
 
     def displacement(self, q: Array) -> Array:
@@ -331,7 +354,8 @@ class Structure:
 
     def tip(self, q: Array) -> Array:
         """Displacement of the tip, the last station, likewise at coordinates `q` (..., n), (..., 3) m."""
+        last = self.station_places[-1:]
         if self.linear:
-            last = self.station_places[-1:]
             return (last.positions(q) - last.r0)[..., 0, :]
-        return self.displacement(q)[..., -1, :]
+        assert self.field is not None
+        return (self.field.sampled(slice(-1, None)).position(q) - last.r0)[..., 0, :]

@@ -9,7 +9,9 @@ import numpy as np
 
 from gbeam.arrays.namespace import holds_jax
 from gbeam.guards.plausibility import implausible
+from gbeam.motion.bases.flight import Flight
 from gbeam.motion.protocol import Motion
+from gbeam.results.result import part_words
 
 SAMPLES = 501
 
@@ -35,6 +37,7 @@ def implausible_values(motion: Any, where: str, span: tuple[float, float], base:
     """The same of a motion that holds nothing of JAX."""
     if motion.kind == "centrifuge":
         yield from implausible(f"{where}.arm", "arm", float(motion.geometry.arm))
+        yield from _of_gravity(motion, where)
         return
     if motion.kind == "hub":
         yield from implausible(f"{where}.radius", "radius", motion.mount.radius)
@@ -42,10 +45,32 @@ def implausible_values(motion: Any, where: str, span: tuple[float, float], base:
             yield from implausible(f"{where}.gravity", "gravity", float(np.linalg.norm(motion.mount.gravity)))
     if motion.free:
         return
+    if isinstance(motion, Flight):
+        yield from _of_flight(motion, where, span)
     base = motion.base(times(motion, span)) if base is None else base
     rate, load = (float(np.linalg.norm(each, axis=-1).max()) for each in (base.w_WB_B, base.a_WO_B))
     odd = tuple(implausible(f"{where}.rate", "rate", rate))
     yield from odd or implausible(f"{where}.acceleration", "acceleration", load)
+
+
+def _of_flight(flight: Flight, where: str, span: tuple[float, float]) -> Iterator[str]:
+    """What was done to its record, and is odd in it; and that only a part of it is flown."""
+    if flight.record is not None:
+        yield from (f"{where}.record: {note}" for note in flight.record.notes)
+    whole = flight.part_of(*span) if span[1] > span[0] else None
+    if whole is not None:
+        yield f"{where}: {part_words(span, whole)} are flown, and the rest is left out"
+
+
+def _of_gravity(machine: Any, where: str) -> Iterator[str]:
+    """That a machine on the earth adds its own gravity to a load of which gravity is a part."""
+    record = machine.flight.record
+    if machine.geometry.gravity == 0 and record is not None and record.quantity == "specific-force":
+        yield (
+            f"{where}.gravity is false, and the record of its flight holds specific force, of which gravity is a part: "
+            "on a machine that stands on the earth the specimen feels 1 g more than is said here, at every instant; "
+            'give gravity = true, or quantity = "acceleration" on the record if it holds no gravity'
+        )
 
 
 def times(motion: Motion, span: tuple[float, float]) -> np.ndarray:

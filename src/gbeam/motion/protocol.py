@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Protocol, Self
+from typing import Any, ClassVar, Protocol, Self, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from gbeam.motion.bases.base import Base
 
 
+@runtime_checkable
 class Motion(Protocol):
     """A flight, a centrifuge or a hub.
 

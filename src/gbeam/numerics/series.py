@@ -13,6 +13,8 @@ from math import factorial
 from operator import add
 from typing import Any, ClassVar
 
+import numpy as np
+
 from gbeam.arrays.namespace import as_array, namespace
 from gbeam.arrays.tree import record
 
@@ -38,6 +40,12 @@ class Series:
         if len(given) <= order:
             given += [namespace(*derivatives).zeros_like(derivatives[0])] * (order + 1 - len(given))
         return cls(tuple(given))
+
+    @classmethod
+    def in_pieces(cls, function: Callable[[Any], Series], t: Any, count: int) -> Series:
+        """A function's series at times `t`, (n,) s, of so many pieces of them one after the other: it needs memory."""
+        pieces = [function(piece).coefficients for piece in np.array_split(t, count)]
+        return cls(tuple(np.concatenate(each) for each in zip(*pieces, strict=True)))
 
     @property
     def order(self) -> int:

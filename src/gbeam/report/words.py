@@ -5,13 +5,12 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 from gbeam.printable import json_printable
-from gbeam.results.parts.errors import ErrorEstimate, FrequencyErrors
+from gbeam.results.parts.errors import PARTS, ErrorEstimate, FrequencyErrors
 from gbeam.results.parts.section_forces import yield_margin
 from gbeam.results.result import Result
 
@@ -48,6 +47,11 @@ def xyz(values: Iterable[float]) -> dict[str, float]:
     return {axis: float(value) for axis, value in zip("xyz", values, strict=True)}
 
 
+def ends(span: tuple[float, float]) -> dict[str, float]:
+    """First and last time of a stretch, s."""
+    return dict(zip(("start", "end"), span, strict=True))
+
+
 def xyz_lists(values: Any) -> dict[str, list[float]]:
     """The components of vectors (s, 3) by their axes, each a list."""
     return dict(zip("xyz", values.T.tolist(), strict=True))
@@ -69,7 +73,7 @@ def percent(share: float) -> str:
 
 def error_words(errors: ErrorEstimate) -> str:
     """An error with what it is made of, the largest first: ``0.29 % (model 0.27, shapes 0.01, step 0.002)``."""
-    parts = {"model": errors.model, "shapes": errors.shapes, "step": errors.step}
+    parts = {"model": errors.model, "shapes": errors.shapes, "step": errors.step, "beam theory": errors.beam_theory}
     known = sorted(((size, name) for name, size in parts.items() if size > 0), reverse=True)
     made = ", ".join(f"{name} {number(100 * size, 2)}" for size, name in known)
     return f"{percent(errors.total)}{f' ({made})' if len(known) > 1 else ''}"
@@ -78,9 +82,8 @@ def error_words(errors: ErrorEstimate) -> str:
 def frequency_errors(errors: FrequencyErrors | None, count: int) -> list[dict[str, float]]:
     """Errors of frequencies, mode by mode; NaN where there is no estimate."""
     if errors is None:
-        return [dict.fromkeys(("shapes", "model", "total"), math.nan) for _ in range(count)]
-    parts = asdict(errors)
-    return [{name: float(values[i]) for name, values in parts.items()} for i in range(count)]
+        return [dict.fromkeys(PARTS, math.nan) for _ in range(count)]
+    return [{name: float(values[i]) for name, values in errors.parts.items()} for i in range(count)]
 
 
 def tidy(values: Iterable[float], size: float) -> list[float]:

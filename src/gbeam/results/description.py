@@ -1,4 +1,4 @@
-"""What a case means: a frozen record of its beam, model, motions and settings before anything is simulated."""
+"""What a case means: frozen records of its beam, model, motions, flights' records and settings before any run."""
 
 from __future__ import annotations
 
@@ -6,6 +6,72 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from gbeam.results.result import Floats, Part
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True, repr=False)
+class Level(Part):
+    """The longest stretch of a record in which the load is near 1 g.
+
+    Parameters
+    ----------
+    start, end : float
+        s.
+    load : tuple of float
+        Its mean, base axes, m/s².
+    """
+
+    start: float
+    end: float
+    load: Vector
+
+
+@dataclass(frozen=True, repr=False)
+class RecordSummary(Part):
+    """What a flight's record is, as its file has it, in base axes.
+
+    Parameters
+    ----------
+    file : str
+    columns : tuple of str
+        Of x, y and z, with their signs.
+    quantity : str
+        specific-force or acceleration.
+    samples : int
+        Of the part that is flown.
+    rate : float
+        Hz.
+    span, whole : tuple of float
+        First and last time of the part, and of the file, s.
+    smallest, largest : tuple of float
+        Of x, y and z, m/s².
+    peak : tuple of float
+        The load where it is largest in size, m/s².
+    time_of_peak : float
+        s.
+    level : Level or None
+        None where the load is nowhere near 1 g, or is no specific force.
+    clock : str
+        Time of day of the file at zero seconds; empty where its times are numbers.
+    notes : tuple of str
+        What was done to it, and what looks odd.
+    """
+
+    file: str
+    columns: tuple[str, str, str]
+    quantity: str
+    samples: int
+    rate: float
+    span: tuple[float, float]
+    whole: tuple[float, float]
+    smallest: Vector
+    largest: Vector
+    peak: Vector
+    time_of_peak: float
+    level: Level | None = None
+    clock: str = ""
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -31,6 +97,8 @@ class Description(Part):
         Kind of each motion, by name.
     tracks : mapping of str to str
         Name of the flight that each centrifuge tracks.
+    records : mapping of str to RecordSummary
+        Of the flights that have one, by name.
     start, duration : float
         Of the response, s.
     step : float or None
@@ -56,6 +124,7 @@ class Description(Part):
     step: float | None
     integrator: str
     tracks: Mapping[str, str] = field(default_factory=dict)
+    records: Mapping[str, RecordSummary] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
     distributions: Mapping[str, str] = field(default_factory=dict)
 

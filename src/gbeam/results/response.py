@@ -79,7 +79,8 @@ class Response(Figured):
     model : str
         The model's kind.
     outcome : str
-        done, diverged or not converged.
+        done, diverged (the displacement left what the model can mean, or the beam lost its stability for so long that
+        whatever deviates grows a thousandfold) or not converged.
     message : str
         What happened and what to try, where the outcome is not done.
     time : (t,) s
@@ -120,6 +121,10 @@ class Response(Figured):
         The beam's shape at some of the times, and what carries it; None where there is no beam.
     bodies : (b, 3)
         Centres of mass of the bodies on the undeformed beam, from the root, base axes, m.
+    whole : tuple of float or None
+        First and last time of the whole flight, s, of which this is a part; None where it is all of it.
+    kept_every : int
+        How many samples of the histories make one in a file.
     """
 
     name: str
@@ -150,6 +155,8 @@ class Response(Figured):
     initial: str = ""
     outline: Outline | None = None
     bodies: Floats = field(default_factory=lambda: np.empty((0, 3)))
+    whole: tuple[float, float] | None = None
+    kept_every: int = 1
 
     @property
     def tip(self) -> Floats:

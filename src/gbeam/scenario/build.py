@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.results.imitation.criteria import RULES
 from gbeam.scenario import schema
 from gbeam.scenario.load import change, load
@@ -17,11 +18,13 @@ if TYPE_CHECKING:
     from gbeam.analysis.response.settings import ResponseSettings
     from gbeam.analysis.study.case import Case
     from gbeam.mechanics.models import Model
-    from gbeam.motion import Centrifuge, PiecewiseLinear
+    from gbeam.motion import Centrifuge, Motion
+    from gbeam.results.description import RecordSummary
     from gbeam.structure.beam import Beam
     from gbeam.structure.loads import Load
 
 
+@typed
 def read_scenario(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Case:
     """Read a scenario file and make its objects.
 
@@ -70,8 +73,8 @@ def build(scenario: schema.Scenario, *, ahead: bool = False) -> Case:
     parts = Collector()
     beam = _beam(parts, scenario.beam)
     model = _model(parts, scenario.model)
-    motions, records = flights_and_hubs(parts, scenario)
-    response = _response(parts, scenario.response, [_covered(r) for r in records])
+    motions = flights_and_hubs(parts, scenario)
+    response = _response(parts, scenario.response, motions)
     if response is not None:
         span = (response.start, response.start + response.duration)
         motions |= centrifuges(parts, scenario, motions, span, ahead=ahead)
@@ -140,8 +143,8 @@ def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
     from gbeam.scenario.build_motion import centrifuges, flights_and_hubs
 
     parts = Collector()
-    motions, records = flights_and_hubs(parts, scenario)
-    response = _response(parts, scenario.response, [_covered(r) for r in records])
+    motions = flights_and_hubs(parts, scenario)
+    response = _response(parts, scenario.response, motions)
     if response is not None:
         span = (response.start, response.start + response.duration)
         motions |= centrifuges(parts, scenario, motions, span, ahead=True)
@@ -223,21 +226,12 @@ def _model(parts: Collector, table: schema.Model) -> Model | None:
     return parts.attempt("model", Model, table.kind, *counts, table.shapes or "clamped-free")
 
 
-def _covered(record: PiecewiseLinear) -> tuple[float, float, float]:
-    """First and last time of a record, and the end of its last interval: 1600 samples at 100 Hz are 16 s of flight."""
-    import numpy as np
-
-    times = np.asarray(record.times)
-    return float(times[0]), float(times[-1]), float(2 * times[-1] - times[-2])
-
-
-def _response(
-    parts: Collector, table: schema.Response, records: list[tuple[float, float, float]]
-) -> ResponseSettings | None:
-    """Settings; `records` are what they cover, and without a duration the time that all do."""
+def _response(parts: Collector, table: schema.Response, motions: Mapping[str, Motion]) -> ResponseSettings | None:
+    """Settings; without a duration the time that the records among the motions cover."""
     from gbeam import integrate
     from gbeam.analysis.response.initial import Initial
     from gbeam.analysis.response.settings import ResponseSettings
+    from gbeam.motion import Flight
 
     schemes: dict[str, Callable[..., object]] = {
         "newmark": integrate.newmark,
@@ -247,21 +241,21 @@ def _response(
     if table.parameters:
         # Made for its refusals only: the analysis makes its own.
         parts.attempt("response", schemes[table.integrator], **table.parameters)
-    start = max((first for first, _, _ in records), default=0.0)
+    records = {name: each for name, each in motions.items() if isinstance(each, Flight) and each.record is not None}
+    covered = [extent for each in records.values() if (extent := each.acceleration.extent) is not None]
+    start = max((first for first, _ in covered), default=0.0)
     duration = table.duration
     if duration is None:
-        if not records:
+        if not covered:
             return None  # the record could not be read, which is among the errors
-        duration = min(last for _, last, _ in records) - start
+        duration = min(last for _, last in covered) - start
         if duration <= 0:
             parts.errors.append(InputError("response", "has no time that all records cover", "add a duration"))
             return None
     end = start + duration
-    last = min((end_of_interval for _, _, end_of_interval in records), default=end)
-    if end > last + 1e-6 * duration:
-        problem = f"reaches to {end:g} s, and the record ends at {last:g} s"
-        fix = f"give {last - start:g} s or less, or leave it out"
-        parts.errors.append(InputError("response.duration", problem, fix))
+    for name, flight in records.items():
+        assert flight.record is not None
+        parts.errors += _not_all_of(name, flight.record, start, end, given=table.duration is not None)
     if table.residual_from is not None and not start <= table.residual_from < end:
         fix = f"give a time from {start:g} s to {end:g} s"
         parts.errors.append(InputError("response.residual_from", f"is {table.residual_from:g} s", fix))
@@ -280,4 +274,28 @@ def _response(
         tolerance=table.tolerance,
         estimate=table.estimate,
         residual_from=table.residual_from,
+        histories=None if isinstance(table.histories, str) else table.histories,
     )
+
+
+def _not_all_of(name: str, record: RecordSummary, start: float, end: float, *, given: bool) -> Iterator[InputError]:
+    """Refuse a run, s, that goes beyond a record, or leaves out what is not left out on the record itself."""
+    first, last = record.span
+    interval = (1 + 1e-6) / record.rate  # 1600 samples at 100 Hz are 16 s of flight
+    flown = f"{last - first:.6g} s" if first == 0 else f"{last - first:.6g} s, from {first:.6g} to {last:.6g} s"
+    whole = f"the record of {name!r} lasts {flown}"
+    if end > last + interval:
+        fix = f"give {last + 1 / record.rate - start:g} s or less, or leave it out"
+        yield InputError("response.duration", f"reaches to {end:g} s, and {whole}", fix)
+        return
+    asked = [f'from = "{start:g} s"'] if start > first + interval else []
+    asked += [f'to = "{end:g} s"'] if end < last - interval else []
+    if asked:
+        part = f"ask for a part on the record itself: {', '.join(asked)} in [motion.{name}.record]"
+        where = "response.duration" if given else f"motion.{name}.record"
+        problem = (
+            f"is {end - start:g} s, and {whole}"
+            if given
+            else f"is longer than the flights that are run together: {whole}"
+        )
+        yield InputError(where, f"{problem}: the rest would be left out", f"leave it out, or {part}" if given else part)

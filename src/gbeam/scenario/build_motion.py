@@ -13,10 +13,8 @@ from gbeam.scenario.placing import Collector
 from gbeam.scenario.schema.record import Record
 
 
-def flights_and_hubs(
-    parts: Collector, scenario: schema.Environments
-) -> tuple[dict[str, motion.Motion], list[motion.PiecewiseLinear]]:
-    """Build the motions that need no other, by name; and the records that were read for them.
+def flights_and_hubs(parts: Collector, scenario: schema.Environments) -> dict[str, motion.Motion]:
+    """Build the motions that need no other, by name.
 
     Parameters
     ----------
@@ -25,7 +23,6 @@ def flights_and_hubs(
     scenario : Environments
     """
     built: dict[str, motion.Motion | None] = {}
-    records: list[motion.PiecewiseLinear] = []
     for name, table in scenario.motion.items():
         where = f"motion.{name}"
         if isinstance(table, schema.Hub):
@@ -33,12 +30,11 @@ def flights_and_hubs(
         elif isinstance(table, schema.Flight):
             if table.record is not None:
                 record = parts.attempt(where, _record, table.record)
-                records += [record.acceleration] if record is not None else []
                 built[name] = None if record is None else _recorded(record, table.smoothing)
             else:
                 load = components(parts, f"{where}.acceleration", table.acceleration)
                 built[name] = None if load is None else motion.Flight(acceleration=_rounded(load, table.smoothing))
-    return {name: one for name, one in built.items() if one is not None}, records
+    return {name: one for name, one in built.items() if one is not None}
 
 
 def centrifuges(
@@ -78,16 +74,19 @@ def centrifuge_of(
     table: schema.Centrifuge, flight: motion.Flight, span: tuple[float, float], ahead: bool = True
 ) -> motion.Centrifuge:
     """Build one centrifuge for the flight that it tracks, over a span, s; InputError if it cannot."""
-    machine = None if table.machine is None else motion.machines[table.machine]
-    example = motion.MachineLimits() if machine is None else machine.limits
+    arm, idle, example = table.arm, table.idle, motion.MachineLimits()
+    if table.machine is not None:
+        machine = motion.machines[table.machine]
+        arm, idle = machine.arm if arm is None else arm, machine.idle if idle is None else idle
+        example = machine.limits
     return motion.Centrifuge(
         flight,
-        arm=machine.arm if table.arm is None and machine is not None else table.arm,
+        arm=arm,
         control_point=table.control_point,
         inverse=table.inverse,
         limits=_limits(table.limits, example),
         gravity=table.gravity,
-        idle=table.idle,
+        idle=idle,
         smoothing=table.smoothing,
         mounting=table.mounting,
         start=table.start,
@@ -192,6 +191,7 @@ def _record(table: Record) -> FlightRecord:
         conditioning=conditioning,
         time_unit=table.time_unit,
         quantity=table.quantity,
+        span=(table.begin, table.to),
     )
 
 
@@ -199,7 +199,6 @@ def _recorded(record: FlightRecord, smoothing: float) -> motion.Flight:
     return motion.Flight(
         acceleration=_rounded(record.acceleration, smoothing),
         rates=None if record.rates is None else body_rates(record.rates, smoothing),
-        notes=record.notes,
     )
 
 

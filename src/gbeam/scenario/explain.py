@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
 from gbeam.scenario.schema import Scenario
-from gbeam.scenario.schema.common.fields import Quantity, Table
+from gbeam.scenario.schema.common.fields import Quantity, Table, fields_of
 from gbeam.scenario.text.diagnostics import Diagnostic
 from gbeam.scenario.text.source import Mark, Source
 from gbeam.scenario.values.kinds import KINDS
@@ -58,7 +58,7 @@ def _words(source: Source, error: ErrorDetails, path: Path) -> tuple[str, str, M
         return f"{path[-1]} is missing", _add(str(path[-1]), field), "key", path[:-1]
     if what == "extra_forbidden":
         table = _table(source, path[:-1])
-        names = table.model_fields if table else {}
+        names = fields_of(table) if table else {}
         return "unknown key", advise(str(path[-1]), names, listed="the keys here are"), "key", path
     if what in ("union_tag_invalid", "union_tag_not_found") and isinstance(value, dict):
         tag, choices = _choices(field)
@@ -120,7 +120,7 @@ def _field(source: Source, path: Path) -> FieldInfo | None:
     if len(path) == 2 and path[0] == "motion":
         path = path[:1]
     table = _table(source, path[:-1])
-    return table.model_fields.get(str(path[-1])) if table and path else None
+    return fields_of(table).get(str(path[-1])) if table and path else None
 
 
 def _table(source: Source, path: Path) -> type[Table] | None:

@@ -9,12 +9,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from gbeam.guards.limits import EMBEDDED
 from gbeam.results.provenance import Provenance, RecordFile
 from gbeam.scenario.schema import Environments, Flight
 from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import parse
-
-EMBEDDED = 8 * 2**20  # bytes of a record that go with the result; of a larger one only its hash
 
 
 def provenance(scenario: Environments, command: str = "") -> Provenance:

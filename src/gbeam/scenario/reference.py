@@ -124,9 +124,11 @@ class _Page:
         return {"string": "text", "boolean": "`true` or `false`", "integer": "whole number"}[schema["type"]] + least
 
     def _quantity(self, schema: dict[str, Any], of: str) -> str:
-        name, number, others = schema["x-quantity"], schema["anyOf"][0], schema["anyOf"][1:]
+        name, (number, _, *others) = schema["x-quantity"], schema["anyOf"]
         sign = ", positive" if "exclusiveMinimum" in number else ", 0 or more" if "minimum" in number else ""
-        words = "".join(f', or `"{each["const"]}"`' for each in others if "const" in each)
+        words = "".join(
+            f', or `"{each["const"]}"`' if "const" in each else f", or {each['description']}" for each in others
+        )
         if of and name == of:
             return "the quantity" + words
         if of and name == self._rate_of(of):

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
+from gbeam.guards.limits import BINARY_BYTES, existing, refuse_large_file
 from gbeam.io.netcdf import FACTS
 from gbeam.io.provenance import RECORD
 from gbeam.results.provenance import Provenance, present
@@ -32,6 +34,7 @@ _ABOUT = {"date", "command", "overrides", "scenario_sha256"}
 _ABOUT |= {"gbeam_version", "python_version", "platform", "dependencies"}
 
 
+@typed
 def rerun(path: str | os.PathLike[str]) -> Reproduction:
     """Compute a result again, from the scenario and the records that its file holds, and compare every number.
 
@@ -107,9 +110,10 @@ def records(origin: Provenance, folder: Path) -> Iterator[str]:
     for number, record in enumerate(origin.records):
         if record.content is None:
             file = Path(record.file).resolve()
-            content = file.read_bytes() if file.is_file() else None
-            if content is None:
+            if not existing(file):
                 raise InputError(record.file, "is not where it was", "put the record back: it was too large to be kept")
+            refuse_large_file(record.file, file, BINARY_BYTES, "put the record back")
+            content = file.read_bytes()
         else:
             # Not by a name that the file gives: it could lead elsewhere.
             content, file = record.content, folder / f"{number}{Path(record.file).suffix}"

@@ -48,12 +48,13 @@ terms = [
 ]
 # or, instead of the acceleration, a measured record: a CSV file beside this one, "-" in front changes a sign
 # record = { file = "flight.csv", time = "time_s", x = "n_x_g", y = "-n_y_g", z = "-n_z_g", unit = "g" }
+# and then no duration under [response]; from = "2 s" and to = "9 s" in the record ask for a part of it
 
 # What the centrifuge does so that the control point feels the same: from standstill to standstill.
 [motion.centrifuge]
 kind = "centrifuge"
 tracks = "flight"  # the motion it imitates
-machine = "specimen-3.3m"  # an example: arm and limits. Of your own: arm = "3.3 m", and under limits below
+machine = "specimen-3.3m"  # an example: arm, idle and limits. Of your own: arm = "3.3 m", and under limits below
 # point of the beam that feels the flight's load, from the root: by `gbeam place`, which writes it here with --write
 control_point = "220 mm"
 gravity = true  # the target is specific force (what accelerometers measure); gravity is there on the machine
@@ -78,7 +79,7 @@ peaks = "3 %"  # error of every peak of the load above idle
 # srs = "3 dB"  # of the tip's shock response spectra; damage = 2; spread, tolerance: docs/verdict.md
 
 [response]
-duration = "6 s"  # may be left out beside a record
+duration = "6 s"  # of the profile above; leave it out beside a record, which is flown to its end
 stations = ["100 mm", "200 mm", "300 mm"]  # positions from the root for the output
 step = "auto"
 integrator = "newmark"  # newmark | hht | generalized-alpha | gauss | adaptive

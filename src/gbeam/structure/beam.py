@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from gbeam.arrays.namespace import is_jax
+from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.guards.plausibility import possible
 from gbeam.structure.bodies import PointMass
@@ -19,6 +21,7 @@ from gbeam.structure.section import Section
 from gbeam.structure.support import Root
 
 
+@typed
 @dataclass(frozen=True)
 class Beam:
     """A straight beam along x, held at x = 0 by the moving base.
@@ -72,8 +75,10 @@ class Beam:
                 f"cover {stations[0]:g} to {stations[-1]:g} m",
                 f"start at the root, 0 m, and end at the tip, {self.length:g} m",
             )
+        if self.section.plate and self.material.poissons_ratio is None:
+            raise InputError("material.poissons_ratio", "is missing, and a plate bends by it", "give it, such as 0.3")
         ratios = self.damping_ratio
-        if ratios is None or is_jax(ratios):
+        if ratios is None or holds_jax(ratios):
             return
         if isinstance(ratios, str):
             raise InputError("damping_ratio", f"is {ratios!r}", "give a number, or one for each mode")
@@ -90,3 +95,9 @@ class Beam:
     def body_centres(self) -> NDArray[np.float64]:
         """Centres of mass of the bodies on the undeformed beam, from the root, axes of the section, (b, 3) m."""
         return np.array([[m.at + m.offset[0], *m.offset[1:]] for m in self.masses], dtype=float).reshape(-1, 3)
+
+    def rigidities(self, x: ArrayLike) -> tuple[Any, Any, Any]:
+        """EA N, EI_y and EI_z N m² at positions `x`, m: against stretching, bending along z and bending along y."""
+        section, modulus = self.section.at(x), self.material.youngs_modulus
+        flat = 1 / (1 - self.material.ratio**2) if self.section.plate else 1.0
+        return modulus * section.area, modulus * section.inertia_y * flat, modulus * section.inertia_z

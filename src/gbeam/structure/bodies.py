@@ -8,9 +8,11 @@ from typing import Any
 
 from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 
 
+@typed
 @dataclass(frozen=True)
 class PointMass:
     """A mass, or a small rigid body, fixed to the beam.

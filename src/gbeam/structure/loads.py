@@ -8,13 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gbeam.arrays.namespace import is_jax
 from gbeam.errors import InputError
-from gbeam.guards.checks import positive
+from gbeam.guards.arguments import typed
+from gbeam.guards.checks import array, positive
 
 if TYPE_CHECKING:
     from gbeam.motion import Profile
 
 
+@typed
 @dataclass(frozen=True)
 class Load:
     """A force and a moment at a station, or per length along the whole beam.
@@ -47,5 +50,6 @@ class Load:
         for name, value in (("force", self.force), ("moment", self.moment)):
             if value is None or callable(value):
                 continue
-            if np.shape(value) != (3,) or not np.isfinite(np.asarray(value, dtype=float)).all():
+            components = array(name, value)
+            if components.shape != (3,) or not (is_jax(components) or np.isfinite(components).all()):
                 raise InputError(name, f"is {value!r}", "give three finite components, along x, y and z, or a profile")

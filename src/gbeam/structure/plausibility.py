@@ -1,4 +1,4 @@
-"""What is implausible in a beam: its values one by one, and one against the other."""
+"""What is implausible in a beam, or impossible: its values one by one, and one against the other."""
 
 from __future__ import annotations
 
@@ -8,13 +8,22 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import holds_jax
+from gbeam.errors import InputError
 from gbeam.guards.plausibility import implausible
 from gbeam.structure.beam import Beam
 from gbeam.structure.section import KINDS
 
-STOCKIEST, SLENDEREST = 20.0, 2e5  # length over radius of gyration; a rectangle's is 0.29 of its thickness
+STOCKIEST, SLENDEREST = 5.0, 2e5  # length over radius of gyration; a rectangle's is 0.29 of its thickness
 LEANEST, FATTEST = 1e-3, 30.0  # radius of gyration over the root of the area
 HEAVIEST = 1e3  # mass of a body over the beam's
+SLOWEST, FASTEST = 500.0, 3e4  # speed of sound in a solid denser than polymers, and in any, m/s
+DENSE = 2300.0  # kg/m^3
+WEAKEST, STRONGEST = 1e-5, 0.1  # yield strength over Young's modulus of a solid stiffer than rubber
+STIFF = 1e9  # Pa
+LIMPEST, STIFFEST = 3e-3, 3.0  # shear modulus over Young's, of composites too
+
+_UNITS = "are their units right?"
+DISPARATE = 1e9  # of two sizes: of the smaller one's sixteen digits so many are lost in a sum
 
 
 def implausible_beam(beam: Beam, bends: tuple[bool, bool]) -> tuple[str, ...]:
@@ -26,13 +35,44 @@ def implausible_beam(beam: Beam, bends: tuple[bool, bool]) -> tuple[str, ...]:
     bends : tuple of bool
         Whether it can bend along y, and along z, in its model: slenderness matters there only.
     """
-    bodies = [(body.mass, body.inertia, body.offset) for body in beam.masses]
-    material = (beam.material.density, beam.material.youngs_modulus, beam.material.yield_strength)
-    if holds_jax(beam.length, material, list(beam.section.dimensions.values()), bodies, beam.damping_ratio):
+    if _traced(beam):
         return ()
     alone = (*_material(beam), *_dimensions(beam))
     # A wrong unit makes ratios wrong as well: they are looked at where each value is plausible.
-    return (*alone, *_bodies(beam)) if alone else (*_proportions(beam, bends), *_bodies(beam))
+    return (*alone, *_bodies(beam)) if alone else (*_matching(beam), *_proportions(beam, bends), *_bodies(beam))
+
+
+def refuse_disparate(beam: Beam) -> None:
+    """Raise InputError where a body or a spring is so large or small that numbers do not hold it beside the beam."""
+    if _traced(beam) or holds_jax(list(beam.root.springs.values())):
+        return
+    for where, value, unit, what, share in _shares(beam):
+        if share > DISPARATE or (what == "stiffness" and share < 1 / DISPARATE):
+            problem = f"is {value:g} {unit}: a {what} {share:.3g} times the beam's"
+            raise InputError(where, problem, f"numbers hold both up to {DISPARATE:g} times; is its unit right?")
+
+
+def _shares(beam: Beam) -> Iterator[tuple[str, float, str, str, float]]:
+    """Bodies and springs: place, value, unit, what it brings, and how often the beam has as much."""
+    mass, length, inertia = _mass(beam), beam.length, "moment of inertia"
+    for i, body in enumerate(beam.masses):
+        turned, arm, own = mass * length**2, max(map(abs, body.offset)), max(body.inertia)
+        yield f"masses[{i}].mass", body.mass, "kg", "mass", body.mass / mass
+        yield f"masses[{i}].inertia", own, "kg m^2", inertia, own / turned
+        yield f"masses[{i}].offset", arm, "m", inertia, body.mass * arm**2 / turned
+    section = beam.section.at(np.asarray(beam.section.stations or (0.0,)))
+    axial, modulus = np.mean(section.area) / length, beam.material.youngs_modulus
+    turning = np.sqrt(np.mean(section.inertia_y) * np.mean(section.inertia_z)) / length
+    for name, value in beam.root.springs.items():
+        unit, stiffness = ("N m/rad", turning) if name.startswith("rotation") else ("N/m", turning / length**2)
+        stiffness = axial if name == "translation_x" else stiffness
+        yield f"root.{name}", value, unit, "stiffness", float(value / (modulus * stiffness))
+
+
+def _traced(beam: Beam) -> bool:
+    bodies = [(body.mass, body.inertia, body.offset) for body in beam.masses]
+    values = beam.length, [*vars(beam.material).values()], [*beam.section.dimensions.values()], beam.damping_ratio
+    return holds_jax(*values, bodies)
 
 
 def _material(beam: Beam) -> Iterator[str]:
@@ -59,6 +99,28 @@ def _dimensions(beam: Beam) -> Iterator[str]:
             )
 
 
+def _matching(beam: Beam) -> Iterator[str]:
+    """Properties of the material that no material has together, each plausible alone."""
+    material = beam.material
+    modulus, density = float(material.youngs_modulus), float(material.density)
+    speed = float(np.sqrt(modulus / density))
+    soft = density > DENSE and speed < SLOWEST
+    if soft or speed > FASTEST:
+        slip = f"did you mean {modulus / 1e6:g} GPa?" if soft and SLOWEST < speed * 1e3**0.5 < FASTEST else _UNITS
+        yield (
+            f"beam.material.youngs_modulus is {modulus / 1e6:g} MPa, of {density:g} kg/m^3, so that sound travels at "
+            f"{speed:.3g} m/s: nothing as {'dense is as soft' if soft else 'light is as stiff'}; {slip}"
+        )
+    limits = (
+        ("yield_strength", material.yield_strength, WEAKEST, STRONGEST, modulus > STIFF),
+        ("shear_modulus", material.shear_modulus, LIMPEST, STIFFEST, True),
+    )
+    for name, value, least, most, judged in limits:
+        if value is not None and judged and not soft and not least < value / modulus < most:
+            times = f"{value / modulus:.3g} times youngs_modulus, {modulus / 1e6:g} MPa"
+            yield f"beam.material.{name} is {value / 1e6:g} MPa, {times}; {_UNITS}"
+
+
 def _proportions(beam: Beam, bends: tuple[bool, bool]) -> Iterator[str]:
     at = np.asarray(beam.section.stations or (0.0,))
     section = beam.section.at(at)
@@ -72,11 +134,7 @@ def _proportions(beam: Beam, bends: tuple[bool, bool]) -> Iterator[str]:
             )
         elif bent and not STOCKIEST < beam.length / gyration.max() < SLENDEREST:
             ratio = beam.length / gyration.max()
-            why = (
-                "the theory of slender beams, without shear, is then wrong by several per cent"
-                if ratio < STOCKIEST
-                else "nothing as slender carries its own weight"
-            )
+            why = "no beam is as stout" if ratio < STOCKIEST else "nothing as slender carries its own weight"
             yield (
                 f"beam.length, {beam.length:g} m, is {ratio:.3g} times the section's radius of gyration along {axis}, "
                 f"{gyration.max():.3g} m: {why}; are the units of length and section right?"

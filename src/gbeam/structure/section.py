@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -13,71 +12,33 @@ from numpy.typing import ArrayLike, NDArray
 from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.errors import InputError
-from gbeam.guards.checks import positive
+from gbeam.guards.arguments import typed
+from gbeam.guards.checks import array, positive
 from gbeam.guards.plausibility import possible
+from gbeam.structure.shapes import ROUND, SHAPES
 
 Array = NDArray[np.float64]
 
 
-def rectangle(width: Array, thickness: Array) -> tuple[Array, ...]:
-    """Area, I_y, I_z, extreme fibres along y and z of a rectangle: width along y, thickness along z."""
-    return width * thickness, width * thickness**3 / 12, thickness * width**3 / 12, width / 2, thickness / 2
-
-
-def circle(diameter: Array) -> tuple[Array, ...]:
-    """Area, I_y, I_z, extreme fibres of a solid circle."""
-    inertia = np.pi * diameter**4 / 64
-    return np.pi * diameter**2 / 4, inertia, inertia, diameter / 2, diameter / 2
-
-
-def tube(diameter: Array, wall: Array) -> tuple[Array, ...]:
-    """Area, I_y, I_z, extreme fibres of a round tube: outer diameter and wall thickness."""
-    inner = diameter - 2 * wall
-    inertia = np.pi * (diameter**4 - inner**4) / 64
-    return np.pi * (diameter**2 - inner**2) / 4, inertia, inertia, diameter / 2, diameter / 2
-
-
-def general(
-    area: Array,
-    inertia_y: Array,
-    inertia_z: Array,
-    extreme_fibre_y: Array | None = None,
-    extreme_fibre_z: Array | None = None,
-) -> tuple[Array, ...]:
-    """Area and second moments as given; the extreme fibres, if unknown, are NaN (no stress is known)."""
-    unknown = namespace(area).full_like(area, np.nan)
-    return (
-        area,
-        inertia_y,
-        inertia_z,
-        unknown if extreme_fibre_y is None else extreme_fibre_y,
-        unknown if extreme_fibre_z is None else extreme_fibre_z,
-    )
-
-
-def _listed(value: Any) -> tuple[Any, ...]:
+def _listed(name: str, value: Any) -> tuple[Any, ...]:
     """Values of a dimension, one per station; JAX's stay what they are."""
     if is_jax(value):
         return tuple(value) if value.ndim else (value,)
-    return tuple(float(x) for x in np.atleast_1d(np.asarray(value, dtype=float)))
+    return tuple(float(x) for x in np.atleast_1d(array(name, value)))
 
 
-Rule = Callable[..., tuple[Array, ...]]
-SHAPES: dict[str, tuple[Rule, tuple[str, ...], tuple[str, ...]]] = {
-    "rectangle": (rectangle, ("width", "thickness"), ()),
-    "circle": (circle, ("diameter",), ()),
-    "tube": (tube, ("diameter", "wall"), ()),
-    "general": (general, ("area", "inertia_y", "inertia_z"), ("extreme_fibre_y", "extreme_fibre_z")),
-}
-ROUND = ("circle", "tube")
 KINDS = {
     "area": "area",
     "inertia_y": "second moment",
     "inertia_z": "second moment",
+    "torsion_constant": "second moment",
+    "shear_coefficient_y": "shear coefficient",
+    "shear_coefficient_z": "shear coefficient",
 }  # of plausible values; else section
-_UNITS = {"area": "m²", "inertia_y": "m⁴", "inertia_z": "m⁴"}
+_UNITS = {"area": "m²", "second moment": "m⁴", "shear coefficient": "(a number)"}
 
 
+@typed
 @dataclass(frozen=True)
 class Section:
     """Cross-section of the beam, constant or given at stations and interpolated linearly in its dimensions.
@@ -92,6 +53,9 @@ class Section:
         The shape's dimensions, one value per station (m; ``general``: m², m⁴, m).
     stations : sequence of float
         Positions along x from the root, m, strictly increasing; empty for a constant section.
+    plate : bool
+        Whether the section bends along z as a plate that is kept from bending across, EI_y/(1 − ν²): a strip so wide,
+        or bent so far, that it stays flat across its width. The material's Poisson's ratio is needed then.
 
     Notes
     -----
@@ -101,11 +65,12 @@ class Section:
     shape: str
     dimensions: dict[str, tuple[Any, ...]]
     stations: tuple[float, ...] = ()
+    plate: bool = False
 
     def __post_init__(self) -> None:
         if self.shape not in SHAPES:
             raise InputError("shape", f"is {self.shape!r}", f"choose one of {', '.join(SHAPES)}")
-        _, required, optional = SHAPES[self.shape]
+        required, optional = SHAPES[self.shape].required, SHAPES[self.shape].optional
         for name in required:
             if name not in self.dimensions:
                 raise InputError(name, "is missing", f"a {self.shape} section needs {', '.join(required)}")
@@ -118,7 +83,8 @@ class Section:
         for name, values in self.dimensions.items():
             for i, value in enumerate(values):
                 place = f"{name}[{i}]" if len(values) > 1 else name
-                possible(place, KINDS.get(name, "section"), positive(place, value, _UNITS.get(name, "m")))
+                kind = KINDS.get(name, "section")
+                possible(place, kind, positive(place, value, _UNITS.get(kind, "m")))
             if len(values) != count:
                 raise InputError(
                     name, f"has {len(values)} value(s) for {count} station(s)", "give one value per station"
@@ -138,9 +104,19 @@ class Section:
             for outer, wall in zip(self.dimensions["diameter"], self.dimensions["wall"], strict=True):
                 if not (is_jax(outer) or is_jax(wall)) and 2 * wall > outer:
                     raise InputError("wall", f"is {wall:g} m", f"at most half the diameter {outer:g} m")
+        if self.plate and self.shape in ROUND:
+            raise InputError("plate", f"is given of a {self.shape}", "only a rectangle or a general section is flat")
+        if self.plate and self.shape == "rectangle":
+            for width, thickness in zip(self.dimensions["width"], self.dimensions["thickness"], strict=True):
+                if not (is_jax(width) or is_jax(thickness)) and width < thickness:
+                    fix = "exchange width and thickness and turn the section, or leave plate out"
+                    raise InputError("plate", f"is given of {width:g} m across and {thickness:g} m thick", fix)
 
     @classmethod
-    def of(cls, shape: str, stations: ArrayLike = (), **dimensions: ArrayLike | None) -> Section:
+    @typed
+    def of(
+        cls, shape: str, stations: ArrayLike = (), *, plate: bool = False, **dimensions: ArrayLike | None
+    ) -> Section:
         """Build a section from scalars or sequences; a scalar holds at every station.
 
         Parameters
@@ -149,6 +125,8 @@ class Section:
             A key of ``SHAPES``.
         stations : array_like
             Positions from the root, m; empty for a constant section.
+        plate : bool
+            Whether it bends along z as a plate, EI_y/(1 − ν²).
         **dimensions : array_like or None
             As the shape takes them; None counts as not given.
 
@@ -161,12 +139,15 @@ class Section:
         values: dict[str, tuple[Any, ...]] = {}
         for name, value in dimensions.items():
             if value is not None:
-                listed = _listed(value)
+                listed = _listed(name, value)
                 values[name] = listed * len(at) if len(listed) == 1 and at else listed
-        return cls(shape, values, at)
+        return cls(shape, values, at, plate)
 
     @classmethod
-    def rectangle(cls, width: ArrayLike, thickness: ArrayLike, stations: ArrayLike = ()) -> Section:
+    @typed
+    def rectangle(
+        cls, width: ArrayLike, thickness: ArrayLike, stations: ArrayLike = (), *, plate: bool = False
+    ) -> Section:
         """Rectangle.
 
         Parameters
@@ -175,10 +156,13 @@ class Section:
             Along y and along z, the soft direction, m; numbers, or one per station.
         stations : array_like
             Positions from the root at which the other values are listed, m; empty for a constant section.
+        plate : bool
+            Whether it bends along z as a plate, EI_y/(1 − ν²).
         """
-        return cls.of("rectangle", stations, width=width, thickness=thickness)
+        return cls.of("rectangle", stations, plate=plate, width=width, thickness=thickness)
 
     @classmethod
+    @typed
     def circle(cls, diameter: ArrayLike, stations: ArrayLike = ()) -> Section:
         """Solid circle.
 
@@ -192,6 +176,7 @@ class Section:
         return cls.of("circle", stations, diameter=diameter)
 
     @classmethod
+    @typed
     def tube(cls, diameter: ArrayLike, wall: ArrayLike, stations: ArrayLike = ()) -> Section:
         """Round tube.
 
@@ -205,6 +190,7 @@ class Section:
         return cls.of("tube", stations, diameter=diameter, wall=wall)
 
     @classmethod
+    @typed
     def general(
         cls,
         area: ArrayLike,
@@ -213,6 +199,11 @@ class Section:
         stations: ArrayLike = (),
         extreme_fibre_y: ArrayLike | None = None,
         extreme_fibre_z: ArrayLike | None = None,
+        *,
+        torsion_constant: ArrayLike | None = None,
+        shear_coefficient_y: ArrayLike | None = None,
+        shear_coefficient_z: ArrayLike | None = None,
+        plate: bool = False,
     ) -> Section:
         """Any section, by its properties: numbers, or one per station each.
 
@@ -226,28 +217,48 @@ class Section:
             Positions from the root at which the other values are listed, m; empty for a constant section.
         extreme_fibre_y, extreme_fibre_z : array_like, optional
             Of the outermost fibres along y and along z, m; without them there is no stress.
+        torsion_constant : array_like, optional
+            J of Saint-Venant's torque GJ α', m⁴; without it no error from twist is stated.
+        shear_coefficient_y, shear_coefficient_z : array_like, optional
+            Of the shear forces k G A γ along y and z; 1/2 is assumed in the stated error where they are left out.
+        plate : bool
+            Whether it bends along z as a plate, EI_y/(1 − ν²).
         """
         return cls.of(
             "general",
             stations,
+            plate=plate,
             area=area,
             inertia_y=inertia_y,
             inertia_z=inertia_z,
             extreme_fibre_y=extreme_fibre_y,
             extreme_fibre_z=extreme_fibre_z,
+            torsion_constant=torsion_constant,
+            shear_coefficient_y=shear_coefficient_y,
+            shear_coefficient_z=shear_coefficient_z,
         )
 
     def at(self, x: ArrayLike) -> SectionValues:
         """Area, second moments and extreme fibres at positions `x`, m (any shape)."""
-        where = np.asarray(x, dtype=float)
-        rule = SHAPES[self.shape][0]
+        area, inertia_y, inertia_z, fibre_y, fibre_z = SHAPES[self.shape].values(**self._local(x))
+        return SectionValues(area, inertia_y, inertia_z, fibre_y, fibre_z, round=self.shape in ROUND)
+
+    def torsion_constant(self, x: ArrayLike) -> Array:
+        """J at positions `x`, m⁴; NaN where it is not known."""
+        return np.asarray(SHAPES[self.shape].torsion(**self._local(x)))
+
+    def shear_coefficients(self, x: ArrayLike, poissons_ratio: float) -> tuple[Array, Array]:
+        """Coefficients of the shear forces k G A γ along y and z at positions `x`, m, for a `poissons_ratio`."""
+        y, z = SHAPES[self.shape].shear(poissons_ratio, **self._local(x))
+        return np.broadcast_to(y, np.shape(x)), np.broadcast_to(z, np.shape(x))
+
+    def _local(self, x: ArrayLike) -> dict[str, Any]:
+        """The dimensions at positions."""
+        where = array("x", x)
         xp = namespace(*self.dimensions.values(), *(v[0] for v in self.dimensions.values()))
         if self.stations:
-            local = {k: xp.interp(where, np.asarray(self.stations), xp.asarray(v)) for k, v in self.dimensions.items()}
-        else:
-            local = {k: v[0] + xp.zeros(where.shape) for k, v in self.dimensions.items()}
-        area, inertia_y, inertia_z, fibre_y, fibre_z = rule(**local)
-        return SectionValues(area, inertia_y, inertia_z, fibre_y, fibre_z, round=self.shape in ROUND)
+            return {k: xp.interp(where, np.asarray(self.stations), xp.asarray(v)) for k, v in self.dimensions.items()}
+        return {k: v[0] + xp.zeros(where.shape) for k, v in self.dimensions.items()}
 
 
 @record
@@ -263,6 +274,11 @@ class SectionValues:
     extreme_fibre_y: Array
     extreme_fibre_z: Array
     round: bool = static(default=False)
+
+    def __getitem__(self, chosen: Any) -> SectionValues:
+        """The properties of some of the sections."""
+        names = [each.name for each in fields(self) if each.name != "round"]
+        return replace(self, **{name: getattr(self, name)[chosen] for name in names})
 
     def extents(self) -> tuple[Array, Array]:
         """Extents along y and z, m; without extreme fibres those of the rectangle with the same second moments."""

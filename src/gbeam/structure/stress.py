@@ -1,4 +1,4 @@
-"""Normal stress over a section under axial force and bending moments."""
+"""Normal stress and strain over a section under axial force and bending moments."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import namespace
+from gbeam.structure.beam import Beam
 from gbeam.structure.section import SectionValues
 
 Array = Any
@@ -42,6 +43,18 @@ def extreme_stresses(values: SectionValues, force: Array, moment: Array) -> tupl
     return mean + bending, mean - bending
 
 
+def fibre_stress(values: SectionValues, force: Array, moment: Array, y: Array, z: Array) -> Array:
+    """Normal stress N/A + M_y z/I_y − M_z y/I_z at places (y, z) m in sections (s,), (..., s) Pa."""
+    along_z, along_y = moment[..., 1] * z / values.inertia_y, moment[..., 2] * y / values.inertia_z
+    return force[..., 0] / values.area + along_z - along_y
+
+
+def fibre_strain(beam: Beam, at: Array, force: Array, moment: Array, y: Array, z: Array) -> Array:
+    """Normal strain, (..., s), at places (y, z) m in a beam's sections `at` (s,) m, by what these carry."""
+    axial, along_z, along_y = beam.rigidities(at)
+    return force[..., 0] / axial + moment[..., 1] * z / along_z - moment[..., 2] * y / along_y
+
+
 def worst_fibre(values: SectionValues, section: int, force: Array, moment: Array) -> Array:
     """Normal stress over time at that extreme fibre of one section where it ranges most.
 
@@ -59,12 +72,9 @@ def worst_fibre(values: SectionValues, section: int, force: Array, moment: Array
     (t,) Pa
         N/A + M_y z/I_y − M_z y/I_z at one of the corners (±y, ±z), or of 24 points around a round section.
     """
-    here = (values.area, values.inertia_y, values.inertia_z, values.extreme_fibre_y, values.extreme_fibre_z)
-    area, inertia_y, inertia_z, fibre_y, fibre_z = (float(each[section]) for each in here)
-    mean = force[:, section, 0] / area
-    along_z, along_y = moment[:, section, 1] * fibre_z / inertia_y, moment[:, section, 2] * fibre_y / inertia_z
+    here = values[section]
     points = [(1, 1), (1, -1), (-1, 1), (-1, -1)]
     if values.round:
         points = [(np.cos(a), np.sin(a)) for a in 2 * np.pi * np.arange(_ROUND) / _ROUND]
-    y, z = max(points, key=lambda point: np.ptp(mean + point[1] * along_z - point[0] * along_y))
-    return mean + z * along_z - y * along_y
+    fibres = [(y * here.extreme_fibre_y, z * here.extreme_fibre_z) for y, z in points]
+    return max((fibre_stress(here, force[:, section], moment[:, section], y, z) for y, z in fibres), key=np.ptp)

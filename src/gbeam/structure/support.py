@@ -7,11 +7,13 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 
 Array = NDArray[np.float64]
 
 
+@typed
 @dataclass(frozen=True)
 class Root:
     """Springs between the base and the root; where there is none, the root is rigid in that direction.

@@ -11,6 +11,7 @@ import numpy as np
 
 from gbeam.analysis.study.case import Case
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.results.result import Floats
 from gbeam.results.studies.fit import Fit, FittedColumn
 from gbeam.scenario.build import scenario_of
@@ -29,6 +30,7 @@ _TIED = 0.7  # correlation of residuals with the next ones, which noise does not
 _VISIBLE = 1e-5  # of the largest datum: residuals that are less are rounding
 
 
+@typed
 def fit(
     scenario: str | os.PathLike[str] | Case,
     data: str | os.PathLike[str],
@@ -83,7 +85,7 @@ def fit(
     """
     base = scenario_of(scenario, overrides)
     assert base.source is not None  # it was read from a file
-    if isinstance(free, str) or not free:
+    if not free:
         raise InputError(OPTION, "is missing", 'name values: --free "beam.material.youngs_modulus"')
     parameters = named(base, free, OPTION)
     question = Question(base.source, "run", motion, at)
@@ -113,16 +115,17 @@ def _described(model: Fitted, parameters: Sequence[PhysicalValue], limits: Float
     at_bound = (found.values - limits[:, 0] < reach) | (limits[:, 1] - found.values < reach)
     inside = np.flatnonzero(~at_bound)
     variance = float(np.sum(((fitted - measured) * found.weights) ** 2)) / (count - size)
-    covariance, condition = np.full((size, size), np.nan), np.nan
+    spread, condition = np.full((size, size), np.nan), np.nan  # covariance over variance, which may be zero
     if inside.size:
         jacobian = found.jacobian[:, inside]
         condition = tell_apart(jacobian * found.values[inside], [parameters[int(k)] for k in inside])
         lengths = np.linalg.norm(jacobian, axis=0)
         unit = jacobian / lengths
-        covariance[np.ix_(inside, inside)] = variance * np.linalg.inv(unit.T @ unit) / np.outer(lengths, lengths)
-    errors = np.sqrt(np.diag(covariance))
+        spread[np.ix_(inside, inside)] = np.linalg.inv(unit.T @ unit) / np.outer(lengths, lengths)
+    sizes = np.sqrt(np.diag(spread))
+    errors = np.sqrt(variance) * sizes
     half = float(stdtrit(count - size, 0.975)) * errors
-    correlation = covariance / np.outer(errors, errors)
+    correlation = spread / np.outer(sizes, sizes)
     columns = _columns(measurement, fitted, found.before, size)
     return Fit(
         title="",
@@ -133,7 +136,7 @@ def _described(model: Fitted, parameters: Sequence[PhysicalValue], limits: Float
         values=found.values,
         errors=errors,
         intervals=np.stack([found.values - half, found.values + half], axis=1),
-        covariance=covariance,
+        covariance=variance * spread,
         correlation=correlation,
         bounds=limits,
         at_bound=at_bound,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from collections.abc import Mapping, Sequence
@@ -10,9 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.analysis.control.gauges import surface_gauge
 from gbeam.analysis.study.case import Case
 from gbeam.errors import InputError
-from gbeam.motion.bases.records.table import Table
+from gbeam.io.tables.table import Table
 from gbeam.motion.bases.records.text import read_text
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
@@ -20,6 +22,7 @@ from gbeam.results.study import Study
 from gbeam.scenario.values.kinds import KINDS
 from gbeam.scenario.values.suggest import advise
 from gbeam.scenario.values.units import UnitError, argument
+from gbeam.structure.stress import fibre_strain
 
 OPTION = "--data"
 _TIME = ("time", "time_s", "t")
@@ -32,29 +35,11 @@ _KINDS = {
     "hub.angle": "angle",
     "hub.rate": "angular rate",
 }
-_STRAIN = re.compile(r"strain\.(-?)([yz])@(.+)")
+_STRAIN = re.compile(r"strain\.(-?[yz])@(.+)")
 _MODAL = {"frequency": "frequency", "damping_ratio": "ratio"}
 _USUAL = {"history": 1e-2, "frequency": 1e-3, "damping_ratio": 0.1}  # noise, of the largest or of the value
 _LEAST = 1e-6  # of that: the noise of data that were computed
 _MICROSTRAIN = {"µm/m": 1e-6, "um/m": 1e-6, "microstrain": 1e-6}
-
-
-@dataclass(frozen=True)
-class Gauge:
-    """A strain gauge along the beam, on the extreme fibre towards ±y or ±z.
-
-    Parameters
-    ----------
-    at : float
-        From the root, m.
-    axis : str
-        y or z.
-    sign : float
-    """
-
-    at: float
-    axis: str
-    sign: float
 
 
 @dataclass(frozen=True)
@@ -72,7 +57,10 @@ class Measured:
     values : (t,)
         SI.
     unit : str
-    gauge : Gauge or None
+    at : float
+        Of a strain gauge from the root, m.
+    face : str
+        On which it is, such as ``-z``; empty where the quantity is no strain.
     """
 
     name: str
@@ -80,7 +68,8 @@ class Measured:
     quantity: str
     values: Floats
     unit: str
-    gauge: Gauge | None = None
+    at: float = math.nan
+    face: str = ""
 
 
 @dataclass(frozen=True)
@@ -137,7 +126,7 @@ class Measurement:
 
     def instrumented(self, case: Case) -> Case:
         """The case with the gauges among its stations."""
-        gauges = {each.gauge.at for each in self.columns if each.gauge is not None and each.gauge.at > 0}
+        gauges = {each.at for each in self.columns if each.face and each.at > 0}
         return replace(case, stations=tuple(sorted({*case.stations, *gauges}))) if gauges else case
 
     def read(self, case: Case, answer: Any) -> Floats:
@@ -204,7 +193,9 @@ def _check_clock(at: Floats, path: str, modal: bool, case: Case) -> None:
             raise InputError(OPTION, f"{path} has modes that are no numbers 1, 2, …", "number each mode once")
         return
     start, end = case.response.start, case.response.start + case.response.duration
-    if len(at) < 2 or (np.diff(at) <= 0).any():
+    if len(at) < 2:
+        raise InputError(OPTION, f"{path} has one time", "give two or more, which increase")
+    if (np.diff(at) <= 0).any():
         raise InputError(OPTION, f"{path} has times that do not increase", "sort its rows")
     slack = 1e-9 * (end - start)
     if at[0] < start - slack or at[-1] > end + slack:
@@ -224,9 +215,8 @@ def _column(table: Table, name: str, unit: str, modal: bool, case: Case, motion:
         raise InputError("--motion", f"is {of!r}", f"the scenario has {', '.join(case.motions)}")
     strain = _STRAIN.fullmatch(quantity)
     if strain is not None:
-        gauge = Gauge(_position(strain[3], case), strain[2], -1.0 if strain[1] else 1.0)
         factor = _MICROSTRAIN.get(unit) or _factor(unit, "ratio", name)
-        return Measured(name, of, "strain", values * factor, "", gauge)
+        return Measured(name, of, "strain", values * factor, "", _position(strain[2], strain[1], case), strain[1])
     if quantity not in _KINDS:
         raise InputError(OPTION, f"has the column {name!r}", advise(quantity, [*_KINDS, "strain.z@10 mm"]))
     if quantity.startswith("hub.") and case.motions[of].kind != "hub":
@@ -251,13 +241,15 @@ def _factor(unit: str, kind: str, name: str) -> float:
         raise InputError(OPTION, f"has the column {name!r} in {unit!r}: {error.problem}", error.hint) from None
 
 
-def _position(text: str, case: Case) -> float:
+def _position(text: str, face: str, case: Case) -> float:
+    """Where a gauge on a face of the beam is, m."""
     try:
         at = argument(text.strip(), "length")
+        surface_gauge(case.beam, at, face)
     except UnitError as error:
         raise InputError(OPTION, f"has a gauge at {text!r}: {error.problem}", error.hint) from None
-    if not 0 <= at <= case.beam.length:
-        raise InputError(OPTION, f"has a gauge at {at:g} m, off the beam", f"give 0 to {case.beam.length:g} m")
+    except InputError as error:
+        raise InputError(OPTION, f"has a gauge that {error.problem}", error.fix) from None
     return at
 
 
@@ -283,18 +275,9 @@ def _values(case: Case, response: Response, column: Measured) -> Floats:
         assert response.hub is not None
         return np.asarray(getattr(response.hub, axis))
     assert response.loads is not None
-    if column.gauge is None:
+    if not column.face:
         return np.asarray(getattr(response.loads, kind)[:, "xyz".index(axis)])
-    return _strain(case, response, column.gauge)
-
-
-def _strain(case: Case, response: Response, gauge: Gauge) -> Floats:
-    """Normal strain at an extreme fibre, from what the section carries."""
-    loads = response.loads
-    assert loads is not None
+    loads, gauge = response.loads, surface_gauge(case.beam, column.at, column.face)
     k = int(np.argmin(np.abs(loads.stations - gauge.at)))
-    section, modulus = case.beam.section.at(gauge.at), case.beam.material.youngs_modulus
-    force, (_, about_y, about_z) = loads.section_force[:, k, 0], loads.section_moment[:, k].T
-    bending = about_y / section.inertia_y if gauge.axis == "z" else -about_z / section.inertia_z
-    fibre = getattr(section, f"extreme_fibre_{gauge.axis}")
-    return np.asarray((force / section.area + gauge.sign * fibre * bending) / modulus)
+    carried = loads.section_force[:, k], loads.section_moment[:, k]
+    return np.asarray(fibre_strain(case.beam, gauge.at, *carried, gauge.y, gauge.z))

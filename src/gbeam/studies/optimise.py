@@ -13,6 +13,7 @@ import numpy as np
 
 from gbeam.analysis.study.case import Case
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.results.studies.optimum import BROKEN, Optimum, Requirement
 from gbeam.results.study import Study
 from gbeam.scenario.build import scenario_of
@@ -33,6 +34,7 @@ LIMITS = "limits"
 _BOUND = re.compile(r"\s*(\S+)\s*(<=|>=)\s*(.+?)\s*")
 
 
+@typed
 def optimise(
     scenario: str | os.PathLike[str] | Case,
     minimise: str,
@@ -90,7 +92,7 @@ def optimise(
     """
     base = scenario_of(scenario, overrides)
     assert base.source is not None  # it was read from a file
-    if isinstance(over, str) or not over:
+    if not over:
         raise InputError("--over", "is missing", 'name values: --over "motion.centrifuge.control_point"')
     parameters = named(base, over, "--over")
     limits = np.array([bounds_of(each, bounds or {}, "--over") for each in parameters])

@@ -13,18 +13,18 @@ import numpy as np
 
 from gbeam.analysis.study.case import Case
 from gbeam.errors import GbeamError, InputError
+from gbeam.guards.arguments import typed
 from gbeam.results.result import Flags, Floats
 from gbeam.results.studies.sensitivity import Sensitivity
 from gbeam.results.study import Study
 from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
 from gbeam.scenario.values.paths import path_text
-from gbeam.scenario.values.suggest import advise
 from gbeam.studies.derivatives import Neighbourhood, Progress, Slopes
 from gbeam.studies.parameters import PhysicalValue, physical_values
 from gbeam.sweeps.computing.evaluate import Question
-from gbeam.sweeps.figures.answers import VERBS, Facts, study_facts
-from gbeam.sweeps.figures.measures import Keys, find, unit_at, value_at
+from gbeam.sweeps.figures.answers import Facts, study_facts
+from gbeam.sweeps.figures.measures import Keys, find, own_keys, unit_at, value_at
 
 OPTION = "--of"
 _SHARE = 0.05  # by which the slopes on either side may differ
@@ -33,6 +33,7 @@ _SMOOTH = 1e-3  # of the figure over the value: what is less is rounding, or the
 _NOT_PHYSICAL = re.compile(r"(^|\.)(steps|step|errors|error_estimate|accepted|passed|yielded|margin_estimate)(\.|\[|$)")
 
 
+@typed
 def sensitivity(
     scenario: str | os.PathLike[str] | Case,
     of: Sequence[str],
@@ -83,9 +84,7 @@ def sensitivity(
     """
     base = scenario_of(scenario, overrides)
     assert base.source is not None  # it was read from a file
-    if verb not in VERBS:
-        raise InputError("--verb", f"is {verb!r}", advise(verb, VERBS))
-    if isinstance(of, str) or not of:
+    if not of:
         raise InputError(OPTION, "is missing", 'name figures: --of "tip.z.max_abs, verdict.tip"')
     question = Question(base.source, verb, motion, at)
     chosen, refused = _possible(question, physical_values(base, parameters), strict=bool(parameters))
@@ -154,11 +153,10 @@ def figure(facts: Facts, name: str, option: str = OPTION) -> Keys:
         keys = find(facts, name)
     except InputError as error:
         raise InputError(option, error.problem, error.fix) from None
-    path = path_text(keys)
     node: Any = facts
     for key in keys:
         node = node[key]
-    if isinstance(node, (bool, int)) or _NOT_PHYSICAL.search(path):
+    if isinstance(node, (bool, int)) or _NOT_PHYSICAL.search(path_text(own_keys(keys))):
         raise InputError(option, f"{name!r} is a count, a flag or an estimate, without a derivative", "name a figure")
     if not math.isfinite(value_at(facts, keys)):
         raise InputError(option, f"{name!r} has no value in this scenario", "name a figure that has one")

@@ -15,6 +15,7 @@ from gbeam.analysis.control.shaping import profile_of, shape_command
 from gbeam.analysis.study.case import Case
 from gbeam.analysis.study.model_study import counterpart
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.mechanics.models import KINDS
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.piecewise import constant
@@ -27,6 +28,7 @@ _POINTS = 401  # of a table: straight lines between them are off by 1e-4 of a sm
 _AFTER = 1.25  # times the command: how long a scenario of it lasts at least
 
 
+@typed
 def shape(
     scenario: str | os.PathLike[str] | Case,
     *,

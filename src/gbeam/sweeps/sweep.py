@@ -13,17 +13,16 @@ import numpy as np
 
 from gbeam.analysis.study.case import Case
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.guards.limits import HISTORY_BYTES, WORKERS, refuse_more
 from gbeam.results.studies.sweep import Sweep
 from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
-from gbeam.scenario.values.suggest import advise
 from gbeam.sweeps.cases import read_cases
 from gbeam.sweeps.computing.batches import Task, may_share, width
 from gbeam.sweeps.computing.cluster import on_scheduler
 from gbeam.sweeps.computing.evaluate import Function, Question, Row
-from gbeam.sweeps.computing.workers import in_processes, processes, serially
-from gbeam.sweeps.figures.answers import VERBS
+from gbeam.sweeps.computing.workers import processes, serially
 from gbeam.sweeps.figures.histories import OPTION as HISTORY
 from gbeam.sweeps.figures.histories import TIMES
 from gbeam.sweeps.journal import Journal, identity, opened
@@ -36,6 +35,7 @@ _LONGEST = 256  # cases in a batch
 Progress = Callable[[int, int, int], None]
 
 
+@typed
 def sweep(
     scenario: str | os.PathLike[str] | Case,
     over: Mapping[str, Any] | Sequence[str] = (),
@@ -92,7 +92,7 @@ def sweep(
     seed : int
         The same seed draws the same samples.
     workers : int
-        Processes of this machine.
+        Processes of this machine; measures that are functions have to be at the top level of a module.
     scheduler : str, optional
         Address of a Dask scheduler, whose workers compute instead.
     store : path, optional
@@ -125,10 +125,8 @@ def sweep(
         verb, samples = verb or table.verb, table.samples if samples is None else samples
         sampler, seed = sampler or table.sampler, table.seed if seed is None else seed
     verb = verb or "run"
-    if verb not in VERBS:
-        raise InputError("--verb", f"is {verb!r}", advise(verb, VERBS))
     names = tuple(measure)
-    if not (names or histories) or isinstance(measure, str):
+    if not (names or histories):
         raise InputError("--measure", "is missing", 'name figures: --measure "tip.z.max_abs, verdict.tip"')
     over_time = _over_time(tuple(histories), times, verb)
     if not 1 <= workers <= WORKERS:
@@ -143,7 +141,7 @@ def sweep(
     known = {row.case for row in done}
     missing = [number for number in range(len(cases)) if number not in known] if known else range(len(cases))
     several = workers > 1 and scheduler is None and len(missing) > 1
-    with processes(workers) if several else nullcontext() as pool:
+    with processes(workers, functions) if several else nullcontext() as pool:
         if journal is not None and done:
             begun = go_on(question, cases, missing, done, journal.figures, over_time)
         else:
@@ -158,17 +156,17 @@ def sweep(
         if scheduler is not None:
             found = on_scheduler(question, batches, scheduler)
         else:
-            found = serially(question, batches) if pool is None else in_processes(question, batches, workers, pool)
+            found = serially(question, batches) if pool is None else pool.rows(question, batches)
         rows = [*done, *begun.rows]
         if journal is None:
             rows += _collected(found, rows, len(cases), progress)
         else:
             journal.figures = begun.figures
-            with journal.writing(new=not done):
+            with journal.writing(resume=resume):
                 journal.add(begun.rows)
                 rows += _collected(found, rows, len(cases), progress, journal)
     made = assembled(base.title, cases, names, begun, rows, seed)
-    return replace(made, provenance=provenance(base))
+    return replace(made, warnings=() if journal is None else journal.warnings, provenance=provenance(base))
 
 
 def _over_time(histories: tuple[str, ...], times: int, verb: str) -> OverTime:
@@ -186,11 +184,15 @@ def _texts(over: Mapping[str, Any] | Sequence[str]) -> list[str]:
     """What varies, as texts."""
     if not isinstance(over, Mapping):
         return list(over)
-    return [f"{path}={values if isinstance(values, str) else _listed(values)}" for path, values in over.items()]
+    return [f"{path}={values if isinstance(values, str) else _listed(path, values)}" for path, values in over.items()]
 
 
-def _listed(values: Iterable[Any]) -> str:
-    return ", ".join(value if isinstance(value, str) else repr(np.asarray(value).item()) for value in values)
+def _listed(path: str, values: Iterable[Any]) -> str:
+    try:
+        return ", ".join(value if isinstance(value, str) else repr(np.asarray(value).item()) for value in values)
+    except (TypeError, ValueError):
+        fix = "give a list of numbers or texts, or a range as a text, 1 m:12 m:12"
+        raise InputError("--over", f"{path} is {values!r}", fix) from None
 
 
 def _confirm(count: int, seconds: float, confirmed: bool) -> None:

@@ -25,7 +25,7 @@ export function flightsOf(form: Entry[]): Flight[] {
 const AXES = ["x", "y", "z"];
 const RATES = ["p", "q", "r"];
 const TIMES: Options = [["", "the file's unit, or s"], ...["s", "ms", "us", "min"].map((each) => [each, each] as const)];
-const LOADS: Options = [["g", "g"], ["m/s^2", "m/s²"]];
+const LOADS: Options = [["g", "g"], ["m/s^2", "m/s²"], ["ft/s^2", "ft/s²"]];
 const TURNS: Options = [["rad/s", "rad/s"], ["deg/s", "°/s"]];
 const HOLDS: Options = [["specific-force", "specific force"], ["acceleration", "acceleration"]];
 

@@ -6,14 +6,14 @@ Modes that the samples resolve answer in time, by Gauss's method; the others fol
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.reference import Sampled
 from gbeam.integrate.driver import integrate
-from gbeam.integrate.equations import LinearEquations
+from gbeam.integrate.equations import LinearEquations, LinearTerms
 from gbeam.integrate.schemes import gauss
 from gbeam.mechanics.equations.hub import FreeHub
 from gbeam.mechanics.structure import Structure
@@ -24,12 +24,69 @@ State = tuple[Floats, Floats]  # coordinates and rates of the beam, (n,) each
 RESOLVED = 2.5  # rad between two samples: a mode that turns faster follows statically
 
 
-class Operator(NamedTuple):
-    """M, and C and K at the times of the samples: (n, n), (t, n, n) each; a free hub's row and column come first."""
+class Operator(Protocol):
+    """M (n, n), and C and K at the times of the samples; a free hub's row and column come first."""
+
+    @property
+    def mass(self) -> Floats:
+        """M, (n, n)."""
+        ...
+
+    def first(self) -> Floats:
+        """K at the first sample, (n, n)."""
+        ...
+
+    def mean(self) -> Floats:
+        """Mean of K over the samples, (n, n)."""
+        ...
+
+    def within(self, shapes: Floats) -> tuple[Floats, Floats]:
+        """C and K of some shapes (n, r) at all samples, (t, r, r) each."""
+        ...
+
+
+class OfFeatures(NamedTuple):
+    """The operator on a prescribed base: sums over what its motion is at each time, of which no (t, n, n) is made."""
+
+    mass: Floats
+    features: Floats
+    terms: LinearTerms
+
+    def first(self) -> Floats:
+        """K at the first sample."""
+        return np.asarray(np.tensordot(self.features[0], self.terms.stiffness, 1))
+
+    def mean(self) -> Floats:
+        """Mean of K."""
+        return np.asarray(np.tensordot(self.features.mean(axis=0), self.terms.stiffness, 1))
+
+    def within(self, shapes: Floats) -> tuple[Floats, Floats]:
+        """C and K of some shapes."""
+        c, k = (
+            np.tensordot(self.features, shapes.T @ each @ shapes, 1)
+            for each in (self.terms.velocity, self.terms.stiffness)
+        )
+        return c, k
+
+
+class OfSamples(NamedTuple):
+    """The operator on a free hub: C and K (t, n, n) at every sample."""
 
     mass: Floats
     velocity: Floats
     stiffness: Floats
+
+    def first(self) -> Floats:
+        """K at the first sample."""
+        return np.asarray(self.stiffness[0])
+
+    def mean(self) -> Floats:
+        """Mean of K."""
+        return np.asarray(self.stiffness.mean(axis=0))
+
+    def within(self, shapes: Floats) -> tuple[Floats, Floats]:
+        """C and K of some shapes."""
+        return shapes.T @ self.velocity @ shapes, shapes.T @ self.stiffness @ shapes
 
 
 class Correction(NamedTuple):
@@ -42,10 +99,10 @@ class Correction(NamedTuple):
 
 def operator(structure: Structure, at: Sampled) -> Operator:
     """The linear equations of small departures from a solution, their places' expansion being the straight beam's."""
-    c, base = structure.coefficients, at.base
-    velocity, stiffness, _ = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, at.loads)
+    c, motion = structure.coefficients, (at.base.a_WO_B, at.base.w_WB_B, at.base.alpha_WB_B)
     if at.hub is None:
-        return Operator(c.mass, velocity, stiffness)
+        return OfFeatures(c.mass, c.features(*motion, at.loads), c.terms)
+    velocity, stiffness, _ = c.at(*motion, at.loads)
     hub = structure_on_hub(structure, at)
     return _hub_operator(hub, at, velocity, stiffness)
 
@@ -57,7 +114,7 @@ def structure_on_hub(structure: Structure, at: Sampled) -> FreeHub:
     return free_hub(structure.coefficients, at.motion.mount, ground_of(at.motion))
 
 
-def _hub_operator(hub: FreeHub, at: Sampled, velocity: Floats, stiffness: Floats) -> Operator:
+def _hub_operator(hub: FreeHub, at: Sampled, velocity: Floats, stiffness: Floats) -> OfSamples:
     assert at.hub is not None
     angle, rate, acceleration = at.hub.T
     n, t = len(hub.f2), len(angle)
@@ -79,7 +136,7 @@ def _hub_operator(hub: FreeHub, at: Sampled, velocity: Floats, stiffness: Floats
         k[:, 0, 0] -= turned @ np.cross(e, w.s0)
         k[:, 1:, 0] -= turned @ w.s1
         k[:, 0, 1:] -= turned @ w.s1
-    return Operator(mass, c, k)
+    return OfSamples(mass, c, k)
 
 
 class Vibration(NamedTuple):
@@ -101,10 +158,10 @@ class Vibration(NamedTuple):
     @staticmethod
     def of(equations: Operator, time: Floats) -> Vibration:
         """Modes of equations at equal intervals of time (t,) s."""
-        mean = equations.stiffness.mean(axis=0)
+        mean = equations.mean()
         square, modes = symmetric_modes((mean + mean.T) / 2, equations.mass)
         if square[0] < -1e-9 * square[-1]:
-            rest = equations.stiffness[0]
+            rest = equations.first()
             square, modes = symmetric_modes((rest + rest.T) / 2, equations.mass)
         resolved = np.sqrt(np.maximum(square, 0)) * _interval(time) < RESOLVED
         resolved[:2] = True
@@ -151,7 +208,7 @@ def responses(of: Operator, vibration: Vibration, time: Floats) -> Callable[[Flo
     step = _interval(time)
     phi, stiff = modes[:, kept], modes[:, ~kept]
     flexibility = stiff / square[~kept] @ stiff.T
-    c, k = (phi.T @ x @ phi for x in (of.velocity, of.stiffness))
+    c, k = of.within(phi)
     damping = c.mean(axis=0)
     rest = (damping + damping.T) / 2, np.diag(square[kept])
 
@@ -176,6 +233,8 @@ def responses(of: Operator, vibration: Vibration, time: Floats) -> Callable[[Flo
         equations = LinearEquations(np.eye(phi.shape[1]), matrices, drive, rest=rest)
         made = integrate(equations, gauss(), first, moving, step=step, count=len(time) - 1, start=float(time[0]))
         static = -residual @ flexibility
+        if not made.whole:
+            return Correction(*np.full((3, *static.shape), np.nan))
         return Correction(made.q @ phi.T + static, made.qd @ phi.T, made.qdd @ phi.T)
 
     return correction

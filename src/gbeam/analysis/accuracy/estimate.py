@@ -1,4 +1,4 @@
-"""The error estimate of a response: the time step's, that of too few shapes, the model's, and of all together."""
+"""The error estimate of a response: the time step's, too few shapes', the model's, the beam theory's, and of all."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ import math
 
 import numpy as np
 
+from gbeam.analysis.accuracy.beam_theory import described, largest, response_theory
 from gbeam.analysis.accuracy.correction import RESOLVED
+from gbeam.analysis.accuracy.doubts import of_bodies
 from gbeam.analysis.accuracy.response_errors import Begin, Quantities, Rings, Solution, lacking
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
@@ -31,8 +33,9 @@ def response_errors(
     *,
     stride: int = 1,
     begin: Begin | None = None,
-) -> Errors:
-    """Estimated errors of a response, as fractions of the largest displacement, load and stress.
+    tolerance: float = math.inf,
+) -> tuple[Errors, tuple[str, ...]]:
+    """Estimated errors of a response, as fractions of the largest displacement, load and stress, and what to say.
 
     Parameters
     ----------
@@ -50,12 +53,21 @@ def response_errors(
         Steps to each of the results.
     begin : callable, optional
         Of a structure with more shapes: its coordinates and rates at the start; left out, it begins in equilibrium.
+    tolerance : float
+        Share of the tip's largest displacement by which a body off the axis may be elsewhere without a word.
     """
     if structure.source is None or loads is None or len(tip) < 3:
         alone = [ErrorEstimate(step=step, total=step) for step in steps]
-        return Errors(alone[0], alone[1], alone[2], UNKNOWN)
+        return Errors(alone[0], alone[1], alone[2], UNKNOWN), ()
     every = tip, loads.force[:, 0], loads.moment[:, 0], loads.stress.max(axis=1)
-    sizes = dict(zip(Quantities._fields, map(_largest, every), strict=True))
+    sizes = dict(zip(Quantities._fields, map(largest, every), strict=True))
+    period = 2 * math.pi / float(structure.rest[0][0])
+    step, least = float(solution.time[1] - solution.time[0]), math.ceil(len(solution.time) / MOST)
+    few = max(1, min(int(period / PER_PERIOD / (stride * step)), len(tip) // FEWEST))
+    stride *= few
+    with np.errstate(all="ignore"):
+        beyond = response_theory(structure, motion, solution.some(slice(None, None, stride)), begin)
+    theory = described(structure, beyond.causes)
 
     def judged(stride: int, own: Quantities | None = None) -> tuple[Errors, float]:
         """Errors by every so many steps, and the rate of the fastest mode that these may have missed, rad/s."""
@@ -66,25 +78,22 @@ def response_errors(
             return _bounded(structure, sizes["tip"], steps[0]), 0.0
 
         def fractions(name: str, step: float) -> ErrorEstimate:
-            size = sizes[name] or _largest(getattr(parts.total, name))
-            shares = (_largest(getattr(part, name)) / size if size else 0.0 for part in parts)
+            size = sizes[name] or largest(getattr(parts.total, name))
+            shares = (largest(getattr(part, name)) / size if size else 0.0 for part in parts)
             shapes, model, total = shares
-            return ErrorEstimate(step, shapes, 0.0 if structure.kind == "exact" else model, step + total)
+            away = ErrorEstimate(step, shapes, 0.0 if structure.kind == "exact" else model, total=step + total)
+            return away.with_theory(beyond.sizes[name] / size if size else 0.0)
 
         force, moment = fractions("force", steps[1]), fractions("moment", steps[1])
         worst = max(force, moment, key=lambda each: each.total)
-        errors = Errors(fractions("tip", steps[0]), worst, fractions("stress", steps[2]))
+        errors = Errors(fractions("tip", steps[0]), worst, fractions("stress", steps[2]), theory=theory)
         return errors, _missed(rings, sizes, errors, RESOLVED / (least * step))
 
-    period = 2 * math.pi / float(structure.rest[0][0])
-    step, least = float(solution.time[1] - solution.time[0]), math.ceil(len(solution.time) / MOST)
-    few = max(1, min(int(period / PER_PERIOD / (stride * step)), len(tip) // FEWEST))
-    stride *= few
     errors, rate = judged(stride, Quantities(*(each[::few] for each in every)))
-    if rate == 0:
-        return errors
-    finer = max(least, int(RESOLVED / (rate * step)))
-    return judged(finer)[0] if finer < stride else errors
+    finer = max(least, int(RESOLVED / (rate * step))) if rate else stride
+    if finer < stride:
+        errors, _ = judged(finer)
+    return errors, tuple(of_bodies(structure, beyond, sizes["tip"], tolerance))
 
 
 def _missed(rings: Rings, sizes: dict[str, float], errors: Errors, fastest: float) -> float:
@@ -95,15 +104,10 @@ def _missed(rings: Rings, sizes: dict[str, float], errors: Errors, fastest: floa
     limits = zip(("tip", "force", "moment"), (errors.displacement, errors.loads, errors.loads), strict=True)
     visible = np.zeros(len(rings.rate), dtype=bool)
     for name, stated in limits:
-        visible |= getattr(rings, name) > stated.total * sizes[name]
+        visible |= getattr(rings, name) > stated.slender * sizes[name]
     return float(rings.rate[visible & (rings.rate < fastest)].max(initial=0.0))
-
-
-def _largest(values: Floats) -> float:
-    """Largest size of numbers over time (t,), or of vectors (t, 3)."""
-    return float(np.abs(values).max()) if values.ndim == 1 else float(np.sqrt((values**2).sum(axis=-1)).max())
 
 
 def _bounded(structure: Structure, size: float, step: float) -> Errors:
     model = LARGEST * (size / structure.length) ** 2
-    return Errors(ErrorEstimate(step, math.nan, model, step + model), note=BEYOND)
+    return Errors(ErrorEstimate(step, math.nan, model, total=step + model), note=BEYOND)

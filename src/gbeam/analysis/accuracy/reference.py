@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.mechanics.equations import sampled
-from gbeam.mechanics.equations.hub import ground_of
+from gbeam.mechanics.equations.hub import FreeHub, ground_of
 from gbeam.mechanics.section_forces import absolute_accelerations
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
@@ -78,8 +78,18 @@ def complete_residual(structure: Structure, at: Sampled) -> Floats:
 
 
 def linear_residual(structure: Structure, at: Sampled) -> Floats:
-    """The same of a linear model, (t, n), on the base that the solution has."""
+    """Residual (t, n) of a linear model's equations on the base that the solution has."""
     base = at.base
     velocity, stiffness, force = structure.coefficients.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, at.loads)
     inside = (velocity @ at.pd[..., None] + stiffness @ at.p[..., None])[..., 0]
     return np.asarray(at.pdd @ structure.coefficients.mass + inside - force)
+
+
+def hub_torque(hub: FreeHub, at: Sampled) -> Floats:
+    """Torque (t,) that the inertia of a linear beam takes from a free hub."""
+    assert at.hub is not None
+    q, qd, qdd, (_, rate, acceleration) = at.p, at.pd, at.pdd, at.hub.T
+    swept, coupling = hub.f2 - q @ hub.k2, hub.b0 + q @ hub.b1.T
+    inertia = hub.rigid + ((hub.f2 + swept) * q).sum(axis=1)
+    quadratic = 2 * rate * (swept * qd).sum(axis=1) + (qd * (qd @ hub.b1.T)).sum(axis=1)
+    return np.asarray(inertia * acceleration + (coupling * qdd).sum(axis=1) + quadratic)

@@ -98,9 +98,9 @@ def lacking(
     more = enrichment(structure, _base(motion, solution)[0])
     count = len(solution.time)
     few = solution.some(np.linspace(0, count - 1, min(count, SCAN)).astype(int))
-    directions = driven(more, lambda rich, at: _lifted(rich, at, motion, few))
+    directions = driven(more, lambda rich, at: lifted(rich, at, motion, few))
     exact, index = more.model("exact", directions=directions)
-    at = _lifted(exact, index, motion, solution)
+    at = lifted(exact, index, motion, solution)
     of = operator(exact, at)
     vibration = Vibration.of(of, solution.time)
     residual = complete_residual(exact, at)
@@ -109,17 +109,17 @@ def lacking(
     new = residual.copy()
     new[:, np.append(np.arange(first), first + index)] = 0.0
     if begin is None:
-        at_rest = _start(exact, at)
-        new_at_rest = at_rest.copy()
+        rest = complete_residual(exact, at_rest(at))[0, first:]
+        new_at_rest = rest.copy()
         new_at_rest[index] = 0.0
-        start, start_of_shapes = (_settled(of, each) for each in (at_rest, new_at_rest))
+        start, start_of_shapes = (settled(of, each) for each in (rest, new_at_rest))
     else:
         same = exact if structure.kind == "exact" else more.model(structure.kind, directions=directions)[0]
         start, start_of_shapes = (_departure(begin, each, at) for each in (exact, same))
     correction = responses(of, vibration, solution.time)
     total = correction(residual, start)
     if own is None:
-        own = quantities(structure, _lifted(structure, np.arange(structure.size), motion, solution))
+        own = quantities(structure, lifted(structure, np.arange(structure.size), motion, solution))
     truth, same_shapes = quantities(exact, at.moved(*total)), own
     if structure.kind != "exact":
         shapes = correction(new, start_of_shapes)
@@ -175,7 +175,7 @@ def driven(more: Enrichment, lifted: Callable[[Structure, IntArray], Sampled]) -
     return axial, along_y, along_z
 
 
-def _lifted(structure: Structure, index: IntArray, motion: Any, solution: Solution) -> Sampled:
+def lifted(structure: Structure, index: IntArray, motion: Any, solution: Solution) -> Sampled:
     """A solution in the coordinates of a structure with more shapes, its own at `index`."""
     time, y, yd, ydd = solution.time, solution.y, solution.yd, solution.ydd
     base, hub = _base(motion, solution)
@@ -196,10 +196,10 @@ def _base(motion: Any, solution: Solution) -> tuple[Base, Floats | None]:
     return Base(*(np.asarray(x) for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B))), hub
 
 
-def _settled(of: Operator, at_rest: Floats) -> State:
+def settled(of: Operator, rest: Floats) -> State:
     """Departure from the first state of the equilibrium, by the residual there at rest; a free hub is held."""
-    beam = slice(of.mass.shape[0] - len(at_rest), None)
-    return np.linalg.solve(of.stiffness[0][beam, beam], -at_rest), np.zeros_like(at_rest)
+    beam = slice(of.mass.shape[0] - len(rest), None)
+    return np.asarray(np.linalg.solve(of.first()[beam, beam], -rest)), np.zeros_like(rest)
 
 
 def _departure(begin: Begin, richer: Structure, at: Sampled) -> State:
@@ -215,13 +215,12 @@ def _departure(begin: Begin, richer: Structure, at: Sampled) -> State:
     return departure[0], departure[1]
 
 
-def _start(exact: Structure, at: Sampled) -> Floats:
-    """Residual of the first state at rest."""
+def at_rest(at: Sampled) -> Sampled:
+    """The first state at rest, a free hub at its angle."""
     base, hub = Base(*(x[:1] for x in (at.base.a_WO_B, at.base.w_WB_B, at.base.alpha_WB_B))), at.hub
     if hub is not None:
         hub = hub[:1] * [1, 0, 0]
         base = at.motion.mount.base(*hub.T)
-    still = np.zeros((1, exact.size))
+    still = np.zeros_like(at.p[:1])
     loads = None if at.loads is None else at.loads[:1]
-    first = complete_residual(exact, Sampled(at.time[:1], base, at.p[:1], still, still, hub, at.motion, loads))[0]
-    return first if hub is None else first[1:]
+    return Sampled(at.time[:1], base, at.p[:1], still, still, hub, at.motion, loads)

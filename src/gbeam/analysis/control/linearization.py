@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from gbeam.analysis.equilibrium.hub_point import on_hub
 from gbeam.analysis.equilibrium.operating_point import operating_point
@@ -17,6 +18,8 @@ from gbeam.analysis.vibration.stability import hub_of
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
+from gbeam.mechanics.assembly import at_stations
 from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.fields.rooted import RootedField
 from gbeam.mechanics.plausibility import input_warnings
@@ -26,10 +29,10 @@ from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.complex_step import complex_step
 from gbeam.results.steady.state_space import ACCURATE, Gauge, Signal, StateSpace
+from gbeam.structure.stress import fibre_strain
 
 Array = Any
 BASE_RATES = tuple(Signal(f"base_rate_{i}", "rad/s") for i in "xyz")
-_NEAREST = 12  # quadrature nodes that a strain is interpolated from
 
 
 @record
@@ -37,15 +40,28 @@ class Outputs:
     """What is measured, as a function of (y, ẏ, ÿ, u).
 
     Tip displacement relative to the base axes; tip acceleration, absolute, or specific force where gravity acts; moment
-    of the base on the root, which is what the section there carries; strains; on a free hub its angle and rate. Vectors
-    in base axes; acceleration and moment as in :mod:`gbeam.mechanics.section_forces`.
+    of the base on the root, which is what the section there carries; strains by what the sections at the gauges carry;
+    on a free hub its angle and rate. Vectors in base axes; acceleration, moments and forces as in
+    :mod:`gbeam.mechanics.section_forces`.
+
+    Parameters
+    ----------
+    structure : Structure
+        With the gauges among its stations.
+    residual : OnBase or OnHub
+    outboard : Sections
+        Of the root, the gauges' stations and the tip.
+    at : (gauges,)
+        Index of each gauge's section among these.
+    strains : (gauges, 6)
+        At each gauge of unit components of force and moment in its section.
     """
 
     structure: Structure
     residual: OnBase | OnHub
-    ends: Sections
-    weights: Array
-    places: Array
+    outboard: Sections
+    at: Array
+    strains: Array
 
     def __call__(self, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
         """Outputs (p,)."""
@@ -54,14 +70,11 @@ class Outputs:
         base, (_, values) = self.residual.base(y, yd, ydd, u), self.residual.unpack(u)
         now = Base(*(x[None] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
         loads = None if values is None else values[None]
-        _, moment, _, _, acceleration = sections(self.structure, self.ends, now, q[None], qd[None], qdd[None], loads)
-        assert self.structure.field is not None
-        strains = self.structure.field.strains(q)
-        axial, about_y, about_z = (self.weights @ e for e in strains[:3])
-        strain = axial - self.places[:, 0] * about_z + self.places[:, 1] * about_y
-        xp = namespace(y, acceleration)
+        _, moment, *carried, a = sections(self.structure, self.outboard, now, q[None], qd[None], qdd[None], loads)
+        xp = namespace(y, a)
+        strain = (xp.concatenate([each[0, self.at] for each in carried], axis=-1) * self.strains).sum(axis=-1)
         hub = xp.stack([y[0], yd[0]]) if i else xp.zeros(0)
-        return xp.concatenate([self.structure.displacement(q)[-1], acceleration[0, -1], -moment[0, 0], strain, hub])
+        return xp.concatenate([self.structure.displacement(q)[-1], a[0, -1], -moment[0, 0], strain, hub])
 
     def stacked(self, z: Array) -> Array:
         """The same of one vector (y, ẏ, ÿ, u)."""
@@ -78,28 +91,14 @@ class Outputs:
         return np.asarray(values), np.asarray(derivatives)
 
 
-def _interpolation(structure: Structure, gauges: Sequence[Gauge]) -> Array:
-    """Weights (gauges, nodes) that take nodal strains to the gauges."""
-    assert structure.field is not None
-    until = np.asarray(structure.field.cumulative)
-    nodes = until.sum(axis=1)[: until.shape[1]]
-    weights = np.zeros((len(gauges), len(nodes)))
-    for row, gauge in zip(weights, gauges, strict=True):
-        if not 0 <= gauge.at <= structure.length:
-            raise InputError("gauge.at", f"is {gauge.at:g} m, off the beam", f"give 0 to {structure.length:g} m")
-        near = np.sort(np.argsort(np.abs(nodes - gauge.at))[:_NEAREST])
-        for k in near:
-            others = near[near != k]
-            row[k] = np.prod((gauge.at - nodes[others]) / (nodes[k] - nodes[others]))
-    return weights
-
-
 def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
     """Names and units of (y, ẏ)."""
     units = ("1", "rad", "rad") if structure.kind == "exact" else ("m", "m", "m")
     names = [("hub_angle", "rad")] if first else []
     for group, unit, count in zip(("axial", "y", "z"), units, structure.counts, strict=True):
         names += [(f"q_{group}_{k + 1}", unit) for k in range(count)]
+    if structure.field is None:  # particles, whose coordinates are whatever they were given by
+        names += [(f"q_{k + 1}", "1") for k in range(structure.size)]
     if isinstance(structure.field, RootedField):
         springs = np.concatenate([structure.field.move, structure.field.turn])  # one direction in each column
         ways = [("translation", "m", axis) for axis in "xyz"] + [("rotation", "rad", axis) for axis in "xyz"]
@@ -141,22 +140,39 @@ def output_signals(gauges: Sequence[Gauge], motion: Motion) -> tuple[Signal, ...
 
 def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gauge]) -> Outputs:
     """What is measured at an operating point."""
-    places = np.array([[gauge.y, gauge.z] for gauge in gauges]).reshape(-1, 2)
+    for i, gauge in enumerate(gauges):
+        if not 0 <= gauge.at <= structure.length:
+            fix = f"give 0 to {structure.length:g} m"
+            raise InputError(f"gauges[{i}].at", f"is {gauge.at:g} m, off the beam", fix)
+    strains, which, rows = np.zeros((0, 6)), np.zeros(0, dtype=int), [0, -1]  # of the sections, root and tip
     every = structure.sections
-    assert every is not None
-    ends = [0, -1]  # root and tip
-    outboard = replace(every, mass=every.mass[ends], loaded=every.loaded[ends])
-    return Outputs(structure, point.residual, outboard, _interpolation(structure, gauges), places)
+    if every is None:
+        if gauges:
+            raise InputError("gauges", "are given of particles, which have no sections", "leave them out")
+        mass = structure.mass
+        every = Sections(None, np.stack([mass, 0 * mass]), np.zeros((2, 0)))
+    if gauges:
+        assert structure.source is not None
+        beam, unit = structure.source.beam, np.eye(6)[:, None]
+        where, y, z = np.array([[gauge.at, gauge.y, gauge.z] for gauge in gauges]).T
+        structure = at_stations(structure, where)
+        strains = fibre_strain(beam, where, unit[..., :3], unit[..., 3:], y, z).T
+        which = np.abs(np.append(0.0, structure.stations) - where[:, None]).argmin(axis=1)
+        every, rows = structure.sections, list(range(len(structure.stations) + 1))
+        assert every is not None
+    outboard = replace(every, mass=every.mass[rows], loaded=every.loaded[rows])
+    return Outputs(structure, point.residual, outboard, which, strains)
 
 
+@typed
 def linearize(
     structure: Structure,
     motion: Motion,
     time: float = 0.0,
     *,
     rate: float | None = None,
-    q: Array | None = None,
-    qd: Array | None = None,
+    q: ArrayLike | None = None,
+    qd: ArrayLike | None = None,
     gauges: Sequence[Gauge] = (),
     name: str = "",
 ) -> StateSpace:
@@ -190,8 +206,8 @@ def linearize(
     Raises
     ------
     InputError
-        If the beam has no damping ratio, a gauge lies off the beam, a rate is asked of a motion without a hub, or a
-        time of a hub that swings.
+        If the beam has no damping ratio, a gauge lies off the beam or is one of particles, a rate is asked of a motion
+        without a hub, or a time of a hub that swings.
     ComputationError
         If there is no relative equilibrium.
     """
@@ -230,9 +246,10 @@ def linearize(
         at, given = np.concatenate([at, given[acts]]), given[kept]
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)
     frequency, errors = np.zeros(0), None
-    if q is None and qd is None and structure.source is not None:
-        frequency, errors = pole_errors(structure, point, linear)
-        warnings += doubtful(errors) if errors.within(ACCURATE) == 0 else ()
+    if q is None and qd is None:
+        if structure.source is not None:
+            frequency, errors = pole_errors(structure, point, linear)
+            warnings += doubtful(errors) if errors.within(ACCURATE) == 0 else ()
         warnings += tuple(
             f"the operating point is not stable: {each.kind} along {each.direction}, growing with "
             f"{each.growth_rate:.4g} 1/s"

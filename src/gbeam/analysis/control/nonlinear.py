@@ -16,11 +16,13 @@ from gbeam.analysis.control.linearization import (
 )
 from gbeam.analysis.equilibrium.hub_point import on_hub
 from gbeam.analysis.equilibrium.point import REST, on_base
+from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.results.steady.state_space import Gauge, import_control
 
 
+@typed
 def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[Gauge] = ()) -> Any:
     """The model as ``control.nlsys``, complete: on a free hub driven by the torque, on any other base by its motion.
 

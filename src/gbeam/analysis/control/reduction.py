@@ -9,6 +9,7 @@ import numpy as np
 import scipy.linalg
 
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.results.result import Floats
 from gbeam.results.steady.state_space import Signal, StateSpace, Truncation
 
@@ -38,6 +39,7 @@ def _split(system: StateSpace, chosen: Callable[[complex], bool]) -> Parts:
     )
 
 
+@typed
 def modal_truncation(system: StateSpace, modes: int) -> StateSpace:
     """Keep the slowest modes; what the others add in statics goes into D.
 
@@ -73,6 +75,7 @@ def modal_truncation(system: StateSpace, modes: int) -> StateSpace:
     return replace(slow, d=slow.d + static, frequency=system.frequency[kept], errors=errors, truncation=left_out)
 
 
+@typed
 def balanced_truncation(system: StateSpace, order: int) -> tuple[StateSpace, Floats]:
     """Balanced truncation (Moore 1981): keep what inputs reach and outputs see most.
 

@@ -17,6 +17,7 @@ from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.response.tangents.differentiated import Differentiated, Grid
 from gbeam.errors import ComputationError, InputError
+from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.spline import SplineProfile
@@ -34,6 +35,7 @@ _ROUNDS, _MOVED = 4, 1e-3  # Gauss-Newton steps, and the difference of the drive
 _BETTER = 0.9  # a step that leaves more than this share is the last
 
 
+@typed
 def shape_command(
     structure: Structure,
     hub: Hub,

@@ -1,15 +1,19 @@
-"""A complete model's residual and its derivatives: compiled once per size."""
+"""A model's residual with its derivatives, and where it vanishes: compiled once per size."""
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import jax
 import jax.numpy as jnp
 
-from gbeam.arrays.derivatives import with_slope
+from gbeam.arrays.derivatives import linear_root, with_slope
+from gbeam.motion.bases.base import Base
 
 Array = Any
+STRIDES, ITERATIONS = 8, 8  # of the load, and of Newton's method in each
+CLOSE, NOTHING = 1e-9, 1e-13  # of the coordinates, and m or rad: a last correction that is smaller has converged
 
 
 @jax.jit
@@ -22,3 +26,46 @@ def evaluated(residual: Any, z: Array, u: Array) -> tuple[Array, Array]:
 
     # One derivative with respect to everything: the residual is compiled once, not four times.
     return with_slope(stacked)(jnp.concatenate([z, u]))
+
+
+@jax.jit
+def resting(residual: Any, base: Base, loads: Array | None) -> Array:
+    """Coordinates (n,) at which a residual on a base vanishes at rest; NaN where Newton's method does not converge."""
+    still = jnp.zeros(residual.equations.size)
+
+    def force(q: Array, share: Any) -> Array:
+        part = Base(share * base.a_WO_B, jnp.sqrt(share) * base.w_WB_B, share * base.alpha_WB_B)
+        return residual(q, still, still, (part, None if loads is None else share * loads))
+
+    return _root(force, still)
+
+
+@partial(jax.jit, static_argnames="axes")
+def displaced(structure: Any, axes: tuple[int, ...], wanted: Array) -> Array:
+    """Coordinates (n,) of least strain energy at which the tip is displaced along axes by `wanted`; NaN likewise."""
+    n, equations = structure.size, structure.equations
+
+    def energy(z: Array, share: Any) -> Array:
+        q, pull = z[:n], z[n:]
+        return equations.strain_energy(q) - pull @ (structure.tip(q)[jnp.array(axes)] - share * wanted)
+
+    return _root(jax.grad(energy), jnp.zeros(n + len(axes)))[:n]
+
+
+def _root(function: Any, start: Array) -> Array:
+    """Where a function of x and a share of what drives it vanishes, as the share grows in strides from none to all.
+
+    Derivatives are by the implicit function theorem.
+    """
+
+    def newton(of: Any, start: Array) -> tuple[Array, Array]:
+        def correct(k: Any, state: tuple[Array, Array]) -> tuple[Array, Array]:
+            x, _ = state
+            value, slope = with_slope(partial(function, share=(k // ITERATIONS + 1) / STRIDES))(x)
+            correction = jnp.linalg.solve(slope, value)
+            return x - correction, jnp.abs(correction).max()
+
+        return jax.lax.fori_loop(0, STRIDES * ITERATIONS, correct, (start, jnp.inf))
+
+    x, left = jax.lax.custom_root(partial(function, share=1.0), start, newton, linear_root, has_aux=True)
+    return jnp.where(left <= NOTHING + CLOSE * jnp.abs(x).max(), 1.0, jnp.nan) * x

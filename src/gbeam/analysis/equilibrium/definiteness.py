@@ -1,76 +1,175 @@
-"""When a linear model's stiffness stops being positive definite: the speed at which it stops being valid."""
+"""When a run's frozen equations stop being stable, and by how much a disturbance grows until they are again.
+
+The straight beam, or wherever a complete model has bent to, is stable while the stiffness with all that the base's
+motion and the loads add to it is positive definite; where loads follow the beam the eigenvalues decide. What grows does
+so by exp ∫ Re λ dt: a load that acts for a moment does nothing, whatever its size.
+"""
 
 from __future__ import annotations
 
-from functools import lru_cache
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from gbeam.analysis.equilibrium.equilibrium import expanded
 from gbeam.mechanics.equations.linear import Coefficients
-from gbeam.numerics.solvers.eigen import positive_definite
+from gbeam.mechanics.structure import Structure
+from gbeam.numerics.solvers.eigen import symmetric
+from gbeam.numerics.solvers.oscillations import eigenvalues, growth_rate, stability_margin, unsymmetric
 from gbeam.results.response import BaseMotion
 
 Array = Any
 _BLOCK = 2000  # times whose stiffness is looked at together
+_STRETCHES, _MOST = 4, 32  # whose growth is found, and at how many times of each
+_SHARE = 0.01  # of the elastic stiffness: what takes less of it is no cause
 _ROW, _COLUMN = np.tril_indices(3, -1)
 
 
-def first_loss(coefficients: Coefficients, time: Array, base: BaseMotion) -> tuple[float, float] | None:
-    """First time at which K loses definiteness and the base's rate there, rad/s; None if it never does.
+class Loss(NamedTuple):
+    """A stretch of time in which a disturbance grows.
 
-    Between the samples the lowest eigenvalue is interpolated. Only the times that can matter are looked at: K loses
-    definiteness when what the base's motion takes exceeds the elastic stiffness, and the sizes of the terms, each
-    measured against that stiffness once, bound it from above.
+    Parameters
+    ----------
+    start, end : float
+        s.
+    growth : float
+        Logarithm of the factor by which a disturbance grows.
+    flutter : bool
+        Whether loads that follow the beam feed it.
+    causes : tuple of str
+        What the base and the loads do at the start, in words.
     """
-    doubtful = np.flatnonzero(_bound(coefficients, base) >= 1.0)
-    for i in range(0, len(doubtful), _BLOCK):
-        block = doubtful[i : i + _BLOCK]
-        if positive_definite(_stiffness(coefficients, base, block)):
-            continue
-        lost = np.flatnonzero(lowest_over_time(coefficients, base, block) < 0)
-        if lost.size:
-            return _between(coefficients, time, base, int(block[lost[0]]))
-    return None
+
+    start: float
+    end: float
+    growth: float
+    flutter: bool
+    causes: tuple[str, ...]
 
 
-@lru_cache(maxsize=8)
-def _shares(c: Coefficients) -> tuple[Array, Array]:
-    """What a unit of each term takes of the elastic stiffness at most, (9,): of either sign; (3,): of squared rates."""
+class Drive(NamedTuple):
+    """Motion of the base and components of the loads, (t, ...) or of one time."""
+
+    a_WO_B: Array
+    w_WB_B: Array
+    alpha_WB_B: Array
+    loads: Array | None = None
+
+    def at(self, times: Any) -> Drive:
+        """Those of some times, or of one."""
+        return Drive(*(None if each is None else each[times] for each in self))
+
+    def between(self, before: int, after: int, share: float) -> Drive:
+        """What it is a share of the way from one time to another."""
+        ends = zip(self.at(before), self.at(after), strict=True)
+        return Drive(*(None if a is None else a + share * (b - a) for a, b in ends))
+
+
+def worst_loss(structure: Structure, time: Array, base: BaseMotion, q: Array) -> Loss | None:
+    """Stretch of a run in which a disturbance grows most; None where none grows.
+
+    Parameters
+    ----------
+    structure : Structure
+    time : (t,)
+        s.
+    base : BaseMotion
+        (t, 3) each.
+    q : (t, n)
+        Coordinates: a complete model is judged about these, and not while it is on its way to where it is stable.
+    """
+    c, slow = structure.coefficients, replace(structure, compiled=False)
+    loads = None if c.loads is None or structure.history is None else structure.history(time)
+    drive = Drive(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
+
+    def matrices(i: int) -> tuple[Array, Array, Array]:
+        about = c if structure.linear else expanded(slow, q[i])[0]
+        return about.mass, *about.frozen(*drive.at(i))
+
+    def loss(part: Array) -> Loss | None:
+        """That of a stretch, at some of its times."""
+        some = part[:: -(-len(part) // _MOST)]
+        until = np.append(some[1:], min(part[-1] + 1, len(time) - 1))
+        rate = np.array([growth_rate(*matrices(i)) for i in some])
+        run = np.cumsum(np.diff(rate > 0, prepend=False))
+        growth = np.bincount(run, rate * (time[until] - time[some]))
+        if not structure.linear:
+            growth[: run[-1]] = 0.0
+        if not growth.any():
+            return None
+        worst = np.flatnonzero(run == growth.argmax())
+        first = int(some[worst[0]])
+        before = int(some[worst[0] - 1]) if worst[0] else max(first - 1, 0)
+        margins = stability_margin(*matrices(before)), stability_margin(*matrices(first))
+        share = margins[0] / (margins[0] - margins[1]) if margins[0] > 0 > margins[1] else 1.0
+        return Loss(
+            start=float(time[before] + share * (time[first] - time[before])),
+            end=float(time[until[worst[-1]]]),
+            growth=float(growth.max()),
+            flutter=unsymmetric(matrices(first)[2]),
+            causes=_causes(structure, drive.between(before, first, share), matrices(first)),
+        )
+
+    doubtful, most = _doubtful(c, drive)
+    stretches = np.split(doubtful, np.flatnonzero(np.diff(doubtful) > 1) + 1) if len(doubtful) else []
+    stretches.sort(key=lambda part: -most[part].sum())
+    losses = [each for part in stretches[:_STRETCHES] if (each := loss(part)) is not None]
+    return max(losses, key=lambda each: each.growth, default=None)
+
+
+def _doubtful(c: Coefficients, drive: Drive) -> tuple[Array, Array]:
+    """Indices of the times at which the straight beam may not be stable, and how fast something may grow, (t,) 1/s.
+
+    Its K loses definiteness where what is added exceeds the elastic stiffness; the sizes of the terms, each measured
+    against that once, bound it from above, and only where they do not its eigenvalues are found: nothing grows faster
+    than by the root of the lowest. Of loads that follow the beam there is no such bound.
+    """
     scale = np.linalg.inv(np.linalg.cholesky(c.stiffness))  # measures a stiffness against the elastic one
-    terms = np.concatenate([c.k_a, c.k_al, c.k_ww[_ROW, _COLUMN], c.k_ww[range(3), range(3)]])
-    shares = np.linalg.eigvalsh(scale @ (terms + np.swapaxes(terms, 1, 2)) @ scale.T / 2)
-    return np.abs(shares[:9]).max(axis=1), np.maximum(-shares[9:, 0], 0.0)
+    w, most = drive.w_WB_B, np.zeros(len(drive.w_WB_B))
+    terms = [c.k_a, c.k_al, c.k_ww[_ROW, _COLUMN], c.k_ww[range(3), range(3)]]
+    sizes = [drive.a_WO_B, drive.alpha_WB_B, 2 * w[:, _ROW] * w[:, _COLUMN], w**2]
+    if drive.loads is not None and c.loads is not None:
+        slope, values = c.loads.slope[:, :, 6:].reshape(-1, c.size, c.size), drive.loads.reshape(len(w), -1)
+        terms.append(-slope)
+        sizes.append(values)
+        most[np.any(values[:, [unsymmetric(each) for each in slope]], axis=1)] = np.inf
+    share = np.linalg.eigvalsh(scale @ symmetric(np.concatenate(terms)) @ scale.T)
+    size = np.concatenate(sizes, axis=1)
+    taken = np.maximum(size, 0) @ np.maximum(-share[:, 0], 0) + np.maximum(-size, 0) @ np.maximum(share[:, -1], 0)
+    large = np.flatnonzero((taken >= 1.0) & (most == 0))
+    for block in (large[i : i + _BLOCK] for i in range(0, len(large), _BLOCK)):
+        most[block] = np.sqrt(np.maximum(-lowest_over_time(c, drive.at(block)), 0))
+    return np.flatnonzero(most), most
 
 
-def _bound(c: Coefficients, base: BaseMotion) -> Array:
-    """An upper bound of what the base's motion takes of the elastic stiffness, (t,)."""
-    either, softened = _shares(c)
-    w = base.w_WB_B
-    across = np.abs(np.concatenate([base.a_WO_B, base.alpha_WB_B, 2 * w[:, _ROW] * w[:, _COLUMN]], axis=1))
-    return np.asarray(across @ either + w**2 @ softened)
-
-
-def _stiffness(c: Coefficients, base: BaseMotion, times: Array) -> Array:
-    """K at some of the times, (t, n, n)."""
-    return np.asarray(c.at(base.a_WO_B[times], base.w_WB_B[times], base.alpha_WB_B[times])[1])
-
-
-def lowest_over_time(c: Coefficients, base: BaseMotion, times: Array) -> Array:
-    """Lowest eigenvalue of K, M-normalised, at some of the times: negative where K is not positive definite, rad²/s².
-
-    The antisymmetric part of K, from the angular acceleration, stores no energy and is left out.
-    """
+def lowest_over_time(c: Coefficients, drive: Drive) -> Array:
+    """Lowest eigenvalue of K, M-normalised, over time: negative where K is not positive definite, rad²/s²."""
     scale = np.linalg.inv(np.linalg.cholesky(c.mass))
-    k = _stiffness(c, base, times)
-    return np.linalg.eigvalsh(scale @ (k + np.swapaxes(k, -1, -2)) @ scale.T / 2)[..., 0]
+    return np.linalg.eigvalsh(scale @ symmetric(c.frozen(*drive)[1]) @ scale.T)[..., 0]
 
 
-def _between(c: Coefficients, time: Array, base: BaseMotion, i: int) -> tuple[float, float]:
-    """Where between the samples i − 1 and i the lowest eigenvalue is zero."""
-    rate = np.linalg.norm(base.w_WB_B, axis=1)
-    if i == 0:
-        return float(time[0]), float(rate[0])
-    before, after = lowest_over_time(c, base, np.array([i - 1, i]))
-    share = before / (before - after)
-    return float(time[i - 1] + share * (time[i] - time[i - 1])), float(rate[i - 1] + share * (rate[i] - rate[i - 1]))
+def _causes(structure: Structure, drive: Drive, matrices: tuple[Array, Array, Array]) -> tuple[str, ...]:
+    """What of the drive takes stiffness from the motion that grows fastest, or feeds it, in words."""
+    c, (a, w, alpha, loads) = structure.coefficients, drive
+    value, modes = eigenvalues(*matrices)
+    mode = modes[:, value.real.argmax()]
+
+    def taken(stiffness: Array) -> float:
+        share = (mode.conj() @ stiffness @ mode) / (mode.conj() @ c.stiffness @ mode).real
+        return float(max(-share.real, abs(share.imag)))
+
+    terms = {
+        f"the base turns at {np.linalg.norm(w):.4g} rad/s": np.einsum("i,j,ijnm->nm", w, w, c.k_ww),
+        f"its rate changes by {np.linalg.norm(alpha):.4g} rad/s²": symmetric(np.tensordot(alpha, c.k_al, 1)),
+        f"the root is pushed with {np.linalg.norm(a):.4g} m/s²": np.tensordot(a, c.k_a, 1),
+    }
+    if loads is not None and c.loads is not None and structure.work is not None:
+        points = np.bincount(structure.work.load)
+        for k, (values, slope) in enumerate(zip(loads, c.loads.slope[:, :, 6:], strict=True)):
+            force, moment = np.linalg.norm(values[:3]), np.linalg.norm(values[3:])
+            size = f"{force:.4g} N" if force > 0 else f"{moment:.4g} N m"
+            words = f"beam.loads[{k}] acts with {size}{'/m' if points[k] > 1 else ''}"
+            terms[words] = -np.tensordot(values, slope, 1)
+    shares = {words: taken(stiffness) for words, stiffness in terms.items()}
+    return tuple(words for words, share in shares.items() if share > min(_SHARE, max(shares.values()) / 2))

@@ -6,16 +6,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.arrays.namespace import is_jax, is_traced, namespace
+from gbeam.arrays.namespace import is_jax
 from gbeam.errors import ComputationError
+from gbeam.guards.arguments import typed
 from gbeam.mechanics.equations.linear import Coefficients
+from gbeam.mechanics.equations.residuals import OnBase
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.numerics.solvers.eigen import positive_definite
 from gbeam.numerics.solvers.oscillations import stability_margin
 
 Array = Any
-_ITERATIONS, _TRACED = 30, 8  # of Newton's method; where no number says that it has converged
+_ITERATIONS = 30  # of Newton's method
 _LOCATED, _SHORTEST = 1e-4, 1e-6  # strides, shares of the load: within which stability is lost, that are tried
 _NEAR = 1e-6  # of the beam's length: a stride that ends as near to where it started has not left the path
 _NOISE = 1e-8  # of the coordinates: smaller corrections may stand still by rounding
@@ -28,6 +30,7 @@ class Equilibrium(NamedTuple):
     stable: bool
 
 
+@typed
 def solve_equilibrium(structure: Structure, base: Base, time: float | None = None) -> Equilibrium:
     """Coordinates at which the beam rests relative to a base whose motion is frozen, under its loads, stable or not.
 
@@ -46,27 +49,35 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
     Returns
     -------
     Equilibrium
+        Where JAX traces the structure, the base or the loads, NaN if there is none, and stability is not judged.
 
     Raises
     ------
     ComputationError
         ``not converged``, with the share of the load that was reached.
     """
-    return equilibrium_about(structure, base, time)[0]
+    structure = structure if time is None else structure.at_time(time)
+    frozen = base.a_WO_B, base.w_WB_B, base.alpha_WB_B, structure.load_values
+    if not (structure.traced or any(map(is_jax, frozen))):
+        return equilibrium_about(structure, base)[0]
+    import jax.numpy as jnp
+
+    from gbeam.analysis.equilibrium.compiled import resting
+
+    if structure.linear:
+        return Equilibrium(jnp.linalg.solve(*structure.coefficients.at(*frozen)[1:]), True)
+    return Equilibrium(resting(OnBase(structure.equations), base, structure.load_values), True)
 
 
-def equilibrium_about(structure: Structure, base: Base, time: float | None = None) -> tuple[Equilibrium, Coefficients]:
-    """The same, and the coefficients of small departures from it."""
-    values = structure.load_values if time is None else structure.at_time(time).load_values
+@np.errstate(all="ignore")  # a stride may end at coordinates beyond all numbers, and then fails
+def equilibrium_about(structure: Structure, base: Base) -> tuple[Equilibrium, Coefficients]:
+    """Coordinates at which the beam rests, and the coefficients of small departures from them."""
+    values = structure.load_values
     if not structure.linear:
         return _along_a_path(structure, base, values)
     c = structure.coefficients
     _, stiffness, force = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)
-    if structure.traced or is_traced(stiffness, force):
-        import jax.numpy as jnp
-
-        return Equilibrium(jnp.linalg.solve(stiffness, force), True), c
-    q = _solved(np, stiffness, force)
+    q = _solved(stiffness, force)
     if np.isfinite(q).all():
         stable = positive_definite(stiffness) if values is None else keeps(c, base, values)
         return Equilibrium(q, stable), c
@@ -82,7 +93,7 @@ def expanded(structure: Structure, q: Array) -> tuple[Coefficients, Array]:
 
     Those of the straight beam are its structure's own.
     """
-    if structure.traced or is_jax(q) or np.any(q):
+    if np.any(q):
         return structure.about(q)
     return structure.coefficients, np.zeros(structure.size)
 
@@ -95,11 +106,8 @@ def _along_a_path(structure: Structure, base: Base, values: Array | None) -> tup
     whether it has.
     """
     straight = np.zeros(structure.size)
-    if structure.traced:
-        q, _, about, _ = _newton(structure, base, values, 1.0, straight)
-        return Equilibrium(q, True), about
     about = structure.coefficients
-    slope = _solved(np, about.stiffness, about.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)[2])
+    slope = _solved(about.stiffness, about.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)[2])
     slope = slope if np.isfinite(slope).all() else straight  # dq/dshare, along which a stride starts
     q, stable, reached, stride = straight, True, 0.0, 1.0
     while reached < 1.0:
@@ -127,14 +135,9 @@ def _near(structure: Structure, q: Array, other: Array) -> bool:
 
 
 def keeps(c: Coefficients, base: Base, values: Array | None) -> bool:
-    """Whether a beam keeps an equilibrium, by the coefficients about it: where loads follow it, by what may grow.
-
-    The skew part of what the angular acceleration adds to the stiffness is no such load: it stores and feeds no energy.
-    """
-    velocity, steady, _ = c.at(base.a_WO_B, base.w_WB_B, np.zeros(3), values)
-    turning = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)[1] - steady
-    matrices = c.mass, velocity, steady + (turning + turning.T) / 2
-    return stability_margin(*(np.asarray(each) for each in matrices)) > 0
+    """Whether a beam keeps an equilibrium, by the coefficients about it: where loads follow it, by what may grow."""
+    frozen = c.frozen(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)
+    return stability_margin(*(np.asarray(each) for each in (c.mass, *frozen))) > 0
 
 
 def _newton(
@@ -151,15 +154,12 @@ def _newton(
     frozen = share * base.a_WO_B, np.sqrt(share) * base.w_WB_B, share * base.alpha_WB_B
     loads = None if values is None else share * values
     stiffness = structure.coefficients.stiffness
-    xp = namespace(stiffness, q)
     last = np.inf
-    for _ in range(_TRACED if structure.traced else _ITERATIONS):
+    for _ in range(_ITERATIONS):
         c, elastic = expanded(structure, q)
         _, stiffness, force = c.at(*frozen, loads)
-        correction = _solved(xp, stiffness, force - elastic)
+        correction = _solved(stiffness, force - elastic)
         q = q + correction
-        if structure.traced:
-            continue
         size, scale = np.abs(correction).max(), np.abs(q).max()
         if not size > 1e-13 + 1e-12 * scale:
             return q, stiffness, c, bool(np.isfinite(q).all())
@@ -169,9 +169,9 @@ def _newton(
     return q, stiffness, c, False
 
 
-def _solved(xp: Any, matrix: Array, right: Array) -> Array:
+def _solved(matrix: Array, right: Array) -> Array:
     try:
-        return xp.linalg.solve(matrix, right)
+        return np.linalg.solve(matrix, right)
     except np.linalg.LinAlgError:
         return np.full(len(right), np.nan)
 

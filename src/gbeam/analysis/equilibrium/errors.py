@@ -1,4 +1,4 @@
-"""Errors of a relative equilibrium: from too few shapes, and of the model, against the exact one with more shapes."""
+"""Errors of a relative equilibrium: too few shapes and the model, against the exact one; the beam theory."""
 
 from __future__ import annotations
 
@@ -7,26 +7,28 @@ from dataclasses import replace
 
 import numpy as np
 
+from gbeam.analysis.accuracy.beam_theory import described, static_theory
+from gbeam.analysis.accuracy.doubts import LIMIT, cause_and_cure, of_bodies, percent
 from gbeam.analysis.accuracy.estimate import UNKNOWN
 from gbeam.analysis.accuracy.reference import Sampled
 from gbeam.analysis.accuracy.response_errors import IntArray, Quantities, driven, quantities
-from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
+from gbeam.analysis.equilibrium.equilibrium import keeps, solve_equilibrium
 from gbeam.analysis.equilibrium.point import OperatingPoint
 from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.theory import theory_of
 from gbeam.motion.bases.base import Base
 from gbeam.results.parts.errors import ErrorEstimate, Errors
 from gbeam.results.parts.section_forces import Loads
 from gbeam.results.result import Floats
 
-LIMIT = 0.01  # an error above is warned of
 NOTHING = 1e-6  # of the other load, over a length of the beam: a force or moment that is less is none
 LOST = "shapes and model are not judged: the exact model with more shapes comes to no equilibrium there"
 
 
-def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | None) -> Errors:
-    """Estimated errors of an equilibrium, as fractions of displacement, root load and stress.
+def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | None) -> tuple[Errors, tuple[str, ...]]:
+    """Estimated errors of an equilibrium, as fractions of displacement, root load and stress, and what to say of them.
 
     Parameters
     ----------
@@ -37,15 +39,16 @@ def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | No
     """
     structure = point.structure
     if structure.source is None or loads is None:
-        return Errors(note=UNKNOWN)
+        return Errors(note=UNKNOWN), ()
     own = Quantities(displacement[-1:], loads.force[:, 0], loads.moment[:, 0], loads.stress.max(axis=1))
     more = enrichment(structure, point.base)
     which = driven(more, lambda rich, index: _lifted(rich, index, point))
     exact = _solved(more.model("exact", directions=which)[0], point)
     if exact is None:
-        return Errors(note=LOST)
+        return Errors(note=LOST), (LOST,)
     same = exact if structure.kind == "exact" else _solved(more.model(structure.kind, directions=which)[0], point)
     length = structure.length
+    lacking = static_theory(structure, lambda rich: _lifted(rich, np.arange(structure.size), point))
 
     def fractions(name: str, least: float) -> ErrorEstimate:
         def apart(a: Quantities | None, b: Quantities | None) -> float:
@@ -55,7 +58,9 @@ def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | No
             return away / size if size > least else 0.0
 
         size = max(float(np.linalg.norm(getattr(each, name))) for each in (own, exact))
-        return ErrorEstimate(0.0, apart(own, same), apart(same, exact), apart(own, exact))
+        away = ErrorEstimate(0.0, apart(own, same), apart(same, exact), total=apart(own, exact))
+        theory = lacking.sizes[name]
+        return away.with_theory(theory / size if theory and size > least else 0.0)
 
     force, moment = (float(np.linalg.norm(each)) for each in (exact.force, exact.moment))
     worst = max(
@@ -63,24 +68,29 @@ def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | No
         fractions("moment", NOTHING * force * length),
         key=lambda each: each.total,
     )
-    return Errors(fractions("tip", NOTHING**2 * length), worst, fractions("stress", 0.0))
+    theory = described(structure, lacking.causes)
+    errors = Errors(fractions("tip", NOTHING**2 * length), worst, fractions("stress", 0.0), theory=theory)
+    bodies = of_bodies(structure, lacking, float(np.linalg.norm(own.tip)), LIMIT)
+    return errors, (*_doubtful(errors), *bodies, *_sideways(point))
 
 
-def doubtful(errors: Errors) -> tuple[str, ...]:
-    """What to say of an equilibrium that is wrong by more than one in a hundred, or that the exact model has not."""
-    if errors.note == LOST:
-        return (errors.note,)
+def _sideways(point: OperatingPoint) -> tuple[str, ...]:
+    """What to say of an equilibrium that a beam with torsion would not keep: a strip on edge buckles sideways."""
+    at = point.base, point.residual.unpack(point.u)[1]
+    if not keeps(point.about, *at) or keeps(theory_of(point.structure).thick.coefficients, *at):
+        return ()
+    return ("a beam that twists would not stay there, but buckle sideways: no model here has torsion",)
+
+
+def _doubtful(errors: Errors) -> tuple[str, ...]:
+    """What to say of an equilibrium that is wrong by more than one in a hundred."""
     quantities = {"tip's displacement": errors.displacement, "root's loads": errors.loads}
     above = {name: each for name, each in quantities.items() if each.total > LIMIT}
     if not above:
         return ()
     worst = max(above.values(), key=lambda each: each.total)
-    cause, cure = "too few shapes", "raise model.modes or leave them out"
-    if not worst.shapes >= worst.model:
-        cause, cure = "the model", 'check with model.kind = "exact"'
-    sizes = " and ".join(
-        f"the {name} by {100 * each.total:{'.0f' if each.total > 0.1 else '.2g'}} %" for name, each in above.items()
-    )
+    cause, cure = cause_and_cure(worst.shapes, worst.model, worst.beam_theory, errors.theory)
+    sizes = " and ".join(f"the {name} by {percent(each.total)}" for name, each in above.items())
     return (f"estimated to be wrong: {sizes}, mostly from {cause}; {cure}",)
 
 

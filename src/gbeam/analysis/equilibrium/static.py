@@ -7,10 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from gbeam.analysis.equilibrium.equilibrium import keeps
-from gbeam.analysis.equilibrium.errors import doubtful, static_errors
+from gbeam.analysis.equilibrium.errors import static_errors
 from gbeam.analysis.equilibrium.operating_point import operating_point
 from gbeam.analysis.equilibrium.point import OperatingPoint, on_base
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
@@ -20,6 +21,7 @@ from gbeam.results.response import BaseMotion
 from gbeam.results.steady.equilibrium import Deflection
 
 
+@typed
 def static(
     structure: Structure,
     motion: Motion | None = None,
@@ -77,8 +79,8 @@ def deflection_at(
     still = np.zeros((1, structure.size))
     displacement = np.asarray(structure.displacement(q))
     loads = section_forces(structure, over_time, q[None], still, still, np.array([time]), motion=motion)
-    errors = static_errors(point, displacement, loads)
-    warnings = input_warnings(structure, motion, name=name, span=(time, time), base=base) + doubtful(errors)
+    errors, doubts = static_errors(point, displacement, loads)
+    warnings = input_warnings(structure, motion, name=name, span=(time, time), base=base) + doubts
     return Deflection(
         motion=name,
         model=structure.kind,

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge
 from gbeam.motion.centrifuge.inverses.registry import INVERSES
 from gbeam.numerics.solvers.bounded_search import coarse
@@ -13,6 +14,7 @@ from gbeam.numerics.solvers.bounded_search import coarse
 _FACTOR = 4.0  # of the centrifuge's own smoothing, either way
 
 
+@typed
 @dataclass(frozen=True)
 class Choice:
     """What may be chosen beside the control point.
@@ -38,6 +40,7 @@ class Choice:
     limited: bool = True
 
 
+@typed
 def choice_of(centrifuge: Centrifuge, smoothing: Sequence[float] = (), *, limited: bool = True) -> Choice:
     """Both mountings of a centrifuge, its own first, and widths of smoothing.
 

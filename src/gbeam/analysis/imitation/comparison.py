@@ -10,6 +10,7 @@ from gbeam.analysis.imitation.accounting import History, account_of
 from gbeam.analysis.imitation.fatigue import fatigue
 from gbeam.analysis.imitation.peak_pairs import peak_pairs
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.motion.bases.base import gradient
 from gbeam.numerics.filters.low_pass import low_pass
 from gbeam.numerics.filters.oscillators import largest_riding_acceleration
@@ -30,6 +31,7 @@ _FEWEST = 16  # samples worth filtering
 _ROUNDING = 1e-12  # of the last time
 
 
+@typed
 def compare(
     flight: Response,
     centrifuge: Response,
@@ -67,13 +69,17 @@ def compare(
         If a limit has no such name, or means nothing.
     """
     limits = checked_limits(accept)
-    first, last = flight.time[0], flight.time[-1]
-    slack = _ROUNDING * max(abs(first), abs(last))
+    flown, made = (float(flight.time[0]), float(flight.time[-1])), centrifuge.flight_span
+    first, last = max(flown[0], made[0]), min(flown[1], made[1])
+    slack = _ROUNDING * max(map(abs, flown))
     begin, end = np.searchsorted(centrifuge.time, (first - slack, last + slack))
     during = slice(int(begin), int(end))  # spin-up and spin-down are not the flight's
     time = centrifuge.time[during]
     if not len(time):
         raise InputError("centrifuge", "has no time in common with the flight", "compute both for the same times")
+
+    short = time[0] > flown[0] + slack or time[-1] < flown[1] - slack
+    whole = flown if short and flight.whole is None else flight.whole
 
     def in_flight(values: Floats) -> Floats:
         return interpolated(time, flight.time, values)
@@ -91,7 +97,7 @@ def compare(
         )  # fmt: skip
         root = _root(covered, history, in_flight(a.stress[:, 0]), b.stress[during, 0])
         shock = _shock(time, covered, in_flight(a.acceleration[:, -1]), b.acceleration[during, -1])
-    names, flown = _names(flight, centrifuge), in_flight(gradient(flight.base.w_WB_B, flight.base.alpha_WB_B))
+    names, growth = _names(flight, centrifuge), in_flight(gradient(flight.base.w_WB_B, flight.base.alpha_WB_B))
     spun = gradient(centrifuge.base.w_WB_B[during], centrifuge.base.alpha_WB_B[during])
     return Comparison(
         flight=names[0],
@@ -105,17 +111,19 @@ def compare(
         peak_centrifuge=_largest(actual[:, -1], covered),
         peaks=peak_pairs(flight, centrifuge, during),
         accounting=account_of(
-            time, History.of(in_flight(flight.base.a_WO_B), flown, length),
+            time, History.of(in_flight(flight.base.a_WO_B), growth, length),
             History.of(centrifuge.base.a_WO_B[during], spun, length, None if axes is None else axes.actual[during]),
             axes, during, tolerance=tolerance, tolerance_of=tolerance_of,
         ),
         accept=limits,
         stations=_statistics(time, covered, reference, actual, centrifuge),
-        mismatch=_mismatch(covered, centrifuge, spun - flown),
+        mismatch=_mismatch(covered, centrifuge, spun - growth),
         root=root,
         shock=shock,
         fatigue=fatigue(flight, centrifuge),
         yield_strength=None if centrifuge.loads is None else centrifuge.loads.yield_strength,
+        whole=whole,
+        kept_every=centrifuge.kept_every,
     )  # fmt: skip
 
 

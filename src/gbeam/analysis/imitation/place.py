@@ -19,6 +19,7 @@ from gbeam.analysis.imitation.place_check import verify
 from gbeam.analysis.imitation.place_measures import Answers, Histories
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion import Centrifuge, Flight
@@ -30,6 +31,7 @@ from gbeam.results.imitation.placement import EXCEEDED, MEASURES, Candidate, Pla
 _WORTH = 0.02  # of the total error: what another mounting must save at least
 
 
+@typed
 def place(
     structure: Structure,
     flight: Flight,

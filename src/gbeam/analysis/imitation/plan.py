@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gbeam.analysis.imitation.accounting import History, account_of
 from gbeam.analysis.imitation.largest import largest_load, largest_pair, points_of, times_between
+from gbeam.guards.arguments import typed
 from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.motion import Centrifuge
 from gbeam.motion.bases.base import gradient
@@ -18,13 +18,12 @@ from gbeam.results.imitation.accounting import TOLERANCE, PeakPair
 from gbeam.results.imitation.criteria import Limit, checked_limits
 from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.machine import Commands
-
-if TYPE_CHECKING:
-    from gbeam.structure.beam import Beam
+from gbeam.structure.beam import Beam
 
 _FINE = 1e-3  # s: the angle of axis 1 is integrated on times no further apart
 
 
+@typed
 def plan(
     name: str,
     motion: Centrifuge,
@@ -34,6 +33,7 @@ def plan(
     tolerance: float = TOLERANCE,
     tolerance_of: str = "peak",
     accept: Mapping[str, Limit] | None = None,
+    title: str = "",
 ) -> MachinePlan:
     """Plan one centrifuge over its whole motion, and account for the flight's load on it.
 
@@ -49,6 +49,8 @@ def plan(
         The specimen, whose size the load along it depends on.
     tolerance, tolerance_of, accept
         As for :func:`gbeam.compare`; limits that need a response are not judged.
+    title : str
+        Of the scenario, for the header of the commands.
 
     Raises
     ------
@@ -88,12 +90,17 @@ def plan(
             tolerance=tolerance,
             tolerance_of=tolerance_of,
         ),
+        gravity=float(motion.geometry.gravity),
+        mounting=motion.mounting,
         peaks={"largest_load": largest},
         accept=limits,
+        title=title,
+        whole=motion.flight.part_of(*span),
         warnings=(*warnings, *axes.warnings),
     )
 
 
+@typed
 def commands(motion: Centrifuge, sample: float) -> Commands:
     """Return the axis motions at a controller's sample time, from their closed forms and not by interpolation.
 

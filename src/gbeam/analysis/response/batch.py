@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, TypeVar, Unpack
 
 import numpy as np
 
 from gbeam.analysis.response.peaks import displacement_peaks
 from gbeam.analysis.response.record import response_of
-from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.settings import ResponseSettings, Settings
 from gbeam.analysis.response.simulation import settings_of, simulate
 from gbeam.analysis.response.steps.posed import Posed, pose, steps_within
 from gbeam.analysis.response.steps.step_errors import Run
 from gbeam.analysis.response.steps.stepping import Plan, scheme_of
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.integrate.trajectory import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
@@ -70,13 +71,14 @@ class _Ended:
     known: dict[str, Any]
 
 
+@typed
 def simulate_batch(
     cases: Iterable[tuple[Structure, Motion]],
     settings: ResponseSettings | None = None,
     *,
     together: int = TOGETHER,
     one_structure: bool = False,
-    **options: Any,
+    **options: Unpack[Settings],
 ) -> Iterator[tuple[int, Response]]:
     """Compute the responses of many cases.
 
@@ -117,7 +119,7 @@ def simulate_batch(
     A case's digits depend neither on the cases beside it nor on their order, on one machine: with as many `together`,
     and `one_structure` alike, a case alone, the last of a hundred and one in other company give the same bytes.
     """
-    settings = settings_of("simulate_batch", settings, options if settings else {"estimate": False, **options})
+    settings = settings_of(settings, options if settings else {"estimate": False, **options})
     if together < 1:
         raise InputError("together", f"is {together}", "give one or more")
     return _responses(cases, settings, together, one_structure)

@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
+from gbeam.arrays.namespace import namespace
 from gbeam.errors import ComputationError, InputError
+from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, finite
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
@@ -19,6 +21,7 @@ STATES = ("equilibrium", "undeformed")
 _ITERATIONS = 60
 
 
+@typed
 @dataclass(frozen=True)
 class Initial:
     """The state of the beam, relative to its base, in which a response begins; a machine's with its spin-up.
@@ -126,24 +129,27 @@ def initial_state(structure: Structure, base: Base | None, time: float, initial:
     return q, _moving(structure, q, initial.tip_velocity or {}), stable
 
 
-def _rows(structure: Structure, q: Array, place: str, given: Mapping[str, float]) -> tuple[Array, Array, Array]:
-    """The tip's displacement along the axes given (k,), its derivatives there (k, n), and the values to reach (k,)."""
-    axes = ["xyz".index(axis) for axis in given]
-    slopes = structure.station_slopes(q)[-1][axes]
-    for axis, row in zip(given, slopes, strict=True):
-        if not np.any(row):
-            fix = f"give model.modes.{axis} = 1 or more"
-            raise InputError(f"response.initial.{place}.{axis}", "is along a direction without shapes", fix)
-    return np.asarray(structure.displacement(q))[-1, axes], slopes, np.asarray([*given.values()], dtype=float)
+def _axes(structure: Structure, place: str, given: Mapping[str, float]) -> tuple[tuple[int, ...], Array]:
+    """The axes along which the tip moves, and the values given of them (k,)."""
+    axes = tuple("xyz".index(axis) for axis in given)
+    for axis in set(axes) & set(structure.axes_without_shapes):
+        where, fix = f"response.initial.{place}.{'xyz'[axis]}", f"give model.modes.{'xyz'[axis]} = 1 or more"
+        raise InputError(where, "is along a direction without shapes", fix)
+    return axes, np.asarray([*given.values()], dtype=float)
 
 
 def _displaced(structure: Structure, given: Mapping[str, float]) -> Array:
     """Coordinates of least strain energy at which the tip has a displacement: Lagrange's multipliers, by Newton."""
+    axes, wanted = _axes(structure, "tip_displacement", given)
+    if structure.traced:
+        from gbeam.analysis.equilibrium.compiled import displaced
+
+        return displaced(structure, axes, wanted)
     q = np.zeros(structure.size)
     for _ in range(_ITERATIONS):
-        reached, slopes, wanted = _rows(structure, q, "tip_displacement", given)
         coefficients, elastic = structure.about(q)
-        change = _constrained(np.asarray(coefficients.stiffness), -np.asarray(elastic), slopes, wanted - reached)
+        left = wanted - structure.tip(q)[..., axes]
+        change = _constrained(coefficients.stiffness, -elastic, structure.station_slopes(q)[-1, axes], left)
         q = q + change
         if np.abs(change).max() <= 1e-12 * np.abs(q).max():
             return q
@@ -155,11 +161,13 @@ def _moving(structure: Structure, q: Array, given: Mapping[str, float]) -> Array
     """Rates at which the tip has a velocity, in the shape of least strain energy."""
     if not given:
         return 0.0 * q
-    _, slopes, wanted = _rows(structure, q, "tip_velocity", given)
-    return _constrained(np.asarray(structure.coefficients.stiffness), np.zeros(len(q)), slopes, wanted)
+    axes, wanted = _axes(structure, "tip_velocity", given)
+    slopes = structure.station_slopes(q)[-1, axes]
+    return _constrained(structure.coefficients.stiffness, 0.0 * q, slopes, wanted)
 
 
 def _constrained(stiffness: Array, force: Array, slopes: Array, value: Array) -> Array:
     """x of K x = f + Jᵀ λ with J x = v."""
-    own, shapes = np.linalg.solve(stiffness, force), np.linalg.solve(stiffness, slopes.T)
-    return own + shapes @ np.linalg.solve(slopes @ shapes, value - slopes @ own)
+    solve = namespace(stiffness, force, slopes).linalg.solve
+    own, shapes = solve(stiffness, force), solve(stiffness, slopes.T)
+    return own + shapes @ solve(slopes @ shapes, value - slopes @ own)

@@ -6,9 +6,11 @@ import math
 
 import numpy as np
 
-from gbeam.analysis.equilibrium.definiteness import first_loss
+from gbeam.analysis.accuracy.doubts import BEYOND, percent
+from gbeam.analysis.equilibrium.definiteness import Loss, worst_loss
 from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.guards.limits import BOUNDLESS
 from gbeam.integrate.trajectory import Trajectory
 from gbeam.mechanics.fields.exact import ExactField
 from gbeam.mechanics.fields.rooted import RootedField
@@ -19,6 +21,8 @@ from gbeam.results.response import BaseMotion
 from gbeam.results.result import Floats
 
 MANY = 100  # steps between two of the results' times, above which a run says why
+GROWN = math.log(1e3)  # a crookedness of a thousandth of the beam's length is its length then
+NOTICED = math.log(2)  # what grows less has hardly had the time
 _NEAR = np.radians(160.0)  # of the pole at 180 degrees
 
 
@@ -38,20 +42,25 @@ def describe(
     trajectory : Trajectory
         Every step computed; `base`, at times `time` (t,) s, and the beam's coordinates `q` (t, n) are at those kept.
     """
-    loss = first_loss(structure.coefficients, time, base) if structure.linear else None
-    lost = (
-        ""
-        if loss is None
-        else f"{structure.kind}'s stiffness is not positive definite from t = {loss[0]:.4g} s, where the base turns at "
-        f"{loss[1]:.4g} rad/s"
-    )
-    warnings = []
     end = trajectory.time[-1]
+    if not (trajectory.stopped or trajectory.converged):
+        return (
+            "not converged",
+            f"no acceleration satisfies the equations in the step after t = {end:.4g} s; "
+            f'try a smaller response.step, or response.integrator = "generalized-alpha" with rho_inf = 0.8',
+            (),
+        )
+    loss = worst_loss(structure, time, base, q)
+    lost = "" if loss is None else _lost(structure, loss)
+    particles = structure.field is None  # which have no other model, and no length that bounds how far they move
+    if trajectory.stopped and particles:
+        cause = f": {lost}" if lost else "; give a smaller response.step"
+        return "diverged", f"the displacement exceeded {BOUNDLESS:.0e} m at t = {end:.4g} s{cause}", ()
     if trajectory.stopped:
         better = "FOAM or exact" if structure.kind == "TLAM" else "exact"
         why = f"use {better}"
         if lost:
-            why = f"{lost}: the model is not valid beyond that speed; {why}"
+            why = f"{lost}: the model is not valid beyond that; {why}"
             if structure.kind != "TLAM":
                 why += ", and `gbeam critical-speed` to see whether the exact model loses its equilibrium as well"
         return (
@@ -59,27 +68,46 @@ def describe(
             f"the displacement exceeded the beam's length, {structure.length:.4g} m, at t = {end:.4g} s; {why}",
             (),
         )
-    if not trajectory.converged:
+    if loss is not None and loss.growth > GROWN:
+        cure = "add a small load across the beam, which decides which way it gives"
+        if particles:
+            cure = "stiffen the structure, or slow its motion"
+        elif structure.linear:
+            cure = f"use {'FOAM or ' if structure.kind == 'TLAM' else ''}exact, and {cure}"
         return (
-            "not converged",
-            f"no acceleration satisfies the equations in the step after t = {end:.4g} s; "
-            f'try a smaller response.step, or response.integrator = "generalized-alpha" with rho_inf = 0.8',
+            "diverged",
+            f"{lost}, to t = {loss.end:.4g} s: whatever deviates grows more than a thousandfold meanwhile, and no real "
+            f"beam stays where this run has it; {cure}",
             (),
         )
-    if lost:
-        warnings.append(f"{lost}; the result beyond is not to be trusted")
+    warnings = []
+    if loss is not None and loss.growth > NOTICED:
+        warnings.append(
+            f"{lost}, to t = {loss.end:.4g} s: whatever deviates grows {math.exp(loss.growth):.2g}-fold meanwhile"
+        )
     elif not problem.stable:
         warnings.append(
             "the run starts from an equilibrium that is not stable, which no beam would keep; `gbeam critical-speed` "
             "finds where that begins"
         )
     warnings += _yielding(structure, peaks)
+    if particles and peaks.max_size > structure.length:
+        warnings.append(
+            f"the displacement reaches {peaks.max_size:.4g} m, and no particle rests farther than "
+            f"{structure.length:.4g} m from the root: places to second order in the coordinates may not hold so far"
+        )
     if (turned := turned_out_of_plane(structure, q)) > _NEAR:
         warnings.append(
             f"the beam's tangent turns by {np.degrees(turned):.0f}° out of one plane: straight back, at 180°, its "
             "rotation vector has a pole, and near it the shapes converge slowly; check with more of them"
         )
     return "done", "", tuple(warnings)
+
+
+def _lost(structure: Structure, loss: Loss) -> str:
+    """Where a run's stability is lost, in words."""
+    what = "equilibrium is not stable" if loss.flutter else "stiffness is not positive definite"
+    return f"{structure.kind}'s {what} from t = {loss.start:.4g} s, where {' and '.join(loss.causes)}"
 
 
 def inaccuracies(structure: Structure, errors: Errors, settings: ResponseSettings) -> tuple[str, ...]:
@@ -97,16 +125,18 @@ def inaccuracies(structure: Structure, errors: Errors, settings: ResponseSetting
         "model": 'check with model.kind = "exact"',
         "shapes": "raise model.modes, or leave them out",
         "step": _cure_of_step(settings),
+        "beam_theory": f"{errors.theory}; {BEYOND}",
     }
+    names = {"shapes": "too few shapes", "beam_theory": "the theory of slender beams"}
     parts = [(getattr(worst, part), part, cure) for part, cure in cures.items()]
     causes = [
-        f"{_percent(size)} from {'too few shapes' if part == 'shapes' else f'the {part}'} ({cure})"
+        f"{percent(size)} from {names.get(part, f'the {part}')} ({cure})"
         for size, part, cure in sorted(parts, reverse=True)
         if size > settings.tolerance / 10
     ]
     return (
-        f"the estimated error of the {' and of the '.join(above)}, {_percent(worst.total)} of the largest"
-        f"{f' (of the {name})' if len(above) > 1 else ''}, is above the tolerance {_percent(settings.tolerance)}: "
+        f"the estimated error of the {' and of the '.join(above)}, {percent(worst.total)} of the largest"
+        f"{f' (of the {name})' if len(above) > 1 else ''}, is above the tolerance {percent(settings.tolerance)}: "
         f"{', '.join(causes)}{f'; {errors.note}' if errors.note else ''}",
     )
 
@@ -130,10 +160,6 @@ def effort(settings: ResponseSettings, steps: int, finer: int) -> tuple[str, ...
         "grows with every cycle of a lightly damped vibration, falls as the square of the step only; "
         'response.integrator = "gauss" keeps the same accuracy in far fewer',
     )
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:.2g} %"
 
 
 def _yielding(structure: Structure, peaks: Peaks) -> list[str]:

@@ -23,6 +23,7 @@ from gbeam.mechanics.influence import influence
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
+from gbeam.motion import Centrifuge, Flight
 from gbeam.motion.bases.base import Base
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
@@ -84,9 +85,10 @@ def response_of(
     if hub is not None and not motion.free and loads is not None and loads.drive_torque is not None:
         hub = replace(hub, drive_torque=loads.drive_torque)
     axes = None if traced or motion.kind != "centrifuge" else axes_of(motion, time)
-    outcome, message, warnings = "done", "", tuple(f"record: {note}" for note in getattr(motion, "notes", ()))
+    outcome, message = "done", ""
     displacement = fine[::stride] if up is None and down is None else structure.displacement(q[:, beam])
     errors = Errors()
+    warnings: tuple[str, ...] = ()
     if not traced:
         outcome, message, own = describe(structure, problem, last, over_time, peaks, time, q[:, beam])
         if outcome == "done":
@@ -100,13 +102,17 @@ def response_of(
             steps = step_errors.displacement, step_errors.loads, step_errors.stress
             if settings.estimate:
                 begun = None if settled else begin
-                errors = response_errors(structure, motion, solution, tip, during, steps, stride=stride, begin=begun)
+                tolerance = settings.tolerance
+                errors, doubts = response_errors(
+                    structure, motion, solution, tip, during, steps, stride=stride, begin=begun, tolerance=tolerance
+                )
+                own += doubts
             else:
                 alone = [ErrorEstimate(step=step) for step in steps]
                 errors = Errors(alone[0], alone[1], alone[2], NOT_ESTIMATED)
             own += inaccuracies(structure, errors, settings) + effort(settings, len(trajectory.time) - 1, stride)
         given = input_warnings(structure, motion, name=name, span=(time[0], time[-1]), base=over_time)
-        warnings = given + settings.warnings + own + (() if axes is None else axes.warnings) + warnings
+        warnings = given + settings.warnings + own + (() if axes is None else axes.warnings)
     return Response(
         name=name,
         environment=motion.kind,
@@ -137,7 +143,15 @@ def response_of(
         initial=str(settings.begin),
         outline=outline_of(structure, motion, time, q[:, beam]) if settings.loads and not traced else None,
         bodies=np.empty((0, 3)) if traced or structure.source is None else structure.source.beam.body_centres,
+        whole=_whole(motion, settings),
+        kept_every=settings.kept_every(len(time), float(time[-1] - time[0]) / max(len(time) - 1, 1)),
     )
+
+
+def _whole(motion: Motion, settings: ResponseSettings) -> tuple[float, float] | None:
+    """First and last time of the whole flight, s, where a run is of a part of it, in flight or on a machine."""
+    flight = motion.flight if isinstance(motion, Centrifuge) else motion
+    return flight.part_of(settings.start, settings.start + settings.duration) if isinstance(flight, Flight) else None
 
 
 def moving(

@@ -4,18 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TypedDict
 
 from gbeam.analysis.response.initial import Initial, begun
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive
 from gbeam.guards.limits import STEPS, refuse_more
 from gbeam.guards.plausibility import implausible, possible
 
 FINE = 1e-4
+KEPT = 50_000  # samples of each history that a file holds, unless the settings say how often: 36 MB of the F-16 example
 NOT_ESTIMATED = "no error is estimated: the settings say estimate = false"
 NO_LOADS = "no loads are computed, nor whether the material yields: the settings say loads = false"
 
 
+class Settings(TypedDict, total=False):
+    """Keywords of :class:`ResponseSettings`, as :func:`gbeam.simulate` takes them."""
+
+    duration: float
+    start: float
+    step: float | None
+    integrator: str
+    parameters: Mapping[str, float]
+    tolerance: float
+    residual_from: float | None
+    initial: Initial | str
+    estimate: bool
+    loads: bool
+    histories: float | None
+
+
+@typed
 @dataclass(frozen=True)
 class ResponseSettings:
     """How a response over time is computed.
@@ -43,6 +63,9 @@ class ResponseSettings:
         several, by which its own error is known; shapes and model are not judged. The result says so.
     loads : bool
         Whether what the sections carry, and the outline for pictures, are computed. The estimate is of loads too.
+    histories : float or None
+        Time between the samples of histories in a file, s, as near as the results' steps allow; None keeps all up to
+        50,000, else every second, third and so on. Peaks, errors and comparisons are of all, and so is xarray.
 
     Raises
     ------
@@ -60,6 +83,7 @@ class ResponseSettings:
     initial: Initial | str = field(default_factory=Initial)
     estimate: bool = True
     loads: bool = True
+    histories: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "initial", self.begin)
@@ -70,6 +94,8 @@ class ResponseSettings:
             raise InputError(
                 "loads", "is false, and the error is estimated of them too", "give estimate = False as well"
             )
+        if self.histories is not None:
+            positive("histories", self.histories, "s")
         if self.step is not None:
             possible("step", "step", positive("step", self.step, "s"))
             fix = f"give {self.duration / STEPS:.2g} s or more"
@@ -87,6 +113,11 @@ class ResponseSettings:
         parts = {NOT_ESTIMATED: self.estimate, NO_LOADS: self.loads}
         left_out = tuple(words for words, made in parts.items() if not made)
         return (*implausible("response.duration", "duration", self.duration), *step, *left_out)
+
+    def kept_every(self, samples: int, step: float) -> int:
+        """How many of the `samples` of a history, `step` s apart, make one in a file."""
+        wanted = -(-samples // KEPT) if self.histories is None else round(self.histories / step)
+        return max(1, wanted)
 
     @property
     def aim(self) -> float:

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, Unpack
 
 from gbeam.analysis.response.problem import problem_of
 from gbeam.analysis.response.record import response_of
-from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.settings import ResponseSettings, Settings
 from gbeam.analysis.response.steps.posed import pose
 from gbeam.analysis.response.steps.stepping import answered
 from gbeam.analysis.response.steps.trajectories import going_on, integrated, ramp, split, steps_beyond
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
+from gbeam.guards.checks import choice
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.results.parts.errors import StepErrors
 from gbeam.results.response import Response
 
 
+@typed
 def simulate(
     structure: Structure,
     motion: Motion,
@@ -27,7 +30,7 @@ def simulate(
     *,
     name: str = "",
     progress: Callable[[str, float], None] | None = None,
-    **options: Any,
+    **options: Unpack[Settings],
 ) -> Response:
     """Compute the response of a beam in one environment.
 
@@ -52,9 +55,9 @@ def simulate(
     -------
     Response
         With the loads along the beam. Its outcome is ``done``, ``diverged`` (the displacement left what the model can
-        mean) or ``not converged`` (Newton's method failed). Where JAX traces the structure or the motion, its arrays
-        are traced: their derivatives are those of the discrete solution; there is no error estimate, and a step that
-        fails leaves NaN.
+        mean, or the beam lost its stability) or ``not converged`` (Newton's method failed). Where JAX traces the
+        structure or the motion, its arrays are traced: their derivatives are those of the discrete solution; there is
+        no error estimate, and a step that fails leaves NaN.
 
     Raises
     ------
@@ -64,7 +67,7 @@ def simulate(
     ComputationError
         If there is no relative equilibrium to start from.
     """
-    settings = settings_of("simulate", settings, options)
+    settings = settings_of(settings, options)
     structure.require_damping("the response")
     motion = motion.over(settings.start, settings.start + settings.duration)
     if structure.holds_jax or holds_jax(motion):
@@ -109,14 +112,14 @@ def _traced(structure: Structure, motion: Motion, settings: ResponseSettings, na
     return response_of(structure, motion, settings, problem, (up, trajectory, down), name, step, StepErrors(), 1)
 
 
-def settings_of(name: str, settings: ResponseSettings | None, options: dict[str, Any]) -> ResponseSettings:
-    """The settings that a function of some name is given, as such or by keyword; InputError if both or neither are."""
+def settings_of(settings: ResponseSettings | None, options: Settings) -> ResponseSettings:
+    """The settings that a function is given, as such or by keyword; InputError if both or neither are."""
+    for name in options:
+        choice("keyword", name, Settings.__annotations__)
     if settings is not None:
         if options:
             raise InputError(next(iter(options)), "is given beside settings", "give one of them")
         return settings
-    try:
-        return ResponseSettings(**options)
-    except TypeError as error:
-        fields = ", ".join(ResponseSettings.__dataclass_fields__)
-        raise InputError(name, f"cannot be called so ({error})", f"give duration, and any of {fields}") from None
+    if "duration" not in options:
+        raise InputError("duration", "is missing", "give the response's, s, or settings")
+    return ResponseSettings(**options)

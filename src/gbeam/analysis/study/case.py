@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.models import Model
 from gbeam.mechanics.structure import Structure
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from gbeam.scenario.schema.scenario import Scenario
 
 
+@typed
 @dataclass(frozen=True)
 class Case:
     """What a scenario describes, as objects.

@@ -5,15 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from gbeam.analysis.study.case import Case
+from gbeam.guards.arguments import typed
 from gbeam.mechanics.fields.basis import quadrature
 from gbeam.mechanics.plausibility import input_warnings
+from gbeam.motion import Flight
 from gbeam.results.description import Description
 
 MODES = 6  # natural frequencies at most
 
 
+@typed
 def describe(case: Case) -> Description:
-    """Describe a case: the beam's mass, its natural frequencies at rest, the motions and the response's settings.
+    """Describe a case: the beam's mass, its frequencies at rest, motions, records, and the response's settings.
 
     Parameters
     ----------
@@ -47,6 +50,11 @@ def describe(case: Case) -> Description:
         direction=tuple(str(groups[i]) for i in np.abs(modes[: len(groups)]).argmax(axis=0)[:MODES]),
         motions={name: motion.kind for name, motion in case.motions.items()},
         tracks=dict(case.tracks),
+        records={
+            name: motion.record
+            for name, motion in case.motions.items()
+            if isinstance(motion, Flight) and motion.record is not None
+        },
         start=settings.start,
         duration=settings.duration,
         step=settings.step,

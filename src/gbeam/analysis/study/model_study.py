@@ -15,6 +15,7 @@ from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.study.case import Case
 from gbeam.errors import ComputationError, InputError
+from gbeam.guards.arguments import typed
 from gbeam.mechanics.models import KINDS, Model
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
@@ -38,6 +39,7 @@ def counterpart(model: Model, kind: str) -> Model:
     return replace(model, kind=kind, axial=axial if KINDS[kind].axial else 0)
 
 
+@typed
 def compare_models(
     case: Case, kinds: Sequence[str] = tuple(KINDS), progress: Callable[[str, float], None] | None = None
 ) -> ModelStudy:

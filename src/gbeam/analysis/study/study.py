@@ -11,6 +11,7 @@ from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.study.case import Case
 from gbeam.errors import ComputationError, InputError
+from gbeam.guards.arguments import typed
 from gbeam.results.imitation.criteria import judging
 from gbeam.results.response import Response
 from gbeam.results.study import Failure, Study
@@ -18,6 +19,7 @@ from gbeam.results.study import Failure, Study
 ENOUGH = 1e-3  # error from too few shapes, at most, where their numbers are automatic
 
 
+@typed
 def study(case: Case, progress: Callable[[str, float], None] | None = None) -> Study:
     """Compute the response in every environment of a case and compare each centrifuge with its flight.
 

@@ -17,18 +17,18 @@ from gbeam.analysis.vibration.modal import modes_at
 from gbeam.analysis.vibration.speeds import largest_rate
 from gbeam.analysis.vibration.stability import critical_speed, hub_of
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.solvers.oscillations import mac
+from gbeam.numerics.solvers.oscillations import mac, matched
 from gbeam.numerics.solvers.roots import brent
-from gbeam.results.parts.errors import FrequencyErrors
+from gbeam.results.parts.errors import PARTS, FrequencyErrors
 from gbeam.results.result import Complex, Floats
 from gbeam.results.steady.modal import Campbell, Crossing
 
 CONFIDENT = 0.9  # a mode that resembles itself less from one speed to the next is looked at in between
 SURE = 0.95  # of a critical speed: nearer, a frequency goes to zero and has no relative error
-PARTS = "shapes", "model", "total"
 DEPTH = 8  # halvings of a step at most: what veers faster is a crossing to every eye
 
 
@@ -45,15 +45,7 @@ class _Speed(NamedTuple):
 
 def _paired(before: _Speed, after: _Speed) -> tuple[np.ndarray, Floats]:
     """For each mode of `before` the one of `after` that resembles it most, −1 for none, and their MAC."""
-    alike = mac(before.coordinates, after.coordinates, after.mass)
-    rows, columns = np.arange(len(alike)), alike.argmax(axis=1)
-    if len(set(columns)) < len(columns):  # two want the same one
-        from scipy.optimize import linear_sum_assignment
-
-        rows, columns = linear_sum_assignment(-alike)
-    match, value = np.full(len(before.frequency), -1), np.full(len(before.frequency), np.nan)
-    match[rows], value[rows] = columns, alike[rows, columns]
-    return match, value
+    return matched(mac(before.coordinates, after.coordinates, after.mass))
 
 
 def _fill(at: Callable[[float], _Speed], low: _Speed, high: _Speed, count: int, depth: int) -> list[_Speed]:
@@ -65,6 +57,7 @@ def _fill(at: Callable[[float], _Speed], low: _Speed, high: _Speed, count: int, 
     return [*_fill(at, low, middle, count, depth - 1), middle, *_fill(at, middle, high, count, depth - 1)]
 
 
+@typed
 def campbell(
     structure: Structure,
     motion: Motion,
@@ -163,13 +156,14 @@ def campbell(
         looked = [
             _errors(richer, point_at(followed[i].rate), followed[i], index[i]) for i in sorted({0, until // 2, until})
         ]
-        errors = FrequencyErrors(*(np.fmax.reduce([getattr(e, part) for e in looked]) for part in PARTS))
+        shapes, model, theory, total = (np.fmax.reduce([e.parts[part] for e in looked]) for part in PARTS)
+        errors = FrequencyErrors(shapes, model, theory, total, looked[-1].theory, looked[0].unseen)
         crossings = [
             replace(crossing, errors=crossing_errors(crossing, mode, slope, richer, point_at))
             for crossing, mode, slope in met
         ]
     warnings = input_warnings(structure, motion, name=name) + (() if errors is None else doubtful(errors))
-    warnings += doubtful_crossings(crossings)
+    warnings += doubtful_crossings(crossings, "" if errors is None else errors.theory)
     if lost.value is not None:
         warnings += tuple(each for each in lost.warnings if each not in warnings)
     return Campbell(
@@ -194,9 +188,10 @@ def _errors(richer: Richer, point: OperatingPoint, speed: _Speed, track: np.ndar
     chosen = track[there]
     value = 2j * np.pi * speed.frequency[chosen]
     found = richer.errors(point, value, speed.coordinates[chosen])
-    every = np.full((3, len(track)), np.nan)
-    every[:, there] = [getattr(found, part) for part in PARTS]
-    return FrequencyErrors(*every)
+    every = np.full((len(PARTS), len(track)), np.nan)
+    every[:, there] = [*found.parts.values()]
+    shapes, model, theory, total = every
+    return FrequencyErrors(shapes, model, theory, total, found.theory, found.unseen)
 
 
 def _crossings(

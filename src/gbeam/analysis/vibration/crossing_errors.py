@@ -1,12 +1,13 @@
-"""Errors of the speeds at which modes meet multiples of the speed: from too few shapes, and of the model."""
+"""Errors of the speeds at which modes meet multiples of the speed: shapes', the model's and the beam theory's."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
 
+from gbeam.analysis.accuracy.doubts import LIMIT, cause_and_cure, percent
 from gbeam.analysis.equilibrium.point import OperatingPoint
-from gbeam.analysis.vibration.errors import LIMIT, Richer
+from gbeam.analysis.vibration.errors import Richer
 from gbeam.errors import ComputationError
 from gbeam.results.parts.errors import ErrorEstimate
 from gbeam.results.result import Complex
@@ -57,7 +58,9 @@ def crossing_errors(
 
     exact = root(1)
     same = exact if richer.same is richer.exact else root(0)
-    return ErrorEstimate(0.0, _apart(own, same), _apart(same, exact), _apart(own, exact))
+    away = ErrorEstimate(0.0, _apart(own, same), _apart(same, exact), total=_apart(own, exact))
+    share = float(richer.by_theory(point_at(own), mode[None]).shares[0])
+    return away.with_theory(share * order / abs(slope - order))
 
 
 def _apart(value: float, reference: float) -> float:
@@ -66,7 +69,7 @@ def _apart(value: float, reference: float) -> float:
     return math.inf if math.isinf(value) else abs(value / reference - 1)
 
 
-def doubtful_crossings(crossings: Sequence[Crossing]) -> tuple[str, ...]:
+def doubtful_crossings(crossings: Sequence[Crossing], theory: str) -> tuple[str, ...]:
     """What to say where speeds of crossings are wrong by more than one in a hundred."""
     above = [each for each in crossings if each.errors.total > LIMIT]
     if not above:
@@ -79,8 +82,6 @@ def doubtful_crossings(crossings: Sequence[Crossing]) -> tuple[str, ...]:
         return (
             f"the speed at which {where} is {'not' if len(above) == 1 else 'in part not'} one of the exact model's",
         )
-    cause, cure = "too few shapes", "raise model.modes or leave them out"
-    if worst.errors.model > worst.errors.shapes:
-        cause, cure = "the model", 'check with model.kind = "exact"'
-    size = f"{100 * worst.errors.total:.2g} %{' at most' if len(above) > 1 else ''}"
+    cause, cure = cause_and_cure(worst.errors.shapes, worst.errors.model, worst.errors.beam_theory, theory)
+    size = percent(worst.errors.total) + (" at most" if len(above) > 1 else "")
     return (f"the speed at which {where} is wrong by an estimated {size}: {cause}; {cure}",)

@@ -1,12 +1,18 @@
-"""Errors of frequencies: from too few shapes, against the same model with more; in all, against the exact one."""
+"""Errors of frequencies: from too few shapes, of the model, and of the theory of slender beams.
+
+They are compared with those of the same model with more shapes, of the exact one, and of a thick beam beside a slender.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.analysis.accuracy.beam_theory import described, mode_causes
+from gbeam.analysis.accuracy.doubts import LIMIT, cause_and_cure, percent
 from gbeam.analysis.equilibrium.equilibrium import equilibrium_about
 from gbeam.analysis.equilibrium.point import Linear, OperatingPoint, stepped
 from gbeam.errors import ComputationError
@@ -14,30 +20,53 @@ from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.equations.hub import free_hub
 from gbeam.mechanics.equations.residuals import OnHub
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.theory import theory_of
 from gbeam.motion.bases.base import Base
-from gbeam.numerics.solvers.oscillations import ZERO, eigenvalues, mac
+from gbeam.numerics.solvers.oscillations import ZERO, eigenvalues, mac, matched
 from gbeam.results.parts.errors import FrequencyErrors
 from gbeam.results.result import Complex, Floats
 
-LIMIT = 0.01  # an error above is warned of
+BENT = 0.01  # of its kinetic energy: a mode of twist with less bending is excited by nothing that bends the beam
+SHOWN = 3  # frequencies that no model has, named at once
 
 
 def doubtful(errors: FrequencyErrors) -> tuple[str, ...]:
-    """What to say where frequencies are wrong by more than one in a hundred."""
+    """What to say where frequencies are wrong by more than one in a hundred, or where some are left out."""
+    said = []
     above = np.flatnonzero(errors.total > LIMIT)
-    if not above.size:
-        return ()
-    worst = int(above[errors.total[above].argmax()])
-    which = f"mode {above[0] + 1}" if len(above) == 1 else f"{len(above)} modes, from mode {above[0] + 1} on,"
-    cause, cure = "too few shapes", "raise model.modes or leave them out"
-    if errors.model[worst] > errors.shapes[worst]:
-        cause, cure = "the model", 'check with model.kind = "exact"'
-    size = f"{100 * errors.total[worst]:.2g} %" + " at most" * (len(above) > 1)
-    return (f"the frequency of {which} is wrong by an estimated {size}: {cause}; {cure}",)
+    if above.size:
+        worst = int(above[errors.total[above].argmax()])
+        which = f"mode {above[0] + 1}" if len(above) == 1 else f"{len(above)} modes, from mode {above[0] + 1} on,"
+        shapes, model, theory = (float(each[worst]) for each in (errors.shapes, errors.model, errors.beam_theory))
+        cause, cure = cause_and_cure(shapes, model, theory, errors.theory)
+        size = percent(errors.total[worst]) + " at most" * (len(above) > 1)
+        said.append(f"the frequency of {which} is wrong by an estimated {size}: {cause}; {cure}")
+    if errors.unseen:
+        named = ", ".join(f"{each:.4g}" for each in errors.unseen[:SHOWN])
+        more = f" and {len(errors.unseen) - SHOWN} more" if len(errors.unseen) > SHOWN else ""
+        said.append(f"there are modes of bending and twist at {named} Hz{more} besides: no model here has torsion")
+    return tuple(said)
+
+
+class ByTheory(NamedTuple):
+    """How wrong the theory of slender beams makes some frequencies, and those that it does not know.
+
+    Parameters
+    ----------
+    shares : (k,)
+    causes : dict of str to float
+        Of the mode that is most wrong.
+    unseen : tuple of float
+        Hz.
+    """
+
+    shares: Floats
+    causes: dict[str, float]
+    unseen: tuple[float, ...]
 
 
 class Richer:
-    """A structure's model with more shapes, and the exact one.
+    """A structure's model with more shapes, the exact one, and the thick beam.
 
     Parameters
     ----------
@@ -50,6 +79,7 @@ class Richer:
     def __init__(self, structure: Structure, base: Base) -> None:
         more, (_, along_y, along_z) = enrichment(structure, base), structure.counts
         directions = True, along_y > 0, along_z > 0
+        self.structure, self.theory = structure, theory_of(structure)
         self.exact = more.model("exact", directions=directions)
         self.same = self.exact if structure.kind == "exact" else more.model(structure.kind, directions=directions)
 
@@ -69,7 +99,11 @@ class Richer:
         """
         own = np.abs(eigenvalue)
         same, exact = self.references(point, coordinates, gyroscopic=gyroscopic)
-        return FrequencyErrors(np.abs(own / same - 1), np.abs(same / exact - 1), np.abs(own / exact - 1))
+        by_theory = self.by_theory(point, coordinates, gyroscopic=gyroscopic)
+        shapes, model, total = (np.abs(a / b - 1) for a, b in ((own, same), (same, exact), (own, exact)))
+        theory = described(self.structure, by_theory.causes)
+        shares = by_theory.shares
+        return FrequencyErrors(shapes, model, shares, total + np.nan_to_num(shares), theory, by_theory.unseen)
 
     def references(
         self, point: OperatingPoint, coordinates: Complex, *, gyroscopic: bool = True
@@ -88,6 +122,36 @@ class Richer:
         exact = reference(self.exact)
         return exact if self.same is self.exact else reference(self.same), exact
 
+    def by_theory(self, point: OperatingPoint, coordinates: Complex, *, gyroscopic: bool = True) -> ByTheory:
+        """How wrong the theory of slender beams makes these modes' frequencies. The arguments are as above."""
+        theory, first, k = self.theory, point.first, len(coordinates)
+        plate = theory.plate(np.asarray(np.pad(point.q, (0, theory.thick.size - len(point.q))))[None])
+        try:
+            linear = [_about_equilibrium(each, point) for each in (theory.slender, *theory.variants(plate))]
+            (slender, shape), (thick, deep), (plated, flat) = (
+                _oscillating(each, first, gyroscopic=gyroscopic) for each in linear
+            )
+        except (ComputationError, np.linalg.LinAlgError):
+            return ByTheory(np.full(k, np.nan), {}, ())
+        mass = linear[1].mass[first:, first:]
+        own, shape = (np.pad(each, ((0, 0), (0, len(mass) - each.shape[1]))) for each in (coordinates, shape))
+        chosen = mac(own, shape, mass).argmax(axis=1)
+        looked = slice(None, chosen.max(initial=-1) + 1)
+        among, beside = (matched(mac(shape[looked], each, mass))[0] for each in (deep, flat))
+        pairs = (thick, among), (plated, beside)
+        shares = np.max([np.abs(slender[chosen] / rate[match[chosen]] - 1) for rate, match in pairs], axis=0)
+        bent = deep[:, : theory.slender.size]
+        moving = np.einsum("ki,ij,kj->k", bent.conj(), mass[: bent.shape[1], : bent.shape[1]], bent).real
+        others = np.setdiff1d(np.arange(len(thick)), among)
+        unseen = [j for j in others if moving[j] > BENT and thick[j] < slender[looked].max(initial=0.0)]
+        loads = point.residual.unpack(point.u)[1]
+        worst = np.zeros(0, dtype=int) if not k else np.array([np.nan_to_num(shares).argmax()])
+        return ByTheory(
+            shares,
+            mode_causes(theory, point.base, loads, coordinates[worst], slender[chosen[worst]], plate),
+            tuple(float(thick[j]) / (2 * np.pi) for j in unseen),
+        )
+
 
 def pole_errors(structure: Structure, point: OperatingPoint, linear: Linear) -> tuple[Floats, FrequencyErrors]:
     """Frequencies (k,) Hz of the poles that oscillate about an operating point, ascending, and their errors."""
@@ -103,13 +167,20 @@ def _frequencies(
 ) -> Floats:
     """Circular frequencies of the rich structure's modes that are most like those given, rad/s."""
     linear, first = _about_equilibrium(rich, point), point.first
-    value, mode = eigenvalues(*linear[:3], gyroscopic=gyroscopic)
-    oscillating = value.imag > 0
+    rate, modes = _oscillating(linear, first, gyroscopic=gyroscopic)
+    if not rate.size:
+        return np.full(len(coordinates), np.nan)
     lifted = np.zeros((len(coordinates), rich.size), dtype=complex)
     lifted[:, index] = coordinates
-    beam = slice(first, None)
-    alike = mac(lifted, mode[beam, oscillating].T, linear.mass[beam, beam])
-    return np.asarray(np.abs(value[oscillating])[alike.argmax(axis=1)])
+    return np.asarray(rate[mac(lifted, modes, linear.mass[first:, first:]).argmax(axis=1)])
+
+
+def _oscillating(linear: Linear, first: int, *, gyroscopic: bool) -> tuple[Floats, Complex]:
+    """Circular frequencies (k,) of the modes that oscillate, ascending, and the beam's coordinates in them, (k, n)."""
+    value, mode = eigenvalues(*linear[:3], gyroscopic=gyroscopic)
+    chosen = np.flatnonzero(value.imag > 0)
+    chosen = chosen[np.argsort(np.abs(value[chosen]), kind="stable")]
+    return np.abs(value[chosen]), mode[first:, chosen].T
 
 
 def _about_equilibrium(rich: Structure, point: OperatingPoint) -> Linear:

@@ -1,32 +1,39 @@
-"""Errors of a critical value: from too few shapes, and of the model against the exact one."""
+"""Errors of a critical value: from too few shapes, of the model against the exact one, and of the beam theory."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
 
 import numpy as np
 
-from gbeam.analysis.vibration.errors import LIMIT, resting
+from gbeam.analysis.accuracy.beam_theory import described, mode_causes
+from gbeam.analysis.accuracy.doubts import LIMIT, cause_and_cure, percent
+from gbeam.analysis.vibration.errors import resting
 from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.theory import theory_of
 from gbeam.motion.bases.base import Base
+from gbeam.numerics.solvers.eigen import symmetric_modes
 from gbeam.numerics.solvers.oscillations import stability_margin
 from gbeam.numerics.solvers.roots import brent
 from gbeam.results.parts.errors import ErrorEstimate
+from gbeam.results.result import Floats
 from gbeam.results.steady.stability import Critical
 
 # Shares of the critical value at which richer models are looked at, from below.
 SHARES = 0.25, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.995, 1.005, 1.02, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0
+HALVINGS = 16
 CLOSE = 1e-6  # of the critical value: how closely a root is found
 
 Path = Callable[[float], tuple[Structure, Base]]
+Progress = Callable[[str, float], None]
 
 
-def judged(found: Critical, path: Path) -> Critical:
+def judged(found: Critical, path: Path, progress: Progress | None = None) -> Critical:
     """A critical value with its estimated errors, and warnings where they are above one in a hundred.
 
     Parameters
@@ -34,25 +41,65 @@ def judged(found: Critical, path: Path) -> Critical:
     found : Critical
     path : callable
         Of the quantity that was raised: the structure, with its loads, and the base motion.
+    progress : callable, optional
+        Called with what is done and the share of it.
     """
     structure, _ = path(0.0)
-    if not found.value or structure.source is None:
+    if structure.source is None or found.value == 0:
         return found
+    if found.value is None:
+        return replace(found, warnings=found.warnings + _unseen(found, path, progress))
     at, (_, along_y, along_z) = found.value, structure.counts
     more, directions = enrichment(structure, path(at)[1]), (True, along_y > 0, along_z > 0)
 
     def lost(kind: str) -> float:
-        return _lost(more.model(kind, directions=directions)[0], path, at)
+        return _lost(more.model(kind, directions=directions)[0], path, at, progress)
 
+    theory = theory_of(structure)
+    plate = theory.plate(np.zeros((1, theory.thick.size)))
+    slender, *thick = (_lost(each, path, at, progress) for each in (theory.slender, *theory.variants(plate)))
     exact = lost("exact")
     same = exact if structure.kind == "exact" else lost(structure.kind)
     shapes = abs(at / same - 1)
     model, total = (math.inf, math.inf) if math.isinf(exact) else (abs(same / exact - 1), abs(at / exact - 1))
-    errors = ErrorEstimate(0.0, shapes, model, total)
-    return replace(found, errors=errors, warnings=found.warnings + doubtful_loss(found.quantity, found.model, errors))
+    beam_theory = max(_apart(at if math.isinf(slender) else slender, each) for each in thick)
+    errors = ErrorEstimate(0.0, shapes, model, total=total).with_theory(0.0 if math.isinf(model) else beam_theory)
+    lowest = _lowest(theory.slender, *path(at))[:, : theory.own]
+    causes = mode_causes(theory, path(at)[1], path(at)[0].load_values, lowest, np.zeros(1), plate)
+    doubts = doubtful_loss(found.quantity, found.model, errors, described(structure, causes))
+    return replace(found, errors=errors, warnings=found.warnings + doubts)
 
 
-def _lost(rich: Structure, path: Path, near: float) -> float:
+def _lowest(slender: Structure, structure: Structure, base: Base) -> Floats:
+    """Shape (1, n) along which a slender beam has the least stiffness."""
+    motion = base.a_WO_B, base.w_WB_B, base.alpha_WB_B
+    stiffness = slender.coefficients.at(*motion, structure.load_values)[1]
+    return symmetric_modes((stiffness + stiffness.T) / 2, slender.coefficients.mass)[1][:, :1].T
+
+
+def _unseen(found: Critical, path: Path, progress: Progress | None) -> tuple[str, ...]:
+    """What to say where a beam that twists loses what a model without torsion keeps: a strip on edge buckles sideways.
+
+    Looked for at shares of the end of the search, each half of the one above.
+    """
+    shares = tuple(2.0**-k for k in range(HALVINGS, -1, -1))
+    lost = _lost(theory_of(path(0.0)[0]).thick, path, found.searched_to, progress, shares)
+    if math.isinf(lost):
+        return ()
+    return (
+        f"with shear and twist, which no model here has, the equilibrium is lost at an estimated {lost:.4g} "
+        f"{found.unit}",
+    )
+
+
+def _apart(value: float, reference: float) -> float:
+    """Relative difference of two values, the second of which may not be reached."""
+    return math.inf if math.isinf(reference) else abs(value / reference - 1)
+
+
+def _lost(
+    rich: Structure, path: Path, near: float, progress: Progress | None, shares: Sequence[float] = SHARES
+) -> float:
     """Value at which a richer model loses its equilibrium; infinity where it keeps it to the last of the shares."""
 
     @cache
@@ -64,14 +111,16 @@ def _lost(rich: Structure, path: Path, near: float) -> float:
             return -1.0
 
     low = 0.0
-    for share in SHARES:
+    for i, share in enumerate(shares):
+        if progress is not None:
+            progress(f"errors of the critical value, by {rich.kind} with more shapes", i / len(shares))
         if margin(share * near) < 0:
             return brent(margin, low, share * near, xtol=CLOSE * near)
         low = share * near
     return math.inf
 
 
-def doubtful_loss(quantity: str, model: str, errors: ErrorEstimate) -> tuple[str, ...]:
+def doubtful_loss(quantity: str, model: str, errors: ErrorEstimate, theory: str = "") -> tuple[str, ...]:
     """What to say of a critical value with errors above one in a hundred, or that the exact model does not have."""
     if math.isinf(errors.total):
         return (
@@ -80,7 +129,5 @@ def doubtful_loss(quantity: str, model: str, errors: ErrorEstimate) -> tuple[str
         )
     if not errors.total > LIMIT:
         return ()
-    cause, cure = "too few shapes", "raise model.modes or leave them out"
-    if errors.model > errors.shapes:
-        cause, cure = "the model", 'check with model.kind = "exact"'
-    return (f"the critical {quantity} is wrong by an estimated {100 * errors.total:.2g} %: {cause}; {cure}",)
+    cause, cure = cause_and_cure(errors.shapes, errors.model, errors.beam_theory, theory)
+    return (f"the critical {quantity} is wrong by an estimated {percent(errors.total)}: {cause}; {cure}",)

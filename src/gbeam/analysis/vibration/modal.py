@@ -10,6 +10,7 @@ import numpy as np
 from gbeam.analysis.equilibrium.operating_point import operating_point
 from gbeam.analysis.equilibrium.point import Linear, OperatingPoint, linear_matrices
 from gbeam.analysis.vibration.errors import Richer, doubtful
+from gbeam.guards.arguments import typed
 from gbeam.mechanics.equations.sampled import slopes
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
@@ -87,6 +88,7 @@ def modes_at(
     )
 
 
+@typed
 def modes(
     structure: Structure,
     motion: Motion | None = None,

@@ -16,8 +16,9 @@ import numpy as np
 
 from gbeam.analysis.equilibrium.point import REST, steady_base
 from gbeam.analysis.vibration.loss import first_loss_along
-from gbeam.analysis.vibration.loss_errors import Path, doubtful_loss, judged
+from gbeam.analysis.vibration.loss_errors import Path, Progress, doubtful_loss, judged
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.models import Model
@@ -26,14 +27,13 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.protocol import Motion
-from gbeam.results.parts.errors import ErrorEstimate
+from gbeam.results.parts.errors import PARTS, ErrorEstimate
 from gbeam.results.steady.stability import Critical, CriticalMap, MapErrors
 from gbeam.structure.beam import Beam
 from gbeam.structure.bodies import PointMass
 
 SEARCH_FACTOR = 10.0  # of the lowest natural frequency: how far a search goes by default
 INSTEAD = "ask `gbeam modes` for its frequencies at a time, or `gbeam static` for its shape"
-MAP_PARTS = "shapes", "model", "total"
 NOTHING = 1e-12  # of the beam's stiffness: loads that bring less are rounding about none
 
 
@@ -53,7 +53,15 @@ def lowest_frequency(structure: Structure) -> float:
     return float(structure.rest[0][0])
 
 
-def critical_speed(structure: Structure, motion: Motion, *, upper: float | None = None, name: str = "") -> Critical:
+@typed
+def critical_speed(
+    structure: Structure,
+    motion: Motion,
+    *,
+    upper: float | None = None,
+    name: str = "",
+    progress: Progress | None = None,
+) -> Critical:
     """Lowest hub rate at which the beam's relative equilibrium is lost, the hub's rate being held.
 
     Parameters
@@ -65,6 +73,8 @@ def critical_speed(structure: Structure, motion: Motion, *, upper: float | None 
         End of the search, rad/s; by default ten times the lowest natural frequency.
     name : str
         Of the motion, for what is said of it.
+    progress : callable, optional
+        Called with what is done and the share of it.
 
     Returns
     -------
@@ -80,13 +90,14 @@ def critical_speed(structure: Structure, motion: Motion, *, upper: float | None 
     hub = hub_of(motion, "a critical speed", INSTEAD, name)
     limit = SEARCH_FACTOR * lowest_frequency(structure) if upper is None else positive("to", upper, "rad/s")
     turning = _turning(structure, hub)
-    return judged(first_loss_along(turning, limit, "hub rate", "rad/s"), turning)
+    return judged(first_loss_along(turning, limit, "hub rate", "rad/s"), turning, progress)
 
 
 def _turning(structure: Structure, hub: Hub) -> Path:
     return lambda rate: (structure, steady_base(hub, rate))
 
 
+@typed
 def critical_speed_map(
     beam: Beam,
     model: Model,
@@ -96,6 +107,7 @@ def critical_speed_map(
     upper: float | None = None,
     *,
     name: str = "",
+    progress: Progress | None = None,
 ) -> CriticalMap:
     """Critical hub rates with one more mass on the beam, against its size and position (2009 Fig. 9).
 
@@ -110,6 +122,8 @@ def critical_speed_map(
         End of the search, rad/s; by default ten times the lowest natural frequency without the mass.
     name : str
         Of the motion.
+    progress : callable, optional
+        Called with what is done and the share of it.
 
     Returns
     -------
@@ -123,15 +137,17 @@ def critical_speed_map(
     hub, unloaded = hub_of(motion, "a critical speed", INSTEAD, name), assemble(beam, model)
     limit = SEARCH_FACTOR * lowest_frequency(unloaded) if upper is None else upper
     speed = np.full((len(masses), len(positions)), np.nan)
-    errors = MapErrors(*np.full((3, *speed.shape), np.nan))
+    errors = MapErrors(*np.full((len(PARTS), *speed.shape), np.nan))
     worst = ErrorEstimate(total=0.0)
     for i, mass in enumerate(masses):
         for j, at in enumerate(positions):
+            if progress is not None:
+                progress("critical hub rates", (i * len(positions) + j) / speed.size)
             loaded = replace(beam, masses=(*beam.masses, PointMass(at, mass)))
             turning = _turning(assemble(loaded, model), hub)
             found = judged(first_loss_along(turning, limit, "hub rate", "rad/s"), turning)
             speed[i, j] = np.nan if found.value is None else found.value
-            for part in MAP_PARTS:
+            for part in PARTS:
                 getattr(errors, part)[i, j] = getattr(found.errors, part)
             if found.errors.total > worst.total:
                 worst = found.errors
@@ -140,7 +156,10 @@ def critical_speed_map(
     return CriticalMap(name, model.kind, heavy, where, speed, limit, errors, warnings=warnings)
 
 
-def buckling_acceleration(structure: Structure, *, upper: float | None = None) -> Critical:
+@typed
+def buckling_acceleration(
+    structure: Structure, *, upper: float | None = None, progress: Progress | None = None
+) -> Critical:
     """Acceleration of the root along +x at which the beam, pushed by it, buckles under its own inertia.
 
     The heavy column of Greenhill (1881): 7.8373 EI/(m L³) for a uniform beam without masses.
@@ -150,6 +169,8 @@ def buckling_acceleration(structure: Structure, *, upper: float | None = None) -
     structure : Structure
     upper : float, optional
         End of the search, m/s²; by default ten times the length times the square of the lowest natural frequency.
+    progress : callable, optional
+        Called with what is done and the share of it.
 
     Returns
     -------
@@ -160,10 +181,13 @@ def buckling_acceleration(structure: Structure, *, upper: float | None = None) -
     def pushed(acceleration: float) -> tuple[Structure, Base]:
         return structure, Base(np.array([acceleration, 0.0, 0.0]), np.zeros(3), np.zeros(3))
 
-    return judged(first_loss_along(pushed, limit, "acceleration along x", "m/s²"), pushed)
+    return judged(first_loss_along(pushed, limit, "acceleration along x", "m/s²"), pushed, progress)
 
 
-def critical_load(structure: Structure, base: Base | None = None, *, upper: float | None = None) -> Critical:
+@typed
+def critical_load(
+    structure: Structure, base: Base | None = None, *, upper: float | None = None, progress: Progress | None = None
+) -> Critical:
     """Factor on all loads on the beam at which its relative equilibrium is lost.
 
     Euler's column under a dead load (π²/4 EI/L²), Beck's under one that follows the tip (20.05 EI/L², flutter).
@@ -176,6 +200,8 @@ def critical_load(structure: Structure, base: Base | None = None, *, upper: floa
         Frozen motion of the base, arrays (3,); by default at rest.
     upper : float, optional
         End of the search; by default ten times the factor that makes the loads' stiffness as large as the beam's.
+    progress : callable, optional
+        Called with what is done and the share of it.
 
     Returns
     -------
@@ -196,7 +222,7 @@ def critical_load(structure: Structure, base: Base | None = None, *, upper: floa
     def loaded(factor: float) -> tuple[Structure, Base]:
         return replace(structure, load_values=factor * values), REST if base is None else base
 
-    return judged(first_loss_along(loaded, limit, "load factor", "times the loads"), loaded)
+    return judged(first_loss_along(loaded, limit, "load factor", "times the loads"), loaded, progress)
 
 
 def _share(structure: Structure, values: np.ndarray) -> float:

@@ -28,10 +28,15 @@ class Watch:
     """Progress of a computation that takes long: a bar on a terminal, else a plain line every few seconds.
 
     Call it with what is being done and the fraction done; use it as a context.
+
+    Parameters
+    ----------
+    first : str
+        What is being done until it is called.
     """
 
-    def __init__(self) -> None:
-        self._now = ("compiling", 0.0)
+    def __init__(self, first: str = "compiling") -> None:
+        self._now = (first, 0.0)
         self._since = monotonic()  # when that was begun
         self._over = Event()
         # A thread, not a look at the clock in __call__: the long silence is compilation, before the first call.

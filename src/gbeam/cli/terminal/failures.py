@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shlex
 import sys
 from collections.abc import Sequence
@@ -15,6 +16,8 @@ from gbeam.printable import json_printable, on_one_line, printable, shortened
 FAILED = 1
 WRONG_INPUT = 2
 DEFECT = 3
+# Words of dlopen(3) and of Python.
+_NO_ROOM = re.compile("failed to map segment|cannot allocate memory|can't start new thread", re.IGNORECASE)
 LONGEST = 1000  # characters of a message
 
 
@@ -38,7 +41,32 @@ def report_syntax(message: str, as_json: bool) -> int:
     return _refuse(f"gbeam: {words} (see gbeam --help)", [problem], as_json)
 
 
-def report_memory(error: MemoryError, as_json: bool) -> int:
+def lacks_memory(error: BaseException | None) -> bool:
+    """Whether memory did not suffice, be it for a library, which the system then does not load, or for a thread.
+
+    Where a process has a limit of memory, the interpreter's own lack of words for an error is one of it.
+    """
+    while error is not None:
+        if isinstance(error, MemoryError) or (
+            isinstance(error, (ImportError, RuntimeError)) and _NO_ROOM.search(str(error))
+        ):
+            return True
+        if isinstance(error, SystemError) and _limited():
+            return True
+        error = error.__cause__ or error.__context__
+    return False
+
+
+def _limited() -> bool:
+    """Whether this process has a limit of memory."""
+    if sys.platform == "win32":
+        return False
+    import resource
+
+    return resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY
+
+
+def report_memory(error: Exception, as_json: bool) -> int:
     """Print that the memory did not suffice; return the exit status."""
     why = f" ({error})" if str(error) else ""
     return report(ComputationError("out of memory", f"the computation needs more than there is{why}"), as_json)

@@ -5,12 +5,14 @@ from __future__ import annotations
 import io
 import os
 import re
+import shutil
 import sys
 import warnings
 
 from gbeam.printable import on_one_line, shortened
 
 _ALIKE = 40  # characters in which alike warnings agree
+_NARROWEST, _WIDEST = 20, 10_000  # columns of a terminal
 _CACHE = re.compile(r"Error (?:reading|writing) persistent compilation cache entry.*?: (.*)", re.DOTALL)
 
 
@@ -25,10 +27,20 @@ def prepare() -> bool:
             pass
         sys.stdout = sys.stdout or _nowhere()
         sys.stderr = sys.stderr or _nowhere()
+    _widen()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without µ or ² is no reason to fail
     return given
+
+
+def _widen() -> None:
+    """Take a terminal to be no narrower, and no wider, than a text can be laid out in: others end never, or wrongly."""
+    given = os.environ.get("COLUMNS", "")
+    known = given.isascii() and given.isdigit()
+    width = int(given[:9]) if known else shutil.get_terminal_size().columns
+    if not _NARROWEST <= width <= _WIDEST:
+        os.environ["COLUMNS"] = str(min(max(width, _NARROWEST), _WIDEST))
 
 
 def shorten_warnings() -> None:

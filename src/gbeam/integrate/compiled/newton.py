@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 
-from gbeam.arrays.derivatives import with_slope
+from gbeam.arrays.derivatives import linear_root, with_slope
 from gbeam.integrate.schemes import Tableau
 
 Array = Any
@@ -95,7 +95,7 @@ def steps(
     at_ends: Any,
     last: Any,
     corrections: Any,
-    count: Any = None,
+    count: Any,
 ) -> Any:
     """Steps with a given number of corrections each.
 
@@ -113,10 +113,8 @@ def steps(
         Index of the last step of each group that the next goes on from; the rest are fillings. A scheme that carries
         more than q and q̇ does not go on from a group with fillings.
     corrections : int
-        A plain number where the run is to be differentiated backwards.
-    count : int, optional
-        Groups that are computed, the first ones; what is returned of the others is zero. All, where the run is to be
-        differentiated backwards.
+    count : int
+        Groups that are computed, the first ones; what is returned of the others is zero.
 
     Returns
     -------
@@ -157,9 +155,7 @@ def steps(
 
 
 def _first(group: Any, carry: Carry, by_group: Any, count: Any, shape: tuple[int, ...]) -> Any:
-    """A scan over the first `count` of some groups, or all; its results are three arrays of a shape, and one less."""
-    if count is None:
-        return jax.lax.scan(group, carry, by_group)
+    """A scan over the first `count` of some groups; its results are three arrays of a shape, and one less."""
 
     def turn(k: Any, state: Any) -> Any:
         carry, made = state
@@ -178,12 +174,32 @@ quick = jax.jit(steps)
 
 @jax.jit
 def safe(residual: Any, tableau: Tableau, carry: Carry, inputs: Any, at_ends: Any, inside: Any) -> Any:
-    """Steps by Newton's method with as many iterations as each needs, the Jacobian renewed every fourth.
+    """Steps by Newton's method with as many iterations as each needs.
 
     Parameters and returns as for :func:`steps`, with (steps, ...) in place of (groups, steps, ...), flags of the steps
-    that are no fillings and, in place of the error left, whether the step has been solved.
+    that are no fillings and, in place of the error left, whether the step has been solved. Derivatives are those of
+    the solutions, by the implicit function theorem.
     """
     stages, n = carry.x.shape
+
+    def newton(flat: Any, guess: Array) -> tuple[Array, Array]:
+        """Solution, and the size of the last correction."""
+
+        def go_on(state: tuple[Any, ...]) -> Array:
+            _, size, before, count = state
+            stalled = (size > before / 2) & (size <= _ROUNDING * _TOLERANCE)
+            return (size > _TOLERANCE) & ~stalled & (count < _ITERATIONS)
+
+        def iterate(state: tuple[Any, ...]) -> tuple[Any, ...]:
+            x, size, _, count = state
+            value, slope = with_slope(flat)(x)
+            correction = jnp.linalg.solve(slope, value)
+            x = x - correction
+            return x, _size(correction, x), size, count + 1
+
+        far = jnp.array(jnp.inf)
+        x, size, _, _ = jax.lax.while_loop(go_on, iterate, (guess, far, far, jnp.array(0)))
+        return x, size
 
     def step(carry: Carry, of_step: Any) -> Any:
         t, at, counts = of_step
@@ -191,21 +207,7 @@ def safe(residual: Any, tableau: Tableau, carry: Carry, inputs: Any, at_ends: An
         def flat(x: Array) -> Array:
             return _stage_residual(residual, t, carry.z, at, x.reshape(stages, n)).ravel()
 
-        def go_on(state: tuple[Any, ...]) -> Array:
-            _, _, size, before, count = state
-            stalled = (size > before / 2) & (size <= _ROUNDING * _TOLERANCE)
-            return (size > _TOLERANCE) & ~stalled & (count < _ITERATIONS)
-
-        def iterate(state: tuple[Any, ...]) -> tuple[Any, ...]:
-            x, inverse, size, _, count = state
-            renewed = jax.lax.cond(count % 4 == 0, lambda x: jnp.linalg.inv(jax.jacfwd(flat)(x)), lambda _: inverse, x)
-            correction = renewed @ flat(x)
-            x = x - correction
-            return x, renewed, _size(correction, x), size, count + 1
-
-        far = jnp.array(jnp.inf)
-        begin = (carry.x.ravel(), jnp.eye(stages * n), far, far, jnp.array(0))
-        x, _, size, _, _ = jax.lax.while_loop(go_on, iterate, begin)
+        x, size = jax.lax.custom_root(flat, carry.x.ravel(), newton, linear_root, has_aux=True)
         x = x.reshape(stages, n)
         after, q, qd = _next(t, carry, x)
         after = jax.tree.map(lambda a, b: jnp.where(counts, a, b), after, carry)

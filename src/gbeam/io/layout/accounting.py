@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from gbeam.io.groups import Variable, known, variable, words
+from gbeam.io.groups import Variable, known, variable, whole_flight, words
 from gbeam.results.imitation.accounting import Accounting, PeakPair
 from gbeam.results.imitation.criteria import Criterion, Judged
 
@@ -24,7 +24,10 @@ def judged_attrs(judged: Judged) -> dict[str, str]:
 
 def judged_variables(judged: Judged) -> dict[str, Variable]:
     """Variables over the dimensions criterion, load_peak and stretch."""
-    return known(_criteria(judged.criteria) | _largest(judged.peaks) | _accounting(judged.accounting))
+    return known(
+        _criteria(judged.criteria) | _largest(judged.peaks) | _accounting(judged.accounting)
+        | whole_flight(judged.whole or judged.accounting.span)
+    )  # fmt: skip
 
 
 def _criteria(criteria: tuple[Criterion, ...]) -> dict[str, Variable]:
@@ -57,6 +60,8 @@ def _largest(peaks: Mapping[str, PeakPair]) -> dict[str, Variable]:
 def _accounting(accounting: Accounting) -> dict[str, Variable]:
     v = variable
     data = {
+        "flight_from": v((), accounting.span[0], "s", "first time of the flight that is judged"),
+        "flight_to": v((), accounting.span[1], "s", "last time of the flight that is judged"),
         "tolerance_load": v(
             (), accounting.allowed, "m s-2", "error of the load that counts as following", of=accounting.tolerance_of
         ),

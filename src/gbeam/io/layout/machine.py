@@ -22,9 +22,12 @@ def plan_group(plan: MachinePlan) -> Group:
         of_axes | judged,
         coordinate("time", plan.time, "s", "time") | AXIS | MACHINE_AXIS,
         {
+            "title": plan.title,
             "name": plan.name,
             "tracks": plan.tracks,
             "arm": plan.arm,
+            "gravity": plan.gravity,
+            "mounting": plan.mounting,
             "outcome": plan.outcome,
             "message": plan.message,
             **judged_attrs(plan),

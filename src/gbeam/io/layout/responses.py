@@ -6,7 +6,7 @@ from dataclasses import asdict
 
 import numpy as np
 
-from gbeam.io.groups import AXIS, Group, Variable, coordinate, known, known_attrs, variable
+from gbeam.io.groups import AXIS, Group, Variable, coordinate, known, known_attrs, variable, whole_flight
 from gbeam.io.layout.machine import MACHINE_AXIS, machine_variables
 from gbeam.io.layout.outline import outline_coordinates, outline_variables
 from gbeam.results.parts.errors import Errors
@@ -54,6 +54,7 @@ def response_group(response: Response) -> Group:
         **coordinate("coordinate", np.arange(response.q.shape[1]), "1", "axial, along y, along z"),
         **AXIS,
     }
+    data |= whole_flight(response.whole)
     if peaks.displacement is not None:
         size = peaks.displacement.size
         data["station_max_size"] = v(("station",), size.value, "m", "largest length of the displacement")
@@ -83,7 +84,7 @@ def error_attrs(errors: Errors) -> dict[str, float | str]:
     """Estimated errors, fractions."""
     named = {name: asdict(getattr(errors, name)) for name in ("displacement", "loads", "stress")}
     values = {f"error_{name}_{part}": value for name, parts in named.items() for part, value in parts.items()}
-    return {**values, "error_note": errors.note}
+    return {**values, "error_note": errors.note, "error_theory": errors.theory}
 
 
 def section_coordinate(loads: Loads) -> dict[str, Variable]:

@@ -12,7 +12,12 @@ from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.steady.modal import Campbell, Modes
 from gbeam.results.steady.stability import Critical, CriticalMap
 
-CAUSES = {"shapes": "from too few shapes", "model": "of the model against exact", "total": "in all"}
+CAUSES = {
+    "shapes": "from too few shapes",
+    "model": "of the model against exact",
+    "beam_theory": "of the theory of slender beams",
+    "total": "in all",
+}
 
 
 def deflection_group(deflection: Deflection) -> Group:

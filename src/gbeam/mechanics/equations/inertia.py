@@ -92,12 +92,12 @@ class Weighed:
         if self.pairs is None:
             own = [self.first * a for a in relative]
         else:  # which is symmetric
-            own = list(namespace(self.pairs).stack(relative) @ self.pairs)
+            own = list(namespace(self.pairs, *relative).stack(relative) @ self.pairs)
         return tuple(f + self.first * a for f, a in zip(own, root, strict=True))
 
     def total(self, relative: Any, root: Array) -> Array:
         """Their resultant, (3,) N."""
-        xp = namespace(self.first, root)
+        xp = namespace(self.first, root, *relative)
         return xp.stack(relative) @ self.first + self.inertia.mass.sum() * root
 
 

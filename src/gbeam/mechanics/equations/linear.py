@@ -124,6 +124,18 @@ class Coefficients:
             force = force + term(load_values, self.loads.constant[:, :, 6:], 2)
         return velocity, stiffness, force
 
+    def frozen(
+        self, a_WO_B: Array, w_WB_B: Array, alpha_WB_B: Array, load_values: Array | None = None
+    ) -> tuple[Array, Array]:
+        """C + G and K as :meth:`at` has them, by which an instant is stable or not.
+
+        The skew part of what the angular acceleration adds to K is left out: it stores and feeds no energy.
+        """
+        xp = namespace(self.k_al, alpha_WB_B)
+        velocity, stiffness, _ = self.at(a_WO_B, w_WB_B, alpha_WB_B, load_values)
+        skew = (self.k_al - xp.swapaxes(self.k_al, 1, 2)) / 2
+        return velocity, stiffness - xp.tensordot(alpha_WB_B, skew, axes=1)
+
     @cached_property
     def terms(self) -> LinearTerms:
         """What :meth:`at` sums over :meth:`features`."""
@@ -215,7 +227,7 @@ def coefficients(
     pairs = xp.moveaxis(pairs, 2, 1)
     weighted = mass[:, None] * r0
     sums, moments = xp.einsum("k,kai->ai", mass, first), xp.einsum("kb,kai->abi", weighted, first)
-    extra = _geometric(xp, mass, weighted, places) if geometric is None else geometric
+    extra = _weighted(xp, mass, weighted, places) if geometric is None else geometric
     second = weighted.T @ r0
     rigid = xp.stack(
         [
@@ -241,13 +253,19 @@ def coefficients(
     )
 
 
-def _geometric(xp: Any, mass: Array, weighted: Array, places: Places) -> Geometric:
+def _weighted(xp: Any, mass: Array, weighted: Array, places: Places) -> Geometric:
     """Σ m H weighted with unit inertial loads."""
     points, axes, n, _ = places.second.shape
     flat = xp.reshape(places.second, (points, -1))
     shaped = (-1, axes, n, n)
-    of_place = xp.swapaxes(xp.reshape(weighted.T @ flat, shaped), 0, 1)  # Σ m H_a r0_b
-    return Geometric(xp.reshape(mass @ flat, shaped[1:]), _once(xp, of_place), _twice(xp, of_place))
+    return geometric_of(xp.reshape(mass @ flat, shaped[1:]), xp.reshape(weighted.T @ flat, shaped))
+
+
+def geometric_of(even: Array, growing: Array) -> Geometric:
+    """Geometric stiffness by Σ m H, (3, n, n), and by Σ m r0_b H, (3, 3, n, n), b first."""
+    xp = namespace(even, growing)
+    of_place = xp.swapaxes(growing, 0, 1)
+    return Geometric(even, _once(xp, of_place), _twice(xp, of_place))
 
 
 def _twice(xp: Any, x: Array) -> Array:

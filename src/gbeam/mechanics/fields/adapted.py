@@ -22,8 +22,8 @@ def _family(rule: Quadrature, nodal: Array, length: float, *, axial: bool) -> Fa
     """Functions of nodal curvatures (g, shapes), strains if `axial`: clamped at the root, ∫f² dx = L."""
     once = rule.cumulative(rule.node)
     slope = nodal if axial else once @ nodal
-    # As the closed forms do, each shape leaves the root upwards.
-    scale = np.sign(nodal[0]) / np.sqrt(rule.weight @ (once @ slope) ** 2 / length)
+    # As the closed forms do, each shape leaves the root upwards: by its curvature there, whatever the nodes are.
+    scale = np.sign(rule.interpolation(np.zeros(1))[0] @ nodal) / np.sqrt(rule.weight @ (once @ slope) ** 2 / length)
     nodal, slope = nodal * scale, slope * scale
 
     def shapes(x: Array) -> Shapes:
@@ -71,8 +71,8 @@ def space(beam: Beam, rule: Quadrature, along: int) -> Space:
 
     Rotation about y turns the slope down: the sign is a matter of the springs' coordinate, not of the shape.
     """
-    section, e = beam.section.at(rule.node), beam.material.youngs_modulus
-    rigidity = (section.area, section.inertia_z, section.inertia_y)[along]
+    area, (axial, about_y, about_z) = beam.section.at(rule.node).area, beam.rigidities(rule.node)
+    rigidity = (axial, about_z, about_y)[along]
     springs = beam.root.springs
     held = [springs.get(name) for name in _HELD[along]]
     free = [i for i, k in enumerate(held) if k is not None]
@@ -85,13 +85,13 @@ def space(beam: Beam, rule: Quadrature, along: int) -> Space:
         return np.concatenate([value, root_value], axis=1), np.concatenate([slope, root_slope], axis=1)
 
     value, _ = sensitivity(rule.node)
-    mass = value.T @ ((beam.material.density * section.area * rule.weight)[:, None] * value)
+    mass = value.T @ ((beam.material.density * area * rule.weight)[:, None] * value)
     for body in beam.masses:
         value, slope = sensitivity(np.array([body.at]))
         for m, o in zip(*body.particles(), strict=True):
             # A particle off the axis moves with the section's slope: f + o_x f' across, −o_along f' along the beam.
             mass += m * sum(np.outer(d, d) for d in (value[0] + o[0] * slope[0], o[along] * slope[0]))
-    stiffness = np.concatenate([e * rigidity * rule.weight, [held[i] for i in free]])
+    stiffness = np.concatenate([rigidity * rule.weight, [held[i] for i in free]])
     return Space(rule, beam.length, along == 0, mass, stiffness, sensitivity)
 
 

@@ -15,6 +15,7 @@ from gbeam.structure.beam import Beam
 
 Array = NDArray[np.float64]
 LEVELS = (2, 3, 3)  # of the sequence, along x, y, z
+APART = 3e-6  # of the longest period: the square of a frequency farther off takes the digits of the lowest
 NEW = 1e-6  # of a vector's length: less of it is nothing that the others have not
 TENSION = 1.0  # N L²/EI: from there on the axial force bends the shapes
 Spaces = tuple[Space, Space, Space]
@@ -60,12 +61,13 @@ def enriched_shapes(
     -------
     families, and how many shapes are new in each
     """
-    made = [_enriched(beam, spaces[along], own[along], along, force) for along in range(3)]
+    least = APART**2 * max(_period(beam, of, along) for along, of in enumerate(spaces))
+    made = [_enriched(beam, spaces[along], own[along], along, force, least) for along in range(3)]
     (s, a), (v, b), (w, c) = made
     return (s, v, w), (a, b, c)
 
 
-def _enriched(beam: Beam, of: Space, own: Family, along: int, force: Array | None) -> tuple[Family, int]:
+def _enriched(beam: Beam, of: Space, own: Family, along: int, force: Array | None, least: float) -> tuple[Family, int]:
     nodes = len(of.rule.node)
     given = own(of.rule.node)
     strain = given.slope if of.axial else given.curvature
@@ -74,6 +76,12 @@ def _enriched(beam: Beam, of: Space, own: Family, along: int, force: Array | Non
     basis = np.concatenate([np.eye(size)[:, nodes:], np.pad(strain, ((0, size - nodes), (0, 0)))], axis=1)
     root = np.sqrt(of.stiffness)[:, None]
     known = np.linalg.qr(root * basis)[0]
+
+    def shortest(vectors: Array) -> float:
+        """Square of the shortest period, over 4π², of vectors that are orthonormal in energy."""
+        return float(np.linalg.eigvalsh((vectors / root).T @ of.mass @ (vectors / root))[0]) if vectors.size else np.inf
+
+    least = min(least, shortest(known) / 10)
     loads, added = _loads(beam, of, along), []
     for flexibility in _flexibilities(of, force):
         vectors = flexibility @ loads
@@ -82,9 +90,13 @@ def _enriched(beam: Beam, of: Space, own: Family, along: int, force: Array | Non
                 length = np.linalg.norm(vector)
                 rest = vector - known @ (known.T @ vector)
                 rest = rest - known @ (known.T @ rest)
-                if length > 0 and np.linalg.norm(rest) > NEW * length:
-                    rest = rest / np.linalg.norm(rest)
-                    known = np.concatenate([known, rest[:, None]], axis=1)
+                if not np.linalg.norm(rest) > NEW * length:
+                    continue
+                rest = rest / np.linalg.norm(rest)
+                wider = np.concatenate([known, rest[:, None]], axis=1)
+                # Beside a spring of the root a bend close to it turns the beam likewise: what is left has no inertia.
+                if shortest(wider) > least:
+                    known = wider
                     added.append(rest)
             vectors = flexibility @ (of.mass @ vectors)
     more = of.family(np.stack(added, axis=1) / root) if added else None
@@ -95,6 +107,13 @@ def _enriched(beam: Beam, of: Space, own: Family, along: int, force: Array | Non
         return Shapes(*(np.concatenate(pair, axis=1) for pair in zip(own(x), more(x), strict=True)))
 
     return (own if count == 0 and more is None else both), len(added)
+
+
+def _period(beam: Beam, of: Space, along: int) -> float:
+    """Square of the longest period, over 4π², by the answer to an even acceleration."""
+    force = _loads(beam, of, along)[:, 0]
+    answer = force / of.stiffness
+    return float(answer @ of.mass @ answer / (answer @ force))
 
 
 def _flexibilities(of: Space, force: Array | None) -> list[Array]:

@@ -19,37 +19,49 @@ class Places:
     r0 : (p, 3) m
     first : (p, 3, n)
         J, per coordinate.
-    second : (p, 3, n, n)
-        H, symmetric in its last two axes.
+    second : (p, 3, n, n) or None
+        H, symmetric in its last two axes; None where the places are linear.
     """
 
     r0: Any
     first: Any
-    second: Any
+    second: Any = None
 
     def __getitem__(self, chosen: Any) -> Places:
         """The polynomials of some of the points."""
-        return Places(self.r0[chosen], self.first[chosen], self.second[chosen])
+        return Places(self.r0[chosen], self.first[chosen], None if self.second is None else self.second[chosen])
 
     def slopes(self, q: Any) -> Any:
         """∂r/∂q = J + H q at coordinates (..., n), (..., p, 3, n)."""
         xp = namespace(self.first, q)
+        if self.second is None:
+            return xp.broadcast_to(self.first, (*q.shape[:-1], *self.first.shape))
         return self.first + xp.einsum("paij,...j->...pai", self.second, q)
 
     def positions(self, q: Any) -> Any:
         """Places at coordinates (..., n), (..., p, 3) m."""
         points, axes, n = self.first.shape
+        if self.second is None:
+            return self.r0 + self._linear(q)
         if points * axes > n:
             return self.r0 + self._sum(q, 0.5 * _outer(q, q))
         # Of few points, as of the tip, H q is smaller than q qᵀ.
         xp = namespace(self.first, q)
         turned = xp.reshape(q @ xp.reshape(self.second, (-1, n)).T, (*q.shape[:-1], points * axes, n))
         curved = xp.reshape(xp.sum(turned * q[..., None, :], axis=-1), (*q.shape[:-1], points, axes))
-        return self.r0 + xp.reshape(q @ xp.reshape(self.first, (-1, n)).T, curved.shape) + 0.5 * curved
+        return self.r0 + self._linear(q) + 0.5 * curved
 
     def paths(self, q: Any, qd: Any, qdd: Any) -> tuple[Any, Any, Any]:
         """Places, velocities and accelerations relative to the base axes, (..., p, 3) each."""
+        if self.second is None:
+            return self.positions(q), self._linear(qd), self._linear(qdd)
         return self.positions(q), self._sum(qd, _outer(q, qd)), self._sum(qdd, _outer(q, qdd) + _outer(qd, qd))
+
+    def _linear(self, q: Any) -> Any:
+        """J·q of (..., n)."""
+        points, axes, n = self.first.shape
+        flat = namespace(self.first, q).reshape(self.first, (-1, n))
+        return (q @ flat.T).reshape(*q.shape[:-1], points, axes)
 
     def _sum(self, linear: Any, quadratic: Any) -> Any:
         """J·linear + H:quadratic, of (..., n) and (..., n, n): one matrix product over all times."""

@@ -1,10 +1,14 @@
-"""What a record's samples go through: dropouts and spikes found, filter, resampling."""
+"""What a record's samples go through: dropouts, spikes and flat tops found, filter, resampling."""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.checks import positive
 from gbeam.guards.limits import SAMPLES, refuse_more
@@ -14,8 +18,13 @@ from gbeam.numerics.intervals import true_runs
 Floats = NDArray[np.float64]
 
 FEWEST = 6  # samples of a record
+UNEVEN = 0.01  # of the median interval
 _WINDOW, _OUTLIER = 3, 6.0  # samples either side; deviations from the window's median
 _LEAST_JUMP = 0.5  # m/s²: a smaller step is no dropout and no spike
+_BESIDE = 0.25, 0.75  # of a spike's bend, the other way: the bend of its neighbours
+_FLAT, _STEADY, _STEP = 4, 3, 5.0  # samples of a flat top; steps that lead there; one of so many times the resolution
+_FULL = 1.1 * STANDARD_GRAVITY  # m/s²: no sensor's range ends at level flight
+_NEARLY = 0.99  # of a rate: what is that near to it is not below it
 
 
 def dropout(values: Floats, step: float) -> tuple[int, int] | None:
@@ -48,12 +57,50 @@ def dropout(values: Floats, step: float) -> tuple[int, int] | None:
 
 
 def spikes(load: Floats) -> NDArray[np.bool_]:
-    """Single samples far off the median of their seven neighbours, per channel, (t, 3): Hampel's test."""
-    padded = np.pad(load, ((_WINDOW, _WINDOW), (0, 0)), mode="edge")
-    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * _WINDOW + 1, axis=0)
+    """Single samples far off, per channel, (t, 3), by both of two tests.
+
+    Hampel's: off the median of the seven around them. On a flank beside a peak these deviate from their median as much
+    as a spike does, so the other is: off the straight line between their neighbours, which themselves are off by half
+    as much the other way. Far is six deviations of what is around, and of the whole record.
+    """
+    windows = _windows(load, _WINDOW, "odd")
     middle = np.median(windows, axis=-1)
-    spread = 1.4826 * np.median(np.abs(windows - middle[..., None]), axis=-1)
-    return np.asarray(np.abs(load - middle) > np.maximum(_OUTLIER * spread, _LEAST_JUMP))
+    bend = np.zeros_like(load)
+    bend[1:-1] = load[1:-1] - (load[:-2] + load[2:]) / 2
+    least, most = (share * np.abs(bend) for share in _BESIDE)
+    beside = np.stack([np.roll(bend, 1, axis=0), np.roll(bend, -1, axis=0)]) * -np.sign(bend)
+    single = ((beside > least) & (beside < most)).all(axis=0)
+    around = np.delete(_windows(np.abs(bend), _WINDOW + 1, "even"), [_WINDOW, _WINDOW + 1, _WINDOW + 2], axis=-1)
+    return _far(load - middle, np.abs(windows - middle[..., None])) | (single & _far(bend, around))
+
+
+def _windows(values: Floats, beside: int, reflected: Literal["odd", "even"]) -> Floats:
+    """Samples around each, (t, 3, 2 beside + 1); beyond the ends a slope goes on (odd), or a size does (even)."""
+    padded = np.pad(values, ((beside, beside), (0, 0)), mode="reflect", reflect_type=reflected)
+    return np.lib.stride_tricks.sliding_window_view(padded, 2 * beside + 1, axis=0)
+
+
+def _far(off: Floats, around: Floats) -> NDArray[np.bool_]:
+    """Whether samples are six deviations off, of the windows `around` them and of the median window."""
+    spread = 1.4826 * np.median(around, axis=-1)
+    spread = np.maximum(spread, np.median(spread, axis=0))
+    return np.asarray(np.abs(off) > np.maximum(_OUTLIER * spread, _LEAST_JUMP))
+
+
+def flat_tops(values: Floats) -> Iterator[tuple[float, list[slice]]]:
+    """Values at which a channel, m/s², is cut off, and where: an extreme that successive samples have exactly.
+
+    A curve that is cut off arrives steadily, or by a step larger than the sensor's resolution; one of which a coarse
+    sensor makes a level does neither. A record that begins or ends there, such as in level flight, is not cut off.
+    """
+    top, bottom = float(values.max()), float(values.min())
+    for extreme, outwards, sign in ((top, top > _FULL, 1.0), (bottom, bottom < -_FULL, -1.0)):
+        runs = [run for run in true_runs(values == extreme) if run.start > 0 and run.stop < len(values)]
+        runs = [run for run in runs if run.stop - run.start >= _FLAT]
+        rise, finest = sign * np.diff(values), np.diff(np.unique(values)).min(initial=np.inf)
+        ways = [way for run in runs for way in (rise[: run.start][-_STEADY:], -rise[run.stop - 1 :][:_STEADY][::-1])]
+        if outwards and any(way[-1] > _STEP * finest or (len(way) == _STEADY and way.min() > 0) for way in ways):
+            yield extreme, runs
 
 
 def without_spikes(time: Floats, load: Floats, at: NDArray[np.bool_]) -> Floats:
@@ -67,7 +114,7 @@ def filtered(time: Floats, values: Floats, cutoff: float | None, resample: float
 
     Parameters
     ----------
-    time : (t,) s, even
+    time : (t,) s; uneven ones are made even before the low-pass
     values : (t, ...)
     cutoff : float or None
         Hz, −6 dB; see :func:`gbeam.numerics.filters.low_pass.low_pass`.
@@ -82,6 +129,9 @@ def filtered(time: Floats, values: Floats, cutoff: float | None, resample: float
     """
     step = float(time[-1] - time[0]) / (len(time) - 1)
     if cutoff is not None:
+        if np.abs(np.diff(time) - step).max() > UNEVEN * step:
+            even = np.linspace(time[0], time[-1], len(time))
+            time, values = even, _splined(time, values, even)
         try:
             values = low_pass(values, step, positive("cutoff", cutoff, "Hz"))
         except InputError as error:
@@ -89,15 +139,13 @@ def filtered(time: Floats, values: Floats, cutoff: float | None, resample: float
     if resample is None:
         return time, values
     rate = positive("record.resample", resample, "Hz")
-    if rate * step < 1 - 1e-9 and (cutoff is None or cutoff > 0.4 * rate):
+    if rate * step < _NEARLY and (cutoff is None or cutoff > 0.4 * rate):
         raise InputError(
             "record.resample",
             f"is {rate:g} Hz, below the record's {1 / step:g} Hz, with "
             + ("no cut-off" if cutoff is None else f"a cut-off of {cutoff:g} Hz"),
             f'add cutoff = "{0.4 * rate:g} Hz" or less: what is faster would come back as slow vibration',
         )
-    import scipy.interpolate  # half a second to import, which only a new rate needs
-
     length = float(time[-1] - time[0])
     if length * rate < FEWEST - 1:
         problem = f"is {rate:g} Hz, which leaves fewer than {FEWEST} samples of {length:g} s"
@@ -106,4 +154,10 @@ def filtered(time: Floats, values: Floats, cutoff: float | None, resample: float
     refuse_more("record.resample", "samples", length * rate, SAMPLES, each, f"give {SAMPLES / length:.3g} Hz or less")
     fresh = time[0] + np.arange(int(np.floor((time[-1] - time[0]) * rate * (1 + 1e-12))) + 1) / rate
     fresh = np.minimum(fresh, time[-1])
-    return fresh, np.asarray(scipy.interpolate.CubicSpline(time, values, axis=0)(fresh))
+    return fresh, _splined(time, values, fresh)
+
+
+def _splined(time: Floats, values: Floats, fresh: Floats) -> Floats:
+    import scipy.interpolate  # half a second to import, which only a new rate needs
+
+    return np.asarray(scipy.interpolate.CubicSpline(time, values, axis=0)(fresh))

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.arrays.namespace import namespace
-from gbeam.arrays.tree import assign, record, static
+from gbeam.arrays.namespace import holds_jax, namespace
+from gbeam.arrays.tree import assign, record
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.motion.bases.base import Base
-from gbeam.motion.profiles.combine import as_profile, vector
+from gbeam.motion.profiles.combine import as_profile, merged_extent, vector
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.profiles.profile import Profile, smoothed
 
+if TYPE_CHECKING:
+    from gbeam.results.description import RecordSummary
 
+_ROUNDING = 1e-6
+
+
+@typed
 @record
 class Flight:
     """A base in flight: in translation (ω = α = 0), or turning at given body rates.
@@ -29,8 +36,6 @@ class Flight:
     rates : Profile, optional
         Vector profile: angular velocity in base axes, rad/s, without corners; α is its derivative, since the rate of a
         vector ω is the same seen from its own axes.
-    notes : tuple of str
-        What was done to the record; they become warnings of the response.
 
     Raises
     ------
@@ -41,7 +46,6 @@ class Flight:
     kind: ClassVar[str] = "flight"
     acceleration: Profile
     rates: Profile | None
-    notes: tuple[str, ...] = static()
 
     def __init__(
         self,
@@ -51,7 +55,6 @@ class Flight:
         *,
         acceleration: Profile | Any | None = None,
         rates: Profile | Any | None = None,
-        notes: tuple[str, ...] = (),
     ) -> None:
         given = [name for name, value in (("x", x), ("y", y), ("z", z)) if value is not None]
         if acceleration is None and not given:
@@ -63,8 +66,12 @@ class Flight:
             self,
             acceleration=load,
             rates=None if rates is None else as_profile("rates", rates, 3),
-            notes=tuple(notes),
         )
+
+    @property
+    def record(self) -> RecordSummary | None:
+        """The record that is flown; None of a flight that is prescribed."""
+        return self.acceleration.record
 
     @property
     def free(self) -> bool:
@@ -84,6 +91,7 @@ class Flight:
         own = self.acceleration.corners(step)
         return own if self.rates is None else np.union1d(own, self.rates.corners(step))
 
+    @typed
     def over(self, start: float, end: float) -> Self:
         """The flight itself, from `start` to `end` (s): it needs no preparation."""
         return self
@@ -91,6 +99,24 @@ class Flight:
     def beyond(self, start: float, end: float) -> tuple[float, float]:
         """Nothing before `start` or after `end` (s): a flight has no spin-up of its own."""
         return 0.0, 0.0
+
+    def part_of(self, start: float, end: float) -> tuple[float, float] | None:
+        """First and last time of the whole flight, s, of which the times from `start` to `end` are a part.
+
+        Of a record that of its file. None where they are all of it but an interval of the record, nothing ends, or JAX
+        traces the flight.
+        """
+        if holds_jax(self):
+            return None
+        if self.record is not None:
+            (first, last), slack = self.record.whole, (1 + _ROUNDING) / self.record.rate
+        else:
+            extent = merged_extent(*(each for each in (self.acceleration, self.rates) if each is not None))
+            if extent is None:
+                return None
+            (first, last), slack = extent, _ROUNDING * (extent[1] - extent[0])
+        left_out = start > first + slack or end < last - slack
+        return (min(start, first), max(end, last)) if left_out else None
 
 
 def body_rates(recorded: PiecewiseLinear, smoothing: float = 0.0) -> Profile:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record, static
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.mount import Mount
@@ -21,6 +22,7 @@ _STRIDE = 0.01  # s, between the times at which the angle is stored, where Gauss
 _PIECES, _HALVINGS, _EXACT = 32, 20, 1e-14  # from one break to another at first; error of the whole angle, relative
 
 
+@typed
 @record
 class Hub:
     """A hub: its rate is prescribed, or it is free to turn under a torque and its angle is an unknown.
@@ -40,8 +42,9 @@ class Hub:
         About z on a free hub, N m; zero if left out. ``hub.torque`` is None where the hub is not free.
     pointing : str
         ``outward`` or ``inward``: from the root away from the hub's axis, or towards it and beyond.
-    setting_angle : float
-        Turn of the section's y and z axes about the beam, from the beam's y axis in the plane of rotation, rad.
+    setting_angle : float, optional
+        Turn of the section's y and z axes about the beam, from the beam's y axis in the plane of rotation, rad; zero
+        unless given. A beam much stiffer in that plane than out of it is then warned of.
     gravity : sequence of three floats, optional
         Acceleration of free fall, m/s², in hub axes at hub angle zero; it stays where it is as the hub turns.
     stiffness, damping : float
@@ -63,6 +66,7 @@ class Hub:
     stiffness: Any
     damping: Any
     free: bool = static()
+    set: bool = static()  # whether a setting angle is given
     times: Any
     angles: Any
 
@@ -74,8 +78,8 @@ class Hub:
         inertia: Any | None = None,
         torque: Profile | Any | None = None,
         pointing: str = "outward",
-        setting_angle: Any = 0.0,
-        gravity: Any | None = None,
+        setting_angle: Any | None = None,
+        gravity: ArrayLike | None = None,
         stiffness: Any = 0.0,
         damping: Any = 0.0,
     ) -> None:
@@ -91,7 +95,7 @@ class Hub:
                 fix = f"leave out {name}, or give inertia and no rate"
                 beside = " beside rate" if rate is not None else ""
                 raise InputError(name, f"is given{beside}, and the hub is not free to turn", fix)
-        mount = Mount(radius, pointing, setting_angle, gravity)
+        mount = Mount(radius, pointing, 0.0 if setting_angle is None else setting_angle, gravity)
         assign(
             self,
             mount=mount,
@@ -101,6 +105,7 @@ class Hub:
             stiffness=stiffness,
             damping=damping,
             free=free,
+            set=setting_angle is not None,
         )
         # Gravity turns in base axes with the hub: only then does the motion of the base need the angle.
         times, angles = self._angles() if gravity is not None and not free else (np.zeros(1), np.zeros(1))
@@ -133,6 +138,7 @@ class Hub:
         assert driving is not None
         return driving.corners(step)
 
+    @typed
     def over(self, start: float, end: float) -> Self:
         """The hub itself, from `start` to `end` (s): it needs no preparation."""
         return self

@@ -21,7 +21,7 @@ from gbeam.motion.centrifuge.target.target import Episode, Target
 from gbeam.motion.profiles.profile import sampled
 from gbeam.results.machine import LimitUse, Shortfall
 
-_GRID, _MOST = 1e-3, 200_000  # s between the times at which limits are looked at; most of them
+_GRID, _MOST = 1e-3, 500_000  # s between the times at which limits are looked at; most of them
 
 
 class AxisMotion:

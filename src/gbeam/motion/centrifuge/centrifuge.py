@@ -11,6 +11,7 @@ from gbeam.arrays.namespace import as_array
 from gbeam.arrays.tree import assign, record, static
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, positive
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.flight import Flight
@@ -26,6 +27,7 @@ from gbeam.motion.centrifuge.machine.limits import Limits, MachineLimits
 MOUNTINGS = {"upright": 1.0, "inverted": -1.0}
 
 
+@typed
 @record
 class Centrifuge(AxisMotion):
     """A beam on a three-axis centrifuge whose axes reproduce a flight's load at the control point.
@@ -48,11 +50,12 @@ class Centrifuge(AxisMotion):
         ``planned`` keeps them, the other inverses only report. A Machine, such as one of
         :data:`gbeam.machines`, also gives its idle level where that is left out.
     gravity : bool
-        The flight's load is specific force, and gravity is there on the machine.
+        True if the flight's load is specific force, of which gravity is a part on the machine; False if it is
+        acceleration.
     idle : float, optional
         Load below which the target is held up to this magnitude, m/s².
     smoothing : float or None
-        Width of the kernel that rounds the target's corners, s; None or 0 leaves them.
+        Width of the kernel that rounds the target's corners, s; None or 0, the default, leaves them sharp.
     mounting : str
         Under a load across the beam its tip points along the arm's motion (``upright``) or against it (``inverted``):
         docs/mounting.svg.
@@ -95,9 +98,9 @@ class Centrifuge(AxisMotion):
         control_point: Any,
         inverse: str = "planned",
         limits: MachineLimits | Machine | Limits | None = None,
-        gravity: bool = False,
+        gravity: bool,
         idle: Any | None = None,
-        smoothing: Any | None = 0.06,
+        smoothing: Any | None = 0.0,
         mounting: str = "upright",
         start: str = "rest",
         spin_up: float | None = None,
@@ -115,6 +118,10 @@ class Centrifuge(AxisMotion):
         if arm is None:
             raise InputError("arm", "is missing", "give the arm's length, or a machine as limits")
         radius = as_array(positive("arm", arm, "m"))
+        if gravity and flight.record is not None and flight.record.quantity == "acceleration":
+            problem = "is true, and the record of its flight holds acceleration, not specific force"
+            fix = "write gravity = false, or add gravity to the record: its direction changes as the aircraft turns"
+            raise InputError("gravity", problem, fix)
         assign(
             self,
             flight=flight,
@@ -137,6 +144,7 @@ class Centrifuge(AxisMotion):
         """False: the motion is prescribed."""
         return False
 
+    @typed
     def over(self, start: float, end: float, *, ahead: bool = True) -> Self:
         """The machine with its target and axis motions prepared for the flight's times from `start` to `end`, s.
 

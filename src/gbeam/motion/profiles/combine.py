@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.motion.profiles.piecewise import constant
 from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.series import Series, stack
 
 
+@typed
 @record
 class Sum(Profile):
     """Sum of profiles of the same unit.
@@ -55,6 +57,11 @@ class Sum(Profile):
         """Union of the parts' knots, s."""
         return np.unique(np.concatenate([part.knots(step) for part in self.parts]))
 
+    @property
+    def extent(self) -> tuple[float, float] | None:
+        """From the first time of any of the parts to the last, s."""
+        return merged_extent(*self.parts)
+
     def smoothed(self, width: Any) -> Profile:
         """Convolution is linear: the sum of the smoothed parts."""
         return Sum(tuple(part.smoothed(width) for part in self.parts))
@@ -83,12 +90,18 @@ class Vector(Profile):
         """Union of the components' knots, s."""
         return np.unique(np.concatenate([part.knots(step) for part in self.parts]))
 
+    @property
+    def extent(self) -> tuple[float, float] | None:
+        """From the first time of any of the components to the last, s."""
+        return merged_extent(*self.parts)
+
     def smoothed(self, width: Any) -> Profile:
         """Component by component."""
         x, y, z = (part.smoothed(width) for part in self.parts)
         return Vector((x, y, z))
 
 
+@typed
 def vector(x: Any | None = None, y: Any | None = None, z: Any | None = None) -> Vector:
     """Return the vector profile of three components; one left out is zero.
 
@@ -129,14 +142,18 @@ def as_profile(where: str, given: Any, components: int = 1) -> Profile:
             profile = constant(given)
         except InputError as error:
             raise InputError(where, error.problem, error.fix) from None
-        except (TypeError, ValueError):
-            raise InputError(where, f"is {given!r}", "give a profile or a number") from None
     shape = np.shape(profile(0.0))
     if shape != (() if components == 1 else (components,)):
         what = "a scalar" if shape == () else "a vector" if shape == (3,) else f"an array of shape {shape}"
         fix = "give a scalar; a vector goes by name, acceleration = ..." if components == 1 else "give x, y and z"
         raise InputError(where, f"is {what}", fix)
     return profile
+
+
+def merged_extent(*profiles: Profile) -> tuple[float, float] | None:
+    """From the first time of any of the profiles to the last, s; None if all are constant."""
+    ends = [profile.extent for profile in profiles if profile.extent is not None]
+    return (min(first for first, _ in ends), max(last for _, last in ends)) if ends else None
 
 
 def merged_breaks(*profiles: Profile) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import factorial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +11,11 @@ from numpy.typing import NDArray
 from gbeam.arrays.namespace import as_array, namespace
 from gbeam.arrays.tree import assign, record
 from gbeam.motion.profiles.hann import hann_orders
-from gbeam.motion.profiles.profile import Profile, rounded_corners, sampled
+from gbeam.motion.profiles.profile import TOGETHER, Profile, rounded_corners, sampled
 from gbeam.numerics.series import Series
+
+if TYPE_CHECKING:
+    from gbeam.results.description import RecordSummary
 
 # On one panel the integrand is a smooth curve times one period of a cosine: 20 points leave only rounding.
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(20)
@@ -44,6 +47,11 @@ class Convolved(Profile):
         """Value and derivatives at times `t` (s)."""
         now, breaks, width = as_array(t), self.profile.breaks, self.width
         xp = namespace(now, breaks, width)
+        nodes = (breaks.size + 1) * _POINTS.size
+        if xp is np and now.ndim == 1 and now.size > 1 and now.size * nodes > TOGETHER:
+            return Series.in_pieces(
+                lambda some: self.series(some, order), now, min(now.size, 1 + now.size * nodes // TOGETHER)
+            )
         low, high = now[..., None] - width / 2, now[..., None] + width / 2
         one, fixed = xp.ones_like(low), (breaks > low) & (breaks < high)
         at, weight = _panels(xp, xp.concatenate([low, xp.clip(breaks, low, high), high], axis=-1))
@@ -70,6 +78,16 @@ class Convolved(Profile):
         half = float(self.width) / 2
         inner = self.profile.knots(step)
         return sampled(inner[0] - half, inner[-1] + half, step)
+
+    @property
+    def record(self) -> RecordSummary | None:
+        """That of the profile."""
+        return self.profile.record
+
+    @property
+    def extent(self) -> tuple[float, float] | None:
+        """That of the profile, s."""
+        return self.profile.extent
 
     def smoothed(self, width: Any) -> Profile:
         """Smoothed once more."""

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record, static
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive
 from gbeam.motion.profiles.convolution import Convolved, beside
 from gbeam.motion.profiles.hann import hann_orders
-from gbeam.motion.profiles.profile import Profile, rounded_corners, sampled
+from gbeam.motion.profiles.profile import TOGETHER, Profile, rounded_corners, sampled
 from gbeam.numerics.series import Series
+
+if TYPE_CHECKING:
+    from gbeam.results.description import RecordSummary
 
 
 @record
@@ -27,6 +31,8 @@ class PiecewiseLinear(Profile):
         Knots, s, strictly increasing; one knot makes a constant.
     values : array_like, shape (k,) or (k, 3)
         Values at the knots, scalars or vectors.
+    record : RecordSummary, optional
+        Of the flight's record that it is.
 
     Raises
     ------
@@ -37,8 +43,9 @@ class PiecewiseLinear(Profile):
     times: Any
     values: Any
     slopes: Any  # of the k + 1 segments, the outer two level, (k + 1,) or (k + 1, 3)
+    summary: RecordSummary | None = static()
 
-    def __init__(self, times: Any, values: Any) -> None:
+    def __init__(self, times: Any, values: Any, *, record: RecordSummary | None = None) -> None:
         t, v = (array[None] if array.ndim == 0 else array for array in (as_array(times), as_array(values)))
         if t.ndim != 1 or t.size == 0:
             raise InputError("times", f"has shape {t.shape}", "give a list of one time or more")
@@ -54,7 +61,7 @@ class PiecewiseLinear(Profile):
             rise = xp.diff(v, axis=0) / beside(xp.diff(t), v.ndim - 1)
         if not is_traced(t, v):
             _refuse_steep(np.asarray(t), np.asarray(rise))
-        assign(self, times=t, values=v, slopes=xp.concatenate([level, rise, level]))
+        assign(self, times=t, values=v, slopes=xp.concatenate([level, rise, level]), summary=record)
 
     def series(self, t: Any, order: int) -> Series:
         """Value and slope at times `t` (s)."""
@@ -66,6 +73,11 @@ class PiecewiseLinear(Profile):
     def breaks(self) -> Any:
         """Times of the knots, s, shape (k,)."""
         return self.times
+
+    @property
+    def record(self) -> RecordSummary | None:
+        """The flight's record that it is, if it is one."""
+        return self.summary
 
     def corners(self, step: float) -> NDArray[np.float64]:
         """Times of the knots at which the slope changes, s."""
@@ -151,6 +163,8 @@ class SmoothedPiecewiseLinear(Profile):
         first, count = xp.searchsorted(times[:-1], now - self.width / 2, side="right"), self.count
         if xp is np and now.size:  # no more knots than these windows hold
             count = int((np.searchsorted(times[:-1], now + self.width / 2, side="right") - first).max())
+            if now.ndim == 1 and now.size * count > TOGETHER:
+                return Series.in_pieces(lambda some: self.series(some, order), now, 1 + now.size * count // TOGETHER)
         near = xp.minimum(first[..., None] + np.arange(count), times.size - 1)
         ramps = hann_orders(0, order, (now[..., None] - times[near]) / self.width)
         bent = bends[near]
@@ -172,12 +186,23 @@ class SmoothedPiecewiseLinear(Profile):
         half = float(self.width) / 2
         return sampled(float(self.times[0]) - half, float(self.times[-1]) + half, step)
 
+    @property
+    def record(self) -> RecordSummary | None:
+        """That of the table."""
+        return self.table.record
+
+    @property
+    def extent(self) -> tuple[float, float] | None:
+        """That of the table, s."""
+        return self.table.extent
+
     def smoothed(self, width: Any) -> Profile:
         """Smoothed once more, by quadrature."""
         return Convolved(self, width)
 
 
-def constant(value: Any) -> PiecewiseLinear:
+@typed
+def constant(value: ArrayLike) -> PiecewiseLinear:
     """Return a constant profile.
 
     Parameters
@@ -195,6 +220,7 @@ def constant(value: Any) -> PiecewiseLinear:
     return PiecewiseLinear([0.0], number[None])
 
 
+@typed
 def trapezoid(level: Any, *, jerk: Any, start: Any = 0.0, hold: Any) -> PiecewiseLinear:
     """Return a ramp from zero, a plateau and the same ramp down.
 
@@ -230,7 +256,8 @@ def trapezoid(level: Any, *, jerk: Any, start: Any = 0.0, hold: Any) -> Piecewis
     return PiecewiseLinear(times[distinct], corners[distinct])
 
 
-def tabulated(times: Any, values: Any) -> PiecewiseLinear:
+@typed
+def tabulated(times: ArrayLike, values: ArrayLike) -> PiecewiseLinear:
     """Return a profile through points, straight between them and constant beyond the ends.
 
     Parameters

@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.guards.limits import KNOTS, refuse_more
+from gbeam.guards.quantities import refuse_units
 from gbeam.numerics.series import Series
 
+if TYPE_CHECKING:
+    from gbeam.results.description import RecordSummary
+
+_FOR_EVER = 1e12  # s: knots no nearer than a profile needs them
+TOGETHER = 1_000_000  # knots or nodes of the windows around some times: what more would take comes piece by piece
 STEPS_PER_EVENT = 4  # a rounded corner or a pulse of so many steps is resolved
 
 
@@ -31,10 +38,12 @@ class Profile(ABC):
 
     def __call__(self, t: Any) -> Any:
         """Value at times `t` (s, any shape): of the shape of `t`, with a trailing 3 for a vector."""
+        refuse_units("t", t)
         return self.series(t, 0).value
 
     def derivatives(self, t: Any, order: int = 1) -> tuple[Any, ...]:
         """Value and time derivatives up to `order` at times `t` (s), each like the value."""
+        refuse_units("t", t)
         return self.series(t, order).derivatives()
 
     def integral(self, t: Any) -> Any | None:
@@ -54,11 +63,23 @@ class Profile(ABC):
     def knots(self, step: float) -> NDArray[np.float64]:
         """Times (s, ascending) between which the profile is straight, or which are `step` apart at most."""
 
+    @property
+    def record(self) -> RecordSummary | None:
+        """The flight's record that it is, perhaps with its corners rounded; None of any other profile."""
+        return None
+
+    @property
+    def extent(self) -> tuple[float, float] | None:
+        """First and last time of what it prescribes, s, whatever rounds its corners; None if it is constant."""
+        times = self.knots(_FOR_EVER)
+        return (float(times[0]), float(times[-1])) if times.size > 1 else None
+
     @abstractmethod
     def smoothed(self, width: Any) -> Profile:
         """The profile convolved with the Hann kernel (1 + cos 2πt/W)/W on abs(t) < W/2, W = `width` s."""
 
 
+@typed
 def smoothed(profile: Profile, width: Any) -> Profile:
     """Round the corners of a profile: its convolution with a Hann kernel, three times differentiable.
 

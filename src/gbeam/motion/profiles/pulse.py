@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, namespace
 from gbeam.arrays.tree import assign, record
+from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive
 from gbeam.motion.profiles.convolution import Convolved
 from gbeam.motion.profiles.hann import TURN, hann_orders
@@ -16,6 +17,7 @@ from gbeam.motion.profiles.profile import STEPS_PER_EVENT, Profile, sampled
 from gbeam.numerics.series import Series
 
 
+@typed
 @record
 class SmoothStep(Profile):
     """Slew from zero to a level: level/T (t − T/2π sin 2πt/T) for 0 < t < T, the level after.  # 2009 (43)
@@ -77,6 +79,7 @@ class SmoothStep(Profile):
         return Convolved(self, width)
 
 
+@typed
 @record
 class Sine(Profile):
     """One period of a sine: amplitude sin 2πt/T for 0 <= t <= T, zero before and after.  # 2009 (44)

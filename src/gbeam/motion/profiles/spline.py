@@ -10,13 +10,15 @@ from numpy.typing import NDArray
 from gbeam.arrays.namespace import as_array, namespace
 from gbeam.arrays.tree import assign, record
 from gbeam.errors import InputError
-from gbeam.guards.checks import finite, positive
+from gbeam.guards.arguments import typed
+from gbeam.guards.checks import array, finite, positive
 from gbeam.motion.profiles.convolution import Convolved
 from gbeam.motion.profiles.profile import Profile, sampled
 from gbeam.numerics.bspline import DEGREE, PIECE, Spline
 from gbeam.numerics.series import Series
 
 
+@typed
 @record
 class SplineProfile(Profile):
     """A uniform quintic B-spline over a duration; constant before and after, four times continuously differentiable.
@@ -41,7 +43,7 @@ class SplineProfile(Profile):
     start: Any = 0.0
 
     def __post_init__(self) -> None:
-        coefficients = as_array(self.coefficients)
+        coefficients = array("coefficients", self.coefficients)
         if coefficients.ndim != 1 or len(coefficients) < 2 * DEGREE + 1:
             raise InputError("coefficients", f"have the shape {coefficients.shape}", "give eleven or more in a row")
         assign(

@@ -32,3 +32,8 @@ def positive_definite(matrices: Array) -> bool:
     except np.linalg.LinAlgError:
         return False
     return True
+
+
+def symmetric(matrices: Array) -> Array:
+    """The symmetric parts of matrices (..., n, n)."""
+    return (matrices + namespace(matrices).swapaxes(matrices, -1, -2)) / 2

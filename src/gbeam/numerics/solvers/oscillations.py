@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.numerics.solvers.eigen import symmetric_modes
+from gbeam.numerics.solvers.eigen import symmetric, symmetric_modes
 
 Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -43,7 +43,7 @@ def eigenvalues(
     damping = velocity if gyroscopic else (velocity + velocity.T) / 2
     # In modes of the symmetric part, each scaled by its own frequency, all blocks are of the size of the frequencies:
     # the raw companion matrix loses half the digits of the low ones.
-    square, basis = symmetric_modes((stiffness + stiffness.T) / 2, (mass + mass.T) / 2)
+    square, basis = symmetric_modes(symmetric(stiffness), symmetric(mass))
     reference = np.sqrt(np.abs(square).max())
     scale = np.maximum(np.sqrt(np.abs(square)), 1e-6 * reference)
     k, c = basis.T @ stiffness @ basis, basis.T @ damping @ basis
@@ -58,12 +58,35 @@ def eigenvalues(
     return value, mode / weight
 
 
+def unsymmetric(stiffness: Floats) -> bool:
+    """Whether a stiffness (n, n) is that of loads that follow the beam, and feed it or take from it."""
+    return bool(np.abs(stiffness - stiffness.T).max() > UNSYMMETRIC * np.abs(stiffness).max())
+
+
 def stability_margin(mass: Floats, velocity: Floats, stiffness: Floats) -> float:
     """Positive while nothing grows, rad²/s²: by K's lowest eigenvalue, or, where K is unsymmetric, by all of them."""
-    if np.abs(stiffness - stiffness.T).max() <= UNSYMMETRIC * np.abs(stiffness).max():
-        return float(symmetric_modes((stiffness + stiffness.T) / 2, (mass + mass.T) / 2)[0][0])
+    if not unsymmetric(stiffness):
+        return float(symmetric_modes(symmetric(stiffness), symmetric(mass))[0][0])
     value, _ = eigenvalues(mass, velocity, stiffness)
     return float((growth_limit(value, np.abs(value).max()) - value.real).min())
+
+
+def matched(alike: Floats) -> tuple[NDArray[np.intp], Floats]:
+    """For each row of MACs (k, l) the column that it resembles most, each of them once, −1 for none; and their MAC."""
+    rows, columns = np.arange(len(alike)), alike.argmax(axis=1)
+    if len(set(columns)) < len(columns):  # two want the same one
+        from scipy.optimize import linear_sum_assignment
+
+        rows, columns = linear_sum_assignment(-alike)
+    match, value = np.full(len(alike), -1), np.full(len(alike), np.nan)
+    match[rows], value[rows] = columns, alike[rows, columns]
+    return match, value
+
+
+def growth_rate(mass: Floats, velocity: Floats, stiffness: Floats) -> float:
+    """Real part of the eigenvalue that grows fastest, 1/s; zero where none grows."""
+    value, _ = eigenvalues(mass, velocity, stiffness)
+    return float(value.real.max(where=value.real > growth_limit(value, np.abs(value).max()), initial=0.0))
 
 
 def mac(first: Complex, second: Complex, mass: Floats) -> Floats:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from typing import Any
 
+from gbeam.report.words import ends
 from gbeam.results.imitation.accounting import Accounting, LoadPeak, PeakPair
 from gbeam.results.imitation.criteria import Judged
 from gbeam.results.imitation.verdict import change, in_g, percent
@@ -23,6 +24,8 @@ def judged_json(judged: Judged) -> dict[str, Any]:
     """What is accepted, the largest sizes and the accounting of an imitation as JSON."""
     return {
         "accepted": judged.accepted,
+        "span": ends(judged.accounting.span),
+        "whole": ends(judged.whole or judged.accounting.span),
         "criteria": [asdict(each) | {"passed": each.passed} for each in judged.criteria],
         "not_judged": list(judged.not_judged),
         "peaks": peaks_to_json(judged.peaks),
@@ -33,7 +36,9 @@ def judged_json(judged: Judged) -> dict[str, Any]:
 def judged_lines(judged: Judged) -> Iterator[str]:
     """Say what was accepted, then the accounting."""
     if judged.criteria:
-        yield f"{'accepted' if judged.accepted else 'not accepted'}: {', '.join(map(str, judged.criteria))}"
+        held = "accepted" if judged.accepted else "not accepted"
+        part = f" for {judged.part} only" if judged.part else ""
+        yield f"{held}{part}: {', '.join(map(str, judged.criteria))}"
     if judged.not_judged:
         yield f"not judged, as it needs the response, which `gbeam run` has: {', '.join(judged.not_judged)}"
     yield from lines(judged.accounting)

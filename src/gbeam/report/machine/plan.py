@@ -66,6 +66,9 @@ def _plan(plan: MachinePlan) -> dict[str, Any]:
     return {
         "tracks": plan.tracks,
         "arm": plan.arm,
+        "control_point": axes.control_point,
+        "gravity": plan.gravity,
+        "mounting": plan.mounting,
         **ends(plan.time, axes),
         "outcome": plan.outcome,
         "message": plan.message,

@@ -11,6 +11,7 @@ from importlib.resources import files
 from typing import Any
 
 from gbeam.errors import InputError
+from gbeam.guards.json_files import parse_json
 from gbeam.printable import json_printable
 from gbeam.report.page.bodies import cases, machine, rest, steady, study
 from gbeam.report.page.parts import badge, escaped, folded, heading, listed, paragraph, table, verbatim
@@ -98,10 +99,10 @@ def _title(origin: Mapping[str, Any]) -> str:
     text = origin.get("scenario", "")
     try:
         scenario = tomllib.loads(text)
-    except tomllib.TOMLDecodeError:  # JSON, or damaged
+    except (tomllib.TOMLDecodeError, RecursionError):  # JSON, or damaged
         try:
-            scenario = json.loads(text)
-        except json.JSONDecodeError:
+            scenario = parse_json(text)
+        except ValueError:
             return ""
     return str(scenario.get("title", "")) if isinstance(scenario, dict) else ""
 

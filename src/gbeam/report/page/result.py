@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from gbeam.errors import InputError
-from gbeam.guards.limits import BINARY_BYTES, refuse_large_file
+from gbeam.guards.json_files import parse_json, read_json
 from gbeam.io.netcdf import FACTS, groups_of
 from gbeam.io.stored import read_stored
 from gbeam.report.facts import facts, facts_text, whole
@@ -99,18 +99,18 @@ def report_of_file(path: Path) -> str:
         return _page_of(file)
     except InputError as error:
         raise InputError(str(file), error.problem, error.fix) from None
-    except (LookupError, TypeError, ValueError, AttributeError):  # its figures are not those of a result
+    except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError):  # no figures of a result
         raise InputError(str(file), "holds no whole result: it was changed or is damaged", _FIX) from None
 
 
 def _page_of(file: Path) -> str:
     if file.suffix == ".json":
-        return html(_read_json(file), {})
+        return html(read_json(file, _FIX), {})
     stored = read_stored(file)
     text = stored.variables.get(FACTS)
     if not isinstance(text, str):
         raise InputError(str(file), "holds no figures of a result that has a report", _FIX)
-    return html(json.loads(text), stored.variables, origin_json(stored.provenance))
+    return html(parse_json(text), stored.variables, origin_json(stored.provenance))
 
 
 def file_in(folder: Path) -> Path:
@@ -120,16 +120,3 @@ def file_in(folder: Path) -> Path:
         named = ", ".join(each.name for each in found[:4])
         raise InputError(str(folder), f"holds several results, {named}" if found else "holds no result", _FIX)
     return found[0]
-
-
-def _read_json(file: Path) -> dict[str, Any]:
-    try:
-        refuse_large_file("", file, BINARY_BYTES, _FIX)
-        facts = json.loads(file.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(str(file), f"cannot be read ({error.strerror})", _FIX) from None
-    except ValueError:
-        raise InputError(str(file), "is no JSON", _FIX) from None
-    if not isinstance(facts, dict):
-        raise InputError(str(file), "is not the JSON of a result", _FIX)
-    return facts

@@ -115,4 +115,4 @@ def _accuracy(system: StateSpace) -> list[str]:
         known = errors.total[good:][np.isfinite(errors.total[good:])]
         beyond = f"up to {percent(float(known.max()))} off" if len(known) else "not judged"
         words += f"{'; ' if good else 'frequencies '}{'higher ones ' if good else ''}{beyond}"
-    return [f"  {words}, by the exact model with more shapes"]
+    return [f"  {words}, by the exact model with more shapes and the theory of thick beams"]

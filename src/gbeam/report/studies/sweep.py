@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.report.studies.estimates import estimates
-from gbeam.report.words import columns, number
+from gbeam.report.words import columns, number, warning_lines
 from gbeam.results.result import Floats
 from gbeam.results.studies.sweep import Sweep
 from gbeam.results.studies.uncertainty import BOUNDS, ORDERS, Indices, Statistics
@@ -38,6 +38,7 @@ def to_json(sweep: Sweep, files: Iterable[Path] = ()) -> dict[str, Any]:
         "outcomes": sweep.outcome.tolist(),
         "messages": sweep.message.tolist(),
         "counts": sweep.counts,
+        "warnings": list(sweep.warnings),
         "files": [str(file) for file in files],
     }
 
@@ -78,7 +79,8 @@ def text(sweep: Sweep) -> str:
     if sweep.statistics and sweep.lost:
         lines += ["", f"{sweep.lost} of {sweep.outcome.size} cases are not done: the estimates are of the others"]
     ended = ", ".join(f"{count} {name}" for name, count in sweep.counts.items())
-    return "\n".join([*lines, "", f"{sweep.outcome.size} cases: {ended}", *_failures(sweep)]).lstrip("\n")
+    last = [f"{sweep.outcome.size} cases: {ended}", *_failures(sweep), *warning_lines(sweep)]
+    return "\n".join([*lines, "", *last]).lstrip("\n")
 
 
 def _headed(name: str, unit: str) -> str:

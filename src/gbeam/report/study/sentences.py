@@ -19,7 +19,7 @@ SHORTFALLS = 2
 
 
 def of_beam(response: Response) -> Iterator[str]:
-    """How accurate it is, how it begins, what the root carries, and what the hub does."""
+    """How accurate it is, how it begins, what the root carries, what the hub does, and what a file keeps of it."""
     yield _accuracy(response)
     if response.initial:
         yield response.initial
@@ -29,6 +29,12 @@ def of_beam(response: Response) -> Iterator[str]:
         yield _hub(response.hub)
         if response.hub.free and np.any(response.damping_ratio):
             yield _damping(response)
+    if response.kept_every > 1:
+        kept = response.time[:: response.kept_every]
+        yield (
+            f"a result file keeps {len(kept)} of {len(response.time)} samples of its histories, "
+            f"{_time(float(kept[1] - kept[0]))} apart; histories of [response] says otherwise"
+        )
 
 
 def _accuracy(response: Response) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.report import words
 from gbeam.report.machine import limits
 from gbeam.report.machine.tracking import ends, peak, tracking_json
 from gbeam.report.study import comparison, sentences
@@ -66,6 +67,9 @@ def _response(response: Response) -> dict[str, Any]:
         "warnings": list(response.warnings),
         "lines": [*sentences.of_beam(response), *sentences.of_machine(response)],
     }
+    values["histories"] = {"samples": len(response.time), "written": len(response.time[:: response.kept_every])}
+    if response.whole is not None:
+        values |= {"span": words.ends(response.flight_span), "whole": words.ends(response.whole)}
     if peaks.displacement is not None:
         values["stations"] = [
             {"at": float(x), **_vector(peaks.displacement[k])} for k, x in enumerate(response.stations)

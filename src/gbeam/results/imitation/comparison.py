@@ -55,6 +55,10 @@ class Comparison(Judged, Figured):
         Cycles of the stress at the root in both runs, and their damage.
     yield_strength : float or None
         Of the material, Pa, where it is given.
+    whole : tuple of float or None
+        First and last time of the whole flight, s, where only a part of it was run, and is judged.
+    kept_every : int
+        How many samples of the histories make one in a file.
     """
 
     flight: str
@@ -75,6 +79,8 @@ class Comparison(Judged, Figured):
     shock: Shock | None = None
     fatigue: Fatigue | None = None
     yield_strength: float | None = None
+    whole: tuple[float, float] | None = None
+    kept_every: int = 1
 
     @property
     def relative(self) -> Floats:
@@ -92,7 +98,7 @@ class Comparison(Judged, Figured):
         """One sentence about the whole flight that a person can quote."""
         tip = self.accept.get("tip")
         within = tip if isinstance(tip, float) else None
-        return verdict(self.flight, self.centrifuge, self.peaks, self.accounting, within, self.margins)
+        return verdict(self.flight, self.centrifuge, self.peaks, self.accounting, within, self.margins, self.whole)
 
     @property
     def margins(self) -> tuple[float, float] | None:

@@ -32,12 +32,20 @@ class Judged:
     accept: Mapping[str, Limit]
     shock: Shock | None = None
     fatigue: Fatigue | None = None
+    whole: tuple[float, float] | None = None
     with_response = True
 
     @property
     def verdict(self) -> str:
         """One sentence about the whole flight that a person can quote."""
         raise NotImplementedError
+
+    @property
+    def part(self) -> str:
+        """Which part of the flight was run, ``0 to 6 of 15.99 s``; empty where all of it was."""
+        from gbeam.results.result import part_words
+
+        return "" if self.whole is None else part_words(self.accounting.span, self.whole)
 
     @property
     def figures(self) -> dict[str, float]:
@@ -87,7 +95,7 @@ def state_of(outcome: str, imitations: Sequence[Judged], *, exceeded: bool = Fal
         return NOT_ACCEPTED
     if exceeded:
         return EXCEEDED
-    whole = [each.accepted for each in imitations if each.accepted is not None and not each.not_judged]
+    whole = [each for each in imitations if each.accepted and not each.not_judged and not each.part]
     missed = any(main is not None and main.reason for main in (each.accounting.main for each in imitations))
     return ("accepted" if whole else "done") + (", largest load peak missed" if missed else "")
 

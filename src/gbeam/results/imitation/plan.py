@@ -36,11 +36,19 @@ class MachinePlan(Judged, Figured):
         At these times.
     accounting : Accounting
         Which parts of the flight's load the machine reproduces, and why not the others.
+    gravity : float
+        On the machine, a part of the load, m/s²; zero where the load is acceleration.
+    mounting : str
+        upright or inverted.
     peaks : mapping of str to PeakPair
         ``largest_load``, that of the base anywhere on the rigid specimen over all of the run; NaN where no beam says
         how long the specimen is.
     accept : mapping of str to float or tuple of float
         Limits by name; those that need a response are not judged.
+    title : str
+        Of the scenario.
+    whole : tuple of float or None
+        First and last time of the whole flight, s, where only a part of it is imitated.
     """
 
     name: str
@@ -51,14 +59,20 @@ class MachinePlan(Judged, Figured):
     time: Floats
     axes: AxesResult
     accounting: Accounting
+    gravity: float
+    mounting: str
     peaks: Mapping[str, PeakPair] = field(default_factory=dict)
     accept: Mapping[str, Limit] = field(default_factory=dict)
+    title: str = ""
+    whole: tuple[float, float] | None = None
     with_response = False
 
     @property
     def verdict(self) -> str:
         """One sentence about the load over the whole flight."""
-        return verdict(self.tracks or "flight", self.name or "centrifuge", self.peaks, self.accounting)
+        return verdict(
+            self.tracks or "flight", self.name or "centrifuge", self.peaks, self.accounting, whole=self.whole
+        )
 
     @property
     def state(self) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.results.imitation.accounting import Accounting, LoadPeak, PeakPair
+from gbeam.results.result import part_words
 
 _FINEST = 1e-3  # how well a load peak is said to be reproduced at most
 _TIMES = 3.0  # from here on a ratio says more than a change of so many per cent
@@ -20,6 +21,7 @@ def verdict(
     accounting: Accounting,
     within: float | None = None,
     margins: tuple[float, float] | None = None,
+    whole: tuple[float, float] | None = None,
 ) -> str:
     """Return one sentence about the whole flight.
 
@@ -34,17 +36,20 @@ def verdict(
         Share by which the tip's peak may differ and count as reproduced; by default the load's tolerance.
     margins : tuple of float, optional
         Least margin on yield in flight and on the machine, where the yield strength is known.
+    whole : tuple of float, optional
+        First and last time of the whole flight, s, where only a part of it was run.
 
     Returns
     -------
     str
-        The flight's largest load peak first, where that is not reproduced; then the largest load anywhere on the
-        specimen, the tip's and the root moment's peaks, the margins on yield, how many load peaks are reproduced and
-        how well, the time followed and why the rest is not, and what the specimen is loaded with beyond flight and
+        That part; the flight's largest load peak first, where that is not reproduced; then the largest load anywhere
+        on the specimen, the tip's and the root moment's peaks, the margins on yield, how many load peaks are reproduced
+        and how well, the time followed and why the rest is not, and what the specimen is loaded with beyond flight and
         idle.
     """
     within = accounting.tolerance if within is None else within
-    return "; ".join(_parts(flight, machine, peaks, accounting, within, margins))
+    part = [] if whole is None else [part_words(accounting.span, whole)]
+    return "; ".join([*part, *_parts(flight, machine, peaks, accounting, within, margins)])
 
 
 def _parts(

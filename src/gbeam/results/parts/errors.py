@@ -1,14 +1,16 @@
-"""How far a result may be from the truth, and by what: time steps, too few shapes, the model."""
+"""How far a result may be from the truth, and by what: time steps, too few shapes, the model, the beam theory."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
 
 from gbeam.results.result import Floats, Part
+
+PARTS = ("shapes", "model", "beam_theory", "total")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -25,17 +27,29 @@ class ErrorEstimate(Part):
         Of too few shapes: against the same model with more.
     model : float
         Of the model: against the geometrically exact one.
+    beam_theory : float
+        Of the theory of slender beams: against one with shear, rotary inertia and twist, and by plate action.
     total : float
-        Largest error of all three together, which may be less than their sum.
+        Largest error of all together, which may be less than their sum.
     """
 
     step: float = math.nan
     shapes: float = math.nan
     model: float = math.nan
+    beam_theory: float = math.nan
     total: float = math.nan
 
+    @property
+    def slender(self) -> float:
+        """All but the beam theory's: against an exact slender beam."""
+        return self.total - (0.0 if math.isnan(self.beam_theory) else self.beam_theory)
+
+    def with_theory(self, share: float) -> ErrorEstimate:
+        """The same with an error of the beam theory; one that is not known leaves the total."""
+        return replace(self, beam_theory=share, total=self.total + (0.0 if math.isnan(share) else share))
+
     def __repr__(self) -> str:
-        parts = {f.name: getattr(self, f.name) for f in fields(self)}
+        parts = {f.name.replace("_", " "): getattr(self, f.name) for f in fields(self)}
         # A static deflection has no steps.
         known = [f"{k} {100 * x:.2g} %" for k, x in parts.items() if math.isfinite(x) and (x or k != "step")]
         return ", ".join(known) or "not known"
@@ -55,16 +69,21 @@ class Errors(Part):
         Of the largest size of the normal stress over the stations' sections.
     note : str
         Why something is not estimated, or what the estimate leaves out.
+    theory : str
+        What makes the error of the beam theory, and what it assumes: ``plate action; assumed: Poisson's ratio 0.3``.
     """
 
     displacement: ErrorEstimate = field(default_factory=ErrorEstimate)
     loads: ErrorEstimate = field(default_factory=ErrorEstimate)
     stress: ErrorEstimate = field(default_factory=ErrorEstimate)
     note: str = ""
+    theory: str = ""
 
     def __repr__(self) -> str:
         parts = {name: getattr(self, name) for name in ("displacement", "loads", "stress")}
         lines = [f"{name}: {part}" for name, part in parts.items()]
+        if self.theory:
+            lines.append(f"beam theory: {self.theory}")
         return "\n  ".join(["Errors", *lines, *([self.note] if self.note else [])])
 
 
@@ -78,16 +97,36 @@ class FrequencyErrors(Part):
         Of too few shapes: against the same model with more.
     model : (k,)
         Of the model with enough shapes, against the geometrically exact one.
+    beam_theory : (k,)
+        Of the theory of slender beams: against one with shear, rotary inertia and twist, and by plate action.
     total : (k,)
-        Of both, against the exact model with more shapes.
+        Of all: against the exact model with more shapes, and the beam theory's.
+    theory : str
+        What makes the error of the beam theory, and what it assumes.
+    unseen : tuple of float
+        Frequencies below the highest of these that bend the beam and twist it, and that no model here has, Hz.
     """
 
     shapes: Floats
     model: Floats
+    beam_theory: Floats
     total: Floats
+    theory: str = ""
+    unseen: tuple[float, ...] = ()
+
+    @property
+    def slender(self) -> Floats:
+        """All but the beam theory's: against an exact slender beam."""
+        return self.total - np.nan_to_num(self.beam_theory)
+
+    @property
+    def parts(self) -> dict[str, Floats]:
+        """The errors by name."""
+        return {name: getattr(self, name) for name in PARTS}
 
     def __getitem__(self, chosen: Any) -> FrequencyErrors:
-        return FrequencyErrors(self.shapes[chosen], self.model[chosen], self.total[chosen])
+        shapes, model, beam_theory, total = (each[chosen] for each in self.parts.values())
+        return FrequencyErrors(shapes, model, beam_theory, total, self.theory, self.unseen)
 
     def within(self, share: float) -> int:
         """Of how many of the first frequencies every total is within a share; none where there is no estimate."""

@@ -57,13 +57,14 @@ class MapErrors(Part):
 
     Parameters
     ----------
-    shapes, model, total : (m, p)
-        From too few shapes, of the model against exact, and of both; infinite where the exact model keeps its
-        equilibrium to three times the speed.
+    shapes, model, beam_theory, total : (m, p)
+        From too few shapes, of the model against exact, of the theory of slender beams, and of all; infinite where the
+        exact model keeps its equilibrium to three times the speed.
     """
 
     shapes: Floats
     model: Floats
+    beam_theory: Floats
     total: Floats
 
 

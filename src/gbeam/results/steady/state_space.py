@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.results.parts.errors import FrequencyErrors
 from gbeam.results.result import Floats, Part, Result
 
@@ -23,9 +24,10 @@ class Signal(NamedTuple):
     unit: str
 
 
+@typed
 @dataclass(frozen=True)
 class Gauge:
-    """A strain gauge along the beam.
+    """A strain gauge along the beam; it measures the normal strain of what its section carries.
 
     Parameters
     ----------

@@ -127,4 +127,5 @@ class Sweep(Figured):
     def __repr__(self) -> str:
         shape = " × ".join(f"{size} {name}" for name, size in zip(self.dimensions, self.outcome.shape, strict=True))
         ended = ", ".join(f"{number} {name}" for name, number in self.counts.items())
-        return f"Sweep of {self.verb} over {shape}: {ended}; {', '.join([*self.measures, *self.histories])}"
+        words = f"Sweep of {self.verb} over {shape}: {ended}; {', '.join([*self.measures, *self.histories])}"
+        return self._with_warnings(words)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import Discriminator, Field, StrictBool, Tag
 
 from gbeam.guards.limits import ENTRIES
 from gbeam.scenario.schema.common.fields import (
@@ -18,6 +18,7 @@ from gbeam.scenario.schema.common.fields import (
     Offset,
     Position,
     Pressure,
+    Ratio,
     Ratios,
     RotationalStiffness,
     SecondMoments,
@@ -37,7 +38,17 @@ class Stations(Table):
     )
 
 
-class Rectangle(Stations):
+class Flat(Stations):
+    """What has a width to be kept from bending across."""
+
+    plate: StrictBool = Field(
+        default=False,
+        description="true if it bends along z as a plate that stays flat across its width, EI_y/(1 - ν²): a strip wide "
+        "beside its length, or bent far; needs material.poissons_ratio",
+    )
+
+
+class Rectangle(Flat):
     """A rectangle."""
 
     shape: Literal["rectangle"] = Field(description="name of the shape")
@@ -60,7 +71,7 @@ class Tube(Stations):
     wall: Lengths = Field(description="wall thickness")
 
 
-class General(Stations):
+class General(Flat):
     """Any section, by its properties."""
 
     shape: Literal["general"] = Field(default="general", description="name of the shape; may be left out")
@@ -69,6 +80,13 @@ class General(Stations):
     inertia_z: SecondMoments = Field(description="∫y² dA, which bends the beam along y")
     extreme_fibre_y: Lengths | None = Field(default=None, description="outer fibre along y, for stress")
     extreme_fibre_z: Lengths | None = Field(default=None, description="outer fibre along z, for stress")
+    torsion_constant: SecondMoments | None = Field(
+        default=None, description="J of the torque G J α', for the stated error only: no model here has torsion"
+    )
+    shear_coefficient_y: Ratios | None = Field(
+        default=None, description="k of the shear force k G A γ along y, for the stated error only; 1/2 where left out"
+    )
+    shear_coefficient_z: Ratios | None = Field(default=None, description="k of the shear force along z, likewise")
 
 
 def _shape(section: Any) -> str | None:
@@ -99,6 +117,13 @@ class Material(Table):
     fatigue_exponent: Exponent | None = Field(
         default=None,
         description="m of Wöhler's curve, N Δσᵐ = constant: about 3 for welds, 10 for smooth parts; 5 where left out",
+    )
+    poissons_ratio: Ratio | None = Field(
+        default=None, description="of plates, and for the stated error, where 0.3 is taken if it is left out"
+    )
+    shear_modulus: Pressure | None = Field(
+        default=None,
+        description="for the stated error only: no model here has shear; E/(2 (1 + ν)) where left out",
     )
 
 

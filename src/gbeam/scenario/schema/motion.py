@@ -107,7 +107,7 @@ class Centrifuge(Table):
     kind: Literal["centrifuge"] = Field(description="kind of the motion")
     tracks: str = Field(description="NAME of the flight motion that it imitates")
     machine: Literal["human-7.6m", "specimen-3.3m", "large-15m"] | None = Field(
-        default=None, description="an example machine, which gives arm and limits where they are left out"
+        default=None, description="an example machine, which gives arm, idle and limits where they are left out"
     )
     arm: Length | None = Field(default=None, description="radius from the main axis to the control point; or machine")
     control_point: Position = Field(description="point of the beam that feels the flight's load, from the root")
@@ -190,8 +190,9 @@ class Hub(Table):
     pointing: Literal["outward", "inward"] = Field(
         default="outward", description="from the root away from the hub's axis, or towards it"
     )
-    setting_angle: Annotated[float, Quantity("angle")] = Field(
-        default=0.0, description="turn of the section about the beam; at 0 its y axis lies in the plane of rotation"
+    setting_angle: Annotated[float, Quantity("angle")] | None = Field(
+        default=None,
+        description="turn of the section about the beam; at 0, or left out, its y axis lies in the plane of rotation",
     )
     gravity: tuple[Acceleration, Acceleration, Acceleration] | None = Field(
         default=None,

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field, StrictBool, Tag, ValidationInfo, model_validator
 
 from gbeam.guards.limits import existing
-from gbeam.scenario.schema.common.fields import ONE_OR_LIST, Quantity, Table, refuse, wrong
+from gbeam.scenario.schema.common.fields import ONE_OR_LIST, Moment, Quantity, Table, refuse, wrong
 from gbeam.scenario.values.suggest import closest
 
 
@@ -29,7 +29,7 @@ def _existing(file: str, info: ValidationInfo) -> str:
 
 _Skipped = Annotated[
     Annotated[StrictBool, Tag("one")]
-    | Annotated[tuple[Literal["sampling", "spikes", "unit", "sign", "dropouts"], ...], Tag("list")],
+    | Annotated[tuple[Literal["sampling", "spikes", "unit", "sign", "dropouts", "columns"], ...], Tag("list")],
     ONE_OR_LIST,
 ]
 
@@ -42,8 +42,8 @@ class Record(Table):
         "(.uff, .unv), relative to the folder of the scenario file"
     )
     time: str = Field(
-        description="name of the column of times; in MAT, HDF5 and netCDF of the variable, such as rec.t or acc(:,1); "
-        "in UFF time"
+        description="name of the column of times, numbers or times of day; in MAT, HDF5 and netCDF of the variable, "
+        "such as rec.t or acc(:,1); in UFF time"
     )
     time_unit: Literal["s", "ms", "us", "min"] | None = Field(
         default=None, description="unit of the times; what the file says if left out, or else s"
@@ -51,7 +51,7 @@ class Record(Table):
     x: str = Field(description='column of the x component, along the beam; "-" in front changes the sign, "0" is none')
     y: str = Field(description='column of the y component, along the width; "-" in front changes the sign, "0" is none')
     z: str = Field(description='column of the z component, through the thickness; "-" and "0" likewise')
-    unit: Literal["g", "m/s^2"] = Field(description="unit of the components: g is 9.80665 m/s^2")
+    unit: Literal["g", "m/s^2", "ft/s^2"] = Field(description="unit of the components: g is 9.80665 m/s^2")
     quantity: Literal["specific-force", "acceleration"] = Field(
         default="specific-force",
         description="what the components are. specific-force: what accelerometers measure, 1 g upwards in level "
@@ -63,17 +63,27 @@ class Record(Table):
     q: str | None = Field(default=None, description='column of the body rate about y; "-" and "0" as for x, y and z')
     r: str | None = Field(default=None, description='column of the body rate about z; "-" and "0" likewise')
     rate_unit: Literal["rad/s", "deg/s"] | None = Field(default=None, description="unit of p, q and r")
+    begin: Moment | None = Field(
+        default=None,
+        alias="from",
+        description="first time of the part that is flown, on the record's own clock, such as 2 s, or 12:34:56.7 where "
+        "its times are times of day; the record's first if left out",
+    )
+    to: Moment | None = Field(
+        default=None, description="last time of the part that is flown, likewise; the record's last if left out"
+    )
     cutoff: Annotated[float, Quantity("frequency", "positive")] | None = Field(
         default=None, description="cut-off of a zero-phase low-pass, -6 dB, such as 5 Hz; none if left out"
     )
     resample: Annotated[float, Quantity("frequency", "positive")] | None = Field(
-        default=None, description="new sampling rate, such as 200 Hz; the record's own if left out"
+        default=None,
+        description="new sampling rate, such as 200 Hz, and times may jitter; the record's own if left out",
     )
     despike: StrictBool = Field(default=False, description="replace single samples far off their neighbours")
     skip_checks: _Skipped = Field(
         default=False,
         description="true to take the record as it is, or a list of the checks to leave out: sampling (rate), spikes, "
-        "unit (size, level flight), sign (level flight is upwards), dropouts",
+        "unit (size, level flight), sign (level flight is upwards), dropouts, columns (their names)",
     )
 
     @model_validator(mode="after")

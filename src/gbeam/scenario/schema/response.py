@@ -81,7 +81,7 @@ class Response(Table):
     """Response over time."""
 
     duration: Duration | None = Field(
-        default=None, description="length of the computation; may be left out beside a record"
+        default=None, description="length of the computation; left out beside a record, of which `to` asks for a part"
     )
     step: Step = Field(default="auto", description="time step, or auto")
     integrator: Literal["newmark", "hht", "generalized-alpha", "gauss", "adaptive"] = Field(
@@ -112,6 +112,12 @@ class Response(Table):
         min_length=1,
         max_length=ENTRIES,
         description="positions from the root for the output; the tip if left out",
+    )
+
+    histories: Step = Field(
+        default="auto",
+        description="time between the samples of histories in the result file, such as 10 ms; auto keeps all up to "
+        "50,000 of a motion, else every second, third and so on. Peaks, errors and verdict are of all",
     )
 
     @property

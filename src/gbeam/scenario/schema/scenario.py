@@ -99,11 +99,6 @@ class Environments(_Titled):
             message = f"names a {target.kind}, not a flight" if target else "names no motion"
             hint = advise(motion.tracks, flights) if flights else "add a motion of kind flight"
             yield ("motion", name, "tracks"), wrong(f"{{value}} {message}", hint)
-        record = getattr(self.motion.get(motion.tracks), "record", None)
-        if record is not None and record.quantity == "acceleration" and motion.gravity:
-            message = f"is true, and the record of {motion.tracks!r} holds acceleration, not specific force"
-            hint = "write gravity = false, or add gravity to the record: its direction changes as the aircraft turns"
-            yield ("motion", name, "gravity"), wrong(message, hint)
 
 
 class Scenario(Environments, _Structure):
@@ -120,7 +115,7 @@ class Scenario(Environments, _Structure):
                 yield ("motion", name, "control_point"), wrong("{value} is beyond the tip", hint)
             if isinstance(motion, Hub):
                 # A section set at a right angle bends along z in the plane of the hub.
-                axis = "y" if abs(math.cos(motion.setting_angle)) > 1e-9 else "z"
+                axis = "y" if abs(math.cos(motion.setting_angle or 0.0)) > 1e-9 else "z"
                 if self.model.modes is not None and not getattr(self.model.modes, axis):
                     problem = f"there is no bending shape along {axis}, the plane of the hub {name!r}"
                     yield ("model", "modes", axis), wrong(problem, f"give {axis} = 1 or more")

@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import SCENARIO_BYTES, refuse_large_file
-from gbeam.scenario.text.bounds import excess
+from gbeam.scenario.text.bounds import crowded, excess, no_text
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.overrides import Override
 from gbeam.scenario.values.distributions import Distribution
@@ -111,12 +111,19 @@ def read_text(path: File) -> str:
 
 def parse(name: str, text: str) -> dict[str, Any]:
     """Parse TOML, or JSON if the text begins with a brace; a ScenarioError says where the syntax is wrong."""
-    beyond = excess(text)
+    beyond = no_text(text) or excess(text)
     if beyond is not None:
         span, problem, fix = beyond
         raise ScenarioError([at_span(name, text, span, "", problem, fix)])
     try:
-        return json.loads(text) if is_json(text) else tomllib.loads(text)
+        data: dict[str, Any] = json.loads(text) if is_json(text) else tomllib.loads(text)
+        half = no_text(json.dumps(data, ensure_ascii=False)) if is_json(text) else None
+        if half is not None:  # by its number, somewhere
+            raise ScenarioError([at_span(name, text, Span(1, 1, 2), "", *half[1:])])
+        full = crowded(data)
+        if full is not None:
+            raise ScenarioError([Diagnostic(name, path_text(full[0]), full[1], "give what is long as a record")])
+        return data
     except json.JSONDecodeError as error:
         line, column, message = error.lineno, error.colno, error.msg
     except tomllib.TOMLDecodeError as error:

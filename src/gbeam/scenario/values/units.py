@@ -50,11 +50,13 @@ foot = 12 * inch = ft
 pound = 453.59237 * gram = lb
 pound_force = pound * gee = lbf
 psi = pound_force / inch ** 2
+ksi = 1000 * psi
+Msi = 1000000 * psi
 """
 # What a misspelt unit is compared with: the usual spellings, not every prefix of every unit.
 _SPELLINGS = """
 m mm cm km µm um g kg mg s ms us min h rad mrad deg rev rpm Hz kHz g0 N kN MN W kW MW Pa kPa MPa GPa in ft lb lbf
-psi % watt meter metre millimeter gram kilogram second millisecond minute hour radian degree revolution hertz
+psi ksi Msi % watt meter metre millimeter gram kilogram second millisecond minute hour radian degree revolution hertz
 newton pascal inch foot pound percent
 """
 # A number and what follows it: its unit, or nothing.
@@ -215,7 +217,7 @@ def parsed_factor(unit: str, kind: str) -> float:
     except UndefinedUnitError as error:
         names = error.unit_names
         name = names if isinstance(names, str) else next(iter(names))
-        near = closest(name, _SPELLINGS.split())
+        near = _meant(name, text, kind)
         hint = f"did you mean {near!r}?" if near else f'expected {expected.phrase}, such as "{expected.example}"'
         raise UnitError(f"has the unknown unit {name!r}", hint) from None
     except Exception:  # pint's parser lets tokenizer, syntax, type and value errors through
@@ -226,6 +228,28 @@ def parsed_factor(unit: str, kind: str) -> float:
         raise
     except (ArithmeticError, ValueError):  # beyond what a float holds
         raise unreadable from None
+
+
+def _meant(name: str, unit: str, kind: str) -> str | None:
+    """What an unknown name in a unit was probably meant to be; None where no usual spelling makes the kind."""
+    registry = _registry()
+
+    def makes_the_kind(spelling: str) -> bool:
+        try:
+            parsed = registry.parse_units(re.sub(rf"(?<!\w){re.escape(name)}(?!\w)", spelling, unit))
+            return bool(_converted(registry.Quantity(1.0, parsed), kind, KINDS[kind]))
+        except Exception:  # as in parsed_factor
+            return False
+
+    def mistyped(spelling: str) -> int:
+        return sum(a != b for a, b in zip(name.lower(), spelling.lower(), strict=True))
+
+    for parted in (re.sub("([2-4])$", r"^\1", name), re.sub("N(m+)$", r"N \1", name)):  # mm2, kNm
+        if parted != name and makes_the_kind(parted):
+            return parted
+    fitting = [each for each in _SPELLINGS.split() if makes_the_kind(each)]
+    as_long = [each for each in fitting if len(each) == len(name) > 1 and mistyped(each) <= 1]
+    return min(as_long, key=mistyped, default=None) or closest(name, fitting)
 
 
 def _converted(amount: Any, kind: str, expected: Kind) -> float:

@@ -72,28 +72,32 @@ def _together(question: Question, tasks: Sequence[Task]) -> list[Row]:
             made.append(without_figures(number, question.width, error))
     # What varies in a motion may end a record elsewhere.
     for _, alike in groupby(posed, key=lambda each: each[1].response):
-        made += _integrated(question, list(alike), one_structure=set(structures) == {()})
+        made += _integrated(question, list(alike), set(structures) == {()})
     return made
 
 
-def _integrated(question: Question, posed: Sequence[Posed], **how: bool) -> Iterator[Row]:
+def _integrated(question: Question, posed: Sequence[Posed], one_structure: bool) -> Iterator[Row]:
     """Rows of cases with the same settings."""
-    answers = {name: _responses(question, posed, name, **how) for name in posed[0][1].motions}
+    answers = {name: _responses(question, posed, name, one_structure) for name in posed[0][1].motions}
     for k, (number, case, _) in enumerate(posed):
         yield _row(question, number, case, {name: each[k] for name, each in answers.items()})
 
 
-def _responses(question: Question, posed: Sequence[Posed], name: str, **how: bool) -> list[Response | Exception]:
+def _responses(
+    question: Question, posed: Sequence[Posed], name: str, one_structure: bool
+) -> list[Response | Exception]:
     """Responses in one environment, or why there is none."""
     settings = reduced(posed[0][1], question.needs).response
     try:
         cases = ((structure, case.motions[name]) for _, case, structure in posed)
-        made = dict(simulate_batch(cases, settings, **how))
+        made = dict(simulate_batch(cases, settings, one_structure=one_structure))
     except Exception as error:
         if len(posed) == 1:
             return [error]
         half = len(posed) // 2  # one that fails ends its batch
-        return _responses(question, posed[:half], name, **how) + _responses(question, posed[half:], name, **how)
+        return [
+            each for part in (posed[:half], posed[half:]) for each in _responses(question, part, name, one_structure)
+        ]
     return [replace(made[k], name=name, provenance=case.provenance) for k, (_, case, _) in enumerate(posed)]
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import concurrent.futures
+import logging
 import queue
 import time
 from collections import deque
@@ -21,10 +22,11 @@ from gbeam.arrays.memory import keep_memory
 from gbeam.errors import ComputationError, InputError
 from gbeam.sweeps.computing.batches import Task, rows
 from gbeam.sweeps.computing.evaluate import Question, Row
-from gbeam.sweeps.computing.workers import AHEAD, died
+from gbeam.sweeps.computing.workers import died
 
 CONNECTION = 10.0  # s that a scheduler may take to answer, and its first worker to appear
 PATIENCE = 60.0  # s without any worker, after which a sweep gives up: those that a nanny restarts take a few
+_AHEAD = 3  # batches per worker that wait, so that none idles
 _TICK = 1.0  # s between looks at the scheduler while nothing is done
 _LOST = (OSError, TimeoutError, concurrent.futures.CancelledError, asyncio.CancelledError)
 _OPTION = "--scheduler"
@@ -66,11 +68,35 @@ def _connected(address: str) -> Iterator[Any]:
         from distributed import Client
     except ImportError:
         raise InputError(_OPTION, "needs Dask", 'pip install "gbeam[cluster]"') from None
+
+    class Quiet(Client):
+        def __del__(self) -> None:
+            """Leave a client that never was connected as it is: to close it takes 20 s, and ends in a traceback."""
+
+    with _silent():
+        try:
+            client = Quiet(address, timeout=CONNECTION, set_as_default=False)
+        except (OSError, ValueError, TypeError) as error:
+            problem = f"{address} does not answer ({_first(error)})"
+            raise InputError(_OPTION, problem, "give the address that `dask scheduler` prints") from None
+        yield from _with_worker(client, address)
+
+
+@contextmanager
+def _silent() -> Iterator[None]:
+    """Let Dask's loggers be silent: what they print tracebacks of becomes a message here."""
+    loggers = [logging.getLogger(name) for name in logging.root.manager.loggerDict if name.startswith("distributed")]
+    levels = [each.level for each in loggers]
+    for each in loggers:
+        each.setLevel(logging.CRITICAL)
     try:
-        client = Client(address, timeout=CONNECTION, set_as_default=False)
-    except (OSError, ValueError, TypeError) as error:
-        problem = f"{address} does not answer ({_first(error)})"
-        raise InputError(_OPTION, problem, "give the address that `dask scheduler` prints") from None
+        yield
+    finally:
+        for each, level in zip(loggers, levels, strict=True):
+            each.setLevel(level)
+
+
+def _with_worker(client: Any, address: str) -> Iterator[Any]:
     with client:
         try:
             client.wait_for_workers(1, timeout=CONNECTION)
@@ -112,7 +138,7 @@ class _Dispatch:
             self._interrupted(f"the scheduler at {self.address} is lost ({_first(error) or type(error).__name__})")
 
     def _send(self) -> None:
-        while len(self.under_way) < AHEAD * self.threads:
+        while len(self.under_way) < _AHEAD * self.threads:
             alone = bool(self.again)
             batch = [self.again.popleft()] if alone else next(self.left, None)
             if batch is None:

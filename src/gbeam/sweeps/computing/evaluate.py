@@ -10,16 +10,17 @@ from functools import cached_property
 import numpy as np
 
 from gbeam.analysis.study.case import Case
-from gbeam.errors import ComputationError, GbeamError
+from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.results.result import Floats
 from gbeam.results.studies.sweep import ANSWERED
 from gbeam.scenario.build import build
 from gbeam.scenario.load import change
 from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.text.source import Source
+from gbeam.scenario.values.suggest import advise
 from gbeam.sweeps.figures.answers import VERBS, Facts, Needs
 from gbeam.sweeps.figures.histories import History
-from gbeam.sweeps.figures.measures import Keys, value_at
+from gbeam.sweeps.figures.measures import Keys, own_keys, value_at
 
 Function = Callable[[Case], float]
 NO_FACTS: Facts = {"outcome": "done"}  # where functions measure the case, no verb answers
@@ -77,6 +78,10 @@ class Question:
     times: Floats = field(default_factory=lambda: np.empty(0))
     together: bool = False
 
+    def __post_init__(self) -> None:
+        if self.verb not in VERBS:
+            raise InputError("--verb", f"is {self.verb!r}", advise(self.verb, VERBS))
+
     @cached_property
     def width(self) -> int:
         """How many figures a case has."""
@@ -87,7 +92,7 @@ class Question:
         """What the figures are taken from; before their keys are known, anything."""
         if not self.keys and not self.histories:
             return Needs()
-        errors = any("error" in str(key) for keys in self.keys for key in keys)
+        errors = any("error" in str(key) for keys in self.keys for key in own_keys(keys))
         loads = any(map(_of_loads, self.keys)) or any(each.quantity != "tip" for each in self.histories)
         return Needs(errors, loads)
 

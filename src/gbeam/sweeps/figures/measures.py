@@ -11,31 +11,11 @@ from gbeam.errors import InputError
 from gbeam.scenario.values.paths import path_text
 from gbeam.scenario.values.suggest import closest
 from gbeam.sweeps.figures.answers import Facts
+from gbeam.sweeps.figures.units import declared
 
 OPTION = "--measure"
 Keys = tuple[str | int, ...]
 _MANY = 12  # figures that a message lists
-
-# Units of figures whose JSON names none, by the path's end; the first that fits.
-_UNITS = [
-    (re.compile(pattern), unit)
-    for pattern, unit in [
-        (r"^mismatch\.", ""),  # of a placement: fractions of the flight's peaks
-        (r"(^|\.)time(_\w+)?$|\.(start|end|step|smoothing)$|^step$", "s"),
-        (r"(^|\.)(angle_end|angle)$", "rad"),
-        (r"verdict\.|error|_share$|ratio$|margin|used$|^steps$|\.steps$|share$|relative|spread", ""),
-        (r"stress|tension|compression|strength", "Pa"),
-        (r"torque|moment", "N m"),
-        (r"force", "N"),
-        (r"frequency$|cutoff$", "Hz"),
-        (r"critical_speed$", "rad/s"),
-        (r"axes\[?.*acceleration|angular_acceleration", "rad/s^2"),
-        (r"axes\[?.*rate|rate_max$|rate_end$|angular_velocity", "rad/s"),
-        (r"acceleration|load$|tracking", "m/s^2"),
-        (r"energy$", "J"),
-        (r"tip|stations|displacement|peak_|difference|bound|(^|\.)at$|control_point|arm$", "m"),
-    ]
-]
 
 
 def find(facts: Facts, name: str) -> Keys:
@@ -94,18 +74,13 @@ def is_truth(facts: Facts, keys: Keys) -> bool:
 
 
 def unit_at(facts: Facts, keys: Keys) -> str:
-    """Unit of the figure there; empty where it has none."""
-    node: Any = facts
-    unit = ""
-    for key in keys[:-1]:
-        if isinstance(node, Mapping):
-            unit = str(node.get("unit", unit))
-        node = node[key]
-    if isinstance(node, Mapping) and "unit" in node:
-        plain = keys[-1] in ("ratio", "share", "exceeded")
-        return "s" if str(keys[-1]).startswith("time") else "" if plain else str(node["unit"])
-    path = path_text(keys)
-    return next((unit for pattern, unit in _UNITS if pattern.search(path)), unit)
+    """SI unit of the figure there; empty where it has none."""
+    return declared(facts, keys) or ""
+
+
+def own_keys(keys: Keys) -> Keys:
+    """Keys of a figure without the name of a motion, which the scenario chose."""
+    return keys[:1] + keys[2:] if keys[0] in ("motions", "comparisons") else keys
 
 
 def _figures(node: Any, keys: Keys = ()) -> Iterator[tuple[Keys, float]]:

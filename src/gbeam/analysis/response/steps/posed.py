@@ -15,7 +15,7 @@ from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.steps.step_errors import Readings, Run
 from gbeam.analysis.response.steps.stepping import Plan, corners, first_step, planned, scheme_of
 from gbeam.analysis.response.steps.trajectories import adapted, integrated, steps_beyond
-from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
+from gbeam.guards.limits import BOUNDLESS, HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.steps import Corners, Steps, fitted
 from gbeam.integrate.trajectory import Trajectory
 from gbeam.mechanics.section_forces import section_forces
@@ -135,7 +135,7 @@ def pose(structure: Structure, motion: Motion, settings: ResponseSettings) -> tu
     coarse = first_step(structure, motion, settings)
     given = None if settings.step is None else settings.duration / max(1, round(settings.duration / settings.step))
     kept = given or coarse
-    each = 8.0 * (3 * sum(structure.counts) + 9 * len(structure.stations))
+    each = 8.0 * (3 * structure.size + 9 * len(structure.stations))
     most = min(STEPS, int(HISTORY_BYTES / each))
     fix = f"give {most * kept:.3g} s or less, or fewer stations"
     refuse_more("response.duration", "steps", settings.duration / kept, most, each, fix)
@@ -145,7 +145,7 @@ def pose(structure: Structure, motion: Motion, settings: ResponseSettings) -> tu
 
 
 def steps_within(structure: Structure, displacement: Floats) -> int | None:
-    """After how many steps a projected field moved by the beam's length, and means nothing.
+    """After how many steps a projected field moved by the beam's length, or particles without bound.
 
     Parameters
     ----------
@@ -155,5 +155,6 @@ def steps_within(structure: Structure, displacement: Floats) -> int | None:
     """
     if structure.kind == "exact":
         return None
-    largest = np.abs(displacement).max(axis=(1, 2))
-    return int(np.argmax(largest > structure.length)) + 1 if largest.max() > structure.length else None
+    limit = BOUNDLESS if structure.field is None else structure.length
+    far = np.abs(displacement).max(axis=(1, 2)) > limit
+    return int(np.argmax(far)) + 1 if far.any() else None

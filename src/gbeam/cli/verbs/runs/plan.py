@@ -14,6 +14,7 @@ from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, Report, Scenar
 from gbeam.cli.outputs import folder_of, list_files, show, show_table
 from gbeam.cli.process import figures_wanted, import_plots
 from gbeam.cli.publication import publish, refuse_unwritable
+from gbeam.cli.terminal.console import Watch
 from gbeam.cli.terminal.failures import FAILED, complain
 from gbeam.errors import InputError
 
@@ -47,8 +48,9 @@ def plan(
 
     from gbeam.scenario import build_machines, build_specimen, load_environments, provenance, schema
 
-    given = load_environments(scenario, overrides)
-    machines, beam = build_machines(given), build_specimen(given)
+    with Watch(f"planning the machines of {scenario}"):
+        given = load_environments(scenario, overrides)
+        machines, beam = build_machines(given), build_specimen(given)
     if not machines:
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
     every = None if sample is None else number("--sample", sample, "time")
@@ -63,11 +65,14 @@ def plan(
     tables = {name: table for name, table in given.motion.items() if isinstance(table, schema.Centrifuge)}
     plans = {
         name: replace(
-            analysis.plan(name, machines[name], table.tracks, beam=beam, **judging(table.limits_of_acceptance)),
+            analysis.plan(
+                name, machines[name], table.tracks,
+                beam=beam, title=given.title, **judging(table.limits_of_acceptance),
+            ),
             provenance=origin,
         )
         for name, table in tables.items()
-    }
+    }  # fmt: skip
 
     def make(hidden: Path) -> None:
         from gbeam.io.commands import write_commands

@@ -9,6 +9,7 @@ from cyclopts import Parameter
 
 from gbeam.cli.options import Out
 from gbeam.cli.publication import publish, refuse_unwritable
+from gbeam.cli.terminal.console import Watch
 from gbeam.printable import printable
 
 _NAMES = {"result": "report", "sweep": "report"}  # others are called as their file
@@ -30,7 +31,8 @@ def report(
     file = file_in(result) if result.is_dir() else result
     folder = file.parent if out is None else out
     refuse_unwritable(folder)
-    page = report_of_file(file)
+    with Watch(f"reading {file}"):
+        page = report_of_file(file)
     name = f"{_NAMES.get(file.stem, file.stem)}.html"
     (written,) = publish(folder, lambda hidden: (hidden / name).write_text(page, encoding="utf-8"))
     print(printable(str(written)))

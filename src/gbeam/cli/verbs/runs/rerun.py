@@ -9,6 +9,7 @@ from cyclopts import Parameter
 
 from gbeam.cli.options import Json
 from gbeam.cli.outputs import show
+from gbeam.cli.terminal.console import Watch
 from gbeam.cli.terminal.failures import FAILED, complain
 
 
@@ -35,7 +36,8 @@ def rerun(
     else:
         from gbeam.scenario.rerun import rerun
 
-        again = rerun(result)
+        with Watch(f"reading {result} and computing it again"):
+            again = rerun(result)
     show(report.reproduction_text(again), report.reproduction_json(again), json)
     if not again.reproduced:
         complain(f"not reproduced: {len(again.differences)} of {again.compared} differ")

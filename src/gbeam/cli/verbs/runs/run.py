@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from threading import Thread
 
@@ -78,6 +79,7 @@ def run(
 
 
 def _import_leaves() -> None:
-    if figures_wanted():
-        import_plots()
-    import gbeam.io.netcdf  # noqa: F401
+    with suppress(Exception):  # raised again where it is needed
+        if figures_wanted():
+            import_plots()
+        import gbeam.io.netcdf  # noqa: F401

@@ -34,8 +34,10 @@ def critical_map(
     from gbeam.analysis.vibration.stability import critical_speed_map
     from gbeam.report.steady import critical as words
 
-    with Watch(), given.placing():
-        critical = critical_speed_map(case.beam, case.model, chosen, kilograms, places, upper, name=name)
+    with Watch() as watch, given.placing():
+        critical = critical_speed_map(
+            case.beam, case.model, chosen, kilograms, places, upper, name=name, progress=watch
+        )
     facts = given.signed(words.map_json(critical))
 
     def make(hidden: Path) -> None:

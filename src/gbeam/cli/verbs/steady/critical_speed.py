@@ -51,14 +51,14 @@ def critical_speed(
     from gbeam.analysis.vibration import stability
     from gbeam.report.steady import critical as words
 
-    with Watch(), given.placing():
+    with Watch() as watch, given.placing():
         structure = given.case.assemble().at_time(time)
         if vary == "rate":
-            critical = stability.critical_speed(structure, chosen, upper=upper, name=name)
+            critical = stability.critical_speed(structure, chosen, upper=upper, name=name, progress=watch)
         elif vary == "loads":
-            critical = stability.critical_load(structure, held_base(chosen, time), upper=upper)
+            critical = stability.critical_load(structure, held_base(chosen, time), upper=upper, progress=watch)
         else:
-            critical = stability.buckling_acceleration(structure, upper=upper)
+            critical = stability.buckling_acceleration(structure, upper=upper, progress=watch)
     facts = given.signed(words.to_json(critical, name))
     write(folder, "critical_speed", facts, report=report)
     show(words.text(critical, name), facts, json)

@@ -13,6 +13,8 @@ from gbeam.io.groups import Group, Variable, coordinate, labels, variable
 from gbeam.results.studies.sweep import SAMPLE, Parameter, Sweep
 from gbeam.results.studies.uncertainty import BOUNDS, ORDERS, PROBABILITY
 
+_ROOM = 3 * 2**26  # bytes: stack and heap of a thread of zarr
+
 
 def sweep_group(sweep: Sweep) -> Group:
     """Return what a file holds of a sweep; what is drawn is a coordinate along ``sample``."""
@@ -81,6 +83,9 @@ def write_zarr(sweep: Sweep, path: str | os.PathLike[str]) -> None:
     OSError
         If it cannot be written.
     """
+    import zarr  # noqa: F401  # xarray takes one that cannot be loaded for one that is not installed
+
+    bytearray(_ROOM)  # a thread that lacks it is waited for without end: a MemoryError comes first
     final = Path(path)
     hidden = Path(tempfile.mkdtemp(prefix=f".{final.name}-", dir=final.parent))
     try:

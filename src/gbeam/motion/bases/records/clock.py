@@ -1,4 +1,4 @@
-"""The times of a record: increasing, without gaps, evenly spaced, and at a plausible interval."""
+"""The times of a record: increasing, without gaps, evenly spaced, at a plausible interval; the part that is flown."""
 
 from __future__ import annotations
 
@@ -8,22 +8,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.errors import InputError
+from gbeam.io.tables.times import Clock
+from gbeam.motion.bases.conditioning import FEWEST, UNEVEN
 from gbeam.motion.bases.records.units import UNITS
+
+Span = tuple[float | str | None, float | str | None]
 
 SLOWEST = 5.0  # Hz
 _FASTEST, _BRIEF = 1000.0, 10.0  # Hz, s: flight loads need no such rate, and last longer
 _USUAL = (1e-3, 0.2)  # s: intervals of flight records
-_UNEVEN, _GAP = 0.01, 1.5  # of the median interval
+_GAP = 1.9  # of the median interval: a sample is missing, and no clock that jitters is as late
 
 
-def check_sampling(time: NDArray[np.float64], place: Callable[[int], str]) -> None:
-    """Refuse times that stand still, go back, jump or wander.
+def check_sampling(time: NDArray[np.float64], place: Callable[[int], str], *, jitter: bool) -> float:
+    """Refuse times that stand still, go back, jump or wander; return how far they are off even ones, s.
 
     Parameters
     ----------
     time : (t,) s
     place : callable
         Where a sample is in its file, in words.
+    jitter : bool
+        Whether times may be uneven, because the record is resampled.
 
     Raises
     ------
@@ -48,14 +54,19 @@ def check_sampling(time: NDArray[np.float64], place: Callable[[int], str]) -> No
             f"the interval is {median:g} s",
             "fill in the missing samples or cut the record there",
         )
-    uneven = np.flatnonzero(np.abs(steps - median) > _UNEVEN * median)
-    if uneven.size:
+    off = np.abs(steps - median)
+    uneven = np.flatnonzero(off > UNEVEN * median)
+    if uneven.size and not jitter:
         i = int(uneven[0])
+        rate = float(f"{(len(time) - 1) / (time[-1] - time[0]):.3g}")
         raise InputError(
             "record.time",
             f"is sampled unevenly: {at(i)}, is {steps[i]:g} s where the interval is {median:g} s",
-            "resample the record at equal intervals",
+            f'add resample = "{rate:g} Hz": at equal intervals, by a spline through the samples',
         )
+    samples = np.arange(len(time))
+    even = np.polynomial.Polynomial.fit(samples, time, 1)(samples)
+    return float(np.abs(time - even).max()) if uneven.size else 0.0
 
 
 def check_interval(time: NDArray[np.float64], unit: str) -> None:
@@ -92,3 +103,48 @@ def check_interval(time: NDArray[np.float64], unit: str) -> None:
             f"lasts {length:.3g} s with a sample every {step:.3g} s ({1 / step:.4g} Hz), which no flight load needs",
             f"{hint}{trust}",
         )
+
+
+def part_within(clock: NDArray[np.float64], of_day: Clock | None, span: Span, counted: Callable[[int], str]) -> slice:
+    """Return the samples within a span of a record's times.
+
+    Parameters
+    ----------
+    clock : (t,) s
+    of_day : Clock or None
+        Where the file has times of day.
+    span : (first, last)
+        Either in s, a time of day, or None for the record's end.
+    counted : callable
+        So many samples, in the file's words.
+
+    Raises
+    ------
+    InputError
+        If the span is not one of the record, or leaves too few samples.
+    """
+    if span == (None, None):
+        return slice(0, len(clock))
+    first, last = float(clock[0]), float(clock[-1])
+    interval = float(np.median(np.diff(clock)))
+    shown = f"{first:g} to {last:g} s" if of_day is None else f"0 to {last:g} s, 0 s being {of_day.first}"
+
+    def read(key: str, given: float | str | None, otherwise: float) -> float:
+        if given is None:
+            return otherwise
+        number = of_day.seconds(given) if isinstance(given, str) and of_day is not None else given
+        if number is None or isinstance(number, str):
+            raise InputError(f"record.{key}", f"is {given!r}", f"give a time of the record's own clock, {shown}")
+        if not first - interval <= number <= last + interval:
+            what = given if isinstance(given, str) else f"{given:g} s"
+            raise InputError(f"record.{key}", f"is {what}, and the record lasts {shown}", "give a time of it")
+        return float(number)
+
+    begin, end = read("from", span[0], first), read("to", span[1], last)
+    slack = 1e-6 * interval
+    inside = np.flatnonzero((clock >= begin - slack) & (clock <= end + slack))
+    if inside.size < FEWEST:
+        problem = f"leaves {counted(inside.size)} from {begin:g} to {end:g} s"
+        fix = f"give more of {shown}: {FEWEST} samples at least"
+        raise InputError(f"record.{'from' if span[1] is None else 'to'}", problem, fix)
+    return slice(int(inside[0]), int(inside[-1]) + 1)

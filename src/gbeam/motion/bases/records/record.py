@@ -3,35 +3,27 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gbeam.errors import InputError
-from gbeam.guards.limits import BINARY_BYTES, SAMPLES, refuse_large_file, refuse_more
-from gbeam.motion.bases.conditioning import FEWEST, filtered, spikes, without_spikes
-from gbeam.motion.bases.records.clock import check_interval, check_sampling
-from gbeam.motion.bases.records.hdf5 import read_hdf5
-from gbeam.motion.bases.records.mat import read_mat
+from gbeam.guards.arguments import typed
+from gbeam.guards.limits import SAMPLES, refuse_more
+from gbeam.io.tables.table import NO_COLUMN, Table
+from gbeam.io.tables.times import Clock
+from gbeam.motion.bases.conditioning import FEWEST, Floats, filtered, spikes, without_spikes
+from gbeam.motion.bases.records.clock import Span, check_interval, check_sampling, part_within
+from gbeam.motion.bases.records.files import read_table
+from gbeam.motion.bases.records.names import load_factors, mirrored, refuse_other_kinds
 from gbeam.motion.bases.records.soundness import CHECKS, Samples, refuse_unsound
-from gbeam.motion.bases.records.table import NO_COLUMN, Table
-from gbeam.motion.bases.records.text import read_text
-from gbeam.motion.bases.records.uff import read_uff
+from gbeam.motion.bases.records.summary import oddities, summary
 from gbeam.motion.bases.records.units import UNITS, unit_of
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 
 Quantity = Literal["specific-force", "acceleration"]
-
-_HDF5 = (".h5", ".hdf5", ".hdf", ".he5", ".nc", ".nc4", ".cdf")
-# By the end of a file's name; everything else is text.
-READERS: dict[str, Callable[[str | os.PathLike[str]], Table]] = {
-    ".mat": read_mat,
-    **dict.fromkeys(_HDF5, read_hdf5),
-    **dict.fromkeys((".uff", ".unv", ".ufb", ".uf"), read_uff),
-}
 
 
 @dataclass(frozen=True)
@@ -53,11 +45,12 @@ class Conditioning:
     cutoff : float or None
         Of a zero-phase low-pass (fourth-order Butterworth forwards and backwards, −6 dB), Hz.
     resample : float or None
-        New sampling rate, Hz.
+        New sampling rate, Hz; times may then jitter.
     despike : bool
         Replace single samples far off their neighbours.
     skip_checks : bool or tuple of str
-        Checks to leave out, of ``sampling``, ``spikes``, ``unit``, ``sign`` and ``dropouts``; True leaves out all.
+        Checks to leave out, of ``sampling``, ``spikes``, ``unit``, ``sign``, ``dropouts`` and ``columns``; True leaves
+        out all.
     """
 
     cutoff: float | None = None
@@ -83,18 +76,21 @@ class FlightRecord:
     Parameters
     ----------
     acceleration : PiecewiseLinear
-        m/s², base axes.
+        m/s², base axes; its `record` says what it is.
     rates : PiecewiseLinear or None
         Angular velocity, rad/s, base axes.
-    notes : tuple of str
-        What was done to it, and what looks odd.
     """
 
     acceleration: PiecewiseLinear
     rates: PiecewiseLinear | None = None
-    notes: tuple[str, ...] = ()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was done to it, and what looks odd."""
+        return () if self.acceleration.record is None else self.acceleration.record.notes
 
 
+@typed
 def read_record(
     path: str | os.PathLike[str],
     time: str,
@@ -106,6 +102,7 @@ def read_record(
     *,
     time_unit: str | None = None,
     quantity: Quantity = "specific-force",
+    span: Span = (None, None),
 ) -> PiecewiseLinear:
     """Read an acceleration (or specific-force) record.
 
@@ -115,7 +112,8 @@ def read_record(
         Of text (commas, semicolons, tabs or white space; decimal point or comma), or by its suffix a MAT file
         (``.mat``), HDF5 or netCDF (``.h5``, ``.hdf5``, ``.nc``) or a universal file (``.uff``, ``.unv``).
     time : str
-        Name of the column of times.
+        Name of the column of times: numbers, or times of day such as ``12:34:56.789`` and ``2024-05-03T12:34:56Z``,
+        which count from the first.
     x, y, z : str
         Names of the columns that hold the components in base axes; a leading ``-`` changes the sign (aircraft
         records have z down), ``0`` stands for a component that is zero.
@@ -127,11 +125,15 @@ def read_record(
         ``s``, ``ms``, ``us`` or ``min``; what the file says if left out, or else s.
     quantity : str
         ``specific-force``, 1 g upwards in level flight, which is checked; or ``acceleration``.
+    span : tuple
+        First and last time of the part that is flown, s on the record's own clock, or a time of day where it has these;
+        None is the record's end. What is outside is not checked, but for level flight.
 
     Returns
     -------
     PiecewiseLinear
-        Vector profile, m/s², over the record's own times, s.
+        Vector profile, m/s², over the record's own times, s; `record` is a summary, with the whole of which it is a
+        part and the notes on what looks odd.
 
     Raises
     ------
@@ -140,17 +142,8 @@ def read_record(
         unsound; rows are counted from 1, samples too.
     """
     return read_flight(
-        path, time, x, y, z, unit, conditioning=conditioning, time_unit=time_unit, quantity=quantity
+        path, time, x, y, z, unit, conditioning=conditioning, time_unit=time_unit, quantity=quantity, span=span
     ).acceleration
-
-
-def _table(path: str | os.PathLike[str]) -> Table:
-    try:
-        refuse_large_file("record.file", path, BINARY_BYTES, "cut the record, or export it at a lower rate")
-    except OSError as error:
-        problem = f"{path} cannot be read ({error.strerror})"
-        raise InputError("record.file", problem, "give the path of a record") from None
-    return READERS.get(Path(path).suffix.lower(), read_text)(path)
 
 
 @np.errstate(all="ignore")  # numbers beyond a float's are refused by their row, without a warning before
@@ -166,6 +159,7 @@ def read_flight(
     conditioning: Conditioning = Conditioning(),
     time_unit: str | None = None,
     quantity: Quantity = "specific-force",
+    span: Span = (None, None),
 ) -> FlightRecord:
     """Read a record with the body's rates, and say what was done to it; see :func:`read_record`.
 
@@ -175,46 +169,87 @@ def read_flight(
         Which columns hold them.
     """
     skip = conditioning.skipped
+    trust = "unit" in skip
     names = {"x": x, "y": y, "z": z}
     turns = {} if rates is None else {"p": rates.p, "q": rates.q, "r": rates.r}
     if {*names.values()} == {NO_COLUMN}:
         raise InputError("record", 'takes nothing of the file: x, y and z are "0"', "name a column for one of them")
-    table = _table(path)
-
-    def scale(key: str, kind: str, declared: str | None, columns: dict[str, str], otherwise: str) -> tuple[str, float]:
-        stated = table.stated_units(columns)
-        agreed = unit_of(key, kind, declared, stated, trust="unit" in skip) or otherwise
-        return agreed, UNITS[kind][agreed]
-
-    unit, load_scale = scale("unit", "acceleration", unit, names, unit)
-    seconds, time_scale = scale("time_unit", "time", time_unit, {"time": time}, "s")
-    rate_scale = 1.0 if rates is None else scale("rate_unit", "rate", rates.unit, turns, rates.unit)[1]
-    clock = time_scale * table.numbers("time", time)
+    table = read_table(path, [time, *names.values(), *turns.values()])
+    if "columns" not in skip:
+        refuse_other_kinds(table, names)
+    unit, load_scale = _scale(table, "unit", "acceleration", unit, names, trust=trust)
+    rate_scale = 1.0 if rates is None else _scale(table, "rate_unit", "rate", rates.unit, turns, trust=trust)[1]
+    clock, seconds, of_day = _times(table, time, time_unit, trust=trust)
     refuse_more("record.file", "samples", len(clock), SAMPLES, 200.0, "cut the record, or export it at a lower rate")
     if len(clock) < FEWEST:
-        word = "row" if table.rows is not None else "sample"
-        raise InputError("record.file", f"{path} has {len(clock)} {word}(s)", f"give {FEWEST} samples or more")
-    check_sampling(clock, table.place)
+        raise InputError("record.file", f"{path} has {table.counted(len(clock))}", f"give {FEWEST} samples or more")
+    part = part_within(clock, of_day, span, table.counted)
+    when = clock[part]
+    jitter = check_sampling(when, lambda i: table.place(part.start + i), jitter=conditioning.resample is not None)
     if "sampling" not in skip:
-        check_interval(clock, seconds)
-    load = load_scale * table.vector(names, len(clock))
-    checked = Samples(clock, load, names, unit, quantity == "specific-force", table.place)
-    refuse_unsound(checked, (*skip, "spikes") if conditioning.despike else skip)
-    notes = [] if time_unit is not None or seconds == "s" else [f"time in {seconds}, as the file says"]
-    odd = spikes(load)
-    if odd.any():
-        first = int(np.argmax(odd.any(axis=1)))
-        where = f"{int(odd.any(axis=1).sum())} sample(s) that look like spikes, the first at {clock[first]:g} s ("
-        where += f"{table.place(first)})"
-        notes.append(
-            f"{where}, {'were replaced' if conditioning.despike else 'are kept; despike = true replaces them'}"
-        )
-        load = without_spikes(clock, load, odd) if conditioning.despike else load
-    turning = rate_scale * table.vector(turns, len(clock)) if turns else np.empty((len(clock), 0))
-    new, both = filtered(clock, np.concatenate([load, turning], axis=1), conditioning.cutoff, conditioning.resample)
+        check_interval(when, seconds)
+    load = load_scale * table.vector(names, len(clock), part)
+
+    def samples(at: NDArray[np.intp]) -> Samples:
+        specific = quantity == "specific-force"
+        return Samples(clock[at], load[at], names, unit, specific, lambda i: table.place(int(at[i])))
+
+    flown = samples(np.arange(part.start, part.stop))
+    known = np.flatnonzero(np.isfinite(load).all(axis=1))  # outside the part there may be what is no number
+    refuse_unsound(
+        flown, flown if len(when) == len(clock) else samples(known), (*skip, "spikes") if conditioning.despike else skip
+    )
+    notes = [f"time in {seconds}, as the file says"] if time_unit is None and seconds != "s" else []
+    if "columns" not in skip:
+        notes += [*mirrored(table, names), *load_factors(table, names, unit, specific=flown.specific)]
+    notes += oddities(flown)
+    calm, spiky = _despiked(flown, despike=conditioning.despike)
+    notes += spiky
+    turning = rate_scale * table.vector(turns, len(clock), part)[part] if turns else np.empty((len(when), 0))
+    new, both = filtered(when, np.concatenate([calm, turning], axis=1), conditioning.cutoff, conditioning.resample)
+    if jitter:
+        notes.append(f"times up to {1e3 * jitter:.3g} ms off even ones: a spline through the samples is flown")
     if conditioning.cutoff is not None:
         notes.append(f"low-pass at {conditioning.cutoff:g} Hz, zero phase")
     if conditioning.resample is not None:
         notes.append(f"resampled at {conditioning.resample:g} Hz")
+    zero = "" if of_day is None else of_day.first
+    facts = summary(flown, os.fspath(path), (float(clock[0]), float(clock[-1])), zero, tuple(notes))
     about = None if rates is None else PiecewiseLinear(new, both[:, 3:])
-    return FlightRecord(PiecewiseLinear(new, both[:, :3]), about, tuple(notes))
+    return FlightRecord(PiecewiseLinear(new, both[:, :3], record=facts), about)
+
+
+def _scale(
+    table: Table,
+    key: str,
+    kind: str,
+    declared: str | None,
+    columns: dict[str, str],
+    *,
+    trust: bool,
+    otherwise: str = "",
+) -> tuple[str, float]:
+    """The unit that scenario and file agree on, and its size in SI."""
+    agreed = unit_of(key, kind, declared, table.stated_units(columns), trust=trust) or otherwise
+    return agreed, UNITS[kind][agreed]
+
+
+def _times(table: Table, name: str, unit: str | None, *, trust: bool) -> tuple[Floats, str, Clock | None]:
+    """Times in s, the unit that they were in, and the clock where they are times of day."""
+    times, of_day = table.times(name)
+    if of_day is not None and unit not in (None, "s"):
+        raise InputError("record.time_unit", f"is {unit}, and the times are times of day", "leave it out")
+    if of_day is not None:
+        return times, "s", of_day
+    seconds, scale = _scale(table, "time_unit", "time", unit, {"time": name}, trust=trust, otherwise="s")
+    return scale * times, seconds, None
+
+
+def _despiked(record: Samples, *, despike: bool) -> tuple[Floats, list[str]]:
+    """The load, without its spikes where they are to go, and what is said of them."""
+    odd = spikes(record.load)
+    count, first = int(odd.any(axis=1).sum()), int(np.argmax(odd.any(axis=1)))
+    done = "were replaced" if despike else "are kept; despike = true replaces them"
+    where = f"the first at {record.time[first]:g} s ({record.place(first)})"
+    said = [f"{count} sample(s) that look like spikes, {where}, {done}"] if count else []
+    return without_spikes(record.time, record.load, odd) if despike and count else record.load, said

@@ -15,12 +15,12 @@ from gbeam.motion.bases.records.units import UNITS
 
 Floats = NDArray[np.float64]
 
-CHECKS = ("sampling", "spikes", "unit", "sign", "dropouts")
+CHECKS = ("sampling", "spikes", "unit", "sign", "dropouts", "columns")
 LARGEST = 50.0  # g
 _FRAGMENT = 2.0  # s
 _BEGINS = 3.0  # g: above that, no flight begins
 _OUTSTANDING = 1.5  # a spike that much above the rest would be the record's peak
-_LEVEL = (0.75, 1.35)  # g: level flight, thrust included
+LEVEL = (0.75, 1.35)  # g: level flight, thrust included
 _BEGINS_LEVEL = (0.7, 1.6)  # g
 _SOME, _HARDLY = 0.05, 0.02  # of the record
 _TURNED = 0.7  # of the load: within 45° of upwards or downwards
@@ -59,7 +59,7 @@ class Samples:
         return f"{value / UNITS['acceleration'][self.unit]:.4g} {self.unit}"
 
 
-def refuse_unsound(record: Samples, skip: Collection[str]) -> None:
+def refuse_unsound(record: Samples, whole: Samples, skip: Collection[str]) -> None:
     """Raise InputError if a record does not look like a flight's; single samples far off are judged first.
 
     A fragment of less than 2 s need hold no level flight: of that only the size is judged, and dropouts.
@@ -67,23 +67,37 @@ def refuse_unsound(record: Samples, skip: Collection[str]) -> None:
     Parameters
     ----------
     record : Samples
+        What is flown.
+    whole : Samples
+        Of which that is a part: where level flight is looked for.
     skip : collection of str
         Checks left out, of :data:`CHECKS`.
     """
-    odd = spikes(record.load)
-    calm = without_spikes(record.time, record.load, odd)
-    size = np.linalg.norm(calm, axis=1)
-    whole = float(record.time[-1] - record.time[0]) >= _FRAGMENT
-    if "spikes" not in skip and whole:
+    odd, calm, size = _calmed(record)
+    if "spikes" not in skip and _lasts(record):
         _check_spikes(record, odd, size)
     if "unit" not in skip:
         _check_size(record, size)
-    if "unit" not in skip and whole and record.specific:
-        _check_level(record, size)
-    if "sign" not in skip and whole and record.specific:
-        _check_sign(record, calm[:, 2], size)
+    if _lasts(whole) and whole.specific and not {"unit", "sign"} <= set(skip):
+        if whole is not record:
+            _, calm, size = _calmed(whole)
+        if "unit" not in skip:
+            _check_level(whole, size)
+        if "sign" not in skip:
+            _check_sign(whole, calm[:, 2], size)
     if "dropouts" not in skip:
         _check_dropouts(record)
+
+
+def _lasts(record: Samples) -> bool:
+    return float(record.time[-1] - record.time[0]) >= _FRAGMENT
+
+
+def _calmed(record: Samples) -> tuple[NDArray[np.bool_], Floats, Floats]:
+    """Spikes of a record, its load without them, and the size of that."""
+    odd = spikes(record.load)
+    calm = without_spikes(record.time, record.load, odd)
+    return odd, calm, np.linalg.norm(calm, axis=1)
 
 
 def _trust(check: str, otherwise: str = "if the record is right as it is") -> str:
@@ -111,40 +125,45 @@ def _check_size(record: Samples, size: Floats) -> None:
     """Refuse a load that nothing withstands in the declared unit."""
     i = int(size.argmax())
     if size[i] > LARGEST * STANDARD_GRAVITY:
+        sizes = UNITS["acceleration"]
+        smaller = [unit for unit in sizes if sizes[unit] < sizes[record.unit]]
         raise InputError(
             "record.unit",
             f"is {record.unit}, which makes {size[i] / STANDARD_GRAVITY:.3g} g of {record.place(i)}, "
             f"at {record.time[i]:g} s",
-            f"{_wants('m/s^2')}; {_trust('unit')}" if record.unit == "g" else _trust("unit"),
+            "; ".join([*([_wants(*smaller)] if smaller else []), _trust("unit")]),
         )
 
 
 def _check_level(record: Samples, size: Floats) -> None:
-    """Refuse a load that is level flight in the other unit and no flight in the declared one."""
-    other = "g" if record.unit == "m/s^2" else "m/s^2"
-    in_g = size / STANDARD_GRAVITY
-    as_other = in_g * UNITS["acceleration"][other] / UNITS["acceleration"][record.unit]
+    """Refuse a load that is level flight in another unit and no flight in the declared one."""
+    in_g, units = size / STANDARD_GRAVITY, UNITS["acceleration"]
     first = slice(max(int(1 / np.median(np.diff(record.time))), 4))
-    begins, begins_as_other = float(np.median(in_g[first])), float(np.median(as_other[first]))
-    peak, here, there = in_g.max(), _share(in_g, _LEVEL), _share(as_other, _LEVEL)
-    if record.unit == "g":
-        # Level at 9.8 and nowhere at 1; a rocket that passes 9.8 g has been at less.
-        doubtful = begins > _BEGINS or (there > _SOME and here < _HARDLY and peak > _PILOTED)
-    else:
-        # What is level at 0.1 g either pulls more than 1 g to stay in the air, or is in g.
-        level_in_g = peak < _LEVEL[1] or _BEGINS_LEVEL[0] < begins_as_other < _BEGINS_LEVEL[1]
-        doubtful = peak < _NEVER or (there > _SOME and level_in_g)
-    if doubtful:
-        raise InputError(
-            "record.unit",
-            f"is {record.unit}, and the record begins at {record.said(begins * STANDARD_GRAVITY)} and reaches "
-            f"{record.said(size.max())}, {peak:.3g} g: level flight is 1 g, which is 9.81 m/s^2",
-            f"{_wants(other)}; {_ACCELERATION}; {_trust('unit')}",
-        )
+    begins, peak, here = float(np.median(in_g[first])), in_g.max(), _share(in_g, LEVEL)
+    others = []
+    for unit in units:
+        as_other = in_g * units[unit] / units[record.unit]
+        begins_level = _BEGINS_LEVEL[0] < float(np.median(as_other[first])) < _BEGINS_LEVEL[1]
+        if unit != record.unit:
+            others.append((begins_level, _share(as_other, LEVEL), unit))
+    for begins_level, there, other in sorted(others, reverse=True):  # the likeliest first
+        if record.unit == "g":
+            # Level at 9.8 and nowhere at 1; a rocket that passes 9.8 g has been at less.
+            doubtful = begins > _BEGINS or (there > _SOME and here < _HARDLY and peak > _PILOTED)
+        else:
+            # What is level at 0.1 g either pulls more than 1 g to stay in the air, or is in g.
+            doubtful = peak < _NEVER or (there > _SOME and (peak < LEVEL[1] or begins_level))
+        if doubtful:
+            raise InputError(
+                "record.unit",
+                f"is {record.unit}, and the record begins at {record.said(begins * STANDARD_GRAVITY)} and reaches "
+                f"{record.said(size.max())}, {peak:.3g} g: level flight is 1 g, which is 9.81 m/s^2",
+                f"{_wants(other)}; {_ACCELERATION}; {_trust('unit')}",
+            )
 
 
-def _wants(unit: str) -> str:
-    return f'a record in {unit} wants unit = "{unit}"'
+def _wants(*units: str) -> str:
+    return ", ".join(f'a record in {unit} wants unit = "{unit}"' for unit in units)
 
 
 def _share(size: Floats, band: tuple[float, float]) -> float:
@@ -154,7 +173,7 @@ def _share(size: Floats, band: tuple[float, float]) -> float:
 def _check_sign(record: Samples, upwards: Floats, size: Floats) -> None:
     """Refuse a record whose level flight, where it is along z, is more often downwards than upwards."""
     in_g = size / STANDARD_GRAVITY
-    level = (in_g > _LEVEL[0]) & (in_g < _LEVEL[1])
+    level = (in_g > LEVEL[0]) & (in_g < LEVEL[1])
     down, up = level & (upwards < -_TURNED * size), level & (upwards > _TURNED * size)
     if down.mean() < _SOME or down.sum() <= up.sum():
         return
@@ -178,11 +197,11 @@ def _check_dropouts(record: Samples) -> None:
                 f"record.{axis}",
                 f"column {name.lstrip('-')!r} stands still at {record.said(values[first])} "
                 f"from {record.time[first]:g} s to {record.time[last]:g} s "
-                f"({_rows(record.place(first), record.place(last))}): the sensor dropped out",
+                f"({rows(record.place(first), record.place(last))}): the sensor dropped out",
                 f"mend or cut the record there; {_trust('dropouts')}",
             )
 
 
-def _rows(first: str, last: str) -> str:
+def rows(first: str, last: str) -> str:
     word, number = first.split()
     return f"{word}s {number} to {last.split()[1]}"

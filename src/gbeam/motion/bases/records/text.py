@@ -13,7 +13,8 @@ from statistics import mode
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import BINARY_BYTES, TEXT_BYTES, in_bytes, refuse_large_file
-from gbeam.motion.bases.records.table import Column, Table
+from gbeam.io.tables.table import Column, Table
+from gbeam.io.tables.times import is_clock
 from gbeam.motion.bases.records.units import is_unit
 
 _DELIMITERS = (",", ";", "\t", " ")  # the first that fits best; a space is any white space
@@ -90,7 +91,7 @@ def _decoded(path: str | os.PathLike[str]) -> str:
 
 
 def _dialect(path: str | os.PathLike[str], body: list[str]) -> tuple[str, int]:
-    """Delimiter and number of columns by which most of some lines of data are numbers."""
+    """Delimiter and number of columns by which most of some lines of data are numbers, or times of day."""
     best, delimiter, width = 0.0, "", 0
     for candidate in _DELIMITERS:
         rows = [_cells(line, candidate) for line in body]
@@ -120,7 +121,7 @@ def _cells(line: str, delimiter: str) -> list[str]:
 
 
 def _count(cells: list[str]) -> int:
-    return sum(_NUMBER.fullmatch(cell) is not None for cell in cells)
+    return sum(_NUMBER.fullmatch(cell) is not None or is_clock(cell) for cell in cells)
 
 
 def _is_data(cells: list[str]) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable
 
 from gbeam.constants import STANDARD_GRAVITY
@@ -10,7 +11,7 @@ from gbeam.errors import InputError
 
 # Per quantity, the units that a scenario may name and their size in SI.
 UNITS: dict[str, dict[str, float]] = {
-    "acceleration": {"g": STANDARD_GRAVITY, "m/s^2": 1.0},
+    "acceleration": {"g": STANDARD_GRAVITY, "m/s^2": 1.0, "ft/s^2": 0.3048},
     "rate": {"rad/s": 1.0, "deg/s": math.pi / 180},
     "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0},
 }
@@ -18,12 +19,15 @@ UNITS: dict[str, dict[str, float]] = {
 _SPELLINGS: dict[str, dict[str, str]] = {
     "acceleration": {
         **dict.fromkeys(("g", "g0", "gn", "gs", "g's", "-", "1"), "g"),  # a load factor has no dimension
-        **dict.fromkeys(("m/s^2", "m/s2", "m/s/s", "ms^-2", "ms-2", "m/sec^2", "m/sec2", "mps2"), "m/s^2"),
-        **{unit: unit for unit in ("mg", "ft/s^2", "ft/s2", "mm/s^2", "mm/s2", "cm/s^2", "cm/s2", "in/s^2", "gal")},
+        **dict.fromkeys(("m/s^2", "m/s2", "m/s/s", "ms^-2", "ms-2", "ms2", "m/sec^2", "m/sec2", "mps2"), "m/s^2"),
+        **{unit: unit for unit in ("mg", "mm/s^2", "mm/s2", "cm/s^2", "cm/s2", "in/s^2", "gal")},
+        **dict.fromkeys(("ft/s^2", "ft/s2", "ft/s/s", "ft/sec^2", "ft/sec2", "fts^-2", "fps2"), "ft/s^2"),
     },
     "rate": {
-        **dict.fromkeys(("rad/s", "rads-1", "rads^-1", "rad/sec", "rps"), "rad/s"),
-        **dict.fromkeys(("deg/s", "degs-1", "degs^-1", "deg/sec", "°/s", "degrees/s", "degree/s", "dps"), "deg/s"),
+        **dict.fromkeys(("rad/s", "rads-1", "rads^-1", "rad/sec", "rps", "radps"), "rad/s"),
+        **dict.fromkeys(
+            ("deg/s", "degs-1", "degs^-1", "deg/sec", "°/s", "degrees/s", "degree/s", "dps", "degps"), "deg/s"
+        ),
         "rpm": "rpm",
     },
     "time": {
@@ -34,6 +38,24 @@ _SPELLINGS: dict[str, dict[str, str]] = {
         **{unit: unit for unit in ("h", "hour", "hours", "day", "days", "ns", "nanoseconds")},
     },
 }
+
+
+_BARE = ("1", "-")  # a load factor's units: in a name they are a number and a dash
+_TELLING = ("acceleration", "rate")  # of which a unit is one of nothing else
+
+
+def words_of(name: str) -> list[str]:
+    """Words of a column's name, in small letters: ``acc_Z [m/s^2]`` has acc, z, m, s and 2."""
+    parted = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
+    return re.findall(r"[^\W_]+", parted.lower())
+
+
+def unit_in_name(name: str) -> str:
+    """Unit in which a column's name ends, as files spell it: g of ``a_z_g``, rad/s of ``p_rad_s``; empty if none."""
+    *before, last = words_of(name) or [""]
+    found = [f"{before[-1]}/{last}"] if len(before) > 1 else []
+    found += [last] if before and last not in _BARE else []
+    return next((text for text in found if is_unit(text)), "")
 
 
 def is_unit(text: str) -> bool:
@@ -55,7 +77,8 @@ def unit_of(
     declared : str or None
         By the scenario.
     stated : iterable of (str, str)
-        Columns and the units that the file gives for them; spellings that are not known are ignored.
+        Columns and the units that the file gives for them, by their names where it gives none; spellings that are not
+        known are ignored.
     trust : bool
         Believe the scenario where they disagree.
 
@@ -71,9 +94,15 @@ def unit_of(
     if declared is not None and trust:
         return declared
     unit = declared
-    for column, text in stated:
+    for column, given in stated:
+        text = given or unit_in_name(column)
         found = _canonical(text, quantity)
         if found is None:
+            other = [kind for kind in _TELLING if kind != quantity and _canonical(text, kind) and text not in _BARE]
+            if other:
+                problem = f"is {unit or 'missing'}, and the file gives column {column!r} in {text}, of {other[0]}"
+                fix = 'name another column; if the file is wrong, add skip_checks = ["unit"]'
+                raise InputError(f"record.{key}", problem, fix)
             continue
         if found not in units:
             raise InputError(

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.tree import record
 from gbeam.errors import InputError
+from gbeam.guards.limits import KNOTS, refuse_more
 from gbeam.motion.centrifuge.ends import Ends
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse, Pose, QuasiStatic
 from gbeam.motion.centrifuge.inverses.spin_up import Ramp, build_ramps
@@ -96,6 +97,9 @@ def _solved(target: Target, geometry: Geometry, limits: Limits, ends: Ends) -> P
         raise InputError("idle", problem, "give less, or a machine with a longer arm or a faster axis 1")
     ramps = build_ramps(target, QuasiStatic(geometry), geometry, limits, ends)
     begin, end = target.span if ramps is None else (float(ramp.still) for ramp in ramps)
+    lasts = {"spin_up": target.span[0] - begin, "": target.span[1] - target.span[0], "spin_down": end - target.span[1]}
+    fix = f"give {KNOTS * _FINE:g} s or less altogether"
+    refuse_more(max(lasts, key=lambda name: lasts[name]), "knots", (end - begin) / _FINE, KNOTS, 4000.0, fix)
     step = _COARSE if ramps is None else min(_COARSE, *(ramp.length / _PER_RAMP for ramp in ramps))
     grid = Grid(float(begin), float(end), step, _POINTS)
     c, best, within = grid.fit(_guess(grid.time, target, geometry, ramps)), np.inf, False

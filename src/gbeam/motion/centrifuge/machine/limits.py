@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.tree import assign, record
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.results.machine import LimitUse
 
 QUANTITIES = {"rate": "rad/s", "acceleration": "rad/s^2", "jerk": "rad/s^3"}
 
 
+@typed
 @dataclass(frozen=True)
 class AxisLimit:
     """What one axis of a centrifuge can do.
@@ -32,6 +34,7 @@ class AxisLimit:
     jerk: float | None = None
 
 
+@typed
 @dataclass(frozen=True)
 class MachineLimits:
     """Limits of a three-axis centrifuge as a person gives them.

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from gbeam.arrays.namespace import is_traced
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.guards.limits import KNOTS, refuse_more
 from gbeam.motion.centrifuge.target.gentle_path import gentle, off_axis, unwrapped
@@ -40,8 +41,9 @@ from gbeam.motion.profiles.profile import Profile, sampled, smoothed
 from gbeam.numerics.intervals import joined, true_runs
 
 _GRID = 0.01  # s, spacing of knots where a load without smoothing is held
-_CURVE = 0.002  # s, the same along a curved profile
+_CURVE, _MOST = 0.002, 100_000  # s, the same along a curved profile; knots along one, unless the kernel needs more
 _PER_WIDTH = 12  # knots per width of the smoothing kernel
+_WIDEST = 10.0  # times the flight, of the smoothing kernel
 _PATH = 0.25  # of the smoothing kernel: what rounds the path
 _QUICK = 0.1  # s: time scale of the path where no arm is given
 _ROUNDING = 1e-9
@@ -51,6 +53,7 @@ Flags = NDArray[np.bool_]
 Stretches = Sequence[tuple[float, float]]
 
 
+@typed
 def build_target(
     raw: Profile,
     *,
@@ -58,7 +61,7 @@ def build_target(
     idle: float | None,
     smoothing: float | None,
     gravity: bool,
-    arm: Any | None = None,
+    arm: float | None = None,
     clip: bool = False,
     leave_out: Stretches = (),
 ) -> Target:
@@ -112,16 +115,19 @@ def build_target(
         Target, flight=raw, idle=0.0 if least is None else least, gravity=STANDARD_GRAVITY if gravity else 0.0,
         half_width=width / 2, span=(float(first), float(last)),
     )  # fmt: skip
+    corners = clamped(raw, first, last)
     if is_traced(raw(first), width):
-        load = smoothed(raw, width) if is_traced(width) or width else raw
+        load = smoothed(corners, width) if is_traced(width) or width else corners
         if gravity:
             load = _nearest(load, None, None, None, gravity)
         none = padded_rows([]), merged_edges([], last)
-        return made(load=load, corners=raw, stretches=none[0], edges=none[1], rounded=True, turns=True)
+        return made(load=load, corners=corners, stretches=none[0], edges=none[1], rounded=True, turns=True)
     if width:
         fix = f"give {_PER_WIDTH * (last - first) / KNOTS:.2g} s or more, or a shorter duration"
         refuse_more("smoothing", "knots", _PER_WIDTH * (last - first) / width, KNOTS, 4000.0, fix)
-    corners = clamped(raw, first, last)
+        if width > _WIDEST * (last - first):
+            problem = f"is {width:g} s: nothing of a flight of {last - first:g} s is left"
+            raise InputError("smoothing", problem, f"give less than {_WIDEST * (last - first):.3g} s")
     flight = smoothed(corners, width) if width else corners
     times = _knots(corners, first, last, width / _PER_WIDTH or _GRID)
     own = np.asarray(flight(times))
@@ -188,7 +194,8 @@ def _and_next(flags: Flags) -> Flags:
 
 def _number(arm: Any) -> float:
     if is_traced(arm):
-        raise InputError("arm", "is traced by JAX where the target is held", "prepare the machine before: over(...)")
+        problem = "is traced by JAX, and by its number the target turns where it is held, below idle or out of reach"
+        raise InputError("arm", problem, "give a number, or times at which the flight's load is followed")
     return float(arm)
 
 
@@ -217,7 +224,8 @@ def _padded(times: Floats, values: Floats) -> tuple[Floats, Floats]:
 def _knots(raw: Profile, start: float, end: float, step: float) -> Floats:
     """Knots of `raw` and a grid, without points so near a knot that a slope would be mere rounding."""
     least = 1e-4 * step
-    own = raw.knots(min(step, _CURVE))
+    first, last = raw.extent or (start, end)
+    own = raw.knots(min(step, max(_CURVE, (last - first) / _MOST)))
     own = np.concatenate([[start], own[(own > start + least) & (own < end - least)], [end]])
     own = own[np.diff(own, prepend=-np.inf) > least]
     grid = sampled(start, end, step)

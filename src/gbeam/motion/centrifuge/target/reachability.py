@@ -12,13 +12,13 @@ from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion.centrifuge.target.load_limits import LEAST_IDLE, MIN_TRANSVERSE_LOAD, UNTOUCHED, missing_across
 from gbeam.motion.centrifuge.target.required_smoothing import required_smoothing
 from gbeam.motion.centrifuge.target.target import Target
-from gbeam.motion.profiles.profile import Profile, sampled
+from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.intervals import joined, true_runs
 from gbeam.numerics.series import sqrt, square, where
 from gbeam.results.machine import Shortfall
 
 TOO_SHARP = "too sharp for the arm"
-_GRID = 0.002  # s
+_GRID, _MOST = 0.002, 2_000_000  # s between the times that are looked at; most of them, over an hour
 _JOINED = 0.1  # s: two stretches of one kind nearer than this are reported as one
 _ROUNDING = 1e-6
 
@@ -73,7 +73,8 @@ def sharp_turns(target: Target, arm: float) -> list[tuple[Shortfall, float | Non
 
 
 def _times(target: Target) -> Floats:
-    return sampled(float(target.span[0]), float(target.span[1]), _GRID)
+    first, last = (float(end) for end in target.span)
+    return np.linspace(first, last, int(np.ceil((last - first) / max(_GRID, (last - first) / _MOST))) + 1)
 
 
 def size_and_rates(load: Profile, gravity: float, time: Any) -> tuple[Any, Any, Any]:

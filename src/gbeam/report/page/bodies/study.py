@@ -92,13 +92,22 @@ def loads_table(motions: Facts) -> str:
     return table(head, rows, "Largest loads of the root, and stress anywhere")
 
 
+ERRORS = {
+    "total": "total",
+    "beam_theory": "of the beam theory",
+    "model": "of the model",
+    "shapes": "of too few shapes",
+    "step": "of the time step",
+}
+
+
 def _errors(motions: Facts) -> str:
     rows = []
     for name, motion in motions.items():
         for quantity in ("displacement", "loads", "stress"):
-            parts = [known(motion["errors"][quantity][key]) for key in ("total", "model", "shapes", "step")]
+            parts = [known(motion["errors"][quantity][key]) for key in ERRORS]
             if math.isfinite(parts[0]):
                 rows.append([name, quantity, *(words.percent(part) for part in parts)])
-    head = ("motion", "of", "total", "of the model", "of too few shapes", "of the time step")
+    head = ("motion", "of", *ERRORS.values())
     caption = "Estimated errors, of the largest size"
     return table(head, rows, caption, words=(0, 1)) or paragraph("no error estimate", "faint")

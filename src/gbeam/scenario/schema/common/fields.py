@@ -15,6 +15,7 @@ from gbeam.scenario.values.kinds import KINDS
 from gbeam.scenario.values.units import UnitError, quantity
 
 if TYPE_CHECKING:
+    from pydantic.fields import FieldInfo
     from pydantic.json_schema import JsonSchemaValue
 
 Sign = Literal["any", "positive", "zero or more"]
@@ -67,15 +68,18 @@ class Quantity:
         ``any``, ``positive`` or ``zero or more``.
     words : tuple of str
         Words accepted instead of a quantity, kept as they are.
+    clock : bool
+        Whether a time of day is accepted too, and kept as it is.
     """
 
     kind: str
     sign: Sign = "any"
     words: tuple[str, ...] = ()
+    clock: bool = False
 
     def read(self, value: object) -> float | str:
         """Return the value in SI, or raise pydantic's error with the advice in it."""
-        if isinstance(value, str) and value in self.words:
+        if isinstance(value, str) and (value in self.words or (self.clock and _is_clock(value))):
             return value
         otherwise = "".join(f', or "{word}"' for word in self.words)
         try:
@@ -107,12 +111,24 @@ class Quantity:
         number = {"type": "number", "description": f"{kind.phrase} in {kind.unit or 'plain numbers'}"} | limit
         text = {"type": "string", "description": f"{kind.phrase} with its unit", "examples": [kind.example]}
         words: list[JsonSchemaValue] = [{"const": word} for word in self.words]
+        words += [{"type": "string", "description": "a time of day", "examples": ["12:34:56.7"]}] if self.clock else []
         return {"anyOf": [number, text, *words], "x-quantity": self.kind, "x-unit": kind.unit}
+
+
+def _is_clock(text: str) -> bool:
+    from gbeam.io.tables.times import is_clock  # not needed, nor imported, where there is no such key
+
+    return is_clock(text)
+
+
+def fields_of(table: type[BaseModel]) -> dict[str, FieldInfo]:
+    """Fields of a table by their keys in the file: Python keeps ``from`` for itself."""
+    return {field.alias or name: field for name, field in table.model_fields.items()}
 
 
 def kind_of(table: BaseModel, key: str) -> str:
     """Kind of quantity that a key of a table holds, a key of ``KINDS``; empty where it holds none."""
-    field = type(table).model_fields.get(key)
+    field = fields_of(type(table)).get(key)
     return "" if field is None else _kind_in([*field.metadata, field.annotation])
 
 
@@ -137,6 +153,7 @@ Ratio = Annotated[float, Quantity("ratio")]
 Exponent = Annotated[float, Quantity("ratio", "positive")]
 Duration = Annotated[float, Quantity("time", "positive")]
 Time = Annotated[float, Quantity("time", "zero or more")]
+Moment = Annotated[float | str, Quantity("time", clock=True)]
 Step = Annotated[float | Literal["auto"], Quantity("time", "positive", ("auto",))]
 Acceleration = Annotated[float, Quantity("acceleration")]
 Jerk = Annotated[float, Quantity("jerk", "positive")]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import ELEMENTS, refuse_more
-from gbeam.motion.bases.records.table import Column, Table, array_columns
+from gbeam.io.tables.table import Column, Table, array_columns
 
 if TYPE_CHECKING:
     import h5py
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _NETCDF_3 = b"CDF"  # which is not HDF5
 
 
-def read_hdf5(path: str | os.PathLike[str]) -> Table:
+def read_hdf5(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
     """Read an HDF5 or netCDF file.
 
     A vector is a column by its path, ``group/az``, or the path's last word; a matrix is one column per vector,
@@ -28,6 +28,8 @@ def read_hdf5(path: str | os.PathLike[str]) -> Table:
     Parameters
     ----------
     path : path
+    words : sequence of str
+        Names that are needed; all columns can be read in any case.
 
     Raises
     ------
@@ -38,6 +40,8 @@ def read_hdf5(path: str | os.PathLike[str]) -> Table:
         with open(path, "rb") as file:
             old = file.read(3) == _NETCDF_3
         return Table(tuple(_netcdf_3(path) if old else hdf5_columns(path)))
+    except MemoryError:
+        raise
     except Exception as error:  # a damaged file leads to any
         raise InputError("record.file", f"{path} cannot be read ({error})", "give an HDF5 or netCDF file") from None
 
@@ -85,9 +89,12 @@ def _netcdf_3(path: str | os.PathLike[str]) -> list[Column]:
 def _unpacked(array: NDArray[Any], attributes: Mapping[str, Any]) -> NDArray[np.float64]:
     """Undo the packing of the CF conventions: samples that are missing are NaN."""
     missing = [np.ravel(attributes[name])[0] for name in ("_FillValue", "missing_value") if name in attributes]
-    empty = np.isin(array, missing)
+    empty = np.isin(array, missing) if missing else False
     scale, offset = (np.ravel(attributes.get(name, default))[0] for name, default in _PACKING.items())
-    return np.where(empty, np.nan, array * np.float64(scale) + np.float64(offset))
+    values = array.astype(np.float64)
+    values *= np.float64(scale)
+    values += np.float64(offset)
+    return np.where(empty, np.nan, values) if missing else values
 
 
 _PACKING = {"scale_factor": 1.0, "add_offset": 0.0}

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 from collections import Counter
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.motion.bases.records.table import Column, Table
+from gbeam.io.tables.table import Column, Table
 
 _TIME = "time"
 _RESPONSES = (0, 1)  # function types: general, time response
@@ -17,7 +18,7 @@ _DIRECTIONS = ("", "X", "Y", "Z", "RX", "RY", "RZ")
 _NO_NAME = ("", "NONE")
 
 
-def read_uff(path: str | os.PathLike[str]) -> Table:
+def read_uff(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
     """Read the time responses (data set 58, text or binary) of a universal file.
 
     A column goes by the first line of the data set's identification, and by its node and direction, ``12+Z``; the
@@ -26,6 +27,8 @@ def read_uff(path: str | os.PathLike[str]) -> Table:
     Parameters
     ----------
     path : path
+    words : sequence of str
+        Names that are needed; all columns are read in any case.
 
     Raises
     ------
@@ -37,6 +40,8 @@ def read_uff(path: str | os.PathLike[str]) -> Table:
     try:
         file = pyuff.UFF(os.fspath(path))
         sets = [file.read_sets(i) for i, kind in enumerate(file.get_set_types()) if int(kind) == 58]
+    except MemoryError:
+        raise
     except Exception as error:  # pyuff raises Exception itself
         raise InputError("record.file", f"{path} is not a universal file ({error})", "export it as UFF 58") from None
     sets = [one for one in sets if one["func_type"] in _RESPONSES and np.isrealobj(one["data"])]

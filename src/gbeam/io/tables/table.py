@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import COLUMNS, LARGEST
+from gbeam.io.tables.times import Clock, read_clock
 
 Floats = NDArray[np.float64]
 
@@ -60,6 +61,10 @@ class Table:
         """Where sample `i` is in the file, in words."""
         return f"sample {i + 1}" if self.rows is None else f"row {self.rows[i]}"
 
+    def counted(self, count: int) -> str:
+        """So many samples, in the file's words."""
+        return f"{count} {'sample' if self.rows is None else 'row'}(s)"
+
     def column(self, axis: str, name: str) -> Column:
         """Find a column by its name, or else by an alias.
 
@@ -88,27 +93,29 @@ class Table:
         listed = ", ".join(names[:_LISTED]) + more
         raise InputError(f"record.{axis}", f"names no column {name!r}", f"{guess}the columns are {listed}")
 
-    def numbers(self, axis: str, name: str) -> Floats:
-        """Return a column as finite numbers, shape (t,)."""
+    def numbers(self, axis: str, name: str, part: slice = slice(None)) -> Floats:
+        """Return a column as numbers, shape (t,), finite ones in a part; outside it NaN stands for what is none."""
+        samples = self._samples(axis, name)
+        return self._finite(axis, name, samples, _numbers(samples), part)
+
+    def times(self, name: str) -> tuple[Floats, Clock | None]:
+        """Return the column of times, shape (t,), finite, and the clock where it holds times of day, which are in s."""
+        samples = self._samples("time", name)
+        known = None if isinstance(samples, np.ndarray) else read_clock(samples)
+        clock, values = (None, _numbers(samples)) if known is None else known
+        return self._finite("time", name, samples, values, slice(None)), clock
+
+    def _samples(self, axis: str, name: str) -> Sequence[str] | NDArray[Any]:
         column = self.column(axis, name)
         try:
-            samples = column.read()
+            return column.read()
         except InputError as error:
             raise InputError(f"record.{axis}", f"column {name!r} {error.problem}", error.fix) from None
-        except Exception as error:  # a damaged file leads its library to any
-            raise InputError(
-                f"record.{axis}", f"column {name!r} cannot be read ({error})", "export the record again"
-            ) from None
-        if isinstance(samples, np.ndarray):
-            values = np.asarray(samples, dtype=np.float64)
-        else:
-            try:
-                values = np.array(samples, dtype=np.float64)
-            except ValueError:
-                values = np.array([_number(cell) for cell in samples])
-        bad = np.flatnonzero(~(np.abs(values) <= LARGEST))
+
+    def _finite(self, axis: str, name: str, samples: Any, values: Floats, part: slice) -> Floats:
+        bad = np.flatnonzero(~(np.abs(values[part]) <= LARGEST))
         if bad.size:
-            i = int(bad[0])
+            i = int(bad[0]) + (part.start or 0)
             cell = samples[i]
             if isinstance(cell, str) and not _is_number(cell):
                 shown, what = repr(cell) if cell else "empty", "a number"
@@ -117,7 +124,7 @@ class Table:
             raise InputError(f"record.{axis}", f"{self.place(i)}, column {name!r} is {shown}", f"put {what} there")
         return values
 
-    def vector(self, names: dict[str, str], count: int) -> Floats:
+    def vector(self, names: dict[str, str], count: int, part: slice = slice(None)) -> Floats:
         """Stack components, each a column with its sign.
 
         Parameters
@@ -127,6 +134,8 @@ class Table:
             name begins with a dash is taken at its name.
         count : int
             Number of samples, t.
+        part : slice
+            Of the samples, which must be finite.
 
         Returns
         -------
@@ -134,8 +143,8 @@ class Table:
         """
         parts = []
         for axis, name in names.items():
-            sign, column = self._signed(name)
-            values = np.zeros(count) if column is None else sign * self.numbers(axis, column)
+            sign, column = self.signed(name)
+            values = np.zeros(count) if column is None else sign * self.numbers(axis, column, part)
             if len(values) != count:
                 raise InputError(
                     f"record.{axis}", f"column {column!r} has {len(values)} samples, the time {count}", "name another"
@@ -144,13 +153,14 @@ class Table:
         return np.stack(parts, axis=-1)
 
     def stated_units(self, names: dict[str, str]) -> Iterator[tuple[str, str]]:
-        """Columns of some components or of the time, each with the unit that the file states; see :meth:`vector`."""
+        """Columns of some components or of the time, each with the unit that the file states, or "": :meth:`vector`."""
         for axis, name in names.items():
-            _, column = self._signed(name)
-            if column is not None and (unit := self.column(axis, column).unit):
-                yield column, unit
+            _, column = self.signed(name)
+            if column is not None:
+                yield column, self.column(axis, column).unit
 
-    def _signed(self, name: str) -> tuple[float, str | None]:
+    def signed(self, name: str) -> tuple[float, str | None]:
+        """Sign and column of a component; no column of one that is zero."""
         known = {word for one in self.columns for word in (one.name, *one.aliases)}
         if name in known:
             return 1.0, name
@@ -192,6 +202,13 @@ def array_columns(
         return Column(name + index, lambda: np.take(read(), k, axis=across), unit, (short + index,))
 
     return [vector(k) for k in range(shape[across])]
+
+
+def _numbers(samples: Sequence[str] | NDArray[Any]) -> Floats:
+    try:
+        return np.asarray(samples, dtype=np.float64)
+    except ValueError:
+        return np.array([_number(cell) for cell in samples])
 
 
 def _number(cell: str) -> float:

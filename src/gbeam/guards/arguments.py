@@ -1,0 +1,222 @@
+"""Arguments of the wrong type, refused by the annotations of the public functions that take them.
+
+Scenarios are read without NumPy, which is imported when a function is called.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+import re
+import types
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from inspect import Parameter, signature
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+
+from gbeam.errors import GbeamError, InputError
+from gbeam.guards.quantities import refuse_units
+from gbeam.printable import shortened
+
+F = TypeVar("F", bound=Callable[..., Any])
+Test = Callable[[Any], bool]
+_SEQUENCES = (list, tuple, Sequence, Iterable, Collection)
+_MAPPINGS = (dict, Mapping)
+_NUMBER = re.compile(r"\s*[+-]?\s*(\.?\d|inf|nan)", re.IGNORECASE)  # that a text begins with: 20 mm
+_NUMERIC = ("f", "i", "u")  # NumPy's letters for kinds of numbers
+_OF_NUMBERS = (float, int, Any)
+_PLAIN = (str, bytes, bool, int, float, complex, type(None), list, tuple, dict, set)  # shown as they are
+_WORDS = {str: "a text", bool: "True or False", int: "a whole number", float: "a number", os.PathLike: "a path"}
+_MAKERS = {
+    "Structure": "gbeam.assemble",
+    "Case": "gbeam.read_scenario",
+    "Response": "gbeam.simulate",
+    "StateSpace": "gbeam.linearize",
+    "Choice": "gbeam.choice_of",
+}
+
+
+def typed(function: F) -> F:
+    """Let a function, or the constructor of a class, refuse arguments that are not what their annotations say.
+
+    The error is an InputError with the argument's name; missing and unknown arguments stay Python's TypeError. Numbers
+    with a unit are refused, in texts too; another text for a number, or a fraction for a whole one, only where the call
+    fails: the checks of values know more of them.
+    """
+    if isinstance(function, type):
+        function.__init__ = typed(function.__init__)  # type: ignore[misc]
+        return function
+    kinds = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
+    names = [each.name for each in signature(function).parameters.values() if each.kind in kinds]
+
+    def check(given: Iterable[tuple[str, Any]], texts: bool) -> None:
+        tests = _tests(function, texts)
+        for name, value in given:
+            refuse_units(name, value)
+            if name in tests and not tests[name](value):
+                raise _refused(name, value, _hints(function)[name], texts)
+
+    @functools.wraps(function)
+    def call(*args: Any, **keywords: Any) -> Any:
+        given = (*zip(names, args, strict=False), *keywords.items())
+        check(given, True)
+        try:
+            return function(*args, **keywords)
+        except (AttributeError, LookupError, TypeError, ValueError) as error:
+            if not isinstance(error, GbeamError):
+                check(given, False)
+            raise
+
+    return call  # type: ignore[return-value]
+
+
+@functools.cache
+def _tests(function: Callable[..., Any], texts: bool) -> dict[str, Test]:
+    return {name: _test(hint, texts) for name, hint in _hints(function).items()}
+
+
+@functools.cache
+def _hints(function: Callable[..., Any]) -> dict[str, Any]:
+    """Types of the arguments; any, where a name is imported for type checkers only."""
+    unknown: dict[str, Any] = {}
+    while True:
+        try:
+            return get_type_hints(function, localns=unknown, include_extras=True)
+        except NameError as error:
+            unknown[str(error.name)] = Any
+
+
+def _alternatives(hint: Any) -> tuple[Any, ...]:
+    """The types of a union; array_like, which is a union, stands for itself."""
+    from numpy.typing import ArrayLike
+
+    parts = get_args(hint) if get_origin(hint) in (Union, types.UnionType) else (hint,)
+    of_arrays = set(get_args(ArrayLike)) & set(parts)
+    return (*(each for each in parts if each not in of_arrays), ArrayLike) if len(of_arrays) > 1 else parts
+
+
+def _test(hint: Any, texts: bool) -> Test:
+    """Test of whether a value may be what a type hint says; with `texts` a text may be a number."""
+    tests = [_single(each, texts) for each in _alternatives(hint)]
+    return tests[0] if len(tests) == 1 else lambda value: any(test(value) for test in tests)
+
+
+def _single(kind: Any, texts: bool) -> Test:
+    """Test of a type that is no union."""
+    from numpy.typing import ArrayLike
+
+    origin, parts = get_origin(kind) or kind, get_args(kind)
+    if kind is ArrayLike:
+        return lambda value: _are_numbers(value, texts)
+    if origin is Literal:
+        return lambda value: isinstance(value, str)  # which one is checked where it is used
+    if origin is bool:
+        return lambda value: isinstance(value, bool) or _kind(value) == "b"
+    if origin is int and not texts:
+        return lambda value: (isinstance(value, int) and not isinstance(value, bool)) or _kind(value) in ("i", "u")
+    if origin is float or origin is int:
+        return lambda value: _is_number(value, texts)
+    if origin is Callable:
+        return callable
+    if origin in _SEQUENCES:
+        wrong = _first_wrong(kind, texts)
+        return lambda value: _has_elements(value, origin) and wrong(value) is None
+    if origin in _MAPPINGS:
+        entry = _test(parts[1], texts)
+        return lambda value: isinstance(value, Mapping) and all(map(entry, value.values()))
+    if getattr(origin, "__name__", "") == "ndarray":
+        return lambda value: _kind(value) in _NUMERIC
+    if origin is Any or not isinstance(origin, type):
+        return lambda value: True
+    return lambda value: isinstance(value, origin) and not isinstance(value, type)
+
+
+def _kind(value: Any) -> str:
+    """NumPy's letter for the kind of an array's elements; empty of what is no array."""
+    return str(getattr(getattr(value, "dtype", None), "kind", ""))
+
+
+def _is_number(value: Any, texts: bool) -> bool:
+    if isinstance(value, (float, int)) or _kind(value) in _NUMERIC:
+        return True
+    if isinstance(value, str):
+        return texts and not _NUMBER.match(value)
+    return not hasattr(value, "dtype") and not isinstance(value, type) and hasattr(value, "__float__")
+
+
+def _are_numbers(value: Any, texts: bool) -> bool:
+    nested = isinstance(value, (list, tuple)) and all(_are_numbers(each, texts) for each in value)
+    return nested or _is_number(value, texts)
+
+
+def _has_elements(value: Any, origin: Any) -> bool:
+    """Whether a value has elements, in order but where any iterable will do."""
+    if isinstance(value, (str, bytes, Mapping, type)):
+        return False
+    return isinstance(value, Iterable) if origin is Iterable else hasattr(value, "__getitem__")
+
+
+def _first_wrong(kind: Any, texts: bool) -> Callable[[Any], int | None]:
+    """Number of the first element that is not of the type that it should have; None where none is."""
+    parts = get_args(kind)
+    fixed = get_origin(kind) is tuple and Ellipsis not in parts
+    tests = [_test(each, texts) for each in parts if each is not Ellipsis]
+
+    def find(value: Any) -> int | None:
+        if not tests or not isinstance(value, Collection) or (_kind(value) in _NUMERIC and parts[0] in _OF_NUMBERS):
+            return None  # a look at what is no collection would consume it
+        if fixed and len(value) != len(parts):
+            return len(parts)
+        return next((k for k, each in enumerate(value) if not tests[k if fixed else 0](each)), None)
+
+    return find
+
+
+def _refused(name: str, value: Any, hint: Any, texts: bool) -> InputError:
+    """The error of an argument, or of the first of its elements that is wrong."""
+    for kind in _alternatives(hint):
+        origin = get_origin(kind)
+        if origin not in _SEQUENCES or not _has_elements(value, origin):
+            continue
+        parts, wrong = get_args(kind), _first_wrong(kind, texts)(value)
+        if wrong is not None and wrong < len(value):
+            part = parts[wrong] if origin is tuple and Ellipsis not in parts else parts[0]
+            return _refused(f"{name}[{wrong}]", list(value)[wrong], part, texts)
+    if isinstance(value, type):
+        shown = f"the class {value.__name__} itself"
+    else:
+        shown = shortened(repr(value), 60) if isinstance(value, _PLAIN) else f"of type {type(value).__name__}"
+    wanted = _described(hint)
+    in_si = " in SI" if isinstance(value, str) and _NUMBER.match(value) and "whole" not in wanted else ""
+    return InputError(name, f"is {shown}", f"give {wanted}{in_si}")
+
+
+def _described(hint: Any) -> str:
+    kinds = [each for each in _alternatives(hint) if each is not type(None)]
+    return " or ".join(dict.fromkeys(_word(each) for each in kinds))
+
+
+def _word(kind: Any) -> str:
+    """Name with its article of what an argument of a type may be."""
+    from numpy.typing import ArrayLike
+
+    origin, parts = get_origin(kind) or kind, get_args(kind)
+    if kind is ArrayLike or getattr(origin, "__name__", "") == "ndarray":
+        return "numbers"
+    if origin in _WORDS:
+        return _WORDS[origin]
+    if origin is Literal:
+        return " or ".join(map(repr, parts))
+    if origin is Callable:
+        return "a function"
+    if origin in _SEQUENCES:
+        count = f"{len(parts)} " if origin is tuple and Ellipsis not in parts else ""
+        simple = _WORDS.get(parts[0], "").partition(" ")[2]
+        return f"a list of {count}{f'{simple}s' if simple else getattr(parts[0], '__name__', 'them')}"
+    if origin in _MAPPINGS:
+        return f"a mapping from text to {_described(parts[1])}"
+    name = getattr(origin, "__name__", str(origin))
+    if getattr(origin, "_is_protocol", False):  # such as Motion, whose first line says which classes are
+        line = str(origin.__doc__ or name).splitlines()[0].rstrip(".")
+        return line[0].lower() + line[1:]
+    how = f", which {_MAKERS[name]} makes" if name in _MAKERS else ""
+    return f"{'an' if name[0] in 'AEIOU' else 'a'} {name}{how}"

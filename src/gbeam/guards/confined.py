@@ -1,0 +1,156 @@
+"""Foreign files are read in a process of their own, with limits of memory and time.
+
+The libraries in C that read MAT, HDF5 and netCDF trust what they read: a few bytes end the process that calls them,
+keep it busy for ever, or fill the memory. In another process that is a message.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import warnings
+from collections.abc import Callable, Iterable, Sequence
+from importlib import import_module
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.errors import ComputationError, InputError
+from gbeam.guards.limits import READER_BYTES, READER_RATE, READER_SECONDS, in_bytes
+from gbeam.guards.resources import end_with_parent, restrict
+
+_START = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from gbeam.guards.confined import serve; serve()"
+_PATIENCE = 6  # times the processor time: a disk, or a machine that does other things as well
+_ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+_PLAIN = "biufcS"  # kinds of arrays that are bytes; those of objects hold text
+_OUT_OF_MEMORY = 77  # exit status
+
+
+def confined(
+    reader: Callable[..., Any], path: str | os.PathLike[str], *arguments: Any, refuse: Callable[[str], InputError]
+) -> Any:
+    """Call ``reader(path, *arguments)`` in a process of its own, and return what it returns.
+
+    Parameters
+    ----------
+    reader : callable
+        Of a module, by its name there; returns what JSON has, and arrays of numbers or text.
+    path : path
+    *arguments
+        As JSON has them.
+    refuse : callable
+        Returns the error of a file whose problem is that it ends, blocks or fills the process.
+
+    Raises
+    ------
+    InputError
+        That the reader raises, or that `refuse` returns.
+    ComputationError
+        If the process does not start, or its answer has no room.
+    """
+    size = os.stat(path).st_size
+    memory, seconds = READER_BYTES + 3 * size, READER_SECONDS + size // READER_RATE
+    function = [reader.__module__, reader.__qualname__]
+    request = json.dumps([memory, seconds, function, [os.fspath(path), *arguments]]).encode()
+    with tempfile.TemporaryFile() as reply:
+        try:
+            status = subprocess.run(
+                [sys.executable, "-P", "-c", _START, json.dumps(sys.path)],
+                input=request,
+                stdout=reply,
+                stderr=subprocess.DEVNULL,
+                env=os.environ | _ONE_THREAD,
+                timeout=_PATIENCE * seconds,
+                check=False,
+            ).returncode
+        except subprocess.TimeoutExpired:
+            raise refuse(f"is not read within {_PATIENCE * seconds} s") from None
+        if status == 1:  # Python's own
+            why = f"is there no memory for it, or no room in {tempfile.gettempdir()}?"
+            raise ComputationError("not read", f"the process that reads {path} ended: {why}")
+        if status == _OUT_OF_MEMORY:
+            raise refuse(f"takes more than {in_bytes(memory)} of memory to read")
+        if status == -getattr(signal, "SIGXCPU", 0):
+            raise refuse(f"takes more than {seconds} s of processor time to read")
+        if status:
+            name = next((each.name for each in signal.Signals if each == -status), f"status {status}")
+            raise refuse(f"is damaged: it ends the library that reads it ({name})")
+        outcome, answer, said = _received(reply)
+    for each in said:
+        warnings.warn(each, stacklevel=2)
+    if outcome == "refused":
+        raise InputError(*answer)
+    if outcome == "defect":
+        raise RuntimeError(f"{path} cannot be read\n{answer}")
+    return answer
+
+
+def serve() -> None:
+    """Answer the request on standard input with a file of arrays on standard output."""
+    end_with_parent()
+    memory, seconds, (module, name), arguments = json.load(sys.stdin)
+    restrict(memory, seconds)
+    try:
+        with os.fdopen(os.dup(1), "wb") as reply, warnings.catch_warnings(record=True) as said:
+            os.dup2(2, 1)  # what a library prints is no answer
+            _send(*_answer(module, name, arguments), said, reply)
+    except MemoryError:
+        os._exit(_OUT_OF_MEMORY)
+    os._exit(0)  # at once: nothing has to be cleaned up
+
+
+def _answer(module: str, name: str, arguments: Sequence[Any]) -> tuple[str, Any]:
+    try:
+        return "done", getattr(import_module(module), name)(*arguments)
+    except InputError as error:
+        return "refused", [error.where, error.problem, error.fix]
+    except MemoryError:
+        raise
+    except Exception:
+        from traceback import format_exc
+
+        return "defect", format_exc()
+
+
+def _send(outcome: str, answer: Any, said: Iterable[warnings.WarningMessage], reply: IO[bytes]) -> None:
+    arrays: list[NDArray[Any]] = []
+    text = json.dumps(_packed([outcome, answer, [str(each.message) for each in said]], arrays))
+    np.savez(reply, np.frombuffer(text.encode(), dtype=np.uint8), *arrays)
+
+
+def _received(reply: IO[bytes]) -> Any:
+    reply.seek(0)
+    with np.load(reply, allow_pickle=False) as arrays:
+        return _unpacked(json.loads(arrays["arr_0"].tobytes()), arrays)
+
+
+def _packed(value: Any, arrays: list[NDArray[Any]]) -> Any:
+    """Return the value with its arrays replaced by their numbers in a list, as JSON has it."""
+    if isinstance(value, dict):
+        return {"mapping": {str(key): _packed(each, arrays) for key, each in value.items()}}
+    if isinstance(value, (list, tuple)):
+        return [_packed(each, arrays) for each in value]
+    if isinstance(value, (np.ndarray, np.generic)):
+        array = np.asarray(value)
+        if array.dtype.kind in _PLAIN:
+            arrays.append(array)
+            return {"array": len(arrays)}
+        return {"texts": [str(each) for each in array.flat], "shape": array.shape}
+    return value
+
+
+def _unpacked(value: Any, arrays: Any) -> Any:
+    if isinstance(value, list):
+        return [_unpacked(each, arrays) for each in value]
+    if not isinstance(value, dict):
+        return value
+    if "array" in value:
+        return arrays[f"arr_{value['array']}"]
+    if "texts" in value:
+        return np.array(value["texts"], dtype=object).reshape(value["shape"])
+    return {key: _unpacked(each, arrays) for key, each in value["mapping"].items()}

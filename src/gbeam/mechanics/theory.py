@@ -1,0 +1,312 @@
+"""The same beam by a fuller theory, as linear models: Timoshenko's shear and rotary inertia, Saint-Venant's twist.
+
+No model here has them. These two, the slender beam and the thick one on the same shapes, say what that leaves out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.integrate.equations import LinearTerms
+from gbeam.mechanics.assembly import load_work, sections_of
+from gbeam.mechanics.damping import damping_matrix
+from gbeam.mechanics.enrichment import enrichment, own_families
+from gbeam.mechanics.equations.linear import LoadTerms, coefficients, geometric_of
+from gbeam.mechanics.equations.virtual_work import LoadWork
+from gbeam.mechanics.fields.basis import Families, Quadrature
+from gbeam.mechanics.fields.strained import StrainedField
+from gbeam.mechanics.fields.taylor import Places
+from gbeam.mechanics.structure import Structure
+from gbeam.structure.beam import Beam
+from gbeam.structure.plate import stiffening
+
+Array = NDArray[np.float64]
+NEW = 1e-4  # of a vector's length in energy: less of it is nothing that the others have not
+LEVELS = 2  # of Krylov's sequence
+# Lengths over radius of gyration from which a direction counts as stiff in shear: its first ten modes change by less
+# than 1e-3, and modes of the section itself, of shear and rotary inertia, are so high that rounding hides the low ones.
+SLENDEREST = 1500.0
+CHUNK = 64  # loaded points whose second derivatives are held at a time
+SLENDER, SHEAR, TWIST = (0, 4, 5), (1, 2), (3,)  # strains: stretch, shear along y and z, twist, curvatures
+CORNERS = np.array([(1, 1), (1, -1), (-1, 1), (-1, -1)])  # particles of a thick section, in radii of gyration
+
+
+class Theory(NamedTuple):
+    """A beam by two theories.
+
+    Parameters
+    ----------
+    slender : Structure
+        Linear, with the coordinates of the structure first, in its order, and others.
+    thick : Structure
+        With shears and twist after these, and rotary inertia.
+    columns : dict of str to slice
+        The thick beam's coordinates of ``shear`` and of ``twist``.
+    curvature : (2, g, n)
+        Slopes of the curvatures about y and z at the nodes, by coordinate of the thick beam.
+    rigidity : (2, g)
+        EI_y and EI_z of the model there times the quadrature's weights, N m³.
+    node : (g,) m
+    bodies : (b, 3, n)
+        Slopes of the places of the bodies' centres.
+    beam : Beam
+    own : int
+        Number of the structure's coordinates.
+    beyond : mass (n, own), terms (features, n, own) and (features, n)
+        What the thick beam's equations have beyond the slender one's, of the structure's coordinates.
+    """
+
+    slender: Structure
+    thick: Structure
+    columns: dict[str, slice]
+    curvature: Array
+    rigidity: Array
+    node: Array
+    bodies: Array
+    beam: Beam
+    own: int
+    beyond: tuple[Array, LinearTerms]
+
+    def plate(self, q: Array) -> Array:
+        """Stiffness (n, n) that the strip has beyond the model's, by the largest curvatures at coordinates (t, n)."""
+        bent = np.abs(np.einsum("agi,ti->atg", self.curvature, q)).max(axis=1)
+        factor = np.stack(stiffening(self.beam, self.node, bent))
+        weighted = ((factor - 1) * self.rigidity)[..., None] * self.curvature
+        return np.asarray(np.einsum("agi,agj->ij", self.curvature, weighted))
+
+    def variants(self, plate: Array) -> tuple[Structure, Structure]:
+        """The thick beam, and the same with the stiffness of a plate (n, n) besides."""
+        c = self.thick.coefficients
+        return self.thick, replace(self.thick, coefficients=replace(c, stiffness=c.stiffness + plate))
+
+
+def theory_of(structure: Structure) -> Theory:
+    """A structure's beam by two theories; kept for the next call.
+
+    Parameters
+    ----------
+    structure : Structure
+        With a source.
+    """
+    if "theory" not in structure.kept:
+        more = enrichment(structure)
+        families = own_families(structure, more.beam, more.rule)
+        structure.kept["theory"] = _Parts(structure, more.beam, more.rule).theory(families)
+    kept: Theory = structure.kept["theory"]
+    return kept
+
+
+class _Parts:
+    """What a beam's energies are made of, at the nodes of a quadrature and at its bodies, loads and stations.
+
+    Strains are columns of their values at the nodes, family by family, and of the stretches of the root's springs.
+    """
+
+    def __init__(self, structure: Structure, beam: Beam, rule: Quadrature) -> None:
+        self.structure, self.beam, self.rule = structure, beam, rule
+        x, material, section = rule.node, beam.material, beam.section.at(rule.node)
+        axial, about_y, about_z = beam.rigidities(x)
+        in_shear = [
+            material.rigidity * section.area * k for k in beam.section.shear_coefficients(x, float(material.ratio))
+        ]
+        torsion = material.rigidity * beam.section.torsion_constant(x)
+        springs = np.array([*beam.root.springs.values()], dtype=float)
+        nodal = np.stack([axial, *in_shear, torsion, about_y, about_z]) * rule.weight
+        self.stiffness = np.concatenate([nodal.ravel(), springs])
+        self.families = np.append(np.repeat(np.arange(6), len(x)), [SLENDER[0]] * len(springs))
+        self.line = material.density * section.area * rule.weight
+        self.gyration = np.sqrt(np.stack([section.inertia_z, section.inertia_y]) / section.area)
+        slender = beam.length > SLENDEREST * self.gyration.max(axis=1)
+        # Without its torsion constant a section does not twist.
+        self.known = ~np.isnan(self.stiffness) & ~np.isin(self.families, np.array(SHEAR)[slender])
+        loaded = [load.at for load in beam.loads if load.at is not None]
+        self.first = len(x) + len(beam.masses)
+        self.first_station = self.first + len(loaded)
+        self.points = np.concatenate([x, [body.at for body in beam.masses], loaded, structure.stations])
+        self.cumulative, self.at_nodes = rule.cumulative(self.points), rule.cumulative(x)
+        self.move, self.turn = beam.root.directions()
+
+    def field(self, strains: Array) -> StrainedField:
+        """The field of shapes with some strains (m, n)."""
+        nodal, root = np.split(strains, [6 * len(self.rule.node)])
+        shaped = nodal.reshape(6, -1, strains.shape[1])
+        return StrainedField(self.points, self.cumulative, self.at_nodes, shaped, self.move @ root, self.turn @ root)
+
+    def particles(self, *, thick: bool) -> tuple[Array, Array, Array]:
+        """Point, mass and offset of every particle; of a thick beam's section four have its rotary inertia."""
+        nodes, corners = len(self.rule.node), CORNERS if thick else 0 * CORNERS[:1]
+        y, z = (corners.T[..., None] * self.gyration[:, None]).reshape(2, -1)
+        at = [np.tile(np.arange(nodes), len(corners))]
+        mass, offset = [np.tile(self.line / len(corners), len(corners))], [np.stack([0 * y, y, z], axis=-1)]
+        for k, body in enumerate(self.beam.masses):
+            masses, places = body.particles()
+            at.append(np.full(len(masses), nodes + k))
+            mass.append(masses)
+            offset.append(places)
+        return np.concatenate(at), np.concatenate(mass), np.concatenate(offset)
+
+    def pulled(self, force: Array, moment: Array) -> Array:
+        """Generalised forces (m, k) on the strains of forces and moments (3, points, k) at the points."""
+        slope, angle = self.cumulative.T @ force, self.cumulative.T @ moment
+        root = moment.sum(axis=1)
+        for onto, of, sign in ((2, 1, 1), (1, 2, -1)):  # the axis turns with its sections
+            angle[onto] += sign * self.at_nodes.T @ slope[of]
+            root[onto] += sign * slope[of].sum(axis=0)
+        springs = self.move.T @ force.sum(axis=1) + self.turn.T @ root
+        return np.concatenate([np.concatenate([slope, angle]).reshape(-1, force.shape[-1]), springs])
+
+    def answers(self, own: Array) -> Array:
+        """Static answers (m, k) of the thick beam: to the inertia of its own shapes, to accelerations and loads."""
+        at, mass, offset = self.particles(thick=True)
+        arm = offset.T[..., None]
+        onto = at == np.arange(len(self.points))[:, None]  # (points, particles)
+
+        def inertia(move: Array, turn: Array) -> Array:
+            each = mass[:, None] * (move[:, at] + np.cross(turn[:, at], arm, axis=0))
+            return self.pulled(onto @ each, onto @ np.cross(arm, each, axis=0))
+
+        def of(strains: Array) -> Array:
+            field = self.field(strains)
+            return inertia(field.displacements(), field.angles(self.cumulative))
+
+        still = np.zeros((3, len(self.points), 3))
+        even = still + np.eye(3)[:, None]
+        straight = np.stack([self.points, 0 * self.points, 0 * self.points])[..., None]
+        loads = [of(own), inertia(even, still), inertia(np.cross(even, straight, axis=0), even)]
+        if self.beam.loads:
+            work, points = self.work(self.field(own))
+            for load in range(len(self.beam.loads)):
+                act = np.bincount(points, work.weight * (work.load == load), len(self.points))[:, None] * even
+                loads += [self.pulled(act, still), self.pulled(still, act)]
+        with np.errstate(divide="ignore"):
+            flexibility = np.where(self.known, 1 / self.stiffness, 0.0)[:, None]
+        answers = [flexibility * np.concatenate(loads, axis=1)]
+        for _ in range(LEVELS - 1):
+            answers.append(flexibility * of(answers[-1]))
+        return np.concatenate(answers, axis=1)
+
+    def work(self, field: StrainedField) -> tuple[LoadWork, Any]:
+        """The loads on a field, and the points where they act."""
+        return load_work(self.beam, field, self.rule, self.first)  # type: ignore[arg-type]
+
+    def theory(self, families: Families) -> Theory:
+        """Both theories, with own shapes."""
+        own = self.own(families)
+        answers = self.answers(own)
+        blocks = [np.concatenate([own, self.others(answers, SLENDER, own)], axis=1)]
+        blocks += [self.others(answers, family) for family in (SHEAR, TWIST)]
+        ends = np.cumsum([0, *(block.shape[1] for block in blocks)]).tolist()
+        thick, slender = np.concatenate(blocks, axis=1), blocks[0]
+        field, count, nodes = self.field(thick), len(self.beam.masses), len(self.rule.node)
+        bodies = slice(nodes, nodes + count)
+        offset = np.array([body.offset for body in self.beam.masses]).reshape(count, 3)
+        arms = np.cross(field.angles(self.cumulative[bodies]), offset.T[..., None], axis=0)
+        _, about_y, about_z = self.beam.rigidities(self.rule.node)
+        models = self.model(slender, thick=False), self.model(thick, thick=True)
+        count_own = own.shape[1]
+        return Theory(
+            *models,
+            {"shear": slice(ends[1], ends[2]), "twist": slice(ends[2], ends[3])},
+            field.strains[4:],
+            np.stack([about_y, about_z]) * self.rule.weight,
+            self.rule.node,
+            np.moveaxis(field.displacements()[:, bodies] + arms, 0, 1),
+            self.beam,
+            count_own,
+            _beyond(*models, count_own),
+        )
+
+    def own(self, families: Families) -> Array:
+        """Strains (m, n) of the structure's own coordinates."""
+        s, v, w = (family(self.rule.node) for family in families)
+        nodes = len(self.rule.node)
+        columns = [(0, s.slope), (5, v.curvature), (4, -w.curvature)]
+        own = np.zeros((len(self.stiffness), self.structure.size))
+        start = 0
+        for family, values in columns:
+            own[family * nodes : (family + 1) * nodes, start : start + values.shape[1]] = values
+            start += values.shape[1]
+        own[6 * nodes :, start:] = np.eye(len(self.move.T))
+        return own
+
+    def others(self, answers: Array, families: tuple[int, ...], own: Array | None = None) -> Array:
+        """The part of some answers in families of strains, without that of own shapes, orthonormal in energy."""
+        chosen = np.isin(self.families, families) & self.known
+        root = np.sqrt(np.where(chosen, self.stiffness, 0.0))[:, None]
+        known = np.zeros((len(root), 0)) if own is None else np.linalg.qr(root * own)[0]
+        whole = np.sqrt((np.where(self.known, self.stiffness, 0.0)[:, None] * answers**2).sum(axis=0))
+        first = known.shape[1]
+        for vector, length in zip((root * answers).T, whole, strict=True):
+            rest = vector - known @ (known.T @ vector)
+            rest = rest - known @ (known.T @ rest)
+            if np.linalg.norm(rest) > NEW * length:
+                known = np.concatenate([known, (rest / np.linalg.norm(rest))[:, None]], axis=1)
+        return np.where(root > 0, known[:, first:] / np.where(root > 0, root, 1), 0.0)
+
+    def model(self, strains: Array, *, thick: bool) -> Structure:
+        """The linear structure with shapes of some strains (m, n)."""
+        structure, beam = self.structure, self.beam
+        field, (at, mass, offset) = self.field(strains), self.particles(thick=thick)
+        axis = field.places()
+        angles = np.moveaxis(field.angles(self.cumulative), 0, 1)
+        places = Places(axis.r0[at] + offset, axis.first[at] + np.cross(angles[at], offset[..., None], axis=1))
+        weights = np.stack([mass, *(mass * places.r0.T)])
+        onto = (at == np.arange(len(self.points))[:, None]).T
+        bent = field.weighted(weights @ onto, np.einsum("kp,pc,pi->kci", weights, offset, onto))
+        stiffness = strains.T @ (np.where(self.known, self.stiffness, 0.0)[:, None] * strains)
+        work, loaded, loads = None, np.zeros(0, int), None
+        if beam.loads:
+            work, loaded = self.work(field)
+            loads = _load_terms(work, field, loaded, len(beam.loads))
+        c = coefficients(mass, places, stiffness, geometric=geometric_of(bent[0], bent[1:]), loads=loads)
+        ratio: Any = beam.damping_ratio
+        if isinstance(ratio, tuple):
+            ratio = (*ratio, *[ratio[-1]] * (strains.shape[1] - len(ratio)))
+        return replace(
+            structure,
+            kind="FOAM",
+            linear=True,
+            hub_force=True,
+            mass=mass,
+            places=places,
+            station_places=axis[self.first_station :],
+            coefficients=c.damped(damping_matrix(0.0 if ratio is None else ratio, c.mass, c.stiffness)),
+            inertia=None,
+            elasticity=None,
+            field=field,  # type: ignore[arg-type]
+            first_station=self.first_station,
+            sections=sections_of(beam, structure.stations, field, (mass, at), loaded, self.first_station),  # type: ignore[arg-type]
+            work=work,
+            source=None,
+            warnings=(),
+        )
+
+
+def _beyond(slender: Structure, thick: Structure, own: int) -> tuple[Array, LinearTerms]:
+    few, more = slender.coefficients, thick.coefficients
+
+    def difference(less: Array, whole: Array) -> Array:
+        out = np.array(whole[..., :own])
+        out[..., : few.size, :] -= less[..., :own]
+        return out
+
+    force = np.array(more.terms.force)
+    force[:, : few.size] -= few.terms.force
+    velocity = difference(few.terms.velocity, more.terms.velocity)
+    stiffness = difference(few.terms.stiffness, more.terms.stiffness)
+    return difference(few.mass, more.mass), LinearTerms(velocity, stiffness, force)
+
+
+def _load_terms(work: LoadWork, field: StrainedField, at: Array, count: int) -> LoadTerms:
+    """The generalised forces of the loads to first order: of some points at a time."""
+    parts = []
+    for some in np.array_split(np.arange(len(at)), -(-len(at) // CHUNK)):
+        places, turns = field.sampled(at[some]).curved()
+        straight = np.broadcast_to(np.eye(3), (len(some), 3, 3))
+        acting = LoadWork(work.field, work.load[some], work.weight[some], work.follower[some])
+        parts.append(acting.about(count, places, straight, turns.first, turns.second))
+    return LoadTerms(sum(part.constant for part in parts), sum(part.slope for part in parts))

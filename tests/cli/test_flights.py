@@ -1,0 +1,175 @@
+"""A flight's record from the command line: a part of it, what `check` says of it, and what is odd in it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import gbeam as gb
+
+from ..calling import Answer
+from ..scenarios import SPECIMEN, model
+
+Call = Callable[..., Answer]
+pytestmark = pytest.mark.usefixtures("without_figures")
+
+# A pull that is followed, and at 11.2 s a quick one of 3.5 g that the smoothing rounds off.
+CORNERS = {0: 1.5, 1: 1.5, 3: 6.0, 4: 6.0, 6: 1.5, 10.65: 1.5, 11.2: 3.5, 11.75: 1.5, 15.99: 1.5}
+MACHINE = """\
+[motion.spin]
+kind = "centrifuge"
+tracks = "flight"
+arm = "3.3 m"
+control_point = "200 mm"
+inverse = "flat"
+gravity = true
+smoothing = "420 ms"
+accept = { peaks = "5 %" }
+spin_up = "2 s"
+spin_down = "2 s"
+"""
+SCENARIO = (
+    'title = "a quick peak"\n'
+    + SPECIMEN
+    + model("FOAM", 0, 0, 2)
+    + '[motion.flight]\nkind = "flight"\n'
+    + '[motion.flight.record]\nfile = "flight.csv"\ntime = "t"\nx = "0"\ny = "0"\nz = "z"\nunit = "g"\n'
+    + MACHINE
+)
+DURATION = '[response]\nduration = "6 s"\n'
+TO = "motion.flight.record.to=6 s"
+
+
+@pytest.fixture
+def scenario(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The record and its scenario, in the current folder."""
+    monkeypatch.chdir(tmp_path)
+    time = 0.01 * np.arange(1600)
+    load = np.interp(time, list(CORNERS), list(CORNERS.values()))
+    np.savetxt("flight.csv", np.column_stack([time, load]), delimiter=",", header="t,z", comments="", fmt="%.6g")
+    file = tmp_path / "s.toml"
+    file.write_text(SCENARIO)
+    return file
+
+
+def test_a_flight_is_not_accepted_by_leaving_out_what_is_missed(scenario: Path, gbeam: Call) -> None:
+    """With a duration of 6 s the run was accepted, and the verdict spoke of the flight."""
+    whole = gbeam("run", scenario)
+    assert whole.status == 1 and "not accepted: peaks 6." in whole.err and "3.5 g at 11.20 s: 3.27 g" in whole.out
+    assert " of 15.99 s" not in whole.out
+    scenario.write_text(SCENARIO + DURATION, encoding="utf-8")
+    cut = gbeam("run", scenario)
+    assert cut.status == 2
+    assert cut.err == (
+        f"{scenario}:31:12: response.duration: is 6 s, and the record of 'flight' lasts 15.99 s: "
+        "the rest would be left out\n"
+        '    31 | duration = "6 s"\n'
+        "       |            ^^^^^\n"
+        "       = leave it out, or ask for a part on the record itself: "
+        'to = "6 s" in [motion.flight.record]\n'
+    )
+
+
+def test_a_part_is_run_where_it_is_asked_for_and_said_first(scenario: Path, gbeam: Call) -> None:
+    answer = gbeam("run", scenario, "--set", TO, "--json", "--out", "out")
+    (comparison,) = answer.json["comparisons"]
+    assert answer.status == 0 and comparison["accepted"]
+    assert comparison["verdict"].startswith("0 to 6 of 15.99 s; largest load anywhere")
+    assert comparison["lines"][0].startswith("accepted for 0 to 6 of 15.99 s only: peaks")
+    assert comparison["span"] == {"start": 0.0, "end": pytest.approx(6.0)}
+    assert comparison["whole"] == {"start": 0.0, "end": 15.99}
+    for name in ("flight", "spin"):
+        assert answer.json["motions"][name]["whole"] == {"start": 0.0, "end": 15.99}
+    said = "motion.flight: 0 to 6 of 15.99 s are flown, and the rest is left out"
+    assert said in answer.json["motions"]["flight"]["warnings"]
+    tree = xr.open_datatree("out/result.nc")
+    assert tree.attrs["verdict"] == comparison["verdict"] and "Verdict" not in tree.attrs
+    kept = tree["comparisons/spin"]
+    assert [float(kept[name]) for name in ("flight_from", "flight_to", "whole_from", "whole_to")] == pytest.approx(
+        [0.0, 6.0, 0.0, 15.99]
+    )
+    assert float(tree["motions/flight/whole_to"]) == 15.99
+    tree.close()
+    later = gbeam("run", scenario, "--set", "motion.flight.record.from=10 s", "--json").json["comparisons"][0]
+    assert later["verdict"].startswith(
+        "10 to 15.99 of 15.99 s; flight's load peak of 3.5 g at 11.20 s is not reproduced"
+    )
+    assert gbeam("run", scenario, "--set", "motion.flight.record.to=6 s", "--set", "response.duration=5 s").status == 2
+
+
+def test_flights_of_other_lengths_are_cut_on_their_records(scenario: Path, gbeam: Call) -> None:
+    other = SCENARIO.split("[motion.flight]")[1].split("[motion.spin]")[0].replace("motion.flight", "motion.short")
+    scenario.write_text(SCENARIO + "[motion.short]" + other + 'to = "9 s"\n', encoding="utf-8")
+    answer = gbeam("check", scenario)
+    assert answer.status == 2
+    assert (
+        "motion.flight.record: is longer than the flights that are run together: the record of 'flight'" in answer.err
+    )
+    assert 'ask for a part on the record itself: to = "9 s" in [motion.flight.record]' in answer.err
+    assert gbeam("check", scenario, "--set", "motion.flight.record.to=9 s").status == 0
+
+
+def test_python_says_the_part_too(scenario: Path) -> None:
+    """Of a record, of profiles that end later, and where the machine's run is shorter than the flight's."""
+    record = gb.read_record("flight.csv", "t", "0", "0", "z", "g")
+    beam = gb.Beam(0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9), damping_ratio=0.01)
+    structure = gb.assemble(beam, "FOAM", z=1)
+
+    def both(flight: gb.Flight, *, of_machine: float = 6.0) -> gb.Comparison:
+        machine = gb.Centrifuge(flight, arm=3.3, control_point=0.2, inverse="flat", gravity=True, smoothing=0.06)
+        runs = ((flight, 6.0), (machine, of_machine))
+        a, b = (gb.simulate(structure, each, duration=length, step=2e-3, estimate=False) for each, length in runs)
+        return gb.compare(a, b, accept={"peaks": 0.05})
+
+    cut = both(gb.Flight(acceleration=record))
+    assert (
+        cut.whole == (0.0, 15.99)
+        and cut.part == "0 to 6 of 15.99 s"
+        and str(cut).startswith("0 to 6 of 15.99 s; largest load")
+    )
+    assert both(gb.Flight(z=gb.tabulated([0, 3, 12], [15.0, 60.0, 15.0]))).part == "0 to 6 of 12 s"
+    assert both(gb.Flight(z=gb.tabulated([0, 3, 6], [15.0, 60.0, 15.0]))).part == ""
+    assert both(gb.Flight(z=gb.tabulated([0, 3, 6], [15.0, 60.0, 15.0])), of_machine=5.0).part == "0 to 5 of 6 s"
+
+
+def test_check_says_what_a_record_is(scenario: Path, gbeam: Call) -> None:
+    answer = gbeam("check", scenario)
+    assert answer.status == 0
+    assert answer.out.split("tracks flight\n")[1].split("  response")[0] == (
+        "  record    flight: flight.csv, 1600 samples at 100 Hz, 0 to 15.99 s, specific force\n"
+        "            x = 0\n"
+        "            y = 0\n"
+        "            z = z  1.5 to 6 g\n"
+        "            largest load 6 g (x 0, y 0, z 6) at 3 s\n"
+        "            nowhere near 1 g\n"
+    )
+    described = gbeam("check", scenario, "--json").json["records"]["flight"]
+    assert described["samples"] == 1600 and described["rate"] == pytest.approx(100)
+    assert described["largest"] == {"x": 0, "y": 0, "z": pytest.approx(6 * 9.80665)} and described["level"] is None
+    part = gbeam("check", scenario, "--set", "motion.flight.record.from=2 s", "--set", TO)
+    assert "flight.csv, 401 samples at 100 Hz, 2 to 6 of 15.99 s, specific force" in part.out
+    assert "warning: motion.flight: 2 to 6 of 15.99 s are flown, and the rest is left out" in part.out
+
+
+def test_check_and_run_say_what_is_odd_in_a_record(scenario: Path, gbeam: Call) -> None:
+    rows = Path("flight.csv").read_text(encoding="utf-8").splitlines()
+    z = np.array([float(row.split(",")[1]) for row in rows[1:]])
+    odd = np.minimum(z, 5.537)
+    odd[800] = 1.9
+    lines = [f"{0.01 * i:.2f},{value:g}" for i, value in enumerate(odd)]
+    Path("flight.csv").write_text("\n".join(["t,z", *lines]), encoding="utf-8")
+    notes = (
+        "motion.flight.record: z, column 'z', stands at its extreme, 5.537 g, from 2.8 to 4.2 s (rows 282 to 422): ",
+        "motion.flight.record: 1 sample(s) that look like spikes, the first at 8 s (row 802), are kept; despike = true",
+    )
+    checked, ran = gbeam("check", scenario, "--json").json, gbeam("run", scenario, "--set", TO, "--json").json
+    for note in notes:
+        assert any(warning.startswith(note) for warning in checked["warnings"])
+    assert any(warning.startswith(notes[0]) for warning in ran["motions"]["flight"]["warnings"])
+    along = [f"motion.flight.record.{each}" for each in ('z="0"', 'x="z"')] + ["motion.spin.idle=1.4 g"]
+    arguments = [word for each in along for word in ("--set", each)]
+    assert "lies along the beam (x is 5.537 g), which bends it little" in gbeam("check", scenario, *arguments).out

@@ -1,0 +1,68 @@
+"""What is left out means the same in a file and in Python."""
+
+from __future__ import annotations
+
+import inspect
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import gbeam as gb
+from gbeam.scenario import schema
+
+CLASSES = [
+    (gb.Centrifuge, schema.Centrifuge),
+    (gb.Hub, schema.Hub),
+    (gb.Flight, schema.Flight),
+    (gb.AxisLimit, schema.AxisLimit),
+    (gb.Beam, schema.Beam),
+    (gb.PointMass, schema.PointMass),
+    (gb.Load, schema.Load),
+    (gb.Model, schema.Model),
+    (gb.ResponseSettings, schema.Response),
+]
+SCENARIO = """
+[beam]
+length = "300 mm"
+section = { shape = "rectangle", width = "20 mm", thickness = "4 mm" }
+material = { density = 2700, youngs_modulus = "70 GPa" }
+damping_ratio = 0.01
+[model]
+kind = "FOAM"
+modes = { axial = 0, y = 1, z = 1 }
+[motion.flight]
+kind = "flight"
+acceleration = { z = { profile = "trapezoid", level = 78.5, jerk = 39.2, start = 1, hold = 1 } }
+[motion.centrifuge]
+kind = "centrifuge"
+tracks = "flight"
+machine = "specimen-3.3m"
+control_point = "200 mm"
+gravity = false
+[response]
+duration = "6 s"
+"""
+
+
+@pytest.mark.parametrize(("of_python", "table"), CLASSES, ids=lambda each: each.__name__)
+def test_what_is_left_out_is_left_out_in_both_or_the_same(of_python: Any, table: Any) -> None:
+    shared = inspect.signature(of_python).parameters.keys() & table.model_fields.keys()
+    assert shared
+    for name in shared:
+        argument, field = inspect.signature(of_python).parameters[name], table.model_fields[name]
+        if field.is_required():
+            assert argument.default is inspect.Parameter.empty, name
+        elif field.default is not None and field.default_factory is None:  # a key without a default is not passed on
+            assert argument.default == (None if field.default == "auto" else field.default), name
+
+
+def test_a_machine_of_a_file_is_that_of_python(tmp_path: Path) -> None:
+    path = tmp_path / "scenario.toml"
+    path.write_text(SCENARIO, encoding="utf-8")
+    of_file = gb.read_scenario(path).motions["centrifuge"]
+    flight = gb.Flight(z=gb.trapezoid(78.5, jerk=39.2, start=1, hold=1))
+    of_python = gb.Centrifuge(flight, control_point=0.2, limits=gb.machines["specimen-3.3m"], gravity=False)
+    assert isinstance(of_file, gb.Centrifuge)
+    for name in ("geometry", "control_point", "method", "ends", "idle", "smoothing", "clip"):
+        assert repr(getattr(of_file, name)) == repr(getattr(of_python, name)), name

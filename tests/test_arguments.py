@@ -1,0 +1,460 @@
+"""Every public function refuses objects of the wrong type by the argument's name, and options that it does not have."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import fields as dataclass_fields
+from dataclasses import replace
+from decimal import Decimal
+from inspect import Parameter, signature
+from operator import attrgetter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pint
+import pytest
+
+import gbeam as gb
+from gbeam.analysis.response.settings import Settings
+
+from .scenarios import FAST, FREE_HUB
+
+RESULTS = {"Comparison", "Fit", "Optimum", "Response", "Sensitivity", "ShapedCommand", "StateSpace", "Study", "Sweep"}
+NO_FUNCTIONS = {
+    "GbeamError",
+    "ComputationError",
+    "InputError",
+    "Structure",
+    "machines",
+}  # Structure: gb.assemble makes it
+PUBLIC = [name for name in gb.__all__ if name not in RESULTS | NO_FUNCTIONS]
+WRONG: list[Any] = [
+    object(), None, "nonsense", b"nonsense", 2 + 3j, [object()], ["nonsense"], {"nonsense": object()}, {1, 2}, gb.Beam,
+    gb, np.array(["nonsense"]), lambda *_: object(),
+]  # fmt: skip
+
+
+class Given:
+    """Arguments with which the public functions can be called."""
+
+    def __init__(self, folder: Path) -> None:
+        self.beam = gb.Beam(0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9), damping_ratio=0.01)
+        self.structure = gb.assemble(self.beam, "FOAM", axial=0, y=1, z=1)
+        pressed = replace(self.beam, loads=[gb.Load(0.3, force=(-1.0, 0.0, 0.0))])
+        self.column = gb.assemble(pressed, "FOAM", axial=0, y=1, z=1)
+        self.flight = gb.Flight(z=gb.trapezoid(60.0, jerk=600.0, start=0.05, hold=0.2))
+        self.still = gb.Flight(z=30.0)
+        self.hub = gb.Hub(radius=0.5, rate=1.0)
+        self.free_hub = gb.Hub(radius=0.5, inertia=200.0)
+        self.settings = gb.ResponseSettings(duration=0.1, step=5e-3, estimate=False)
+        self.centrifuge = gb.Centrifuge(
+            self.still, arm=3.3, control_point=0.2, gravity=False, inverse="flat", start="idle"
+        )
+        self.responses = [
+            gb.simulate(self.structure, motion, self.settings, name=name)
+            for name, motion in {"flight": self.still, "machine": self.centrifuge}.items()
+        ]
+        self.fast, self.slew, self.data = folder / "fast.toml", folder / "hub.toml", folder / "data.csv"
+        self.fast.write_text(FAST, encoding="utf-8")
+        self.slew.write_text(FREE_HUB, encoding="utf-8")
+        self.data.write_text("mode,frequency\n1,38\n2,180\n", encoding="utf-8")
+        self.record = Path(__file__).parents[1] / "examples" / "data" / "f16_8g_turn.csv"
+        self.case = gb.read_scenario(self.fast)
+        self.system = gb.linearize(self.structure, self.hub)
+
+    def calls(self) -> dict[str, tuple[tuple[Any, ...], dict[str, Any]]]:
+        base = self.flight.base(0.0)
+        columns = ("time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
+        settings = {"duration": 0.1, "step": 5e-3, "estimate": False}
+        beam = (0.3, self.beam.section, self.beam.material)
+        return {
+            "AxisLimit": ((1.0, 1.0, 1.0), {}),
+            "Beam": (beam, {"masses": [gb.PointMass(0.1, 0.1)], "loads": [], "root": gb.Root(), "damping_ratio": 0.01}),
+            "Case": (
+                ("case", self.beam, gb.Model("FOAM", z=1), {"flight": self.still}, self.settings),
+                {"tracks": {}, "stations": (0.1,), "accept": {}},
+            ),
+            "Centrifuge": (
+                (self.still,),
+                {
+                    "arm": 3.3, "control_point": 0.2, "gravity": False, "inverse": "flat", "start": "idle",
+                    "limits": None,
+                    "idle": None, "smoothing": 0.0, "mounting": "upright", "spin_up": None, "spin_down": None,
+                    "clip": False, "span": (0.0, 0.2),
+                },
+            ),
+            "Choice": ((lambda mounting, width: self.centrifuge, ("upright",), (0.0,)), {"refined": True,
+            "limited": True}),
+            "Flight": ((), {"x": 1.0, "y": 2.0, "z": 3.0}),
+            "Gauge": ((0.1,), {"y": 0.0, "z": 0.002}),
+            "Hub": (
+                (),
+                {
+                    "radius": 0.5, "rate": 1.0, "inertia": 2.0, "pointing": "outward", "setting_angle": 0.0,
+                    "gravity": (0.0, 0.0, -9.8), "stiffness": 0.0, "damping": 0.0,
+                },
+            ),
+            "Initial": (("undeformed",), {"tip_velocity": {"z": 0.1}}),
+            "Load": ((0.1,), {"force": (0.0, 0.0, 1.0), "moment": (0.0, 1.0, 0.0), "follower": False}),
+            "MachineLimits": ((gb.AxisLimit(), gb.AxisLimit(), gb.AxisLimit()), {"inertia": 1.0, "power": 1.0}),
+            "Material": (
+                (2700.0, 70e9),
+                {"yield_strength": 1e8, "fatigue_exponent": 5.0, "poissons_ratio": 0.3, "shear_modulus": 26e9},
+            ),
+            "Model": (("FOAM", 1, 1, 1), {"shapes": "clamped-free", "automatic": False}),
+            "PointMass": ((0.1, 0.1), {"inertia": (0.0, 0.0, 0.0), "offset": (0.0, 0.0, 0.0)}),
+            "ResponseSettings": (
+                (1.0,),
+                {
+                    "start": 0.0, "step": 0.1, "integrator": "newmark", "parameters": {}, "tolerance": 0.01,
+                    "residual_from": None, "initial": "equilibrium", "estimate": True, "loads": True, "histories": 0.1,
+                },
+            ),
+            "Root": ((1e6, 1e6, 1e6, 1e3, 1e3), {}),
+            "Section": (("rectangle", {"width": (0.02,), "thickness": (0.004,)}), {"stations": (), "plate": False}),
+            "Sine": ((1.0, 1.0, 0.0), {}),
+            "SmoothStep": ((1.0, 1.0, 0.0), {}),
+            "SplineProfile": ((1.0, [0.0] * 12), {"start": 0.0}),
+            "Sum": (((gb.constant(1.0), gb.constant(2.0)),), {}),
+            "assemble": ((self.beam, "FOAM", (0.1,)), {"axial": 0, "y": 1, "z": 1, "shapes": "clamped-free"}),
+            "balanced_truncation": ((self.system, 2), {}),
+            "buckling_acceleration": ((self.structure,), {"upper": None, "progress": None}),
+            "build_target": (
+                (gb.vector(z=30.0),),
+                {"span": (0.0, 1.0), "idle": None, "smoothing": 0.0, "gravity": False, "arm": 3.3, "clip": False,
+                "leave_out": ()},
+            ),
+            "campbell": (
+                (self.structure, self.hub),
+                {"speeds": [0.0, 1.0], "start": 0.0, "end": None, "count": 3, "modes": 2, "orders": (1, 2),
+                "name": "hub"},
+            ),
+            "choice_of": ((self.centrifuge, (0.05,)), {"limited": False}),
+            "commands": ((self.centrifuge.over(0.0, 0.1), 0.01), {}),
+            "compare": (tuple(self.responses), {"tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5}}),
+            "compare_models": ((self.case,), {"kinds": ("FOAM",), "progress": None}),
+            "constant": ((1.0,), {}),
+            "critical_load": ((self.column, base), {"upper": None, "progress": None}),
+            "critical_speed": ((self.structure, self.hub), {"upper": None, "name": "hub", "progress": None}),
+            "critical_speed_map": (
+                (self.beam, gb.Model("FOAM", y=1), self.hub, [0.1], [0.2]),
+                {"upper": None, "name": "hub", "progress": None},
+            ),
+            "describe": ((self.case,), {}),
+            "fit": (
+                (self.fast, self.data, ["beam.material.youngs_modulus"]),
+                {"bounds": None, "motion": "flight", "at": 0.0, "starts": 1, "overrides": (), "progress": None},
+            ),
+            "linearize": (
+                (self.structure, self.hub, 0.0),
+                {"rate": None, "q": None, "qd": None, "gauges": [gb.Gauge(0.1, z=0.002)], "name": "hub"},
+            ),
+            "modal_truncation": ((self.system, 1), {}),
+            "modes": ((self.structure, self.hub, 0.0), {"gyroscopic": True, "name": "hub"}),
+            "nonlinear_system": ((self.structure, self.free_hub), {"gauges": [gb.Gauge(0.1, z=0.002)]}),
+            "optimise": (
+                (self.fast, "flight.tip.z", ["beam.section.width"]),
+                {
+                    "subject_to": (), "bounds": None, "verb": "static", "motion": "flight", "at": 0.0, "starts": 1,
+                    "overrides": (), "progress": None,
+                },
+            ),
+            "place": (
+                (self.structure, self.still, gb.choice_of(self.centrifuge, (0.0,), limited=False), self.settings,
+                {"tip": 1.0}),
+                {"current": self.centrifuge, "names": ("flight", "machine"), "check": False},
+            ),
+            "plan": (
+                ("machine", self.centrifuge.over(0.0, 0.1), "flight"),
+                {"beam": self.beam, "tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5}, "title": "a"},
+            ),
+            "read_record": (
+                (self.record, *columns),
+                {"time_unit": "s", "quantity": "specific-force", "span": (None, 0.1)},
+            ),
+            "read_scenario": ((self.fast, ["beam.length=250 mm"]), {}),
+            "rerun": ((self.fast,), {}),
+            "sensitivity": (
+                (self.fast, ["flight.tip.z"], ["beam.section.width"]),
+                {"verb": "static", "motion": "flight", "at": 0.0, "overrides": (), "progress": None},
+            ),
+            "shape": (
+                (self.slew,),
+                {
+                    "angle": 1.0, "rate": None, "duration": 4.0, "limit": 1e3, "robust": 0.0, "check": "",
+                    "motion": "slew",
+                    "overrides": (), "progress": None,
+                },
+            ),
+            "shape_command": (
+                (gb.assemble(self.beam, "FOAM", y=1), self.free_hub),
+                {
+                    "angle": 1.0, "rate": None, "duration": 4.0, "limit": 1e3, "robust": 0.0, "pieces": 12,
+                    "check": None,
+                    "progress": None,
+                },
+            ),
+            "simulate": ((self.structure, self.still), {"name": "flight", "progress": None, **settings}),
+            "simulate_batch": (
+                ([(self.structure, self.still)],), {"together": 2, "one_structure": False, **settings}
+            ),
+            "smoothed": ((gb.constant(1.0), 0.1), {}),
+            "solve_equilibrium": ((self.structure, base), {"time": 0.0}),
+            "static": ((self.structure, self.still), {"time": 0.0, "name": "flight"}),
+            "study": ((self.case,), {"progress": None}),
+            "surface_gauges": ((self.beam, [0.1]), {}),
+            "sweep": (
+                (self.fast, {"beam.length": [0.29]}, ["flight.tip.z"]),
+                {
+                    "histories": (), "times": 11, "verb": "static", "motion": "flight", "at": 0.0, "overrides": (),
+                    "samples": None, "sampler": None, "seed": None, "workers": 1, "scheduler": None, "store": None,
+                    "resume": False, "confirmed": False, "progress": None,
+                },
+            ),
+            "tabulated": (([0.0, 1.0], [1.0, 2.0]), {}),
+            "trapezoid": ((1.0,), {"jerk": 1.0, "start": 0.0, "hold": 1.0}),
+            "vector": ((), {"x": 1.0, "y": 2.0, "z": 3.0}),
+        }  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def given(tmp_path_factory: pytest.TempPathFactory) -> Given:
+    return Given(tmp_path_factory.mktemp("given"))
+
+
+def called(function: Callable[..., Any], *args: Any, **keywords: Any) -> Any:
+    answer = function(*args, **keywords)
+    return list(answer) if function is gb.simulate_batch else answer
+
+
+@pytest.mark.parametrize("name", PUBLIC)
+def test_every_public_function_refuses_objects_of_the_wrong_type(
+    given: Given, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An InputError that names the argument; never what an attribute or an operator says that is not there."""
+    monkeypatch.chdir(tmp_path)  # a sweep's store may have any name
+    function = getattr(gb, name)
+    args, keywords = given.calls()[name]
+    if name != "rerun":
+        called(function, *args, **keywords)
+    names = [each.name for each in signature(function).parameters.values() if each.kind is not Parameter.VAR_KEYWORD]
+    left_out = {"acceleration", "torque", "settings", "conditioning", "provenance", "rates", "tip_displacement"}
+    assert {*names[: len(args)], *keywords} | left_out >= {*names}, name
+    problems = []
+    for at in [*range(len(args)), *keywords]:
+        refused = 0
+        for wrong in WRONG:
+            changed = list(args), dict(keywords)
+            changed[isinstance(at, str)][at] = wrong  # type: ignore[index]
+            argument = at if isinstance(at, str) else names[at]
+            try:
+                called(function, *changed[0], **changed[1])
+            except gb.GbeamError as error:
+                refused += isinstance(error, gb.InputError)
+            except Exception as error:
+                problems.append(f"{argument} = {wrong!r}: {type(error).__name__}: {error}")
+        if not refused:
+            problems.append(f"{argument}: nothing is refused")
+    assert not problems, "\n".join(problems)
+
+
+UNITS = pint.UnitRegistry()
+
+
+def numbers(value: Any) -> int:
+    """Count of the numbers in a value, or in what it holds."""
+    if isinstance(value, (list, tuple, dict)):
+        return sum(map(numbers, value.values() if isinstance(value, dict) else value))
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def with_numbers(value: Any, change: Callable[[float], Any]) -> Any:
+    """The value with each of its numbers changed."""
+    if isinstance(value, dict):
+        return {key: with_numbers(each, change) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return type(value)(with_numbers(each, change) for each in value)
+    return change(value) if numbers(value) else value
+
+
+def with_units(value: Any) -> dict[str, Any]:
+    """The value with its numbers as quantities, or as texts."""
+    said = {
+        "quantity": with_numbers(value, lambda number: number * UNITS.mm),
+        "unit": with_numbers(value, lambda number: UNITS.mm),
+        "without dimension": with_numbers(value, lambda number: number * UNITS.deg),
+        "text with a unit": with_numbers(value, lambda number: f"{number} mm"),
+        "text": with_numbers(value, str),
+    }
+    if isinstance(value, (list, tuple)) and all(map(numbers, value)):
+        said["array"] = np.array(value, dtype=float) * UNITS.mm
+        said["array of objects"] = np.array([number * UNITS.mm for number in value] + [None], dtype=object)[:-1]
+        said["the last alone"] = [*value[:-1], value[-1] * UNITS.mm]
+        said["the last alone a text"] = [*value[:-1], f"{value[-1]} mm"]
+    return said
+
+
+SHAPES: dict[str, tuple[tuple[Any, ...], dict[str, Any]]] = {
+    "Section.of": (("tube",), {"stations": (0.0, 0.3), "diameter": (0.02, 0.01), "wall": 1e-3}),
+    "Section.rectangle": (([0.02, 0.02], [0.004, 0.002], (0.0, 0.3)), {}),
+    "Section.circle": ((0.01,), {}),
+    "Section.tube": ((0.01, 1e-3), {}),
+    "Section.general": (
+        (8e-5, 1e-10, 1e-10, (), 0.01, 0.002),
+        {"torsion_constant": 1e-10, "shear_coefficient_y": 0.8, "shear_coefficient_z": 0.8},
+    ),
+}
+
+
+INSTEAD: dict[str, dict[str, Any]] = {  # of what stands in the calls of above
+    "Hub": {"radius": 0.5, "inertia": 2.0, "torque": 1.0},
+    "Initial": {"tip_displacement": {"z": 0.1}},
+    "Flight": {"z": 1.0, "rates": (0.1, 0.2, 0.3)},
+    "vector": {"x": 1.0},
+}
+
+
+@pytest.mark.parametrize("name", [*PUBLIC, *SHAPES, *(f"{name} instead" for name in INSTEAD)])
+def test_no_number_loses_its_unit(given: Given, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of 20 mm NumPy takes 20, and texts of numbers are read as metres."""
+    monkeypatch.chdir(tmp_path)
+    name, _, instead = name.partition(" ")
+    args, keywords = SHAPES[name] if name in SHAPES else ((), INSTEAD[name]) if instead else given.calls()[name]
+    function = attrgetter(name)(gb)
+    names = [*signature(function).parameters]
+    problems = []
+    for at, value in [*enumerate(args), *keywords.items()]:
+        said = with_units(value) if numbers(value) else {"quantity": 1 * UNITS.mm} if value is None else {}
+        for how, wrong in said.items():
+            changed = list(args), dict(keywords)
+            changed[isinstance(at, str)][at] = wrong  # type: ignore[index]
+            argument = at if isinstance(at, str) else names[at]
+            if argument == "over" and "text" in how:
+                continue  # a sweep's values are the scenario's, which has units
+            try:
+                called(function, *changed[0], **changed[1])
+            except gb.InputError as error:
+                if not ("text" in how or (argument in error.where and BARE in error.fix)):
+                    problems.append(f"{argument}, {how}: {error}")
+            except Exception as error:
+                problems.append(f"{argument}, {how}: {type(error).__name__}: {error}")
+            else:
+                problems.append(f"{argument}, {how}: nothing is refused")
+    assert not problems, "\n".join(problems)
+
+
+@pytest.mark.parametrize("name", ["flight", "hub", "centrifuge", "profile", "section", "beam", "particles"])
+def test_nor_do_those_that_methods_are_given(given: Given, name: str) -> None:
+    mass, time = np.ones(1), 0.5
+    places: tuple[Any, ...] = (np.zeros((1, 3)), np.ones((1, 3, 1)), np.eye(1))
+    call: Callable[[Any], Any] = {
+        "flight": lambda unit: given.flight.over(0.0, time * unit),
+        "hub": lambda unit: given.hub.over(0.0, time * unit),
+        "centrifuge": lambda unit: given.centrifuge.over(0.0, time * unit),
+        "profile": lambda unit: gb.constant(1.0)(time * unit),
+        "section": lambda unit: given.beam.section.at(np.array([time]) * unit),
+        "beam": lambda unit: given.beam.rigidities(np.array([time]) * unit),
+        "particles": lambda unit: gb.Structure.of_particles(mass * unit, *places, second=np.zeros((1, 3, 1, 1))),
+    }[name]
+    call(1)
+    with pytest.raises(gb.InputError):
+        call(UNITS.mm)
+
+
+BARE = "give numbers without a unit, in SI"
+
+
+class Metres(float):
+    """A quantity of another library."""
+
+    unit, to = "m", float
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: gb.Section.rectangle(20 * UNITS.mm, 0.004), f'width is 20 millimeter; {BARE}: .to("m").magnitude'),
+        (lambda: gb.Hub(radius=0.5, rate=60 * UNITS.Hz), f'rate is 60 hertz; {BARE}: .to("1 / s").magnitude; '
+         "1 Hz is 6.2832 rad/s as an angular rate"),
+        (lambda: gb.PointMass(0.1, 0.1, offset=(0, Metres(1), 0)), f"offset[1] is 1.0; {BARE}"),
+        (lambda: gb.Section.of("circle", diameter="20 mm"), "diameter is '20 mm'; give numbers in SI"),
+        (lambda: gb.Material(2700, "70"), "youngs_modulus is '70'; give a number in SI"),
+        (lambda: gb.Hub(radius=0.5, rate="60 rpm"), "rate is '60 rpm'; give numbers in SI"),
+    ],
+)  # fmt: skip
+def test_how_a_unit_is_refused(call: Callable[[], Any], words: str) -> None:
+    with pytest.raises(gb.InputError) as refused:
+        call()
+    assert str(refused.value) == words
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda g: gb.simulate(g.beam, g.still, duration=1.0), "structure is of type Beam; give a Structure, which gb"),
+        (lambda g: gb.simulate(g.structure, gb.Flight, duration=1.0), "motion is the class Flight itself; give a flig"),
+        (lambda g: gb.modes("scenario.toml"), "structure is 'scenario.toml'; give a Structure, which gbeam.assemble m"),
+        (lambda g: gb.Beam(0.3, "rectangle", g.beam.material), "section is 'rectangle'; give a Section"),
+        (lambda g: replace(g.beam, masses=[gb.PointMass(0.1, 1), 0.2]), "masses[1] is 0.2; give a PointMass"),
+        (lambda g: replace(g.beam, masses=gb.PointMass(0.1, 1)), "masses is of type PointMass; give a list of PointMa"),
+        (lambda g: gb.Section.rectangle("wide", 0.004), "width is 'wide'; give numbers"),
+        (lambda g: gb.static(g.structure, g.still, time="noon"), "time is 'noon'; give a number"),
+        (lambda g: gb.campbell(g.structure, g.hub, count=2.5), "count is 2.5; give a whole number"),
+        (lambda g: gb.read_scenario(3), "path is 3; give a text or a path"),
+        (lambda g: gb.compare(g.structure, g.structure), "flight is of type Structure; give a Response, which gbeam.s"),
+        (lambda g: gb.commands(g.centrifuge, sample=(1, 2)), "sample is (1, 2); give a number"),
+        (lambda g: gb.sweep(g.fast, {"beam.length": 0.2}, ["tip.z"]), "--over beam.length is 0.2; give a list of numb"),
+        (lambda g: gb.sweep(g.fast, ["beam.length=1,2"], {"tip": 3}), "measure is {'tip': 3}; give a list of texts or"),
+        (lambda g: gb.fit(g.fast, g.data, "beam.length"), "free is 'beam.length'; give a list of texts"),
+        (lambda g: gb.simulate(g.structure, g.still, duratoin=1.0), "keyword is 'duratoin'; did you mean 'duration'?"),
+        (lambda g: gb.simulate(g.structure, g.still), "duration is missing; give the response's, s, or settings"),
+        (lambda g: gb.build_target(gb.vector(z=1.0), span=(1.0,), idle=None, smoothing=0, gravity=False),
+         "span is (1.0,); give a list of 2 numbers"),
+    ],
+)  # fmt: skip
+def test_what_is_said_of_them(given: Given, call: Callable[[Given], Any], words: str) -> None:
+    with pytest.raises(gb.InputError) as refused:
+        call(given)
+    assert str(refused.value).startswith(words)
+
+
+def test_what_looks_like_a_number_is_one(given: Given) -> None:
+    jnp = pytest.importorskip("jax.numpy")
+    for seconds in (0, np.float32(0.0), np.int64(0), np.zeros(()), jnp.zeros(()), Decimal(0)):
+        gb.static(given.structure, given.still, time=seconds)
+    gb.campbell(given.structure, given.hub, speeds=np.linspace(0, 1, 3), orders=range(1, 3), count=np.int64(3))
+    gb.Section.rectangle([0.02, jnp.array(0.02)], 0.004, stations=(0.0, 0.3))
+
+
+def test_a_mistake_inside_is_not_blamed_on_an_argument(given: Given, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("gbeam.analysis.equilibrium.static.operating_point", None)
+    with pytest.raises(TypeError, match="NoneType"):
+        gb.static(given.structure, given.still, time=0.0)
+
+
+def test_the_keywords_of_a_response_are_its_settings() -> None:
+    fields = {each.name: each.type for each in dataclass_fields(gb.ResponseSettings)}
+    assert {name: hint.__forward_arg__ for name, hint in Settings.__annotations__.items()} == fields
+
+
+@pytest.mark.slow  # mypy reads gbeam, unless it has before
+def test_type_checkers_see_options_that_are_misspelt(tmp_path: Path) -> None:
+    snippet = tmp_path / "snippet.py"
+    snippet.write_text(
+        "import gbeam as gb\n"
+        "def respond(structure: gb.Structure, motion: gb.Flight) -> None:\n"
+        "    gb.simulate(structure, motion, duration=10.0, step=1e-3)\n"
+        "    gb.simulate(structure, motion, duratoin=10.0)\n"
+        "    gb.simulate(structure, motion, duration=[10.0])\n"
+        "    gb.simulate_batch([(structure, motion)], duration=1.0, stpe=0.1)\n"
+        "    gb.static(structure, motoin=motion)\n",
+        encoding="utf-8",
+    )
+    command = [sys.executable, "-m", "mypy", "--config-file", "pyproject.toml", str(snippet)]
+    done = subprocess.run(command, cwd=Path(__file__).parents[1], capture_output=True, text=True)
+    errors = [line.partition("snippet.py:")[2] for line in done.stdout.splitlines() if ": error:" in line]
+    assert [error.partition(":")[0] for error in errors] == ["4", "5", "6", "7"], done.stdout + done.stderr
+    assert 'Unexpected keyword argument "duratoin" for "simulate"' in errors[0]
