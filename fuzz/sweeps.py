@@ -38,7 +38,8 @@ def sweep(chosen: Random) -> Case:
         data = tomllib.loads(text)
         data["sweep"] = _table(chosen)
         for _ in range(chosen.choice((0, 1, 1, 2))):
-            change(chosen, data["sweep"] if isinstance(data["sweep"], dict) and chosen.random() < 0.8 else data)
+            table = data.get("sweep")  # a change before may have renamed or removed it
+            change(chosen, table if isinstance(table, dict) and chosen.random() < 0.8 else data)
         changed = toml(data).encode("utf-8", "surrogatepass")
         if chosen.random() < 0.2:
             changed = corrupted(chosen, changed)

@@ -90,7 +90,7 @@ def _child(arguments: list[str], folder: Path, aside: str, out: Path, err: Path)
         resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, MEMORY))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         signal.alarm(PATIENCE)
-        if arguments[0] == "app":
+        if arguments[:1] == ["app"]:
             from fuzz.app import play as main
         else:
             from gbeam.cli import main

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 
@@ -210,6 +211,12 @@ def test_packed_values_are_unpacked_and_missing_ones_refused(tmp_path: Path) -> 
     with h5py.File(tmp_path / "r.nc", "r+") as file:
         file["z"][7] = -9999
     with pytest.raises(InputError, match=r"record.z sample 8, column 'z' is nan"):
+        fly(tmp_path / "r.nc", ("t", "0", "0", "z"))
+    with h5py.File(tmp_path / "r.nc", "r+") as file:
+        file["z"][0] = 0
+        file["z"].attrs["scale_factor"] = np.inf
+    with warnings.catch_warnings(), pytest.raises(InputError, match=r"record.z sample 1, column 'z' is nan"):
+        warnings.simplefilter("error")
         fly(tmp_path / "r.nc", ("t", "0", "0", "z"))
 
 

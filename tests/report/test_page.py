@@ -215,3 +215,5 @@ def test_numbers_come_back_and_stand_once() -> None:
     assert numbers.add(second) == {"at": 6, "shape": [1]}
     back = np.frombuffer(base64.b64decode(numbers.encoded()), dtype="<f4")
     assert back.tolist() == [0, 1, 2, 3, 4, 5, 7]
+    numbers.add(np.array([-1e300]))  # what a damaged result may hold: nothing that can be drawn
+    assert numbers.array[-1] == -np.inf

@@ -244,6 +244,9 @@ def test_whole_numbers_beyond_floats_are_differences(tmp_path: Path, gbeam: Call
 def test_json_that_is_none_of_gbeams_is_refused(tmp_path: Path, gbeam: Callable[..., Answer]) -> None:
     text, none, other = "is no JSON of a result", "is not the JSON of a result", "is no JSON of gbeam with a provenance"
     texts = {"{}": other, "[1]": none, "no JSON": text, '{"provenance": {"command": "rm"}}': other}
+    same = {"gbeam": "0", "python": "3", "platform": "", "dependencies": {}, "records": [], "overrides": []}
+    listed = {"provenance": same | {"scenario": "", "scenario_sha256": "", "command": [["gbeam"]]}}
+    texts[json.dumps(listed)] = other
     for text, problem in texts.items():
         (tmp_path / "x.json").write_text(text, encoding="utf-8")
         answer = gbeam("rerun", tmp_path / "x.json")

@@ -46,18 +46,19 @@ def answer_again(file: Path) -> Reproduction:
 
 
 def _read(file: Path) -> tuple[dict[str, Any], Provenance]:
+    from pydantic import TypeAdapter, ValidationError
+
     from gbeam.guards.json_files import read_json
-    from gbeam.results.provenance import Environment, Provenance, RecordFile
+    from gbeam.results.provenance import Environment, Provenance
 
     fix = "give the JSON that a verb of gbeam wrote into --out, or a result.nc"
     facts = read_json(file, fix)
     try:
         origin = facts["provenance"]
-        environment = Environment(origin["gbeam"], origin["python"], origin["platform"], origin["dependencies"])
-        records = tuple(RecordFile(**each) for each in origin["records"])
-        words = origin["scenario"], tuple(origin["overrides"]), origin["scenario_sha256"], records, origin["command"]
-        return facts, Provenance(*words, environment, str(origin.get("date", "")))
-    except (ValueError, KeyError, TypeError):
+        environment = TypeAdapter(Environment).validate_python(origin)
+        origin = origin | {"sha256": origin["scenario_sha256"], "environment": environment}
+        return facts, TypeAdapter(Provenance).validate_python(origin)
+    except (ValidationError, KeyError, TypeError):
         raise InputError(str(file), "is no JSON of gbeam with a provenance", fix) from None
 
 

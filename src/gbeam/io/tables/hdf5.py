@@ -91,9 +91,8 @@ def _unpacked(array: NDArray[Any], attributes: Mapping[str, Any]) -> NDArray[np.
     missing = [np.ravel(attributes[name])[0] for name in ("_FillValue", "missing_value") if name in attributes]
     empty = np.isin(array, missing) if missing else False
     scale, offset = (np.ravel(attributes.get(name, default))[0] for name, default in _PACKING.items())
-    values = array.astype(np.float64)
-    values *= np.float64(scale)
-    values += np.float64(offset)
+    with np.errstate(all="ignore"):  # what is no number is refused where its sample is used
+        values = array.astype(np.float64) * np.float64(scale) + np.float64(offset)
     return np.where(empty, np.nan, values) if missing else values
 
 
