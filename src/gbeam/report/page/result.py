@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from gbeam.errors import InputError
 from gbeam.guards.json_files import parse_json, read_json
 from gbeam.io.netcdf import FACTS, groups_of
@@ -96,7 +98,8 @@ def report_of_file(path: Path) -> str:
     """
     file = file_in(path) if path.is_dir() else path
     try:
-        return _page_of(file)
+        with np.errstate(all="ignore"):  # what a damaged file holds beyond all bounds is drawn as a gap
+            return _page_of(file)
     except InputError as error:
         raise InputError(str(file), error.problem, error.fix) from None
     except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError):  # no figures of a result
