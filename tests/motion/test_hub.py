@@ -50,6 +50,7 @@ def test_free_hub_keeps_its_numbers() -> None:
 def test_refusals() -> None:
     for build, where in (
         (lambda: Hub(radius=-0.1, rate=RATE), "radius"),
+        (lambda: Hub(radius=1e300, rate=RATE), "radius"),
         (lambda: Hub(radius=0.5, inertia=0.0, torque=RATE), "inertia"),
         (lambda: Hub(radius=np.nan, inertia=1.0, torque=RATE), "radius"),
     ):

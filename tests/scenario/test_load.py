@@ -109,6 +109,8 @@ def test_files(tmp_path: Path, text: str) -> None:
     file.write_bytes(b"\xef\xbb\xbf" + text.replace('"3.3 m"', '"3.3 kg"').encode())
     with pytest.raises(ScenarioError, match=f"{file}:17:7: motion.spin.arm"):
         load(str(file))
+    with pytest.raises(ScenarioError, match=r"' ': there is no such file"):
+        load(" ")
     with pytest.raises(ScenarioError, match=r"trun.toml: there is no such file\n.*did you mean '.*turn.toml'"):
         load(tmp_path / "trun.toml")
     with pytest.raises(ScenarioError, match="gbeam new"):

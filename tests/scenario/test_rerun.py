@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -79,6 +80,12 @@ def test_what_differs_is_named(result: Path, gbeam: Callable[..., Answer]) -> No
     (difference,) = answer.json["differences"]
     assert difference["name"] == "motions/flight/displacement"
     assert difference["size"] == pytest.approx(1e-12, rel=1e-2)
+
+
+def test_any_damaged_number_is_a_difference(result: Path, gbeam: Callable[..., Answer]) -> None:
+    for factor in (math.inf, 1e308):
+        answer = gbeam("rerun", _edited(result, _moved(factor)), "--json")
+        assert answer.status == 1 and answer.json["outcome"] == "not reproduced" and "Warning" not in answer.err
 
 
 @pytest.mark.parametrize(("share", "status"), [(1e-12, 0), (1e-8, 1)])

@@ -134,6 +134,7 @@ def _facts(of: Stored) -> dict[str, Any]:
     return made
 
 
+@np.errstate(all="ignore")  # a damaged file may hold any number
 def _difference(name: str, then: Any, now: Any) -> Difference | None:
     """How a variable or an attribute differs, if it does."""
     if then is None or now is None:
@@ -145,11 +146,11 @@ def _difference(name: str, then: Any, now: Any) -> Difference | None:
         return None if np.array_equal(old, new) else Difference(name, math.inf, f"was {_short(then)}, is {_short(now)}")
     if np.array_equal(old, new, equal_nan=True):
         return None
-    apart = np.abs(old - new)
-    both = np.isfinite(apart)
-    if (np.isnan(old) != np.isnan(new)).any() or not both.any():
+    finite = np.isfinite(old) & np.isfinite(new)
+    if not np.array_equal(old[~finite], new[~finite], equal_nan=True):
         return Difference(name, math.inf, f"was {_short(then)}, is {_short(now)}")
-    size = float(apart[both].max() / np.abs(old[np.isfinite(old)]).max(initial=np.finfo(float).tiny))
+    old, new = old[finite], new[finite]
+    size = float(np.abs(old - new).max() / np.abs(old).max(initial=np.finfo(float).tiny))
     return Difference(name, size, f"differs by up to {size:.2g} of its largest value")
 
 

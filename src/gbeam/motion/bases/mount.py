@@ -10,6 +10,7 @@ from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record
 from gbeam.errors import InputError
 from gbeam.guards.checks import finite, positive
+from gbeam.guards.plausibility import possible
 from gbeam.motion.bases.base import Base
 
 POINTINGS = ("outward", "inward")
@@ -51,13 +52,15 @@ class Mount:
             if gravity.shape != (3,) or (not is_traced(gravity) and not np.isfinite(np.asarray(gravity)).all()):
                 fix = "give three finite components, along x, y and z of the hub"
                 raise InputError("gravity", f"is {gravity!r}", fix)
+        radius = as_array(positive("radius", radius, "m", zero=True))
+        possible("radius", "radius", radius)
         xp = namespace(angle)
         c, s = xp.cos(angle), xp.sin(angle)
         about_x = xp.asarray([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
         about_z = np.diag([1.0, 1.0, 1.0] if pointing == "outward" else [-1.0, -1.0, 1.0])
         assign(
             self,
-            radius=as_array(positive("radius", radius, "m", zero=True)),
+            radius=radius,
             R_HB=about_z @ about_x,
             gravity=gravity,
         )

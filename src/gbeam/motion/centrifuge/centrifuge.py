@@ -13,6 +13,7 @@ from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, positive
+from gbeam.guards.plausibility import possible
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.flight import Flight
 from gbeam.motion.centrifuge.axis_motion import AxisMotion
@@ -118,6 +119,7 @@ class Centrifuge(AxisMotion):
         if arm is None:
             raise InputError("arm", "is missing", "give the arm's length, or a machine as limits")
         radius = as_array(positive("arm", arm, "m"))
+        possible("arm", "arm", radius)
         if gravity and flight.record is not None and flight.record.quantity == "acceleration":
             problem = "is true, and the record of its flight holds acceleration, not specific force"
             fix = "write gravity = false, or add gravity to the record: its direction changes as the aircraft turns"

@@ -106,7 +106,7 @@ def read_text(path: File) -> str:
         problem, hint = f"cannot be read ({error.strerror})", "give the path of a scenario file"
     except ValueError:  # a null character in the name
         problem, hint = "is no name of a file", "give the path of a scenario file"
-    raise ScenarioError([Diagnostic(str(path), "", problem, hint)])
+    raise ScenarioError([Diagnostic(str(path) if str(path).strip() else repr(str(path)), "", problem, hint)])
 
 
 def parse(name: str, text: str) -> dict[str, Any]:
