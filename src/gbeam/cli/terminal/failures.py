@@ -13,6 +13,9 @@ from typing import Any
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.printable import json_printable, on_one_line, printable, shortened
 
+if sys.platform != "win32":
+    import resource  # at once: where memory is gone, nothing can be loaded any more
+
 FAILED = 1
 WRONG_INPUT = 2
 DEFECT = 3
@@ -61,8 +64,6 @@ def _limited() -> bool:
     """Whether this process has a limit of memory."""
     if sys.platform == "win32":
         return False
-    import resource
-
     return resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY
 
 
