@@ -17,9 +17,10 @@ import numpy as np
 from gbeam.io.groups import Group, Variable, thinned
 from gbeam.io.hdf5 import write_groups
 from gbeam.io.layout.comparisons import comparison_group
+from gbeam.io.layout.declared import whole_group
 from gbeam.io.layout.machine import plan_group
 from gbeam.io.layout.responses import response_group
-from gbeam.io.layout.steady import campbell_group, critical_group, critical_map_group, deflection_group, modes_group
+from gbeam.io.layout.steady import deflection_group
 from gbeam.io.layout.studies.fits import fit_group
 from gbeam.io.layout.studies.optima import optimum_group
 from gbeam.io.layout.studies.sensitivities import sensitivity_group
@@ -49,10 +50,10 @@ _GROUPS: dict[type, Callable[[Any], Group]] = {
     Response: response_group,
     Comparison: comparison_group,
     Deflection: deflection_group,
-    Modes: modes_group,
-    Campbell: campbell_group,
-    Critical: critical_group,
-    CriticalMap: critical_map_group,
+    Modes: whole_group,
+    Campbell: whole_group,
+    Critical: whole_group,
+    CriticalMap: whole_group,
     Fit: fit_group,
     Optimum: optimum_group,
     MachinePlan: plan_group,

@@ -7,10 +7,11 @@ from dataclasses import replace
 from typing import Any
 
 from gbeam.report.machine import placement, plan
-from gbeam.report.steady import campbell, critical, deflection, modes
-from gbeam.report.studies import sweep
+from gbeam.report.steady import critical, deflection
+from gbeam.report.studies import fit, optimum, sensitivity, shaping, sweep
 from gbeam.report.study import summary_json
 from gbeam.report.words import as_json
+from gbeam.results.declared import json_of
 from gbeam.results.imitation.placement import Placement
 from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.response import Response
@@ -18,6 +19,10 @@ from gbeam.results.result import Result
 from gbeam.results.steady.equilibrium import Deflection
 from gbeam.results.steady.modal import Campbell, Modes
 from gbeam.results.steady.stability import Critical, CriticalMap
+from gbeam.results.studies.fit import Fit
+from gbeam.results.studies.optimum import Optimum
+from gbeam.results.studies.sensitivity import Sensitivity
+from gbeam.results.studies.shaping import ShapedCommand
 from gbeam.results.studies.sweep import Sweep
 from gbeam.results.study import Study
 
@@ -26,11 +31,15 @@ _JSON: dict[type, Callable[[Any], dict[str, Any]]] = {
     Deflection: lambda result: deflection.to_json("", [result]),
     MachinePlan: lambda result: plan.to_json("", [result]),
     Critical: critical.to_json,
-    CriticalMap: critical.map_json,
-    Modes: modes.to_json,
-    Campbell: campbell.to_json,
+    CriticalMap: json_of,
+    Modes: json_of,
+    Campbell: json_of,
     Placement: placement.to_json,
     Sweep: sweep.to_json,
+    Fit: fit.to_json,
+    Optimum: optimum.to_json,
+    Sensitivity: sensitivity.to_json,
+    ShapedCommand: shaping.to_json,
 }
 
 

@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from gbeam.arrays.namespace import is_traced
+from gbeam.results.declared import quantity
 from gbeam.results.machine import AxesResult
 from gbeam.results.parts.errors import Errors
 from gbeam.results.parts.outline import Outline
@@ -19,19 +20,21 @@ from gbeam.results.result import Figured, Floats, Part, brief
 
 @dataclass(frozen=True, repr=False, eq=False)
 class BaseMotion(Part):
-    """Motion of the root in base axes, at one instant or over time.
+    """Motion of the root in base axes, at one instant or over time, (..., 3)."""
 
-    Parameters
-    ----------
-    a_WO_B : (..., 3)
-        Acceleration of the root, m/s²; specific force a − g where gravity acts.
-    w_WB_B, alpha_WB_B : (..., 3)
-        Angular velocity rad/s and acceleration rad/s².
-    """
-
-    a_WO_B: Floats
-    w_WB_B: Floats
-    alpha_WB_B: Floats
+    a_WO_B: Floats = quantity(
+        "m/s^2",
+        "acceleration of the root; specific force where gravity acts",
+        "axis",
+        name="root_acceleration",
+        key="acceleration",
+    )
+    w_WB_B: Floats = quantity(
+        "rad/s", "angular velocity of the base", "axis", name="angular_velocity", key="angular_velocity"
+    )
+    alpha_WB_B: Floats = quantity(
+        "rad/s^2", "angular acceleration of the base", "axis", name="angular_acceleration", key="angular_acceleration"
+    )
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.results.declared import document
+
 if TYPE_CHECKING:
     from gbeam.plots.figures import Panels
     from gbeam.results.provenance import Provenance
@@ -55,6 +57,10 @@ class Part:
 
     __slots__ = ()
 
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        document(cls)
+
     def __repr__(self) -> str:
         return brief(self)
 
@@ -73,6 +79,10 @@ class Result:
 
     warnings: tuple[str, ...] = field(default=(), repr=False)
     provenance: Provenance | None = field(default=None, repr=False)
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        document(cls)
 
     def _with_warnings(self, *lines: str) -> str:
         """Lines on the screen, with the warnings below."""
@@ -125,8 +135,7 @@ class Result:
         Raises
         ------
         InputError
-            If a result of this kind has no report; those of a study, a response, a deflection, modes, a Campbell
-            diagram, a critical value, a map of them, a plan, a placement and a sweep have.
+            If a result of this kind has no report; a state space, a comparison and a table of models have none.
         OSError
             If it cannot be written.
         """

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 from gbeam.report.words import error_words, percent, warning_lines
+from gbeam.results.declared import json_of
 from gbeam.results.steady.stability import Critical, CriticalMap
 
 # By what was raised.
@@ -21,21 +21,7 @@ KEYS = {
 
 def to_json(critical: Critical, motion: str = "") -> dict[str, Any]:
     """Critical value as JSON; rad/s, m/s² or a factor, null where there is none; with the name of the motion."""
-    return {
-        "outcome": "done",
-        "motion": motion,
-        KEYS[critical.quantity]: critical.value,
-        "quantity": critical.quantity,
-        "unit": critical.unit,
-        "searched_to": critical.searched_to,
-        "kind": critical.kind,
-        "direction": critical.direction,
-        "reason": critical.reason,
-        "model": critical.model,
-        "error_estimate": critical.error_estimate,
-        "errors": asdict(critical.errors),
-        "warnings": list(critical.warnings),
-    }
+    return {"motion": motion, KEYS[critical.quantity]: critical.value} | json_of(critical)
 
 
 def text(critical: Critical, motion: str) -> str:
@@ -51,23 +37,6 @@ def answer(critical: Critical) -> str:
     elif math.isfinite(errors.shapes):
         error = f"; estimated error from too few shapes {percent(errors.shapes)}"
     return f"{critical.reason}{error}"
-
-
-def map_json(critical: CriticalMap) -> dict[str, Any]:
-    """Map as JSON: critical_speed[i][j] with mass i at position j; rad/s, null where there is none; errors likewise."""
-    return {
-        "outcome": "done",
-        "motion": critical.motion,
-        "model": critical.model,
-        "mass": critical.mass.tolist(),
-        "position": critical.position.tolist(),
-        "critical_speed": [[None if np.isnan(v) else float(v) for v in row] for row in critical.speed],
-        "searched_to": critical.searched_to,
-        "errors": None
-        if critical.errors is None
-        else {name: values.tolist() for name, values in asdict(critical.errors).items()},
-        "warnings": list(critical.warnings),
-    }
 
 
 def map_text(critical: CriticalMap) -> str:

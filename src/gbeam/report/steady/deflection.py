@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 from gbeam.report.words import error_words, percent, stress_words, tidy, warning_lines, xyz, xyz_lists
+from gbeam.results.declared import json_of
 from gbeam.results.parts.errors import Errors
 from gbeam.results.parts.section_forces import Loads
-from gbeam.results.response import BaseMotion
 from gbeam.results.steady.equilibrium import Deflection
 
 
@@ -22,29 +21,8 @@ def to_json(title: str, deflections: Iterable[Deflection]) -> dict[str, Any]:
 
 
 def _deflection(deflection: Deflection) -> dict[str, Any]:
-    values = {
-        "outcome": "done",
-        "time": deflection.time,
-        "model": deflection.model,
-        "base": base_json(deflection.base),
-        "tip": xyz(deflection.tip),
-        "stations": deflection.stations.tolist(),
-        "displacement": xyz_lists(deflection.displacement),
-        "strain_energy": deflection.strain_energy,
-        "stable": deflection.stable,
-        "errors": asdict(deflection.errors),
-        "warnings": list(deflection.warnings),
-    }
+    values = json_of(deflection)
     return values if deflection.loads is None else values | {"loads": loads_json(deflection.loads)}
-
-
-def base_json(base: BaseMotion) -> dict[str, Any]:
-    """Base motion of one instant as JSON; m/s², rad/s, rad/s², base axes."""
-    return {
-        "acceleration": xyz(base.a_WO_B),
-        "angular_velocity": xyz(base.w_WB_B),
-        "angular_acceleration": xyz(base.alpha_WB_B),
-    }
 
 
 def loads_json(loads: Loads) -> dict[str, Any]:

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 
+from gbeam.results.declared import fact, part, quantity
 from gbeam.results.result import Floats, Part
 
 PARTS = ("shapes", "model", "beam_theory", "total")
+SHAPES, MODEL = "estimated error from too few shapes", "estimated error of the model against exact"
+THEORY, TOTAL = "estimated error of the theory of slender beams", "estimated error in all"
+SLENDER = "against one with shear, rotary inertia and twist, and by plate action"
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -18,26 +22,13 @@ class ErrorEstimate(Part):
     """Estimated errors of one quantity, as fractions of its largest size; NaN where there is no estimate.
 
     A vector's error is its length.
-
-    Parameters
-    ----------
-    step : float
-        Of the time steps.
-    shapes : float
-        Of too few shapes: against the same model with more.
-    model : float
-        Of the model: against the geometrically exact one.
-    beam_theory : float
-        Of the theory of slender beams: against one with shear, rotary inertia and twist, and by plate action.
-    total : float
-        Largest error of all together, which may be less than their sum.
     """
 
-    step: float = math.nan
-    shapes: float = math.nan
-    model: float = math.nan
-    beam_theory: float = math.nan
-    total: float = math.nan
+    step: float = quantity("", "estimated error of the time steps", name=None, default=math.nan)
+    shapes: float = quantity("", SHAPES, note="against the same model with more", default=math.nan)
+    model: float = quantity("", MODEL, default=math.nan)
+    beam_theory: float = quantity("", THEORY, note=SLENDER, default=math.nan)
+    total: float = quantity("", TOTAL, note="the largest of all together, maybe less than their sum", default=math.nan)
 
     @property
     def slender(self) -> float:
@@ -57,27 +48,19 @@ class ErrorEstimate(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Errors(Part):
-    """Estimated errors of a response, or of a static deflection, which takes no time steps.
+    """Estimated errors of a response, or of a static deflection, which takes no time steps."""
 
-    Parameters
-    ----------
-    displacement : ErrorEstimate
-        Of the tip's displacement.
-    loads : ErrorEstimate
-        Of the root's force and moment: the larger of both.
-    stress : ErrorEstimate
-        Of the largest size of the normal stress over the stations' sections.
-    note : str
-        Why something is not estimated, or what the estimate leaves out.
-    theory : str
-        What makes the error of the beam theory, and what it assumes: ``plate action; assumed: Poisson's ratio 0.3``.
-    """
-
-    displacement: ErrorEstimate = field(default_factory=ErrorEstimate)
-    loads: ErrorEstimate = field(default_factory=ErrorEstimate)
-    stress: ErrorEstimate = field(default_factory=ErrorEstimate)
-    note: str = ""
-    theory: str = ""
+    displacement: ErrorEstimate = part("of the tip's displacement", default_factory=ErrorEstimate)
+    loads: ErrorEstimate = part("of the root's force and moment, the larger of both", default_factory=ErrorEstimate)
+    stress: ErrorEstimate = part(
+        "of the largest size of the normal stress over the stations' sections", default_factory=ErrorEstimate
+    )
+    note: str = fact("why something is not estimated, or what the estimate leaves out", default="")
+    theory: str = fact(
+        "causes of the error of the beam theory, and what it assumes",
+        note="such as plate action; assumed: Poisson's ratio 0.3",
+        default="",
+    )
 
     def __repr__(self) -> str:
         parts = {name: getattr(self, name) for name in ("displacement", "loads", "stress")}
@@ -89,30 +72,20 @@ class Errors(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class FrequencyErrors(Part):
-    """Estimated errors of frequencies, as fractions, (k,) each; NaN where there is no estimate.
+    """Estimated errors of frequencies, as fractions, (k,) each; NaN where there is no estimate."""
 
-    Parameters
-    ----------
-    shapes : (k,)
-        Of too few shapes: against the same model with more.
-    model : (k,)
-        Of the model with enough shapes, against the geometrically exact one.
-    beam_theory : (k,)
-        Of the theory of slender beams: against one with shear, rotary inertia and twist, and by plate action.
-    total : (k,)
-        Of all: against the exact model with more shapes, and the beam theory's.
-    theory : str
-        What makes the error of the beam theory, and what it assumes.
-    unseen : tuple of float
-        Frequencies below the highest of these that bend the beam and twist it, and that no model here has, Hz.
-    """
-
-    shapes: Floats
-    model: Floats
-    beam_theory: Floats
-    total: Floats
-    theory: str = ""
-    unseen: tuple[float, ...] = ()
+    shapes: Floats = quantity("", SHAPES, note="against the same model with more")
+    model: Floats = quantity("", MODEL, note="with enough shapes")
+    beam_theory: Floats = quantity("", THEORY, note=SLENDER)
+    total: Floats = quantity("", TOTAL, note="against the exact model with more shapes, and of the beam theory")
+    theory: str = fact("causes of the error of the beam theory, and what it assumes", name=None, key=None, default="")
+    unseen: tuple[float, ...] = fact(
+        "frequencies below the highest of these that bend the beam and twist it, and that no model has",
+        "Hz",
+        name=None,
+        key=None,
+        default=(),
+    )
 
     @property
     def slender(self) -> Floats:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
+from gbeam.results.declared import declared, fact, part, quantity
 from gbeam.results.parts.errors import Errors
 from gbeam.results.parts.section_forces import Loads
 from gbeam.results.response import BaseMotion
@@ -13,44 +14,34 @@ from gbeam.results.result import Figured, Floats
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Deflection(Figured):
-    """Relative equilibrium at a frozen base motion.
+    """Relative equilibrium at a frozen base motion."""
 
-    Parameters
-    ----------
-    motion, model : str
-    time : float
-        s.
-    base : BaseMotion
-        At that time, (3,).
-    stations : (s,) m, the last is the tip
-    displacement : (s, 3)
-        Relative to the base axes, m.
-    q : (n,)
-        Coordinates.
-    strain_energy : float
-        J.
-    stable : bool
-        Whether the stiffness about the equilibrium is positive definite; under loads that follow the beam, whether no
-        vibration about it grows.
-    loads : Loads or None
-        What the sections carry, of one time.
-    errors : Errors
-        Of displacement, root loads and stress; there are no time steps.
-    """
-
-    motion: str
-    model: str
-    time: float
-    base: BaseMotion
-    stations: Floats
-    displacement: Floats
-    q: Floats
-    strain_energy: float
-    stable: bool
-    loads: Loads | None = None
-    errors: Errors = field(default_factory=Errors)
+    motion: str = fact("name of the motion", key=None)
+    model: str = fact("kind of the model")
+    time: float = fact("time at which the motion is frozen", "s")
+    base: BaseMotion = part("motion of the base at that time")
+    stations: Floats = quantity(
+        "m", "position along the beam from the root", "station", role="coordinate", note="the last is the tip"
+    )
+    displacement: Floats = quantity("m", "displacement relative to the base axes", "station", "axis")
+    q: Floats = quantity(
+        lambda self: "" if self.model == "exact" else "m",
+        "generalised coordinates of the beam",
+        "coordinate",
+        name="coordinates",
+        key=None,
+    )
+    strain_energy: float = quantity("J", "strain energy")
+    stable: bool = fact(
+        "whether the stiffness about the equilibrium is positive definite",
+        note="under loads that follow the beam, whether no vibration about it grows",
+    )
+    loads: Loads | None = part("forces, moments and stresses of the sections, of one time",
+                               name=None, key=None, default=None)  # fmt: skip
+    errors: Errors = part("of displacement, root loads and stress", name=None, default_factory=Errors)
 
     @property
+    @declared("m", "displacement of the tip relative to the base axes", "axis", name=None)
     def tip(self) -> Floats:
         """Displacement of the tip, (3,) m."""
         return self.displacement[-1]

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
+from gbeam.results.declared import declared, fact, part, quantity, rows
 from gbeam.results.parts.errors import ErrorEstimate, FrequencyErrors
 from gbeam.results.response import BaseMotion
-from gbeam.results.result import Complex, Figured, Floats
+from gbeam.results.result import Complex, Figured, Floats, Part
 from gbeam.results.steady.stability import Critical
 
 SHOWN = 6  # frequencies in a short description
@@ -17,97 +19,101 @@ FAR = 2.0  # times the highest multiple of the speed: a mode above would press t
 FEW = 2  # modes drawn in any case
 
 
-@dataclass(frozen=True)
-class Instability:
-    """An eigenvalue with a positive real part: ``divergence`` without oscillation, ``flutter`` with.
+@dataclass(frozen=True, repr=False)
+class Instability(Part):
+    """An eigenvalue with a positive real part: ``divergence`` without oscillation, ``flutter`` with."""
 
-    Parameters
-    ----------
-    kind : str
-    growth_rate : float
-        Real part, 1/s.
-    frequency : float
-        Hz; zero for divergence.
-    direction : str
-        x, y or z.
-    """
-
-    kind: str
-    growth_rate: float
-    frequency: float
-    direction: str
+    kind: str = fact("divergence or flutter")
+    growth_rate: float = fact("real part of the eigenvalue", "1/s")
+    frequency: float = fact("frequency", "Hz", note="zero for divergence")
+    direction: str = fact("direction in which the beam moves most", note="x, y or z")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Modes(Figured):
-    """Small vibrations about a relative equilibrium, ascending in frequency.
+    """Small vibrations about a relative equilibrium, ascending in frequency."""
 
-    Parameters
-    ----------
-    motion, model : str
-    time : float
-        s.
-    base : BaseMotion
-        At that time, (3,).
-    gyroscopic : bool
-        Whether Coriolis coupling is in.
-    eigenvalue : (k,) complex
-        1/s, of the oscillating modes; one of each pair, with the positive imaginary part.
-    direction : tuple of str
-        x, y or z, the one in which the beam moves most.
-    coordinates : (k, n) complex
-        Of unit mass-weighted length.
-    stations : (s,) m
-    shape : (k, s, 3) complex
-        Displacement of the stations, largest component 1.
-    equilibrium : (s, 3)
-        Displacement about which the beam vibrates, m.
-    instabilities : tuple of Instability
-    rigid : int
-        Number of modes of zero frequency, left out: a free hub's turning.
-    overdamped : (r,)
-        Negative real eigenvalues, 1/s: decay without oscillation. A divergence comes with one.
-    damping_given : bool
-        Whether the beam has a damping ratio, be it zero; without one it is undamped.
-    errors : FrequencyErrors or None
-        Of the frequencies; None where there is no estimate.
-    width, thickness : (s,) m
-        Extent of the section along y and z at the stations, for pictures; empty without a beam.
-    round : bool
-        Whether the section is round.
-    """
+    json_rows: ClassVar[dict[str, str]] = {"mode": "modes"}
 
-    motion: str
-    model: str
-    time: float
-    base: BaseMotion
-    gyroscopic: bool
-    eigenvalue: Complex
-    direction: tuple[str, ...]
-    coordinates: Complex
-    stations: Floats
-    shape: Complex
-    equilibrium: Floats
-    instabilities: tuple[Instability, ...]
-    rigid: int
-    overdamped: Floats
-    damping_given: bool = True
-    errors: FrequencyErrors | None = None
-    width: Floats = field(default_factory=lambda: np.empty(0))
-    thickness: Floats = field(default_factory=lambda: np.empty(0))
-    round: bool = False
+    motion: str = fact("name of the motion")
+    model: str = fact("kind of the model")
+    time: float = fact("time at which the motion is frozen", "s")
+    base: BaseMotion = part("motion of the base at that time")
+    gyroscopic: bool = fact("whether Coriolis coupling is in")
+    eigenvalue: Complex = quantity(
+        "1/s",
+        "eigenvalues of the oscillating modes",
+        "mode",
+        name=None,
+        key=None,
+        note="one of each pair, with the positive imaginary part",
+    )
+    direction: tuple[str, ...] = quantity("", "direction in which the beam moves most", "mode", note="x, y or z")
+    coordinates: Complex = quantity(
+        "", "generalised coordinates, of unit mass-weighted length", "mode", "coordinate", name=None, key=None
+    )
+    stations: Floats = quantity("m", "position along the beam from the root", "station", role="coordinate")
+    shape: Complex = quantity("", "displacement, largest component 1", "mode", "station", "axis")
+    equilibrium: Floats = quantity("m", "displacement about which the beam vibrates", "station", "axis", key=None)
+    instabilities: tuple[Instability, ...] = rows("eigenvalues that grow", "instability", name=None)
+    rigid: int = fact("number of modes of zero frequency, left out", note="the turning of a free hub")
+    overdamped: Floats = quantity(
+        "1/s",
+        "negative real eigenvalues, of decay without oscillation",
+        "eigenvalue",
+        name=None,
+        note="a divergence comes with one",
+    )
+    damping_given: bool = fact(
+        "whether the beam has a damping ratio, be it zero", note="without one it is undamped", default=True
+    )
+    errors: FrequencyErrors | None = part(
+        "errors of the frequencies",
+        "mode",
+        name="frequency_error_",
+        note="None where there is no estimate",
+        default=None,
+    )
+    width: Floats = quantity(
+        "m",
+        "extent of the section along y",
+        "station",
+        name="section_width",
+        key="section.width",
+        note="for pictures; empty without a beam",
+        default_factory=lambda: np.empty(0),
+    )
+    thickness: Floats = quantity(
+        "m",
+        "extent of the section along z",
+        "station",
+        name="section_thickness",
+        key="section.thickness",
+        note="empty without a beam",
+        default_factory=lambda: np.empty(0),
+    )
+    round: bool = quantity("", "whether the section is round", name="section_round", key="section.round", default=False)
 
     @property
+    @declared("Hz", "natural frequency", "mode")
     def frequency(self) -> Floats:
         """Natural frequencies |λ|/2π, (k,) Hz."""
         return np.abs(self.eigenvalue) / (2 * np.pi)
 
     @property
+    @declared("", "ratio of critical damping; negative for flutter", "mode")
     def damping_ratio(self) -> Floats:
         """Ratios of critical damping −Re λ/|λ|, (k,); negative for flutter."""
         return -self.eigenvalue.real / np.abs(self.eigenvalue)
 
     @property
+    @declared("", "estimated error of the frequency in all", "mode", name=None)
+    def error_estimate(self) -> Floats:
+        """Estimated errors of the frequencies, (k,), fractions; NaN where there is no estimate."""
+        return totals(self.errors, len(self.direction))
+
+    @property
+    @declared("", "whether nothing grows", role="fact")
     def stable(self) -> bool:
         """Whether nothing grows."""
         return not self.instabilities
@@ -121,65 +127,76 @@ class Modes(Figured):
         return self._with_warnings(*lines)
 
 
-@dataclass(frozen=True)
-class Crossing:
-    """A mode met by a multiple of the speed: frequency = order × speed.
+@dataclass(frozen=True, repr=False)
+class Crossing(Part):
+    """A mode met by a multiple of the speed: frequency = order × speed."""
 
-    Parameters
-    ----------
-    track : int
-        Which mode.
-    order : int
-    speed : float
-        rad/s.
-    frequency : float
-        Hz.
-    direction : str
-    errors : ErrorEstimate
-        Of the speed; infinite where the exact model has no such crossing.
-    """
+    track: int = fact("index of the mode", name=None)
+    order: int = quantity("", "multiple of the speed at which a mode meets it")
+    speed: float = quantity("rad/s", "speed at which a mode meets a multiple")
+    frequency: float = quantity("Hz", "frequency at which a mode meets a multiple")
+    direction: str = fact("direction in which the beam moves most", name=None)
+    errors: ErrorEstimate = part(
+        "errors of the speed",
+        name="error_",
+        default_factory=ErrorEstimate,
+        note="infinite where the exact model has no such crossing",
+    )
 
-    track: int
-    order: int
-    speed: float
-    frequency: float
-    direction: str
-    errors: ErrorEstimate = field(default_factory=ErrorEstimate)
+    @property
+    @declared("", "number of the mode that meets a multiple", key=None)
+    def mode(self) -> int:
+        """Number of the mode, from 1."""
+        return self.track + 1
+
+    @property
+    @declared("", "estimated error of the speed in all", name=None)
+    def error_estimate(self) -> float:
+        """Estimated error of the speed, a fraction."""
+        return self.errors.total
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Campbell(Figured):
-    """Frequencies against speed, each column one mode followed through crossings and veering.
+    """Frequencies against speed, each column one mode followed through crossings and veering."""
 
-    Parameters
-    ----------
-    motion, model : str
-    speed : (v,) rad/s
-    frequency, damping_ratio : (v, k)
-        Hz; NaN where the mode does not oscillate.
-    mac : (v, k)
-        Modal assurance criterion between a mode and itself at the speed before; 1 at the first.
-    direction : tuple of (k,) str
-        At the first speed.
-    orders : tuple of int
-    crossings : tuple of Crossing
-    critical : Critical or None
-        Where the equilibrium is lost within the range.
-    errors : FrequencyErrors or None
-        Of the modes' frequencies, the largest of those at the first, a middle and the last speed.
-    """
+    json_rows: ClassVar[dict[str, str]] = {"mode": "tracks"}
 
-    motion: str
-    model: str
-    speed: Floats
-    frequency: Floats
-    damping_ratio: Floats
-    mac: Floats
-    direction: tuple[str, ...]
-    orders: tuple[int, ...]
-    crossings: tuple[Crossing, ...]
-    critical: Critical | None
-    errors: FrequencyErrors | None = None
+    motion: str = fact("name of the motion")
+    model: str = fact("kind of the model")
+    speed: Floats = quantity("rad/s", "hub rate", "speed", role="coordinate")
+    frequency: Floats = quantity("Hz", "natural frequency; missing where it does not oscillate", "speed", "mode")
+    damping_ratio: Floats = quantity("", "ratio of critical damping", "speed", "mode")
+    mac: Floats = quantity("", "modal assurance criterion to the speed before", "speed", "mode", note="1 at the first")
+    direction: tuple[str, ...] = quantity("", "direction in which the beam moves most, at the first speed", "mode")
+    orders: tuple[int, ...] = fact("multiples of the speed")
+    crossings: tuple[Crossing, ...] = rows("modes met by multiples of the speed", "crossing", name="crossing_")
+    critical: Critical | None = part("where the equilibrium is lost within the range", name="critical_", key=None)
+    errors: FrequencyErrors | None = part(
+        "errors of the frequencies",
+        "mode",
+        name="frequency_error_",
+        note="the largest of those at the first, a middle and the last speed",
+        default=None,
+    )
+
+    @property
+    @declared("", "estimated error of the frequency in all", "mode", name=None)
+    def error_estimate(self) -> Floats:
+        """Estimated errors of the frequencies, (k,), fractions; NaN where there is no estimate."""
+        return totals(self.errors, len(self.direction))
+
+    @property
+    @declared("rad/s", "critical speed", role="fact", name=None)
+    def critical_speed(self) -> float | None:
+        """Speed at which the equilibrium is lost, rad/s; None where it is not."""
+        return None if self.critical is None else self.critical.value
+
+    @property
+    @declared("", "errors of the critical speed", role="part", name=None)
+    def critical_speed_errors(self) -> ErrorEstimate | None:
+        """Errors of the critical speed, None where there is none."""
+        return None if self.critical is None else self.critical.errors
 
     def __repr__(self) -> str:
         of = f" {self.motion!r}" if self.motion else ""
@@ -189,6 +206,11 @@ class Campbell(Figured):
             f"{self.speed[0]:.4g} to {self.speed[-1]:.4g} rad/s; {len(self.crossings)} crossings with multiples "
             f"{', '.join(str(order) for order in self.orders) or 'none'} of the speed{lost}"
         )
+
+
+def totals(errors: FrequencyErrors | None, count: int) -> Floats:
+    """Return total errors of frequencies, (k,); NaN where there is no estimate."""
+    return np.full(count, np.nan) if errors is None else errors.total
 
 
 def near_multiples(frequency: Floats, speed: Floats, orders: Sequence[int]) -> list[int]:

@@ -2,46 +2,35 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
-from gbeam.results.parts.errors import ErrorEstimate
+from gbeam.results.declared import declared, fact, part
+from gbeam.results.declared import quantity as entry  # a critical value has a field of that name
+from gbeam.results.parts.errors import MODEL, SHAPES, THEORY, TOTAL, ErrorEstimate
 from gbeam.results.result import Figured, Floats, Part, Result, brief
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Critical(Result):
-    """Where the stiffness about the relative equilibrium stops being positive definite, or something grows.
+    """Where the stiffness about the relative equilibrium stops being positive definite, or something grows."""
 
-    Parameters
-    ----------
-    quantity, unit : str
-        What was raised: ``hub rate``, rad/s; ``acceleration along x``, m/s²; or ``load factor``, times the loads.
-    value : float or None
-        None where it is not reached.
-    searched_to : float
-        End of the search.
-    kind : str
-        ``divergence``, ``flutter``, ``no equilibrium`` or ``none``.
-    direction : str
-        Of the mode that is lost; empty where there is none.
-    reason : str
-        The answer as a sentence.
-    model : str
-    errors : ErrorEstimate
-        Of the value. The model's is infinite where the exact one keeps its equilibrium to three times the value.
-    """
-
-    quantity: str
-    unit: str
-    value: float | None
-    searched_to: float
-    kind: str
-    direction: str
-    reason: str
-    model: str
-    errors: ErrorEstimate = field(default_factory=ErrorEstimate)
+    quantity: str = fact("quantity that is raised", note="hub rate, acceleration along x, or load factor")
+    unit: str = fact("unit of the quantity", note="rad/s, m/s^2, or none of a factor of the loads", name=None)
+    value: float | None = entry(lambda self: self.unit, "critical value; missing where it is not reached", key=None)
+    searched_to: float = entry(lambda self: self.unit, "end of the search")
+    kind: str = fact("how it is lost", note="divergence, flutter, no equilibrium or none")
+    direction: str = fact("direction of the mode that is lost", note="empty where there is none")
+    reason: str = fact("the answer as a sentence")
+    model: str = fact("kind of the model")
+    errors: ErrorEstimate = part(
+        "errors of the value",
+        name="error_",
+        default_factory=ErrorEstimate,
+        note="that of the model is infinite where the exact one keeps its equilibrium to three times the value",
+    )
 
     @property
+    @declared("", "estimated error from too few shapes", name=None)
     def error_estimate(self) -> float:
         """Error of the value from too few shapes, a fraction; NaN where there is no estimate."""
         return self.errors.shapes
@@ -55,42 +44,35 @@ class Critical(Result):
 class MapErrors(Part):
     """Estimated errors of the speeds of a map, as fractions, (m, p) each; NaN where there is none.
 
-    Parameters
-    ----------
-    shapes, model, beam_theory, total : (m, p)
-        From too few shapes, of the model against exact, of the theory of slender beams, and of all; infinite where the
-        exact model keeps its equilibrium to three times the speed.
+    Infinite where the exact model keeps its equilibrium to three times the speed.
     """
 
-    shapes: Floats
-    model: Floats
-    beam_theory: Floats
-    total: Floats
+    shapes: Floats = entry("", SHAPES)
+    model: Floats = entry("", MODEL)
+    beam_theory: Floats = entry("", THEORY)
+    total: Floats = entry("", TOTAL)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class CriticalMap(Figured):
-    """Critical hub rates against a mass on the beam and its position.
+    """Critical hub rates against a mass on the beam and its position."""
 
-    Parameters
-    ----------
-    motion, model : str
-    mass : (m,) kg
-    position : (p,) m from the root
-    speed : (m, p) rad/s; NaN where it is not reached
-    searched_to : float
-        rad/s.
-    errors : MapErrors or None
-        Of the speeds; None where there is no estimate.
-    """
-
-    motion: str
-    model: str
-    mass: Floats
-    position: Floats
-    speed: Floats
-    searched_to: float
-    errors: MapErrors | None = None
+    motion: str = fact("name of the motion")
+    model: str = fact("kind of the model")
+    mass: Floats = entry("kg", "mass on the beam", "mass", role="coordinate")
+    position: Floats = entry("m", "its position from the root", "position", role="coordinate")
+    speed: Floats = entry(
+        "rad/s", "critical hub rate; missing where it is not reached", "mass", "position", key="critical_speed"
+    )
+    searched_to: float = fact("end of the search", "rad/s")
+    errors: MapErrors | None = part(
+        "errors of the speeds",
+        "mass",
+        "position",
+        name="speed_error_",
+        note="None where there is no estimate",
+        default=None,
+    )
 
     def __repr__(self) -> str:
         return brief(self)

@@ -95,10 +95,10 @@ def _static(case: Case, motion: str | None, at: float | None, needs: Needs) -> F
 
 def _modes(case: Case, motion: str | None, at: float | None, needs: Needs) -> Facts:
     from gbeam.analysis.vibration import modal
-    from gbeam.report.steady import modes
+    from gbeam.results.declared import json_of
 
     name = _only(case, motion, "")
-    return modes.to_json(modal.modes(_structure(case, needs), _prepared(case, name), _time(case, at), name=name))
+    return json_of(modal.modes(_structure(case, needs), _prepared(case, name), _time(case, at), name=name))
 
 
 def _critical_speed(case: Case, motion: str | None, at: float | None, needs: Needs) -> Facts:

@@ -8,6 +8,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from gbeam.results.declared import units_of
+from gbeam.results.steady.equilibrium import Deflection
+from gbeam.results.steady.modal import Modes
+
 ANY = "*"  # any key that has no entry of its own
 NUMBER = ""  # a share, a ratio, a count, true or false
 _NAMED = "unit"  # the unit is the one that the facts name beside the figure
@@ -38,7 +42,6 @@ def _pair(unit: str) -> Tree:
     return {**_all(unit, "flight machine"), "ratio": NUMBER, **_all("s", "time_flight time_machine")}
 
 
-_BASE = {"acceleration": "m/s^2", "angular_velocity": "rad/s", "angular_acceleration": "rad/s^2"}
 _USE = {**_all(_NAMED, "used allowed"), **_all(NUMBER, "share exceeded"), "time": "s"}
 _STRETCH = _all("s", "start end time")
 _SPANS = {"span": _STRETCH, "whole": _STRETCH}
@@ -73,7 +76,7 @@ _ERROR = {"max": "m/s^2", "fraction": NUMBER, "time_of_max": "s"}
 _MOTION = {
     **_JUDGED,
     **_SPANS,
-    "base": _BASE,
+    **units_of(Deflection),
     "tip": _vector("m"),
     "stations": {"": "m", "at": "m", **_vector("m")},
     "loads": _LOADS,
@@ -85,10 +88,9 @@ _MOTION = {
     "shortfalls": {**_STRETCH, **_all(_NAMED, "reference possible")},
     "histories": {"samples": NUMBER},
     "gravity": "m/s^2",
-    "strain_energy": "J",
-    **_all("m", "displacement arm control_point"),
+    **_all("m", "arm control_point"),
     **_all("s", "time step spin_up spin_down"),
-    **_all(NUMBER, "stable error_estimate errors steps damping_ratio"),
+    **_all(NUMBER, "error_estimate steps damping_ratio"),
 }
 _CYCLES = {"cycles": NUMBER, **_all("Pa", "largest_range equivalent_range")}
 _MISMATCH = {"max_gradient": "1/s^2", "max_acceleration": "m/s^2", "force_bound": "N", "moment_bound": "N m"}
@@ -106,7 +108,6 @@ _COMPARISON = {
     **_all("m", "stations max_difference rms_difference peak_flight peak_centrifuge"),
     **_all(NUMBER, "margin covered relative"),
 }
-_MODE = {"frequency": "Hz", **_all(NUMBER, "damping_ratio shape shape_imaginary error_estimate errors")}
 _CANDIDATE = {
     "most_used": _USE,
     "exceeded": _USE,
@@ -120,17 +121,13 @@ _CANDIDATE = {
 _FIGURES: Tree = {
     "motions": {ANY: _MOTION},
     "comparisons": {ANY: _COMPARISON},
-    "base": _BASE,
-    "modes": _MODE,
-    "section": {**_all("m", "width thickness"), "round": NUMBER},
-    "instabilities": {"growth_rate": "1/s", "frequency": "Hz"},
-    "overdamped": "1/s",
+    **units_of(Modes),
     "options": _CANDIDATE,
     "before": _CANDIDATE,
-    **_all("m", "stations control_point current_control_point"),
-    **_all("s", "time smoothing smoothing_range"),
+    **_all("m", "control_point current_control_point"),
+    **_all("s", "smoothing smoothing_range"),
     **_all("rad/s", "critical_speed searched_to"),
-    **_all(NUMBER, "gyroscopic damping_given stable rigid error_estimate errors"),
+    **_all(NUMBER, "error_estimate errors"),
     **_all(NUMBER, "measure mismatch total_error fraction_of_length vibration_gain_over_middle"),
 }
 
