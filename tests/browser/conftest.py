@@ -61,6 +61,12 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "critical-speed": (SLEWING, ()),
     "critical-speed of masses": (SLEWING, ("--masses", "0.1 kg, 0.5 kg", "--positions", "2 m, 5 m, 8 m")),
     "plan": (FAST, ()),
+    "sensitivity": (FAST, ("--verb", "static", "--motion", "flight", "--at", "0.2 s", "--of", "tip.z")),
+    "optimize": (
+        FAST,
+        ("--verb", "modes", "--motion", "flight", "--minimise", "modes[0].frequency", "--over", "beam.length"),
+    ),
+    "shape": (SLEWING, ("--angle", "0.2 rad", "--duration", "3 s")),
     "place": (FAST, ()),
     "sweep": (FAST, SWEEP),
     "sweep of two": (FAST, (*SWEEP, *POINTS)),

@@ -29,6 +29,9 @@ from gbeam.report.page.result import report_of, report_of_file
 from gbeam.report.words import as_json
 from gbeam.results.parts.outline import Outline
 from gbeam.results.result import Result
+from gbeam.results.studies.fit import FittedColumn
+from gbeam.results.studies.optimum import Requirement
+from gbeam.results.studies.shaping import CommandRun
 from gbeam.results.study import Study
 
 BEAM = gb.Beam(0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9), damping_ratio=0.01)
@@ -227,3 +230,69 @@ def test_numbers_come_back_and_stand_once() -> None:
     assert numbers.add(second) == {"at": 6, "shape": [1]}
     back = np.frombuffer(base64.b64decode(numbers.encoded()), dtype="<f4")
     assert back.tolist() == [0, 1, 2, 3, 4, 5, 7]
+
+
+def _fit() -> gb.Fit:
+    two, time = np.array([1.0, 2.0]), np.linspace(0, 1, 5)
+    column = FittedColumn("tip.z", "m", time, 2 * time, 3 * time, 0.125, 0.0)
+    return gb.Fit(
+        title="toy", data="d.csv", parameters=("a", "b"), units=("m", "kg"), before=two, values=3 * two,
+        errors=0.0321 * two, intervals=np.array([[2.5, 3.5], [5, 7]]), covariance=np.eye(2),
+        correlation=np.array([[1, 0.4321], [0.4321, 1]]), bounds=np.array([[0.0, 9], [0, 9]]),
+        at_bound=np.array([False, True]), columns=(column,), at=time, modal=False, evaluations=7, condition=2.5,
+        starts=3, agreed=2,
+    )  # fmt: skip
+
+
+def _optimum() -> gb.Optimum:
+    return gb.Optimum(
+        title="toy", minimise="tip", unit="m", parameters=("a",), units=("m",), before=np.array([1.0]),
+        values=np.array([2.345]), bounds=np.array([[0.0, 9]]), at_bound=np.array([False]), figure_before=1.0,
+        figure=0.5, error=0.01, requirements=(Requirement("q", "Pa", -np.inf, 3.0, 1.0, 4.0),),
+        path=np.array([[1.0], [2.345]]), history=np.array([1.0, 0.5]), evaluations=9, outcome="limits exceeded",
+    )  # fmt: skip
+
+
+def _sensitivity() -> gb.Sensitivity:
+    return gb.Sensitivity(
+        title="toy", verb="run", measures=("tip", "share"), units=("m", ""), figures=np.array([2.0, 0.5]),
+        parameters=("a", "b"), parameter_units=("m", "kg"), values=np.array([1.0, 3.0]),
+        derivatives=np.array([[0.1, 4.0], [0.2, -0.3]]), errors=np.array([[0.001, np.nan], [0.002, np.nan]]),
+        methods=("difference", "exact"), kinks=np.array([[True, False], [False, False]]), run_error=0.0123,
+        not_varied=("c: no",),
+    )  # fmt: skip
+
+
+def _shaped() -> gb.ShapedCommand:
+    time = np.linspace(0, 1, 5)
+    tip = np.stack([0 * time, time, 0 * time], axis=1)
+    runs = tuple(
+        CommandRun(name, k * time, 0.5 * k, k * time[:3], time, k * tip, 1e-3 * k, "done")
+        for k, name in ((1, "shaped"), (2, "ZVD"))
+    )
+    return gb.ShapedCommand(
+        kind="rate", goal=0.25, to_rate=True, duration=2.0, coefficients=time, time=time, limit=np.inf, robust=0.1,
+        frequency=np.array([0.5]), ratio=time[:3], runs=runs, design="FOAM", check="exact",
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("result", "said", "drawn"),
+    [
+        (_fit(), ["0.03210", "2.5 to 3.5", "on its bound", "0.4321", "0.1250", "2 of 3 searches"], 2),
+        (_optimum(), ["Least tip: 0.5000 m, was 1.000", "2.345", "0 to 9", "not kept", "limits exceeded"], 1),
+        (_sensitivity(), ["tip = 2.000 m", "6.0 %", "difference kink", "-0.009000", "1.2 %", "Not varied: c: no"], 0),
+        (_shaped(), ["Rate to 0.2500 rad/s in 2.000 s", "largest, rad/s²", "for frequencies wrong by up to 10 %"], 3),
+    ],
+    ids=["fit", "optimum", "sensitivity", "shape"],
+)
+def test_page_of_a_study_says_what_it_found(result: Result, said: list[str], drawn: int, tmp_path: Path) -> None:
+    page = report_of(result)
+    text = html.unescape(re.sub(r"<script.*?</script>|<style.*?</style>", "", page, flags=re.DOTALL))
+    assert all(each in text for each in said), [each for each in said if each not in text]
+    assert len(header_of(page)["plots"]) == drawn  # type: ignore[arg-type]
+    result.save(tmp_path / "result.nc")
+    assert report_of_file(tmp_path) == page
+    (tmp_path / "result.nc").rename(tmp_path / "kept")
+    (tmp_path / "found.json").write_text(as_json(facts(result)))
+    assert header_of(report_of_file(tmp_path))["plots"] == []  # JSON holds no histories

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from gbeam.cli.inputs import naming, signed
 from gbeam.cli.invocation import command
@@ -21,7 +22,10 @@ if TYPE_CHECKING:
 
     from gbeam.results.studies.fit import Fit
     from gbeam.results.studies.optimum import Optimum
+    from gbeam.results.studies.sensitivity import Sensitivity
+    from gbeam.results.studies.shaping import ShapedCommand
 
+Found = TypeVar("Found", "Fit", "Optimum", "Sensitivity", "ShapedCommand")
 _PLAIN_WIDTH = 110  # columns of a table where stdout is a file
 
 
@@ -98,38 +102,65 @@ def refuse_changes(write: Path | None, overrides: Sequence[str]) -> None:
 
 
 def show_found(
-    answer: Fit | Optimum,
-    report: Any,
+    answer: Found,
+    words: Any,
     verb: str,
     stem: str,
-    scenario: Path,
+    folder: Path | None,
     *,
-    write: Path | None,
-    out: Path | None,
     json: bool,
+    report: bool,
+    written: Path | None = None,
+    more: Callable[[Path], None] | None = None,
 ) -> None:
-    """Print what a verb found; write its result and plot into a folder, and its values into a copy of the scenario."""
-    assert answer.provenance is not None  # it is of a scenario
-    answer = replace(answer, provenance=replace(answer.provenance, command=command()))
+    """Print what a study found, and write its result, plots, page and what a verb has `more` into a folder.
+
+    Parameters
+    ----------
+    answer : Fit, Optimum, Sensitivity or ShapedCommand
+    words : module
+        Its words and JSON, of :mod:`gbeam.report.studies`.
+    verb, stem : str
+        Which found it, and the names of its files.
+    folder : Path or None
+    json, report : bool
+        Whether to print JSON, and to write a page.
+    written : Path, optional
+        The scenario that has the values found.
+    more : callable, optional
+        Writes further files into a folder.
+    """
 
     def make(hidden: Path) -> None:
-        from gbeam.plots import save
+        from gbeam.plots import figures, save
 
         answer.save(hidden / f"{stem}.nc")
-        save(answer.plot().figure, hidden, stem, f"gbeam {verb}")
+        for name, draw in figures(answer).items():
+            save(draw(), hidden, re.sub(r"[^\w.-]+", "", name), f"gbeam {verb}")
+        if report:
+            answer.report(hidden / f"{stem}.html")
+        if more is not None:
+            more(hidden)
 
-    files = [] if out is None else publish(out, make)
-    if write is not None:
-        _write_found(answer, scenario, write)
-    show(report.text(answer), signed(report.to_json(answer, files), answer.provenance), json)
+    files = [] if folder is None else publish(folder, make)
+    assert answer.provenance is not None  # it is of a scenario
+    show(words.text(answer), signed(words.to_json(answer, files), answer.provenance), json)
     if not json:
-        if write is not None:
-            print(f"\n{write} has these values")
-        list_files(out, files)
+        if written is not None:
+            print(f"\n{written} has these values")
+        list_files(folder, files)
 
 
-def _write_found(answer: Fit | Optimum, scenario: Path, file: Path) -> None:
-    """Write a scenario with the values that a search found."""
+def commanded(answer: Found) -> Found:
+    """Return an answer that knows the command that it is of."""
+    assert answer.provenance is not None  # it is of a scenario
+    return replace(answer, provenance=replace(answer.provenance, command=command()))
+
+
+def write_found(answer: Fit | Optimum, scenario: Path, file: Path | None) -> None:
+    """Write a scenario with the values that a search found, if a file is named."""
+    if file is None:
+        return
     from gbeam.studies.search.bounds import with_values
 
     with naming("--write"):

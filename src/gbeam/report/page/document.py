@@ -13,7 +13,7 @@ from typing import Any
 from gbeam.errors import InputError
 from gbeam.guards.json_files import parse_json
 from gbeam.printable import json_printable
-from gbeam.report.page.bodies import cases, machine, rest, steady, study
+from gbeam.report.page.bodies import cases, machine, rest, steady, studies, study
 from gbeam.report.page.parts import badge, escaped, folded, heading, listed, paragraph, table, verbatim
 from gbeam.report.page.series import Numbers, Plots
 from gbeam.report.words import as_json
@@ -30,6 +30,10 @@ KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...], Body]] = {
     "critical-speed --masses": (("mass", "position", "critical_speed"), (), rest.critical_map_body),
     "place": (("fraction_of_length", "options"), (), cases.placement_body),
     "sweep": (("parameters", "measures"), (), cases.sweep_body),
+    "fit": (("covariance", "columns"), (), studies.fit_body),
+    "optimize": (("minimise", "subject_to"), (), studies.optimum_body),
+    "sensitivity": (("measures", "run_error"), (), studies.sensitivity_body),
+    "shape": (("commands", "coefficients"), (), studies.shaping_body),
 }
 
 

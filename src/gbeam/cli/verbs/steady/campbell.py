@@ -49,12 +49,13 @@ def campbell(
 
     from gbeam.analysis.vibration import campbell as analysis
     from gbeam.report.steady import campbell as words
+    from gbeam.results.declared import json_of
 
     with Watch(), given.placing(to="--to", modes="--modes"):
         diagram = analysis.campbell(
             given.case.assemble(), chosen, start=low, end=high, modes=modes, orders=range(1, orders + 1), name=name
         )
-    facts = given.signed(words.to_json(diagram))
+    facts = given.signed(json_of(diagram))
 
     from gbeam.scenario.values.units import unit_of
 

@@ -33,12 +33,13 @@ def critical_map(
 
     from gbeam.analysis.vibration.stability import critical_speed_map
     from gbeam.report.steady import critical as words
+    from gbeam.results.declared import json_of
 
     with Watch() as watch, given.placing():
         critical = critical_speed_map(
             case.beam, case.model, chosen, kilograms, places, upper, name=name, progress=watch
         )
-    facts = given.signed(words.map_json(critical))
+    facts = given.signed(json_of(critical))
 
     def make(hidden: Path) -> None:
         write_json(hidden / "critical_speed.json", facts)

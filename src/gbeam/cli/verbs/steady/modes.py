@@ -36,10 +36,11 @@ def modes(
 
     from gbeam.analysis.vibration import modal
     from gbeam.report.steady import modes as words
+    from gbeam.results.declared import json_of
 
     with Watch(), given.placing():
         modes = modal.modes(given.structure(), chosen, time, gyroscopic=gyroscopic, name=name)
-    facts = given.signed(words.to_json(modes))
+    facts = given.signed(json_of(modes))
 
     write(folder, "modes", facts, lambda: {"modes": modes.plot(title=given.case.title).figure}, report=report)
     show(words.text(modes), facts, json)

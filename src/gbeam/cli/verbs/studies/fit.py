@@ -8,8 +8,20 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from gbeam.cli.inputs import names, number, search_bounds
-from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile, SearchBounds, Starts, WriteTo, option
-from gbeam.cli.outputs import refuse_changes, show_found
+from gbeam.cli.options import (
+    At,
+    Json,
+    MotionName,
+    Out,
+    Overrides,
+    Report,
+    ScenarioFile,
+    SearchBounds,
+    Starts,
+    WriteTo,
+    option,
+)
+from gbeam.cli.outputs import commanded, folder_of, refuse_changes, show_found, write_found
 from gbeam.cli.publication import refuse_unwritable
 from gbeam.cli.terminal.console import Watch
 
@@ -37,14 +49,17 @@ def fit(
     overrides: Overrides = (),
     out: Out = None,
     json: Json = False,
+    report: Report = False,
 ) -> int:
     """Find values of a scenario from measured histories, or from frequencies and damping, by least squares.
 
-    Says how sure each value is, and which values the data cannot tell apart. With --out also writes fit.nc and a plot
-    of data and residuals. Exit status: 0 done, 1 the data do not say the values, 2 the input is wrong.
+    Says how sure each value is, and which values the data cannot tell apart. With --out also writes fit.nc and a
+    plot of data and residuals, with --report fit.html. Exit status: 0 done, 1 the data do not say the values, 2 the
+    input is wrong.
     """
-    if out is not None:
-        refuse_unwritable(out)
+    folder = folder_of(out, scenario, default=report)
+    if folder is not None:
+        refuse_unwritable(folder)
     refuse_changes(write, overrides)
 
     from gbeam.studies.fit import fit as compute
@@ -64,7 +79,8 @@ def fit(
             progress=watch,
         )
 
-    from gbeam.report.studies import fit as report
+    from gbeam.report.studies import fit as words
 
-    show_found(answer, report, "fit", "fit", scenario, write=write, out=out, json=json)
+    write_found(answer, scenario, write)
+    show_found(commanded(answer), words, "fit", "fit", folder, json=json, report=report, written=write)
     return 0

@@ -7,8 +7,20 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from gbeam.cli.inputs import names, number, search_bounds
-from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile, SearchBounds, Starts, WriteTo, option
-from gbeam.cli.outputs import refuse_changes, show_found
+from gbeam.cli.options import (
+    At,
+    Json,
+    MotionName,
+    Out,
+    Overrides,
+    Report,
+    ScenarioFile,
+    SearchBounds,
+    Starts,
+    WriteTo,
+    option,
+)
+from gbeam.cli.outputs import commanded, folder_of, refuse_changes, show_found, write_found
 from gbeam.cli.publication import refuse_unwritable
 from gbeam.cli.terminal.console import Watch
 from gbeam.cli.terminal.failures import FAILED, complain
@@ -43,15 +55,17 @@ def optimize(
     overrides: Overrides = (),
     out: Out = None,
     json: Json = False,
+    report: Report = False,
 ) -> int:
     """Find the values of a scenario at which a figure is least, within bounds and limits, by exact derivatives.
 
     One search finds the nearest valley, from the scenario's values; --starts 5 tries others. With --out also writes
-    optimum.nc and a plot of the way. Exit status: 0 done, 1 no values within the bounds keep the requirements, 2 the
-    input is wrong.
+    optimum.nc and a plot of the way, with --report optimum.html. Exit status: 0 done, 1 no values within the bounds
+    keep the requirements, 2 the input is wrong.
     """
-    if out is not None:
-        refuse_unwritable(out)
+    folder = folder_of(out, scenario, default=report)
+    if folder is not None:
+        refuse_unwritable(folder)
     refuse_changes(write, overrides)
 
     from gbeam.studies.optimise import optimise as compute
@@ -72,9 +86,10 @@ def optimize(
             progress=watch,
         )
 
-    from gbeam.report.studies import optimum as report
+    from gbeam.report.studies import optimum as words
 
-    show_found(answer, report, "optimize", "optimum", scenario, write=write, out=out, json=json)
+    write_found(answer, scenario, write)
+    show_found(commanded(answer), words, "optimize", "optimum", folder, json=json, report=report, written=write)
     if answer.outcome != "done":
         complain(f"{answer.outcome}: no values were found that keep the requirements")
         return FAILED

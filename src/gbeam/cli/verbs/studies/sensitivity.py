@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import re
-from dataclasses import replace
-from pathlib import Path
 from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from gbeam.cli.inputs import names, number, signed
-from gbeam.cli.invocation import command
-from gbeam.cli.options import At, Json, MotionName, Out, Overrides, ScenarioFile, option
-from gbeam.cli.outputs import list_files, show
-from gbeam.cli.publication import publish, refuse_unwritable
+from gbeam.cli.inputs import names, number
+from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile, option
+from gbeam.cli.outputs import commanded, folder_of, show_found
+from gbeam.cli.publication import refuse_unwritable
 from gbeam.cli.terminal.console import Watch
 
 Verb = Literal["run", "static", "modes", "critical-speed", "plan"]
@@ -39,14 +35,17 @@ def sensitivity(
     overrides: Overrides = (),
     out: Out = None,
     json: Json = False,
+    report: Report = False,
 ) -> int:
     """Which values of a scenario a figure depends on, and how much: a ranked table and a tornado plot.
 
     The derivatives of responses are those of the discrete solution, all from one run. With --out also writes
-    sensitivity.nc and a plot of each figure. Exit status: 0 done, 1 the run is not done, 2 the input is wrong.
+    sensitivity.nc and a plot of each figure, with --report sensitivity.html. Exit status: 0 done, 1 the run is not
+    done, 2 the input is wrong.
     """
-    if out is not None:
-        refuse_unwritable(out)
+    folder = folder_of(out, scenario, default=report)
+    if folder is not None:
+        refuse_unwritable(folder)
 
     from gbeam.studies.sensitivity import sensitivity as compute
 
@@ -56,20 +55,7 @@ def sensitivity(
             scenario, names(of), names(by), verb=verb, motion=motion, at=time, overrides=overrides, progress=watch
         )
 
-    assert answer.provenance is not None  # it is of a scenario
-    answer = replace(answer, provenance=replace(answer.provenance, command=command()))
+    from gbeam.report.studies import sensitivity as words
 
-    def make(hidden: Path) -> None:
-        from gbeam.plots import figures, save
-
-        answer.save(hidden / "sensitivity.nc")
-        for name, draw in figures(answer).items():
-            save(draw(), hidden, re.sub(r"[^\w.-]+", "", name), "gbeam sensitivity")
-
-    from gbeam.report.studies import sensitivity as report
-
-    files = [] if out is None else publish(out, make)
-    show(report.text(answer), signed(report.to_json(answer, files), answer.provenance), json)
-    if not json:
-        list_files(out, files)
+    show_found(commanded(answer), words, "sensitivity", "sensitivity", folder, json=json, report=report)
     return 0

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from gbeam.cli.inputs import number, signed
-from gbeam.cli.invocation import command
-from gbeam.cli.options import Json, MotionName, Out, Overrides, ScenarioFile
-from gbeam.cli.outputs import list_files, show
-from gbeam.cli.publication import publish, refuse_unwritable
+from gbeam.cli.inputs import number
+from gbeam.cli.options import Json, MotionName, Out, Overrides, Report, ScenarioFile
+from gbeam.cli.outputs import commanded, folder_of, show_found
+from gbeam.cli.publication import refuse_unwritable
 from gbeam.cli.terminal.console import Watch
 from gbeam.cli.terminal.failures import FAILED, complain
 
@@ -36,16 +34,19 @@ def shape(
     overrides: Overrides = (),
     out: Out = None,
     json: Json = False,
+    report: Report = False,
 ) -> int:
     """Find the rate or torque of a hub that leaves the least vibration of its beam, beside ZVD and a smooth step.
 
-    It does what the scenario's own rate does, in the same time, unless --angle, --rate or --duration say otherwise; a
-    free hub is driven by a torque and needs --angle or --rate. With --out also writes shaping.nc, command.json, a
+    It does what the scenario's own rate does, in the same time, unless --angle, --rate or --duration say otherwise;
+    a free hub is driven by a torque and needs --angle or --rate. With --out also writes shaping.nc, command.json, a
     scenario in which the command drives the hub, and plots of the commands and of what they leave where frequencies
-    are wrong. Exit status: 0 done, 1 no command does it or a run is not done, 2 the input is wrong.
+    are wrong, with --report shaping.html. Exit status: 0 done, 1 no command does it or a run is not done, 2 the
+    input is wrong.
     """
-    if out is not None:
-        refuse_unwritable(out)
+    folder = folder_of(out, scenario, default=report)
+    if folder is not None:
+        refuse_unwritable(folder)
 
     from gbeam.studies.shape import hub_of, scenario_with
     from gbeam.studies.shape import shape as compute
@@ -71,23 +72,14 @@ def shape(
             progress=watch,
         )
 
-    assert answer.provenance is not None  # it is of a scenario
-    answer = replace(answer, provenance=replace(answer.provenance, command=command()))
+    from gbeam.report.studies import shaping as words
 
-    def make(hidden: Path) -> None:
-        from gbeam.plots import figures, save
+    answer = commanded(answer)
 
-        answer.save(hidden / "shaping.nc")
+    def write_command(hidden: Path) -> None:
         (hidden / "command.json").write_text(scenario_with(answer, case) + "\n", encoding="utf-8")
-        for name, draw in figures(answer).items():
-            save(draw(), hidden, name, "gbeam shape")
 
-    from gbeam.report.studies import shaping as report
-
-    files = [] if out is None else publish(out, make)
-    show(report.text(answer), signed(report.to_json(answer, files), answer.provenance), json)
-    if not json:
-        list_files(out, files)
+    show_found(answer, words, "shape", "shaping", folder, json=json, report=report, more=write_command)
     if answer.outcome != "done":
         complain(f"a command's run has {answer.outcome}")
         return FAILED

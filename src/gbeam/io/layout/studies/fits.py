@@ -22,7 +22,9 @@ def fit_group(fit: Fit) -> Group:
         "correlation": variable((*p, "other"), fit.correlation, "1", "correlation of their errors"),
         "measured": variable(dims, [each.measured for each in fit.columns], "1", "data, in the column's unit"),
         "fitted": variable(dims, [each.fitted for each in fit.columns], "1", "the same of the fitted scenario"),
-        "scenario": variable(dims, [each.before for each in fit.columns], "1", "the same of the scenario as it was"),
+        "computed_before": variable(
+            dims, [each.before for each in fit.columns], "1", "the same of the scenario as it was"
+        ),
         "noise": variable(("column",), [each.noise for each in fit.columns], "1", "standard deviation of the residual"),
         "column_unit": words(("column",), [each.unit for each in fit.columns], "SI unit of the column"),
     }
