@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import gc
 import os
 import sys
 
-_MADE = 20_000  # objects between two looks for circles of unused ones: Python's own 700 suit a smaller heap
 FIGURES = "GBEAM_FIGURES"  # environment: "none" leaves out the files of figures, as where a report draws its own
 _own = False
 
 
 def begin() -> None:
-    """Look seldom for objects that only keep one another, a twentieth of a run; note whose process it is."""
+    """Note that this process is the command line's own."""
     global _own
-    gc.set_threshold(_MADE, 20, 10)
     _own = True
 
 
