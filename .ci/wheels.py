@@ -24,7 +24,7 @@ UV = shutil.which("uv", path=os.pathsep.join([str(Path(sys.executable).parent), 
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 RESOLUTIONS = ("lowest-direct", "highest")
 EXAMPLE = ROOT / "examples" / "f16_8g_turn.toml"
-# Files by h5py, h5netcdf and zarr; JAX and diffrax; pyuff; rainflow; pint; tree-sitter. The demo needs the others.
+# Files by h5py, h5netcdf and zarr; JAX; pyuff; rainflow; pint; tree-sitter. The demo needs the others.
 TESTS = (
     "tests/io",
     "tests/integrate/test_driver.py",

@@ -168,18 +168,6 @@ def test_residual_vibration_is_half_of_peak_to_peak() -> None:
     assert np.isnan(run(structure, flight(RAMP), PERIOD, **settings).peaks.residual_amplitude).all()
 
 
-@pytest.mark.slow
-def test_adaptive_needs_no_corners_in_the_load() -> None:
-    load = flight(smoothed(trapezoid(50.0, jerk=1000.0, start=0.03, hold=0.1), 0.02))
-    found = run(strip(), load, 0.3, integrator="adaptive", tolerance=1e-4)
-    gauss = run(strip(), load, 0.3, integrator="gauss", tolerance=1e-7)
-    assert found.outcome == "done" and np.isnan(found.step)
-    error = np.abs(found.tip - gauss.tip).max() / np.abs(gauss.tip).max()
-    # Of a run at ten times the tolerance, which bounds that of the result.
-    assert 1.5 * error < found.errors.displacement.step < 20 * error
-    assert found.errors.displacement.step < found.errors.loads.step < 1e-4
-
-
 def test_progress_is_told() -> None:
     told: list[tuple[str, float]] = []
     settings = ResponseSettings(duration=0.1, step=1e-3)

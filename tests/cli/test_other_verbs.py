@@ -101,7 +101,7 @@ def test_help_is_light() -> None:
 
 
 NOT_FOR_READING = (
-    "jax", "equinox", "diffrax", "scipy", "xarray", "matplotlib", "pandas", "pint", "rich", "tree_sitter",
+    "jax", "scipy", "xarray", "matplotlib", "pandas", "pint", "rich", "tree_sitter",
 )  # fmt: skip
 
 

@@ -97,13 +97,3 @@ def test_warnings_of_libraries_are_a_line_and_said_once(
         warnings.showwarning(UserWarning(text), UserWarning, "", 1)
     said = "the cache of compiled programs cannot be used, they are compiled again: error: Error -3"
     assert capsys.readouterr().err == f"gbeam: warning: {said}\\nwhile\n"
-
-
-def test_figures_of_the_command_line_import_no_documentation_of_artists() -> None:
-    begin = "from gbeam.cli.process import begin, import_plots\nbegin()\n"
-    look = "import_plots()\nfrom matplotlib.patches import Circle\nprint('radius' in Circle.set.__doc__)"
-    told = [
-        subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip()
-        for code in (begin + look, begin.replace("begin()\n", "") + look)
-    ]
-    assert told == ["False", "True"]

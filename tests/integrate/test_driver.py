@@ -1,8 +1,7 @@
-"""The driver: chunks without seams, failures and stops that say where; and the adaptive method."""
+"""The driver: chunks without seams, failures and stops that say where."""
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 import numpy as np
@@ -10,15 +9,14 @@ import pytest
 
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
-from gbeam.integrate import LinearEquations, NonlinearEquations, gauss, integrate, integrate_adaptively, newmark
+from gbeam.integrate import LinearEquations, NonlinearEquations, gauss, integrate, newmark
 from gbeam.integrate.compiled.chunks import CHUNK
 from gbeam.integrate.driver import _LINEAR_CHUNK as LINEAR_CHUNK
 
-from .systems import OSCILLATOR, VARYING, Bead, Pushed, driven, one, reference, undriven
+from .systems import OSCILLATOR, VARYING, Bead, Pushed, driven, one, undriven
 
 H = 0.02  # of the oscillator's period
 ROUNDING = 1e-10
-GIVES_UP = 40.0  # s, compilation included
 
 
 def test_chunks_leave_no_seam() -> None:
@@ -180,64 +178,3 @@ def test_singular_mass_is_a_failure_not_a_crash() -> None:
     massless = driven(0.0, lambda t: 0 * t + 1)
     run = integrate(massless, newmark(), one(0.0), one(0.0), step=0.1, count=10)
     assert not run.converged
-
-
-# --- adaptive
-
-
-def test_adaptive_agrees_with_gauss_and_an_independent_method() -> None:
-    times, start = np.linspace(0, 4, 81), (np.array([0.5, -0.3]), np.array([0.0, 1.0]))
-    found = integrate_adaptively(VARYING, *start, times, tolerance=1e-9)
-    fixed = integrate(VARYING, gauss(), *start, step=4 / 800, count=800)
-    assert found.converged
-    np.testing.assert_array_equal(found.time, times)
-    for ours, theirs in ((found.q, fixed.q), (found.qd, fixed.qd), (found.qdd, fixed.qdd)):
-        np.testing.assert_allclose(ours, theirs[::10], atol=1e-6)
-    end = reference(VARYING, *start, 4.0)
-    np.testing.assert_allclose(np.concatenate([found.q[-1], found.qd[-1]]), end, atol=1e-6)
-
-
-def test_adaptive_steps_end_at_corners_and_runs_end_where_told() -> None:
-    """A load that is there for 0.1 s only is not stepped over."""
-
-    def kick(t: Any) -> Any:
-        return namespace(t).where((t >= 5.0) & (t < 5.1), 10.0, 0.0)
-
-    free, times = driven(1.0, kick), np.linspace(0, 10, 101)
-    how: dict[str, Any] = {"tolerance": 1e-9, "jumps": np.array([5.0, 5.1])}
-    found = integrate_adaptively(free, one(0.0), one(0.0), times, **how)
-    assert found.qd[-1, 0] == pytest.approx(1.0, rel=1e-7)
-    assert found.q[-1, 0] == pytest.approx(4.95, rel=1e-7)
-    short = integrate_adaptively(free, one(0.0), one(0.0), times, stop=lambda q: int(np.argmax(q[:, 0] > 1)), **how)
-    assert short.stopped and len(short.time) == int(np.argmax(found.q[:, 0] > 1))
-
-
-@record
-class BlowUp:
-    """From q = 1, q̇ = 2 it is 1/(1 − t)²."""
-
-    def __call__(self, q: Any, qd: Any, qdd: Any, f: Any) -> Any:
-        return qdd - 6 * q**2
-
-
-BLOW_UP = NonlinearEquations(BlowUp(), undriven)
-
-
-def test_adaptive_error_follows_the_tolerance() -> None:
-    errors = []
-    for tolerance in (1e-5, 1e-8):
-        found = integrate_adaptively(BLOW_UP, one(1.0), one(2.0), np.linspace(0, 0.5, 21), tolerance=tolerance)
-        errors.append(np.abs(np.array([found.q[-1, 0], found.qd[-1, 0]]) - [4.0, 16.0]).max())
-    assert errors[0] > 30 * errors[1]
-    assert errors[1] < 1e-6
-
-
-def test_adaptive_failure() -> None:
-    """Nothing beyond t = 1 s, and what there is, is finite."""
-    began = time.perf_counter()
-    found = integrate_adaptively(BLOW_UP, one(1.0), one(2.0), np.linspace(0, 2, 21), tolerance=1e-6)
-    assert time.perf_counter() - began < GIVES_UP  # not after millions of ever smaller steps
-    assert not found.converged
-    assert found.time[-1] < 1.05
-    assert np.isfinite(found.q).all()
-    np.testing.assert_allclose(found.q[5], 4.0, rtol=1e-4)

@@ -133,6 +133,6 @@ for inverse in INVERSES:
                          inverse=inverse, smoothing=0.3, span=(0.0, 5.0))
     machine.base([1.0, 2.0]), machine.usage(), machine.shortfalls()
 Hub(radius=0.5, rate=SmoothStep(3.0, 2.0), gravity=(0, 0, -9.8)).base(1.0)
-assert not {{"jax", "equinox", "jaxtyping"}} & set(sys.modules)
+assert "jax" not in sys.modules
 """
     subprocess.run([sys.executable, "-c", program], check=True, timeout=120)

@@ -69,7 +69,7 @@ def test_both_files_show_the_same(files: list[Path]) -> None:
     by_name = {file.name: file for file in files}
     pixels, drawing = imread(by_name["tip.png"]), ET.parse(by_name["tip.svg"]).getroot()
     height, width, channels = pixels.shape
-    assert channels == 3 and pixels[0, 0].tolist() == [1, 1, 1] and pixels.min() < 0.1
+    assert channels == 4 and pixels[0, 0].tolist() == [1, 1, 1, 1] and pixels.min() < 0.1
     size = [float(drawing.attrib[name].removesuffix("pt")) for name in ("width", "height")]
     np.testing.assert_allclose(np.array(size) * 150 / 72, [width, height], atol=1)
     svg = "{http://www.w3.org/2000/svg}"

@@ -17,6 +17,9 @@ import pytest
 import gbeam as gb
 from gbeam.results.provenance import Environment
 from gbeam.scenario import provenance
+from gbeam.scenario.origin import fingerprint
+from gbeam.scenario.text.overrides import override
+from gbeam.scenario.text.source import parse
 
 from ..calling import Answer, gbeam, without_figures
 from ..scenarios import EVERY_MOTION, FAST, FLIGHT, SPECIMEN, model, response
@@ -115,6 +118,22 @@ def test_a_changed_word_or_scenario_is_found(result: Path, gbeam: Callable[..., 
 
     answer = gbeam("rerun", _edited(result, other_scenario))
     assert answer.status == 2 and "another scenario than the one that was run" in answer.err
+
+
+def test_an_integrator_of_version_0_2_is_read_and_refused(result: Path, gbeam: Callable[..., Answer]) -> None:
+    def adaptive(file: h5py.File) -> None:
+        text = file["scenario"].asstr()[()]
+        text = text.replace("[response]", '[response]\nintegrator = "adaptive"')
+        file["scenario"][()] = text
+        file.attrs["scenario_sha256"] = fingerprint(override(parse("", text), "", ["beam.length=310 mm"])[0])
+        file["motions/flight"].attrs["integrator"] = "adaptive"
+        del file["motions/flight"].attrs["step"]
+
+    answer = gbeam("rerun", _edited(result, adaptive))
+    assert answer.status == 2 and answer.err.startswith(f"{result}:")
+    assert "response.integrator: 'adaptive' is no longer offered" in answer.err and 'use "gauss"' in answer.err
+    assert gbeam("report", result, "--out", result.parent / "page").status == 0
+    assert "adaptive" in (result.parent / "page" / "report.html").read_text(encoding="utf-8")
 
 
 def test_a_large_record_is_found_where_it_was(

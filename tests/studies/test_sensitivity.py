@@ -163,7 +163,6 @@ def test_positions_at_the_tip_move_with_the_length(fast: Path) -> None:
         ("flight.tip.z.max_abs", "beam.lenght", [], "did you mean 'beam.length'"),
         ("flight.tip.z.max_abs", "model.modes.z", [], "is no physical value"),
         ("flight.tip.z.max_abs", "response.duration", [], "a setting of the computation"),
-        ("flight.tip.z.max_abs", E, ["response.integrator=adaptive"], "adaptive, whose steps have no derivative"),
     ],
 )
 def test_what_has_no_derivative_is_refused_by_name(fast: Path, of: str, by: str, more: list[str], words: str) -> None:

@@ -15,7 +15,7 @@ from gbeam.scenario.text.diagnostics import Diagnostic
 from gbeam.scenario.text.revise import toml, with_entry, without_entry
 from gbeam.scenario.text.source import parse
 from gbeam.scenario.values.paths import Path as Place
-from gbeam.scenario.values.paths import parse_path, path_text, written_at
+from gbeam.scenario.values.paths import parse_path, path_text, walk, written_at
 
 NAME = "scenario.toml"
 # Of a record: what its columns are.
@@ -146,16 +146,9 @@ def _place(path: str) -> Place:
     return place
 
 
-def _leaves(node: Any, path: Place = ()) -> Iterator[tuple[Place, Any]]:
+def _leaves(scenario: dict[str, Any]) -> Iterator[tuple[Place, Any]]:
     """Paths and values of what is no table and no list of tables."""
-    if isinstance(node, dict):
-        for key, each in node.items():
-            yield from _leaves(each, (*path, key))
-    elif isinstance(node, list) and any(isinstance(each, (dict, list)) for each in node):
-        for i, each in enumerate(node):
-            yield from _leaves(each, (*path, i))
-    elif path:
-        yield path, node
+    return walk(scenario, lambda node: isinstance(node, list) and not any(isinstance(x, (dict, list)) for x in node))
 
 
 def changes(before: str, after: str) -> str:

@@ -13,12 +13,13 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from gbeam.errors import InputError
+from gbeam.scenario.values.paths import walk
 
 if TYPE_CHECKING:
     from gbeam.results.provenance import Provenance
     from gbeam.results.reproduction import Reproduction
 
-_ABOUT = ("provenance", "files", "seconds", "written", "lines")  # of the computation, or the figures in words
+_ABOUT = {"provenance", "files", "seconds", "written", "lines"}  # of the computation, or the figures in words
 
 
 def answer_again(file: Path) -> Reproduction:
@@ -82,18 +83,20 @@ def _answered(file: Path, origin: Provenance, scenario: Path, changes: tuple[str
     return dict(json.loads(printed.getvalue()))
 
 
-def _leaves(value: Any, place: str = "") -> Iterator[tuple[str, Any]]:
+def _leaves(facts: Any) -> Iterator[tuple[str, Any]]:
     """Numbers, texts and lists of numbers by their places."""
-    if isinstance(value, list) and not all(isinstance(each, (int, float)) or each is None for each in value):
-        value = dict(enumerate(value))
-    if isinstance(value, dict):
-        for key, each in value.items():
-            if key not in _ABOUT:
-                yield from _leaves(each, f"{place}.{key}" if place else str(key))
-    elif isinstance(value, list):
-        yield place, [math.nan if each is None else _number(each) for each in value]
-    else:
-        yield place, _number(value) if isinstance(value, (int, float)) else str(value)
+    for path, value in walk(facts, _is_array):
+        place = ".".join(map(str, path))
+        if not _ABOUT.isdisjoint(path):
+            continue
+        if isinstance(value, list):
+            yield place, [math.nan if each is None else _number(each) for each in value]
+        else:
+            yield place, _number(value) if isinstance(value, (int, float)) else str(value)
+
+
+def _is_array(node: Any) -> bool:
+    return isinstance(node, list) and all(isinstance(each, (int, float)) or each is None for each in node)
 
 
 def _number(value: float) -> float:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from gbeam.cli.inputs import naming, signed
 from gbeam.cli.invocation import command
-from gbeam.cli.process import figures_wanted, import_plots
+from gbeam.cli.process import figures_wanted
 from gbeam.cli.publication import publish
 from gbeam.errors import InputError
 from gbeam.printable import printable
@@ -78,7 +78,6 @@ def write(
 
             (hidden / f"{name}.html").write_text(html(facts, {}), encoding="utf-8")
         if figures is not None and figures_wanted():
-            import_plots()
             from gbeam.plots import save
 
             for stem, figure in figures().items():

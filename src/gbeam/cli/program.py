@@ -14,7 +14,6 @@ os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 from cyclopts import App, CycloptsError
 
 import gbeam
-from gbeam.arrays.memory import keep_memory
 from gbeam.cli import invocation
 from gbeam.cli.process import end_at_once
 from gbeam.cli.terminal.failures import lacks_memory, report, report_defect, report_memory, report_syntax
@@ -68,7 +67,6 @@ def run(tokens: list[str]) -> int:
     as_json = "--json" in tokens
     if len(tokens) > WORDS:
         return report_syntax(f"The command line has {len(tokens)} words, and {WORDS} are read at most.", as_json)
-    keep_memory()
     invocation.begin(tokens)
     try:
         status = _app(tokens[0] if tokens else "")(

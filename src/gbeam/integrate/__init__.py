@@ -5,7 +5,6 @@ equations become one affine map a step, found for many steps at once; nonlinear 
 a Jacobian per chunk, checked afterwards.
 """
 
-from gbeam.integrate.adaptive import integrate_adaptively
 from gbeam.integrate.driver import integrate
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations
 from gbeam.integrate.schemes import Scheme, gauss, generalized_alpha, hht, newmark
@@ -22,6 +21,5 @@ __all__ = [
     "generalized_alpha",
     "hht",
     "integrate",
-    "integrate_adaptively",
     "newmark",
 ]

@@ -97,7 +97,7 @@ class Response(Figured):
     peaks : Peaks
     integrator : str
     step : float
-        s; NaN for adaptive steps.
+        s.
     steps : int
     error_estimate : float
         Total error of the tip's displacement, as a fraction of its largest size: that of `errors`; NaN where there is
@@ -177,7 +177,6 @@ class Response(Figured):
             return brief(self)
         of = f" {self.name!r}" if self.name else ""
         main = int(np.argmax(self.peaks.max_abs))
-        step = "adaptive steps" if math.isnan(self.step) else f"{self.steps} steps of {1e3 * self.step:.4g} ms"
         unknown = math.isnan(self.error_estimate)
         error = "no error estimate" if unknown else f"estimated error {self.error_estimate:.2g} of the peak"
         lines = [
@@ -185,7 +184,7 @@ class Response(Figured):
             *([self.message] if self.message else []),
             f"tip up to {1e3 * self.peaks.max_abs[main]:.4g} mm along {'xyz'[main]}, "
             f"at {self.peaks.time_of_max[main]:.4g} s of {self.time[0]:.4g} to {self.time[-1]:.4g} s",
-            f"{self.integrator}, {step}; {error}",
+            f"{self.integrator}, {self.steps} steps of {1e3 * self.step:.4g} ms; {error}",
             *(f"warning: {each}" for each in self.warnings),
         ]
         return "\n  ".join(lines)

@@ -104,9 +104,6 @@ class Neighbourhood:
         self.case = self.adapt(question.case(self._changes(None, 0.0)))
         self.answer: Any
         if question.verb == "run":
-            if self.case.response.integrator == "adaptive":
-                fix = "choose another, such as --set response.integrator=newmark"
-                raise InputError("response.integrator", "is adaptive, whose steps have no derivative", fix)
             if grids is None:
                 self.answer = study(self.case, self.progress)
                 self._enrich()

@@ -157,7 +157,7 @@ def _responses(
         if structure.holds_jax or holds_jax(motion):
             raise InputError("simulate_batch", "is given what JAX traces", "map simulate over it with jax.vmap")
         posed, before, after = pose(structure, motion, settings)
-        if before or after or settings.integrator == "adaptive":
+        if before or after:
             yield index, simulate(structure, motion, settings)
             continue
         case = _going_on(index, posed, structure.equations if one_structure else None, posed.plan())

@@ -144,8 +144,6 @@ def inaccuracies(structure: Structure, errors: Errors, settings: ResponseSetting
 def _cure_of_step(settings: ResponseSettings) -> str:
     if settings.step is not None:
         return 'give a smaller step, or "auto"'
-    if settings.integrator == "adaptive":
-        return "give a smaller tolerance"
     if settings.integrator == "gauss":
         return "vibration too fast for automatic steps: give a smaller step"
     return 'vibration too fast for automatic steps: response.integrator = "gauss" follows it in fewer'
@@ -153,7 +151,7 @@ def _cure_of_step(settings: ResponseSettings) -> str:
 
 def effort(settings: ResponseSettings, steps: int, finer: int) -> tuple[str, ...]:
     """What to say of an automatic step so many times finer than the results': which integrator needs fewer."""
-    if settings.step is not None or settings.integrator in ("gauss", "adaptive") or finer < MANY:
+    if settings.step is not None or settings.integrator == "gauss" or finer < MANY:
         return ()
     return (
         f"{settings.integrator} took {steps} steps, {finer} to each of the results: its error, most of it a delay that "

@@ -49,7 +49,7 @@ class ResponseSettings:
     step : float or None
         s; None for an automatic one.
     integrator : str
-        newmark, hht, generalized-alpha, gauss or adaptive.
+        newmark, hht, generalized-alpha or gauss.
     parameters : mapping of str to float
         The integrator's own: beta and gamma; alpha; rho_inf.
     tolerance : float

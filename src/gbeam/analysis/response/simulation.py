@@ -83,10 +83,7 @@ def simulate(
         return response_of(structure, motion, settings, posed.problem, (None, up, None), name, kept, StepErrors(), 1)
     if up is not None:
         posed = replace(posed, problem=going_on(posed.problem, up))
-    if settings.integrator == "adaptive":
-        made, errors = posed.adapted()
-    else:
-        made, errors = answered(posed.plan(), lambda step, what: posed.run(step, **how(what)))
+    made, errors = answered(posed.plan(), lambda step, what: posed.run(step, **how(what)))
     down = None
     if after and made.whole:
         at_end = round(settings.duration / kept)
@@ -99,7 +96,7 @@ def simulate(
 
 def _traced(structure: Structure, motion: Motion, settings: ResponseSettings, name: str) -> Response:
     """A run whose values JAX traces: of a given step, without a look at them."""
-    if settings.step is None or settings.integrator == "adaptive":
+    if settings.step is None:
         raise InputError("step", "is automatic, and a traced run has no numbers to choose it by", "give a step, s")
     step = settings.duration / max(1, round(settings.duration / settings.step))
     before, after = steps_beyond(motion, settings, step)

@@ -79,7 +79,7 @@ def _netcdf_3(path: str | os.PathLike[str]) -> list[Column]:
     with netcdf_file(path, mmap=False) as file:
         for name, variable in file.variables.items():
             if variable.data.dtype.kind in "iuf":
-                attributes = variable._attributes
+                attributes = {name: getattr(variable, name) for name in _ATTRIBUTES if hasattr(variable, name)}
                 array = _unpacked(np.array(variable.data, dtype=np.float64), attributes)
                 unit = _words(attributes.get("units", ""))
                 columns += array_columns(name, array.shape, lambda array=array: array, unit=unit)  # type: ignore[misc]
@@ -97,6 +97,7 @@ def _unpacked(array: NDArray[Any], attributes: Mapping[str, Any]) -> NDArray[np.
 
 
 _PACKING = {"scale_factor": 1.0, "add_offset": 0.0}
+_ATTRIBUTES = "units", "_FillValue", "missing_value", *_PACKING
 
 
 def _words(attribute: Any) -> str:

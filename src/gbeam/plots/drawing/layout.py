@@ -1,12 +1,13 @@
 """Where the panels of a figure lie: margins of known size, so that nothing is drawn only to be measured.
 
-matplotlib's constrained layout draws a figure twice to learn how wide its labels are, which takes longer than drawing
-it. The panels here stand one above the other, and little can stand beside them: tick labels and a label of a few lines
-on the left, a legend or a title above, tick labels and a label below the last.
+matplotlib's constrained layout draws a figure once more to learn how wide its labels are: two seconds for the figures
+of a run, as long as drawing them. The panels here stand one above the other, and little can stand beside them: tick
+labels and a label of a few lines on the left, a legend or a title above, tick labels and a label below the last.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -23,13 +24,13 @@ _LINE, _TITLE = 0.185, 0.06  # inches: a line of the figure's title, and the spa
 _GAP, _HEADED = 0.16, 0.34  # inches above a panel: where nothing is, and under a title or a legend
 
 
-def arrange(figure: Figure) -> None:
-    """Set the size of a figure that `panels` made, and the places of its panels, title and labels."""
+def arrange(figure: Figure, rows: Sequence[int]) -> None:
+    """Set the size of a figure that `panels` made, and the places of its panels, legends of so many rows, and title."""
     axes = figure.axes
     shares = np.array([panel.get_position().height for panel in axes])
     heights = [float(each) - _GAP for each in figure.get_size_inches()[1] * shares / shares.sum()]
     ticks = max(_tick_width(panel) for panel in axes) + _LABEL_GAP
-    above = [_above(panel) for panel in axes]
+    above = [_above(*each) for each in zip(axes, rows, strict=True)]
     title = figure.get_suptitle()
     head = _TITLE + _LINE * (title.count("\n") + 1) if title else 0.0
     total = head + sum(above) + sum(heights) + _BOTTOM
@@ -46,16 +47,15 @@ def arrange(figure: Figure) -> None:
         text.set_position((_EDGE / WIDTH, 1 - _TITLE / total))
 
 
-def _above(panel: Axes) -> float:
-    """Height above a panel, inches, once its ticks are known."""
+def _above(panel: Axes, rows: int) -> float:
+    """Height above a panel with a legend of so many rows, inches, once its ticks are known."""
     legend: Any = panel.get_legend()
-    titled = bool(panel.get_title(loc="left"))
-    height = _GAP if legend is None and not titled else _HEADED
+    height = _HEADED if rows or panel.get_title(loc="left") else _GAP
     if _lifted(panel):
         height += _LINE
-    if legend is None or len(legend.get_texts()) <= legend._ncols:
+    if rows <= 1:
         return height
-    return max(height, float(legend.get_window_extent().height) / legend.figure.dpi + _GAP)  # rows are measured
+    return max(height, float(legend.get_window_extent().height) / legend.figure.dpi + _GAP)
 
 
 def _lifted(panel: Axes) -> bool:

@@ -86,9 +86,7 @@ def styled(plot: Callable[P, Figure]) -> Callable[P, Figure]:
     def drawn(*args: P.args, **options: P.kwargs) -> Figure:
         with style():
             figure = plot(*args, **options)
-            for panel in figure.axes:
-                legend(panel)
-            arrange(figure)
+            arrange(figure, [legend(panel) for panel in figure.axes])
             return figure
 
     return drawn
@@ -176,25 +174,27 @@ def judged(subject: str, errors: Mapping[str, float]) -> str:
     return f"{subject}\nestimated error: {', '.join(known)}" if known else subject
 
 
-def legend(panel: Axes) -> None:
-    """Put the legend of what has a label above a panel, outside the data: lines, then what is shaded."""
+def legend(panel: Axes) -> int:
+    """Put the legend of what has a label above a panel, lines, then what is shaded; return how many rows it has."""
     entries = [each for each in zip(*panel.get_legend_handles_labels(), strict=True) if not each[1].startswith("_")]
     if not entries:
-        return
+        return 0
     entries.sort(key=lambda each: (not isinstance(each[0], Line2D), each[1] != ENVELOPE))
     handles, labels = zip(*entries, strict=True)
     # Columns are as wide as their longest label; a handle takes about five letters.
     room = _ROW - len(panel.get_title(loc="left"))
+    columns = min(max(1, room // (max(map(len, labels)) + 5)), len(labels))
     panel.legend(
         handles,
         labels,
         loc="lower right",
         bbox_to_anchor=(1.0, 1.0),
-        ncols=min(max(1, room // (max(map(len, labels)) + 5)), len(labels)),
+        ncols=columns,
         borderaxespad=0.2,
         handlelength=1.6,
         columnspacing=1.4,
     )
+    return math.ceil(len(labels) / columns)
 
 
 def subtitle(panel: Axes, text: str) -> None:

@@ -38,10 +38,7 @@ def of_beam(response: Response) -> Iterator[str]:
 
 
 def _accuracy(response: Response) -> str:
-    if math.isnan(response.step):
-        step = f"{response.steps} samples of adaptive steps"
-    else:
-        step = f"{response.steps} steps of {_time(response.step)}"
+    step = f"{response.steps} steps of {_time(response.step)}"
     if math.isnan(response.error_estimate) or response.outcome != "done":
         error = "no error estimate"
     else:

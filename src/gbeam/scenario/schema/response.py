@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, StrictBool, model_validator
+from pydantic import Field, StrictBool, field_validator, model_validator
 from pydantic_core import PydanticCustomError
 
 from gbeam.guards.limits import ENTRIES
@@ -30,7 +30,6 @@ PARAMETERS: dict[str, tuple[str, ...]] = {
     "hht": ("alpha",),
     "generalized-alpha": ("rho_inf",),
     "gauss": (),
-    "adaptive": (),
 }
 
 
@@ -84,7 +83,7 @@ class Response(Table):
         default=None, description="length of the computation; left out beside a record, of which `to` asks for a part"
     )
     step: Step = Field(default="auto", description="time step, or auto")
-    integrator: Literal["newmark", "hht", "generalized-alpha", "gauss", "adaptive"] = Field(
+    integrator: Literal["newmark", "hht", "generalized-alpha", "gauss"] = Field(
         default="newmark", description="time integrator"
     )
     beta: Ratio | None = Field(default=None, description="parameter of newmark")
@@ -125,6 +124,14 @@ class Response(Table):
         """The integrator's parameters that are given."""
         named = {name: getattr(self, name) for name in PARAMETERS[self.integrator]}
         return {name: value for name, value in named.items() if value is not None}
+
+    @field_validator("integrator", mode="before")
+    @classmethod
+    def _offered(cls, value: object) -> object:
+        """Refuse an integrator that earlier versions offered."""
+        if value == "adaptive":
+            raise wrong("{value} is no longer offered", 'use "gauss" with step = "auto": as accurate, and faster')
+        return value
 
     @model_validator(mode="after")
     def _consistent(self) -> Response:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from gbeam.errors import InputError
-from gbeam.scenario.values.paths import Path
+from gbeam.scenario.values.paths import Path, walk
 from gbeam.scenario.values.suggest import closest
 from gbeam.scenario.values.units import NUMBER
 
@@ -106,20 +106,18 @@ def read_distribution(family: str, parts: Sequence[str]) -> Distribution:
     return Distribution(family, tuple(arguments), unit, words)
 
 
-def find_distributions(data: Any, path: Path = ()) -> Iterator[tuple[Path, str, Any]]:
+def find_distributions(data: Mapping[str, Any]) -> Iterator[tuple[Path, str, Any]]:
     """Every table of a scenario that stands for a distribution: its path, its name and what is given with it."""
-    if isinstance(data, dict):
-        if len(data) == 1 and path:
-            (name, given), *_ = data.items()
-            if name in FAMILIES or (isinstance(given, list) and closest(str(name), FAMILIES)):
-                yield path, str(name), given
-                return
-        for key, value in data.items():
-            if path or key != "sweep":
-                yield from find_distributions(value, (*path, key))
-    elif isinstance(data, list):
-        for index, value in enumerate(data):
-            yield from find_distributions(value, (*path, index))
+    for key, table in data.items():
+        for path, node in walk(table, _is_distribution, (key,)):
+            if key != "sweep" and _is_distribution(node):
+                yield path, *next(iter(node.items()))
+
+
+def _is_distribution(node: Any) -> bool:
+    """Whether a table stands for a distribution, whose name may be misspelt."""
+    name, numbers = next(iter(node.items())) if isinstance(node, dict) and len(node) == 1 else ("", None)
+    return name in FAMILIES or (isinstance(numbers, list) and bool(closest(name, FAMILIES)))
 
 
 def from_table(name: str, given: Any) -> Distribution:

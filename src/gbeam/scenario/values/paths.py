@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -46,6 +47,15 @@ def parse_path(text: str) -> Path | None:
             return None
         path += (match[1], *(int(index) for index in re.findall(r"\d+", match[2])))
     return path
+
+
+def walk(node: Any, closed: Callable[[Any], bool], path: Path = ()) -> Iterator[tuple[Path, Any]]:
+    """Yield path and value of all but tables and lists, and of those that are closed."""
+    if closed(node) or not isinstance(node, (dict, list)):
+        yield path, node
+        return
+    for step, value in node.items() if isinstance(node, dict) else enumerate(node):
+        yield from walk(value, closed, (*path, step))
 
 
 def written_at(data: Any, path: Path) -> Any:

@@ -43,7 +43,7 @@ def settled(question: Question, case: Case, cases: int) -> Question:
     """
     settings = reduced(case, question.needs).response
     enough = settings.step is not None or cases >= TOGETHER
-    able = settings.integrator != "adaptive" and not settings.estimate and not case.model.automatic
+    able = not settings.estimate and not case.model.automatic
     return replace(question, together=question.together and enough and able)
 
 

@@ -18,7 +18,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import gbeam
-from gbeam.arrays.memory import keep_memory
 from gbeam.errors import ComputationError, InputError
 from gbeam.sweeps.computing.batches import Task, rows
 from gbeam.sweeps.computing.evaluate import Question, Row
@@ -42,7 +41,6 @@ def compute(version: str, question: Question, batch: Sequence[Task]) -> list[Row
         from distributed import get_worker
 
         raise OtherVersion(get_worker().address, gbeam.__version__)
-    keep_memory()
     return rows(question, batch)
 
 

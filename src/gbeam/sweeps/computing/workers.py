@@ -22,7 +22,6 @@ from multiprocessing.connection import Connection, wait
 from types import ModuleType
 from typing import Any
 
-from gbeam.arrays.memory import keep_memory
 from gbeam.errors import InputError
 from gbeam.sweeps.computing.batches import Task, rows
 from gbeam.sweeps.computing.evaluate import Function, Question, Row
@@ -238,7 +237,6 @@ def _import() -> None:
 def _begin() -> None:
     """Make this process a worker: it ends with the one that it computes for, even if that is killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # that one decides
-    keep_memory()
     driver = multiprocessing.parent_process()
     assert driver is not None
 

@@ -47,8 +47,7 @@ def reduced(case: Case, needs: Needs) -> Case:
     if needs.errors or case.model.automatic:
         return case
     response = replace(case.response, estimate=False)
-    fixed = response.step is not None and response.integrator != "adaptive"
-    if fixed and not needs.loads:
+    if response.step is not None and not needs.loads:
         response = replace(response, loads=False)
     return replace(case, response=response)
 

@@ -24,6 +24,7 @@ from gbeam.results.studies.uncertainty import (
 )
 
 RESAMPLES = 200  # of the bootstrap of Sobol indices
+TOGETHER = 10  # of them, which bounds their memory
 LEAST = 8  # base samples from which indices are estimated
 
 
@@ -109,26 +110,35 @@ def indices(values: Floats, parameters: Sequence[str], seed: int) -> Indices:
 
     Notes
     -----
-    SALib's estimators (Saltelli 2010; Jansen 1999 for the total), with bounds from its bootstrap, of normal shape.
-    Base samples one of whose cases came to nothing are left out; below 8 of them, or where nothing varies, NaN.
+    The estimators of Saltelli (2010) and, for the total, of Jansen (1999); bounds of normal shape, by a bootstrap's
+    standard error. Base samples one of whose cases came to nothing are left out; below 8 of them, or where nothing
+    varies, NaN. They need not be a power of 2, as those of ``scipy.stats.sobol_indices`` must.
     """
-    from SALib.analyze import sobol  # with pandas, a second
+    from scipy.stats import bootstrap, norm
 
     d = len(parameters)
     blocks = np.moveaxis(values.reshape(*values.shape[:-1], d + 2, -1), -2, -1)  # (..., n, d + 2)
-    found = np.full((*values.shape[:-1], d, 2, len(BOUNDS)), math.nan)
+    bounds = np.full((*values.shape[:-1], d, 2, len(BOUNDS)), math.nan)
     count = np.zeros(values.shape[:-1], dtype=int)
     for at in np.ndindex(values.shape[:-1]):
         whole = blocks[at][np.isfinite(blocks[at]).all(axis=-1)]
         count[at] = len(whole)
         if len(whole) < LEAST or np.ptp(whole) <= 1e-12 * np.abs(whole).max():
             continue
-        # SALib's order within a base sample: A, the mixed ones, B.
-        ordered = np.concatenate([whole[:, :1], whole[:, 2:], whole[:, 1:2]], axis=1).ravel()
-        problem = {"num_vars": d, "names": list(parameters)}
-        options = {"num_resamples": RESAMPLES, "conf_level": CONFIDENCE, "seed": seed + 1}  # SALib takes 0 for none
-        given = sobol.analyze(problem, ordered, calc_second_order=False, **options)
-        for k, name in enumerate(("S1", "ST")):
-            value, off = np.asarray(given[name]), np.asarray(given[f"{name}_conf"])
-            found[at][:, k] = np.stack([value, value - off, value + off], axis=-1)
-    return Indices(tuple(parameters), found, count)
+        samples = tuple((whole - whole.mean()).T)  # a mean far from zero would spread the estimates
+        share = _first_and_total(*samples)
+        spread = bootstrap(
+            samples, _first_and_total, paired=True, vectorized=True, n_resamples=RESAMPLES, batch=TOGETHER,
+            method="percentile", random_state=np.random.default_rng(seed),
+        ).standard_error  # fmt: skip
+        off = norm.ppf((1 + CONFIDENCE) / 2) * spread
+        bounds[at] = np.stack([share, share - off, share + off], axis=-1)
+    return Indices(tuple(parameters), bounds, count)
+
+
+def _first_and_total(a: Floats, b: Floats, *mixed: Floats, axis: int = -1) -> Floats:
+    """First-order and total indices (d, 2, ...) of A, B and A with each column of B, (..., n) about a mean of 0."""
+    change = np.stack(mixed) - a
+    variance = np.var(np.concatenate([a, b], axis=axis), axis=axis)
+    parts = np.stack([np.mean(b * change, axis=axis), np.mean(change**2, axis=axis) / 2], axis=1)
+    return np.divide(parts, variance, out=np.zeros_like(parts), where=variance > 0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -14,14 +14,13 @@ from gbeam.analysis.response.record import moving
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.steps.step_errors import Readings, Run
 from gbeam.analysis.response.steps.stepping import Plan, corners, first_step, planned, scheme_of
-from gbeam.analysis.response.steps.trajectories import adapted, integrated, steps_beyond
+from gbeam.analysis.response.steps.trajectories import integrated, steps_beyond
 from gbeam.guards.limits import BOUNDLESS, HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.steps import Corners, Steps, fitted
 from gbeam.integrate.trajectory import Trajectory
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
-from gbeam.results.parts.errors import StepErrors
 from gbeam.results.result import Floats
 
 
@@ -75,11 +74,6 @@ class Posed:
         """The run with such steps."""
         return self.read(integrated(self.problem, self.settings, step, corners=self.felt, **how), step)
 
-    def adapted(self) -> tuple[Run, StepErrors]:
-        """The run with error control."""
-        settings = replace(self.settings, tolerance=self.settings.aim)
-        return adapted(self.problem, settings, self.coarse, self.felt, self._readings, self.too_far)
-
     def read(self, trajectory: Trajectory, step: float) -> Run:
         """A trajectory of such steps, with what is read from it."""
         return Run(trajectory, step, self._readings)
@@ -89,7 +83,7 @@ class Posed:
 
         An automatic step divides the coarse one: the stride brings every motion of a study back to the same times.
         """
-        return 1 if self.settings.step is not None or math.isnan(step) else round(self.coarse / step)
+        return 1 if self.settings.step is not None else round(self.coarse / step)
 
     def too_far(self, y: Floats) -> int | None:
         """After how many steps a projected field moved by the beam's length, and means nothing; None if it did not."""

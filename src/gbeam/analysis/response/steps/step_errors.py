@@ -160,14 +160,6 @@ def of_everything(runs: Sequence[Run], order: int) -> StepErrors:
     return StepErrors(displacement, *_of_loads(runs, lambda differences: share(runs, differences, 4 / order)))
 
 
-def of_two_tolerances(loose: Run, tight: Run) -> StepErrors:
-    """Their differences, which are the errors of the looser run: an adaptive step has no order to count on."""
-    displacement = difference(loose.tip, tight.tip, 1)
-    if not (loose.whole and tight.whole):
-        return StepErrors(displacement)
-    return StepErrors(displacement, *_of_loads([loose, tight], lambda _: 1.0))
-
-
 def _of_loads(runs: Sequence[Run], left: Callable[[Sequence[float]], float]) -> tuple[float, float]:
     """Errors of the last run's loads at the root and of the stress: a share `left` of the last of the differences."""
     differences = []
@@ -175,7 +167,7 @@ def _of_loads(runs: Sequence[Run], left: Callable[[Sequence[float]], float]) -> 
         stride = max(1, (len(coarse.trajectory.time) - 1) // _SAMPLES)
         read = (
             run.readings.loads(run.trajectory, stride * many)
-            for run, many in ((coarse, 1), (fine, 1 if math.isnan(fine.step) else ratio(coarse, fine)))
+            for run, many in ((coarse, 1), (fine, ratio(coarse, fine)))
         )
         differences.append([difference(a, b, 1) for a, b in zip(*read, strict=True)])
     errors = [left(each) * each[-1] for each in zip(*differences, strict=True)]

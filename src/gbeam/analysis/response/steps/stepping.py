@@ -39,7 +39,7 @@ def scheme_of(settings: ResponseSettings) -> Scheme:
     raise InputError(
         "response.integrator",
         f"is {settings.integrator!r}",
-        "choose newmark, hht, generalized-alpha, gauss or adaptive",
+        "choose newmark, hht, generalized-alpha or gauss",
     )
 
 

@@ -7,7 +7,6 @@ times are refined from the state that the spin-up leaves.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
@@ -16,18 +15,12 @@ import numpy as np
 
 from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.steps.step_errors import Readings, Run, of_two_tolerances
 from gbeam.analysis.response.steps.stepping import scheme_of
 from gbeam.arrays.namespace import is_traced, namespace
 from gbeam.errors import InputError
-from gbeam.integrate.adaptive import integrate_adaptively
 from gbeam.integrate.driver import integrate
-from gbeam.integrate.schemes import gauss
-from gbeam.integrate.steps import Corners
 from gbeam.integrate.trajectory import Trajectory
 from gbeam.motion.protocol import Motion
-from gbeam.results.parts.errors import StepErrors
-from gbeam.results.result import Floats
 
 Array = Any
 _HISTORIES = "q", "qd", "qdd"
@@ -50,33 +43,10 @@ def integrated(problem: Problem, settings: ResponseSettings, step: float, **how:
     return integrate(problem.equations, scheme_of(settings), problem.q, problem.qd, **how)
 
 
-def adapted(
-    problem: Problem,
-    settings: ResponseSettings,
-    coarse: float,
-    corners: Corners,
-    readings: Readings,
-    stop: Callable[[Floats], int | None],
-) -> tuple[Run, StepErrors]:
-    """The same with error control, twice: the difference of two tolerances is the estimate."""
-    count = round(settings.duration / coarse)
-    times = np.asarray(settings.start + coarse * np.arange(count + 1), dtype=np.float64)
-
-    def adapt(tolerance: float) -> Run:
-        made = integrate_adaptively(
-            problem.equations, problem.q, problem.qd, times, tolerance=tolerance, jumps=corners.time, stop=stop
-        )
-        return Run(made, math.nan, readings)
-
-    loose, tight = adapt(settings.tolerance * 1e-2), adapt(settings.tolerance * 1e-3)
-    return tight, of_two_tolerances(loose, tight)
-
-
 def ramp(problem: Problem, settings: ResponseSettings, step: float, first: int, count: int, **how: Any) -> Trajectory:
     """Spin-up or spin-down from a problem's state: `count` steps from the `first`, counted from the flight's start."""
-    scheme = gauss() if settings.integrator == "adaptive" else scheme_of(settings)
-    start = settings.start + step * first
-    made = integrate(problem.equations, scheme, problem.q, problem.qd, step=step, count=count, start=start, **how)
+    how |= {"step": step, "count": count, "start": settings.start + step * first}
+    made = integrate(problem.equations, scheme_of(settings), problem.q, problem.qd, **how)
     # The flight's own times to the last digit.
     return replace(made, time=np.asarray(settings.start + step * (first + np.arange(len(made.time))), dtype=np.float64))
 

@@ -66,7 +66,7 @@ class Differentiated:
     Parameters
     ----------
     structure, motion, settings
-        As for :func:`gbeam.simulate`; the integrator is not adaptive.
+        As for :func:`gbeam.simulate`.
     grid : Grid
     name : str
         Of the motion.

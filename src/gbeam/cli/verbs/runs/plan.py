@@ -12,7 +12,7 @@ from gbeam.cli.inputs import number, signed
 from gbeam.cli.invocation import command
 from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, Report, ScenarioFile
 from gbeam.cli.outputs import folder_of, list_files, show, show_table
-from gbeam.cli.process import figures_wanted, import_plots
+from gbeam.cli.process import figures_wanted
 from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.cli.terminal.console import Watch
 from gbeam.cli.terminal.failures import FAILED, complain
@@ -82,7 +82,6 @@ def plan(
             time = every or (own.sample if own else SAMPLE)
             write_commands(each, analysis.commands(machines[name], time), hidden)
             if figures_wanted():
-                import_plots()
                 from gbeam.plots import figures, save
 
                 for kind, draw in figures(each, given.title).items():

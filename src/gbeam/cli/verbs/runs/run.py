@@ -9,7 +9,7 @@ from threading import Thread
 from gbeam.cli.inputs import read
 from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, Report, ScenarioFile
 from gbeam.cli.outputs import folder_of, list_files, show, show_table
-from gbeam.cli.process import figures_wanted, import_plots
+from gbeam.cli.process import figures_wanted
 from gbeam.cli.publication import publish
 from gbeam.cli.terminal.console import Watch
 from gbeam.cli.terminal.failures import FAILED, complain
@@ -47,7 +47,6 @@ def run(
         if report:
             answer.report(hidden / "report.html")
         if figures_wanted():
-            import_plots()
             from gbeam.plots import write_plots
 
             write_plots(answer, hidden, "gbeam run")
@@ -81,5 +80,5 @@ def run(
 def _import_leaves() -> None:
     with suppress(Exception):  # raised again where it is needed
         if figures_wanted():
-            import_plots()
+            import gbeam.plots
         import gbeam.io.netcdf  # noqa: F401
