@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -118,3 +119,20 @@ def test_questions_about_a_linear_model_need_no_jax() -> None:
     light = tuple(name for name in NOT_FOR_READING if name != "scipy")
     heavy, outputs = imported(light, *hub, flight)
     assert heavy == [] and [json.loads(out)["outcome"] for out in outputs] == 6 * ["done"]
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="no bash")
+def test_a_shell_completes_verbs_options_and_choices(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, gbeam: Call
+) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert gbeam("--install-completion", "--shell", "bash").status == 0
+    (script,) = tmp_path.rglob("completions/gbeam")
+    assert str(script) in (tmp_path / ".bashrc").read_text(encoding="utf-8")
+    lines = [f". '{script}'", "called=$(complete -p gbeam | sed 's/.*-F \\([^ ]*\\).*/\\1/')"]
+    for words in (("gbeam", "cri"), ("gbeam", "modes", "--mot"), ("gbeam", "optimize", "--verb", "")):
+        quoted = " ".join(f"'{each}'" for each in words)
+        lines.append(f"COMPREPLY=(); COMP_WORDS=({quoted}); COMP_CWORD={len(words) - 1}")
+        lines.append(f"$called gbeam '{words[-1]}' '{words[-2]}'; echo ${{COMPREPLY[@]}}")
+    answer = subprocess.run(["bash", "-c", "\n".join(lines)], capture_output=True, text=True, check=True)
+    assert answer.stdout.splitlines() == ["critical-speed", "--motion", "run static modes critical-speed plan"]

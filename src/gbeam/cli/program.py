@@ -110,4 +110,5 @@ def _app(chosen: str) -> App:
         # The help of the chosen verb is its own docstring, which says more.
         name = verb.replace("-", "_")
         app.command(f"gbeam.cli.{room}.{name}:{name}", name=verb, help=None if verb == chosen else summary)
+    app.register_install_completion_command(help="Let the shell complete verbs and options: bash, zsh or fish.")
     return app
