@@ -74,7 +74,8 @@ def _answered(file: Path, origin: Provenance, scenario: Path, changes: tuple[str
     if "scenario" not in arguments:
         raise InputError(str(file), "is of no verb that reads a scenario", "give the result of another")
     arguments |= {"scenario": scenario, "overrides": (*arguments.get("overrides", ()), *changes), "json": True}
-    arguments |= {"out": None} | ({"write_back": False} if "write_back" in arguments else {})
+    written = {"out": None, "report": False, "write": None, "write_back": False}  # nothing is
+    arguments |= {name: value for name, value in written.items() if name in bound.signature.parameters}
     if "resume" in bound.signature.parameters:  # a sweep has a store in any case; its cluster may be gone
         arguments |= {"out": scenario.parent / "out", "resume": False, "scheduler": None}
     printed = io.StringIO()
