@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import ArrayLike
 
 from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.assembly import assemble
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
 
 
 @typed
-@dataclass(frozen=True)
-class Case:
+@dataclass(frozen=True, eq=False)
+class Case(Value):
     """What a scenario describes, as objects.
 
     Parameters
