@@ -85,6 +85,11 @@ def test_what_is_made_of_equal_values_is_equal(given: Given, tmp_path: Path) -> 
     assert hash(again.structure) == hash(given.structure) and hash(again.beam) == hash(given.beam)
 
 
+def test_a_case_is_shown_on_one_line(given: Given) -> None:
+    named = replace(given.case, title="a panel")
+    assert repr(named) == "Case('a panel', FOAM, {flight: flight, spin: centrifuge}, 0.5 s)"
+
+
 def test_another_number_makes_another_value(given: Given) -> None:
     response = given.responses[0]
     assert replace(response, step=0.5 * response.step) != response != given.responses[1]

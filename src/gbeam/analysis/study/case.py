@@ -64,6 +64,10 @@ class Case(Value):
     # Not an argument, so that dataclasses.replace leaves it behind.
     scenario: Scenario | None = field(default=None, init=False, repr=False, compare=False)
 
+    def __repr__(self) -> str:
+        motions = ", ".join(f"{name}: {motion.kind}" for name, motion in self.motions.items())
+        return f"Case({self.title!r}, {self.model.kind}, {{{motions}}}, {self.response.duration:g} s)"
+
     def assemble(self, stations: ArrayLike | None = None) -> Structure:
         """Put the beam into its model.
 
