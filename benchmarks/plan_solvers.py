@@ -100,7 +100,7 @@ def measure(load: Any, minimise: Callable[..., Any]) -> str:
         return x, value
 
     flight = Flight(acceleration=PiecewiseLinear(TIME, load * G))
-    planned._of_bytes.cache_clear()  # what another solver found for the same machine
+    planned.planned.cache_clear()  # what another solver found for the same machine
     sequential.minimise, before = observed, sequential.minimise
     try:
         began = time.process_time()

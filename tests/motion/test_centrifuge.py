@@ -108,8 +108,10 @@ def test_a_plan_is_made_where_the_motion_is_needed() -> None:
     assert waiting.course is not None and waiting.course.solution is None
     assert waiting.target.span == (0.0, 2.0) and waiting.course.solution is None
     assert waiting.axes(1.0).rate1 == pytest.approx((35**0.5 * G / R) ** 0.5, rel=1e-3)
-    assert waiting.course.solution is not None
-    assert spin.over(0.0, 2.0) is waiting and waiting.over(0.5, 1.0) is waiting
+    assert waiting.course.solution is None and waiting == spin.over(0.0, 2.0, ahead=False)  # a value stays what it is
+    planned = waiting.over(0.5, 1.0)
+    assert planned.course is not None and planned.course.inverse is waiting.inverse  # and its plan is made once
+    assert planned.over(0.0, 2.0) is planned == spin.over(0.0, 2.0)
 
 
 def test_a_load_with_corners_needs_no_smoothing_for_a_plan() -> None:
@@ -153,7 +155,7 @@ def test_the_target_is_built_for_the_span_that_is_asked_of_it() -> None:
     idle = machine(span=None)
     prepared = idle.over(0.0, 12.0)
     np.testing.assert_array_equal(prepared.base(3.0).a_WO_B, machine().base(3.0).a_WO_B)
-    assert idle.over(0.0, 12.0) is prepared and prepared.over(1.0, 5.0) is prepared  # the last one is kept
+    assert idle == machine(span=None) and idle.over(0.0, 12.0) == prepared and prepared.over(1.0, 5.0) is prepared
     assert idle.over(0.0, 6.0).target.span == (0.0, 6.0) and prepared.over(0.0, 20.0).target.span == (0.0, 20.0)
     assert prepared.kind == "centrifuge" and not prepared.free
 

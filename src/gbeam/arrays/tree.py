@@ -26,14 +26,27 @@ def static(**options: Any) -> Any:
     return dataclasses.field(metadata={"static": True}, **options)
 
 
+class Value:
+    """A dataclass, with ``eq=False``, that compares by its fields, arrays number by number."""
+
+    __slots__ = ()
+
+    def __eq__(self, other: object) -> bool:
+        return _same(self, other) if type(other) is type(self) else NotImplemented
+
+    def __hash__(self) -> int:
+        # Words alone: 1 equals 1.0 and an array of it, whose hashes differ.
+        return hash((type(self), *(each for each in vars(self).values() if isinstance(each, str))))
+
+
 @dataclass_transform(frozen_default=True, field_specifiers=(static, dataclasses.field))
 def record(cls: type[_T]) -> type[_T]:
     """Make a class a frozen dataclass that is a pytree; it compares by its fields, arrays number by number.
 
-    A class with an ``__init__`` of its own keeps it, and sets its fields by :func:`assign`. Only fields are pickled.
+    A class with an ``__init__`` of its own keeps it, and sets its fields by :func:`assign`.
     """
     made = dataclasses.dataclass(frozen=True, eq=False, init="__init__" not in cls.__dict__)(cls)
-    for method in (__eq__, __hash__, __getstate__):
+    for method in (Value.__eq__, __hash__):
         setattr(made, method.__name__, method)
     _records.append(made)
     if _register is not None:
@@ -43,18 +56,8 @@ def record(cls: type[_T]) -> type[_T]:
     return made
 
 
-def __eq__(self: Any, other: Any) -> bool:
-    if type(other) is not type(self):
-        return NotImplemented
-    return all(_same(getattr(self, f.name), getattr(other, f.name)) for f in dataclasses.fields(self))
-
-
 def __hash__(self: Any) -> int:
     return hash((type(self), *(getattr(self, name) for name in leaves_and_statics(type(self))[1])))
-
-
-def __getstate__(self: Any) -> dict[str, Any]:
-    return {f.name: getattr(self, f.name) for f in dataclasses.fields(self)}
 
 
 def _same(one: Any, other: Any) -> bool:
@@ -63,11 +66,16 @@ def _same(one: Any, other: Any) -> bool:
         return True
     if isinstance(one, tuple | list):
         return type(one) is type(other) and len(one) == len(other) and all(map(_same, one, other))
+    if isinstance(one, dict):
+        return type(one) is type(other) and one.keys() == other.keys() and all(_same(one[k], other[k]) for k in one)
+    if dataclasses.is_dataclass(one):
+        compared = [f.name for f in dataclasses.fields(one) if f.compare]
+        return type(one) is type(other) and all(_same(getattr(one, name), getattr(other, name)) for name in compared)
     if is_traced(one, other):
         return False
     if hasattr(one, "shape") or hasattr(other, "shape"):
         return np.shape(one) == np.shape(other) and bool(np.all((one == other) | ((one != one) & (other != other))))
-    return bool(one == other)
+    return bool(one == other or (one != one and other != other))
 
 
 def assign(instance: Any, **fields: Any) -> None:

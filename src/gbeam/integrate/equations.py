@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -34,7 +33,7 @@ class LinearTerms:
         """Those of C, of K and of F."""
         return self.velocity, self.stiffness, self.force
 
-    @cached_property
+    @property
     def nonzero(self) -> tuple[Array, Array, Array]:
         """Which of them are not zero, (k,) each."""
         c, k, f = (np.any(np.reshape(part, (len(part), -1)), axis=1) for part in self.each)

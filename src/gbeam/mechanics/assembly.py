@@ -13,7 +13,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import NODES, refuse_more
 from gbeam.mechanics.damping import damping_matrix
-from gbeam.mechanics.equations.inertia import Elasticity, Inertia
+from gbeam.mechanics.equations.inertia import Elasticity, Inertia, weighed
 from gbeam.mechanics.equations.linear import coefficients
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.adapted import adapted_shapes
@@ -140,7 +140,7 @@ def assembled(
         stations=at,
         station_places=field.places()[first_station:],
         coefficients=c.damped(damping_matrix(0.0 if ratio is None else ratio, c.mass, c.stiffness)),
-        inertia=inertia,
+        weighed=weighed(inertia),
         elasticity=elasticity,
         field=field,
         first_station=first_station,

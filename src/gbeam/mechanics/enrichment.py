@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,7 @@ NODES, PER_PANEL = 14, 8  # of the quadrature: over the beam with one shape, and
 
 
 def enrichment(structure: Structure, base: Base | None = None) -> Enrichment:
-    """A structure's own shapes and those that it lacks; what depends on the structure alone is kept for the next call.
+    """A structure's own shapes and those that it lacks.
 
     Parameters
     ----------
@@ -39,10 +40,14 @@ def enrichment(structure: Structure, base: Base | None = None) -> Enrichment:
     base : Base, optional
         Motion of the base, at one time or many: what it pulls along the beam changes the shapes that are lacking.
     """
-    alone: Enrichment = structure.kept.get("enrichment") or Enrichment(structure)
-    structure.kept["enrichment"] = alone
+    alone = _alone(structure)
     force = None if base is None else alone.bent_by(base)
     return alone if force is None else Enrichment(structure, force)
+
+
+@lru_cache(maxsize=4)  # keyed by values: runs of equal structures look for what they lack once
+def _alone(structure: Structure) -> Enrichment:
+    return Enrichment(structure)
 
 
 class Enrichment:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gbeam.arrays.namespace import holds_jax, is_jax, namespace
-from gbeam.arrays.tree import record, static
+from gbeam.arrays.tree import Value, record, static
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
@@ -24,7 +23,7 @@ from gbeam.numerics.solvers.eigen import positive_definite
 
 if TYPE_CHECKING:
     from gbeam.mechanics.equations.dalembert import Complete, CompleteHub
-    from gbeam.mechanics.equations.inertia import Elasticity, Inertia
+    from gbeam.mechanics.equations.inertia import Elasticity, Inertia, Weighed
     from gbeam.structure.beam import Beam
 
 Array = Any
@@ -55,7 +54,7 @@ class Sections:
 
 
 @dataclass(frozen=True, eq=False)
-class Source:
+class Source(Value):
     """What a structure was made of.
 
     Parameters
@@ -93,7 +92,7 @@ class Structure:
         Of the stations.
     coefficients : Coefficients
         Of the linear equations about the straight structure.
-    inertia, elasticity : Inertia and Elasticity, or None
+    weighed, elasticity : Weighed and Elasticity, or None
         Of a displacement field: particles and strain energy without truncation; None for a structure of particles.
     field : Field or None
         Its points are the quadrature nodes, the bodies, the loaded points and the stations.
@@ -127,7 +126,7 @@ class Structure:
     stations: Array
     station_places: Places
     coefficients: Coefficients
-    inertia: Inertia | None = None
+    weighed: Weighed | None = None
     elasticity: Elasticity | None = None
     field: Field | None = None
     first_station: int = static(default=0)
@@ -240,22 +239,26 @@ class Structure:
         c = self.coefficients
         return is_jax(c.mass) or is_jax(c.damping) or is_jax(c.stiffness)
 
-    @cached_property
+    @property
+    def inertia(self) -> Inertia | None:
+        """The particles of the displacement field; None for a structure of particles."""
+        return None if self.weighed is None else self.weighed.inertia
+
+    @property
     def holds_jax(self) -> bool:
         """Whether any array of it is JAX's, or traced by it."""
         return holds_jax(self)
 
-    @cached_property
+    @property
     def equations(self) -> Coefficients | Complete:
         """The equations of motion on a prescribed base."""
         if self.linear:
             return self.coefficients
         from gbeam.mechanics.equations.dalembert import Complete
-        from gbeam.mechanics.equations.inertia import weighed
 
-        assert self.inertia is not None and self.elasticity is not None
+        assert self.weighed is not None and self.elasticity is not None
         stiffness = self.coefficients.stiffness if self.elasticity.field.linear_strains else None
-        return Complete(weighed(self.inertia), self.elasticity, self.coefficients.damping, stiffness, self.work)
+        return Complete(self.weighed, self.elasticity, self.coefficients.damping, stiffness, self.work)
 
     def on_free_hub(self, hub: Any) -> FreeHub | CompleteHub:
         """The equations with the angle of a free hub as one more coordinate.
@@ -301,7 +304,7 @@ class Structure:
         places = Places(*sampled.places_about(self.inertia, q))
         return coefficients(self.mass, places, stiffness, damping=c.damping, loads=loads), elastic
 
-    @cached_property
+    @property
     def rest(self) -> tuple[Array, Array]:
         """Circular frequencies (n,) rad/s, ascending, and mass-normalised modes (n, n) on a base at rest."""
         return rest_modes(self.coefficients.mass, self.coefficients.stiffness)
@@ -310,23 +313,18 @@ class Structure:
         """The same structure with its loads frozen as they are at a `time`, s: what static, modes and stability see."""
         return self if self.history is None else replace(self, load_values=self.history(np.asarray(float(time))))
 
-    @cached_property
-    def kept(self) -> dict[str, Any]:
-        """What analyses have made of this structure alone, for their next call."""
-        return {}
-
-    @cached_property
+    @property
     def load_places(self) -> Places:
         """Places of the loaded points, to second order."""
         assert self.work is not None
         return self.work.field.places()
 
-    @cached_property
+    @property
     def axes_without_shapes(self) -> tuple[int, ...]:
         """Axes across the beam, 1 for y and 2 for z, along which no station moves."""
         return tuple(axis for axis in (1, 2) if not np.any(self.station_places.first[:, axis]))
 
-    @cached_property
+    @property
     def station_field(self) -> Field:
         """The field at the stations."""
         assert self.field is not None

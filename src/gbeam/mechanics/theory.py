@@ -6,6 +6,7 @@ No model here has them. These two, the slender beam and the thick one on the sam
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -84,20 +85,18 @@ class Theory(NamedTuple):
         return self.thick, replace(self.thick, coefficients=replace(c, stiffness=c.stiffness + plate))
 
 
+@lru_cache(maxsize=4)  # keyed by values, as enrichment is
 def theory_of(structure: Structure) -> Theory:
-    """A structure's beam by two theories; kept for the next call.
+    """A structure's beam by two theories.
 
     Parameters
     ----------
     structure : Structure
         With a source.
     """
-    if "theory" not in structure.kept:
-        more = enrichment(structure)
-        families = own_families(structure, more.beam, more.rule)
-        structure.kept["theory"] = _Parts(structure, more.beam, more.rule).theory(families)
-    kept: Theory = structure.kept["theory"]
-    return kept
+    more = enrichment(structure)
+    families = own_families(structure, more.beam, more.rule)
+    return _Parts(structure, more.beam, more.rule).theory(families)
 
 
 class _Parts:
@@ -275,7 +274,7 @@ class _Parts:
             places=places,
             station_places=axis[self.first_station :],
             coefficients=c.damped(damping_matrix(0.0 if ratio is None else ratio, c.mass, c.stiffness)),
-            inertia=None,
+            weighed=None,
             elasticity=None,
             field=field,  # type: ignore[arg-type]
             first_station=self.first_station,

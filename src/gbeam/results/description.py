@@ -10,7 +10,7 @@ from gbeam.results.result import Floats, Part
 Vector = tuple[float, float, float]
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Level(Part):
     """The longest stretch of a record in which the load is near 1 g.
 
@@ -27,7 +27,7 @@ class Level(Part):
     load: Vector
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class RecordSummary(Part):
     """What a flight's record is, as its file has it, in base axes.
 

@@ -31,7 +31,7 @@ class Difference:
         return f"{self.name}: {self.what}"
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Reproduction(Part):
     """A result computed again from what its file says, and compared with it.
 

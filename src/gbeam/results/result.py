@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.arrays.tree import Value
 from gbeam.results.declared import document
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ def _short(value: Any) -> str:
     return f"<{type(value).__name__}>"
 
 
-class Part:
+class Part(Value):
     """A part of a result: it prints on one line, arrays as their shapes."""
 
     __slots__ = ()
@@ -65,8 +66,8 @@ class Part:
         return brief(self)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Result:
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Result(Value):
     """What an analysis returns as a whole: it goes to xarray and to a netCDF file.
 
     Parameters

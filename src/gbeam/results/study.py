@@ -73,7 +73,7 @@ class Study(Figured):
         return "\n".join([f"Study{f' {self.title!r}' if self.title else ''}: {self.state}", *parts])
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class ModelRow(Part):
     """One model's answer to a scenario, beside the reference's.
 

@@ -7,14 +7,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 
 
 @typed
-@dataclass(frozen=True)
-class PointMass:
+@dataclass(frozen=True, eq=False)
+class PointMass(Value):
     """A mass, or a small rigid body, fixed to the beam.
 
     Parameters

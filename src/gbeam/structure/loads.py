@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gbeam.arrays.namespace import is_jax
+from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive
@@ -18,8 +19,8 @@ if TYPE_CHECKING:
 
 
 @typed
-@dataclass(frozen=True)
-class Load:
+@dataclass(frozen=True, eq=False)
+class Load(Value):
     """A force and a moment at a station, or per length along the whole beam.
 
     Parameters

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from gbeam.arrays.namespace import is_jax
+from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive
@@ -16,8 +17,8 @@ ASSUMED_RATIO = 0.3  # Poisson's, of metals
 
 
 @typed
-@dataclass(frozen=True)
-class Material:
+@dataclass(frozen=True, eq=False)
+class Material(Value):
     """Linear elastic material.
 
     Parameters

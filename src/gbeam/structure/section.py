@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gbeam.arrays.namespace import is_jax, namespace
-from gbeam.arrays.tree import record, static
+from gbeam.arrays.tree import Value, record, static
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive
@@ -39,8 +39,8 @@ _UNITS = {"area": "m²", "second moment": "m⁴", "shear coefficient": "(a numbe
 
 
 @typed
-@dataclass(frozen=True)
-class Section:
+@dataclass(frozen=True, eq=False)
+class Section(Value):
     """Cross-section of the beam, constant or given at stations and interpolated linearly in its dimensions.
 
     Build it with :meth:`rectangle`, :meth:`circle`, :meth:`tube` or :meth:`general`.

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.arrays.tree import Value
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 
@@ -14,8 +15,8 @@ Array = NDArray[np.float64]
 
 
 @typed
-@dataclass(frozen=True)
-class Root:
+@dataclass(frozen=True, eq=False)
+class Root(Value):
     """Springs between the base and the root; where there is none, the root is rigid in that direction.
 
     Each spring is one more coordinate of the model, in every kind of model, after the shapes' and in this order.

@@ -40,6 +40,23 @@ class Choice:
     limited: bool = True
 
 
+@dataclass(frozen=True)
+class Altered:
+    """A centrifuge with another mounting and width of smoothing."""
+
+    centrifuge: Centrifuge
+
+    def __call__(self, mounting: str, width: float) -> Centrifuge:
+        """Return the centrifuge itself where both are its own: it need not be planned again."""
+        same = mounting == self.centrifuge.mounting and width == width_of(self.centrifuge)
+        return self.centrifuge if same else self.centrifuge.altered(mounting=mounting, smoothing=width)
+
+
+def width_of(centrifuge: Centrifuge) -> float:
+    """Width of the smoothing of its target, s; zero where there is none."""
+    return float(centrifuge.smoothing or 0.0)
+
+
 @typed
 def choice_of(centrifuge: Centrifuge, smoothing: Sequence[float] = (), *, limited: bool = True) -> Choice:
     """Both mountings of a centrifuge, its own first, and widths of smoothing.
@@ -63,15 +80,10 @@ def choice_of(centrifuge: Centrifuge, smoothing: Sequence[float] = (), *, limite
         raise InputError("smoothing", f"is given {len(smoothing)} times", "give one width, or the ends of a range")
     if len(smoothing) == 2 and min(smoothing) <= 0:
         raise InputError("smoothing", f"is {min(smoothing):g} s", "give two positive widths")
-    own = float(centrifuge.smoothing or 0.0)
+    own = width_of(centrifuge)
     searched = [own] if INVERSES[centrifuge.method].plans else [own / _FACTOR, own * _FACTOR]
     ends = sorted(smoothing) or searched
     widths = coarse(ends[0], ends[-1])
 
-    def make(mounting: str, width: float) -> Centrifuge:
-        if mounting == centrifuge.mounting and width == own:
-            return centrifuge  # which need not be planned again
-        return centrifuge.altered(mounting=mounting, smoothing=width)
-
     others = tuple(name for name in MOUNTINGS if name != centrifuge.mounting)
-    return Choice(make, (centrifuge.mounting, *others), widths, len(widths) > 1, limited)
+    return Choice(Altered(centrifuge), (centrifuge.mounting, *others), widths, len(widths) > 1, limited)

@@ -146,15 +146,17 @@ def _responses(
                 elif more := full(answer):
                     ready.append(more)
 
-    first = None
+    first, last, traced = None, None, False
     for index, (structure, motion) in enumerate(cases):
         first = first or structure
         if one_structure and structure is not first:
             fix = "leave out one_structure, or give the same object"
             raise InputError("one_structure", f"is true, and case {index} has another structure than the first", fix)
-        structure.require_damping("the response")
+        if structure is not last:
+            structure.require_damping("the response")
+            last, traced = structure, structure.holds_jax
         motion = motion.over(settings.start, settings.start + settings.duration)
-        if structure.holds_jax or holds_jax(motion):
+        if traced or holds_jax(motion):
             raise InputError("simulate_batch", "is given what JAX traces", "map simulate over it with jax.vmap")
         posed, before, after = pose(structure, motion, settings)
         if before or after:

@@ -10,6 +10,7 @@ import numpy as np
 
 from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
 from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import Value
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, finite
@@ -22,8 +23,8 @@ _ITERATIONS = 60
 
 
 @typed
-@dataclass(frozen=True)
-class Initial:
+@dataclass(frozen=True, eq=False)
+class Initial(Value):
     """The state of the beam, relative to its base, in which a response begins; a machine's with its spin-up.
 
     What is given of the displacement takes the place of the equilibrium; what is not given of the velocity is zero.

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TypedDict
 
 from gbeam.analysis.response.initial import Initial, begun
+from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive
@@ -36,8 +37,8 @@ class Settings(TypedDict, total=False):
 
 
 @typed
-@dataclass(frozen=True)
-class ResponseSettings:
+@dataclass(frozen=True, eq=False)
+class ResponseSettings(Value):
     """How a response over time is computed.
 
     Parameters

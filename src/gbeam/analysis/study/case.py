@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import ArrayLike
 
 from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.assembly import assemble
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
 
 
 @typed
-@dataclass(frozen=True)
-class Case:
+@dataclass(frozen=True, eq=False)
+class Case(Value):
     """What a scenario describes, as objects.
 
     Parameters
@@ -62,6 +63,10 @@ class Case:
     provenance: Provenance | None = None
     # Not an argument, so that dataclasses.replace leaves it behind.
     scenario: Scenario | None = field(default=None, init=False, repr=False, compare=False)
+
+    def __repr__(self) -> str:
+        motions = ", ".join(f"{name}: {motion.kind}" for name, motion in self.motions.items())
+        return f"Case({self.title!r}, {self.model.kind}, {{{motions}}}, {self.response.duration:g} s)"
 
     def assemble(self, stations: ArrayLike | None = None) -> Structure:
         """Put the beam into its model.

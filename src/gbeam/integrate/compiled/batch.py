@@ -6,9 +6,11 @@ are each one's own. The steps are those that :func:`gbeam.integrate.driver.integ
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
+from itertools import tee
 from typing import Any
 
 import jax
@@ -209,7 +211,9 @@ def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     carry = begun(q, qd, qdd, [run.steps.length[0] for run in runs])
     pieces, sound = [[x[:, None] for x in (q, qd, qdd)]], np.ones(len(runs), dtype=bool)
     size, corrections = newton.PER_JACOBIAN[scheme.order], newton.CORRECTIONS[scheme.order]
-    of_runs = [chunks(run.equations.drive, scheme, stretches(scheme, run.steps, size)) for run in runs]
+    equal = Counter(run.steps for run in runs)  # which runs of a batch mostly share
+    laid = {steps: iter(tee(stretches(scheme, steps, size), count)) for steps, count in equal.items()}
+    of_runs = [chunks(run.equations.drive, scheme, next(laid[run.steps])) for run in runs]
     for every in zip(*of_runs, strict=True):
         inside, ends = every[0].inside, [chunk.end for chunk in every]
         tableau, inputs, at_ends = _stacked([(chunk.tableau, chunk.inputs, chunk.at_ends) for chunk in every])

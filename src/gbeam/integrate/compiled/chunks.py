@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from gbeam.integrate.equations import Drive
 from gbeam.integrate.schemes import Scheme
-from gbeam.integrate.steps import FEW, Steps
+from gbeam.integrate.steps import Steps
 
 CHUNK = 200  # steps per compiled call at most, and per look at whether to stop
 _AT_ONCE = 20  # chunks whose inputs are computed at once
@@ -99,17 +99,8 @@ class Stretch:
     times: Any
 
 
-def stretches(scheme: Scheme, steps: Steps, size: int) -> Iterable[Stretch]:
-    """Steps in groups of `size`, some chunks at a time; those of few steps are kept for the next run with the same."""
-    return _kept(scheme, steps, size) if len(steps) <= FEW else _stretches(scheme, steps, size)
-
-
-@lru_cache(maxsize=8)
-def _kept(scheme: Scheme, steps: Steps, size: int) -> tuple[Stretch, ...]:
-    return tuple(_stretches(scheme, steps, size))
-
-
-def _stretches(scheme: Scheme, steps: Steps, size: int) -> Iterator[Stretch]:
+def stretches(scheme: Scheme, steps: Steps, size: int) -> Iterator[Stretch]:
+    """Steps in groups of `size`, some chunks at a time."""
     all_groups = list(_groups(steps, size, restart=scheme.ends))
     for some in (all_groups[k : k + _AT_ONCE] for k in range(0, len(all_groups), _AT_ONCE)):
         index = np.concatenate([each for each, _ in some])

@@ -13,7 +13,6 @@ and in place of the second ones its geometric stiffness under unit inertial load
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cached_property
 from typing import Any
 
 from gbeam.arrays.namespace import namespace
@@ -136,7 +135,7 @@ class Coefficients:
         skew = (self.k_al - xp.swapaxes(self.k_al, 1, 2)) / 2
         return velocity, stiffness - xp.tensordot(alpha_WB_B, skew, axes=1)
 
-    @cached_property
+    @property
     def terms(self) -> LinearTerms:
         """What :meth:`at` sums over :meth:`features`."""
         xp, n = namespace(self.mass), self.size

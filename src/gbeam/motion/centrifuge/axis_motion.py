@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, namespace
-from gbeam.arrays.tree import assign
 from gbeam.errors import InputError
 from gbeam.motion.centrifuge.course import Course
 from gbeam.motion.centrifuge.ends import Ends
@@ -36,7 +35,7 @@ class AxisMotion:
     @property
     def extent(self) -> tuple[Any, Any]:
         """First and last time of the motion on the flight's clock, s: from standstill to standstill, or at idle."""
-        return self._ready().extent
+        return self._solved.extent
 
     def beyond(self, start: float, end: float) -> tuple[Any, Any]:
         """How long the motion goes on before `start` and after `end`, s.
@@ -55,7 +54,7 @@ class AxisMotion:
     @property
     def inverse(self) -> Inverse:
         """What makes axis motions of the target, likewise."""
-        return self._ready().inverse
+        return self._solved.inverse
 
     def corners(self, step: float) -> NDArray[np.float64]:
         """Times that steps of length `step` (s) should not pass unseen, s, ascending."""
@@ -66,28 +65,26 @@ class AxisMotion:
             raise InputError("span", "is missing: the target belongs to a span of time", "give span, or use over(...)")
         return self.course
 
-    def _ready(self) -> Course:
-        """The course with its axis motions, which are planned now if they are not yet."""
+    @property
+    def _solved(self) -> Course:
+        """The course with its axis motions."""
         course = self._prepared_for_a_span()
-        if course.solution is None:
-            course = course.solved(self.method, self.limits, self.ends)
-            assign(self, course=course)
-        return course
+        return course.solved(self.method, self.limits, self.ends) if course.solution is None else course
 
     def axes(self, t: Any) -> Axes:
         """States of the three axes at times `t` (s)."""
-        first, second, third = self._ready().derivatives(t, 2)
+        first, second, third = self._solved.derivatives(t, 2)
         return Axes(*first[:2], *second, *third)
 
     def axes_and_jerks(self, t: Any) -> tuple[Axes, Any]:
         """States of the axes and their jerks (..., 3) rad/s³ at times `t` (s), from the closed forms."""
-        first, second, third = self._ready().derivatives(t, 3)
+        first, second, third = self._solved.derivatives(t, 3)
         jerks = first[2], second[3], third[3]
         return Axes(*first[:2], *second[:3], *third[:3]), namespace(*jerks).stack(jerks, axis=-1)
 
     def reference(self, t: Any) -> Any:
         """Load to be made at the control point at times `t` (s), base axes, m/s², shape (..., 3)."""
-        return self._ready().reference(t)
+        return self._solved.reference(t)
 
     def actual(self, t: Any) -> Any:
         """Load that the axes make at the control point at times `t` (s), base axes, m/s², shape (..., 3)."""

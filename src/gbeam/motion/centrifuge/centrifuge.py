@@ -89,7 +89,6 @@ class Centrifuge(AxisMotion):
     smoothing: Any
     clip: bool = static()
     course: Course | None
-    _latest: ClassVar[Any] = None
 
     def __init__(
         self,
@@ -139,7 +138,7 @@ class Centrifuge(AxisMotion):
         )
         if span is not None:
             assign(self, course=self._prepared(*span))
-            self._ready()
+            assign(self, course=self._solved)
 
     @property
     def free(self) -> bool:
@@ -150,28 +149,21 @@ class Centrifuge(AxisMotion):
     def over(self, start: float, end: float, *, ahead: bool = True) -> Self:
         """The machine with its target and axis motions prepared for the flight's times from `start` to `end`, s.
 
-        It is itself if it is prepared for these times already; the last one prepared is kept. Unless `ahead`, the plan
-        of ``planned`` is made only where the motion is needed.
+        It is itself if it is prepared for these times already. Unless `ahead`, the plan of ``planned`` is made only
+        where the motion is needed.
 
         Raises
         ------
         InputError
             If the load cannot be followed there, or the inverse cannot follow its corners.
         """
-        slack = 1e-9 * (end - start)
-        for known in (self, self._latest):
-            if known is None or known.course is None:
-                continue
-            first, last = known.course.target.span
-            exact = abs(start - first) <= slack and abs(end - last) <= slack
-            if exact or (known is self and first - slack <= start and end <= last + slack):
-                break
-        else:
-            known = self._changed(course=self._prepared(start, end))
-            assign(self, _latest=known)
-        if ahead:
-            known._ready()
-        return known
+        slack, machine = 1e-9 * (end - start), self
+        first, last = (np.inf, -np.inf) if self.course is None else self.course.target.span
+        if not (first - slack <= start and end <= last + slack):
+            machine = self._changed(course=self._prepared(start, end))
+        if ahead and machine.course.solution is None:  # type: ignore[union-attr]
+            machine = machine._changed(course=machine._solved)
+        return machine
 
     def altered(self, **changes: Any) -> Self:
         """The machine with other arguments, by the constructor's names, prepared for the same times.
@@ -214,7 +206,7 @@ class Centrifuge(AxisMotion):
 
     def _changed(self, **fields: Any) -> Self:
         other = copy.copy(self)
-        assign(other, _latest=None, **fields)
+        assign(other, **fields)
         return other
 
 

@@ -11,7 +11,7 @@ TOLERANCE = 0.05  # of a load of the flight
 TOLERANCE_OF = ("peak", "instant")  # the flight's largest load, or its load at each time
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class LoadPeak(Part):
     """A peak of the flight's load above idle, and what the machine makes of it.
 
@@ -56,7 +56,7 @@ class LoadPeak(Part):
         return self.reproduced / self.load
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class NotFollowed(Part):
     """A stretch of the flight in which the machine's load is not the flight's, within the tolerance.
 
@@ -76,7 +76,7 @@ class NotFollowed(Part):
     flight_peak: float
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Preload(Part):
     """A stretch in which the machine loads the specimen beyond both the flight and idle, by more than the tolerance.
 
@@ -97,7 +97,7 @@ class Preload(Part):
     flight: float
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Accounting(Part):
     """Every part of a flight accounted for.
 
@@ -152,7 +152,7 @@ class Accounting(Part):
         return {reason: total[reason] / duration for reason in sorted(total, key=lambda reason: -total[reason])}
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class PeakPair(Part):
     """Largest size of a quantity in flight and on the machine; NaN where it is unknown.
 

@@ -17,7 +17,7 @@ _FULL = 0.99  # share of a limit from which on it is used up
 _SAME = 1e-3  # of the length: control points nearer than this are one
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Candidate(Part):
     """One way of mounting and smoothing, with the control point that is best for it.
 

@@ -11,7 +11,7 @@ BROKEN = "limits exceeded"  # an outcome
 _TIGHT = 1e-3  # of a bound: nearer, it decides
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Requirement(Part):
     """A bound on a figure.
 

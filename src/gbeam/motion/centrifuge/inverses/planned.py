@@ -13,7 +13,6 @@ quadratic programs, on finer and finer knots.
 
 from __future__ import annotations
 
-import pickle
 from functools import lru_cache
 from typing import Any, ClassVar
 
@@ -60,31 +59,19 @@ class Planned(Inverse):
         return axes[..., 0], axes[..., 1], axes[..., 2]
 
 
+@lru_cache(maxsize=4)  # keyed by values: equal machines of a study wait once
 def planned(target: Target, geometry: Geometry, limits: Limits, ends: Ends) -> Planned:
     """Plan the axes.
 
     With `ends.start` ``idle`` the motion begins and ends at the flight's first and last time, with the arm turning at a
     constant rate and the gimbals at rest. Otherwise all is at rest at both ends; with ``pre-yawed`` the search begins
-    from another motion. The last few plans are kept: cases of a study that ask for the same one wait for it once.
+    from another motion.
 
     Raises
     ------
     InputError
         If the limits do not allow idle, or do not in the time that is given to reach it.
     """
-    try:
-        given = pickle.dumps((target, geometry, limits, ends))
-    except (pickle.PicklingError, AttributeError, TypeError):  # a user's own profile
-        return _solved(target, geometry, limits, ends)
-    return _of_bytes(given)
-
-
-@lru_cache(maxsize=4)
-def _of_bytes(given: bytes) -> Planned:
-    return _solved(*pickle.loads(given))
-
-
-def _solved(target: Target, geometry: Geometry, limits: Limits, ends: Ends) -> Planned:
     # scipy.sparse and the solver take longer to import than most commands to run
     from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines
     from gbeam.motion.centrifuge.inverses.kept_limits import KeptLimits, idle_rate

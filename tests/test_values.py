@@ -1,0 +1,126 @@
+"""Values have no state: public objects pickle, copy and compare equal before and after every public function."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from dataclasses import is_dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+
+from .test_arguments import PUBLIC, Given, called
+
+
+@pytest.fixture(scope="module")
+def given(tmp_path_factory: pytest.TempPathFactory) -> Given:
+    return Given(tmp_path_factory.mktemp("given"))
+
+
+def state(value: Any, path: str = "") -> dict[str, bytes]:
+    """All that a value holds, by its path: every attribute, also one that is no field, and every array to its bits."""
+    if isinstance(value, np.ndarray):
+        return {path: value.tobytes() + str((value.shape, value.dtype)).encode()}
+    if isinstance(value, (list, tuple)):
+        inside = {f"[{i}]": each for i, each in enumerate(value)}
+    elif isinstance(value, dict):
+        inside = {f"[{key}]": each for key, each in value.items()}
+    elif type(value).__module__.startswith("gbeam") and hasattr(value, "__dict__"):
+        inside = {f".{name}": each for name, each in vars(value).items()}
+    else:
+        return {path: repr(value).encode()}
+    return {path: type(value).__name__.encode()} | {
+        at: each for name, part in inside.items() for at, each in state(part, path + name).items()
+    }
+
+
+def values(*some: Any) -> list[Any]:
+    """The records and other dataclasses among some values, and in lists, tuples and dictionaries of these."""
+    inside = [list(each.values()) if isinstance(each, dict) else each for each in some]
+    nested = [part for each in inside if isinstance(each, (list, tuple)) for part in values(*each)]
+    return [each for each in inside if is_dataclass(each) and not isinstance(each, type)] + nested
+
+
+@pytest.mark.parametrize("name", [name for name in PUBLIC if name != "rerun"])  # which takes a file, not a value
+def test_no_public_function_changes_what_it_is_given(
+    given: Given, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its arguments keep every attribute; they and its answer are pickled and copied, and stay equal to the copies."""
+    monkeypatch.chdir(tmp_path)
+    args, keywords = given.calls()[name]
+    before, copies = state((args, keywords)), [copy.deepcopy(each) for each in values(args, keywords)]
+    answer = called(getattr(gb, name), *args, **keywords)
+    assert state((args, keywords)) == before
+    assert values(args, keywords) == copies
+    for each in values(args, keywords, answer):
+        if isinstance(each, gb.Choice) and name == "Choice":
+            continue  # the caller's own function in it decides
+        whole = state(each)
+        assert copy.deepcopy(each) == each and pickle.loads(pickle.dumps(each)) == each, type(each)
+        assert repr(each) and state(each) == whole
+
+
+def test_results_stay_what_they_are_when_they_are_shown(given: Given, tmp_path: Path) -> None:
+    for result in (*given.responses, gb.study(given.case), gb.compare(*given.responses)):
+        before = state(result)
+        result.to_xarray()
+        result.plot()
+        result.save(tmp_path / "result.nc")
+        result.report(tmp_path / "result.html") if not isinstance(result, gb.Comparison) else None
+        assert state(result) == before
+
+
+def test_what_is_made_of_equal_values_is_equal(given: Given, tmp_path: Path) -> None:
+    """Made twice, after all else was done with the first; and another number makes another value."""
+    again = Given(tmp_path)
+    names = [name for name, value in vars(given).items() if values(value) and name != "case"]
+    assert {"beam", "structure", "column", "centrifuge", "free_hub", "settings", "responses", "system"} <= {*names}
+    for name in names:
+        assert getattr(again, name) == getattr(given, name), name
+    assert replace(again.case, provenance=None) == replace(given.case, provenance=None)  # of two files
+    assert hash(again.structure) == hash(given.structure) and hash(again.beam) == hash(given.beam)
+
+
+def test_a_case_is_shown_on_one_line(given: Given) -> None:
+    named = replace(given.case, title="a panel")
+    assert repr(named) == "Case('a panel', FOAM, {flight: flight, spin: centrifuge}, 0.5 s)"
+
+
+def test_another_number_makes_another_value(given: Given) -> None:
+    response = given.responses[0]
+    assert replace(response, step=0.5 * response.step) != response != given.responses[1]
+    moved = response.displacement.copy()
+    moved[-1, -1, -1] += 1e-12
+    assert replace(response, displacement=moved) != response
+    thicker = replace(given.beam, section=gb.Section.rectangle(0.02, 0.0041))
+    assert thicker != given.beam and gb.assemble(thicker, "FOAM", axial=0, y=1, z=1) != given.structure
+    assert gb.Load(0.1, force=np.array([0.0, 0.0, 1.0])) == gb.Load(0.1, force=np.array([0.0, 0.0, 1.0]))
+    assert gb.Load(0.1, force=np.array([0.0, 0.0, 1.0])) != gb.Load(0.1, force=np.array([0.0, 0.0, 2.0]))
+
+
+@pytest.mark.parametrize("kind", ["TLAM", "SFOAM", "CFOAM", "exact"])
+def test_a_structure_of_every_model_keeps_its_fields_alone(given: Given, kind: str) -> None:
+    structure = gb.assemble(given.beam, kind, axial=int(kind in ("CFOAM", "exact")), y=0, z=2)
+    before = state(structure)
+    gb.simulate(structure, given.still, duration=0.05, step=5e-3)
+    gb.modes(structure, given.hub)
+    gb.static(structure, given.still)
+    assert state(structure) == before
+
+
+def test_a_machine_keeps_its_fields_alone(given: Given) -> None:
+    """Planned, with or without a span: nothing is written into it when its motion is needed."""
+    options: dict[str, Any] = {"arm": 3.3, "control_point": 0.2, "gravity": False, "start": "idle"}
+    machine = gb.Centrifuge(given.flight, idle=5.0, **options)
+    waiting = machine.over(0.0, 0.3, ahead=False)
+    before = state((machine, waiting))
+    first, second = waiting.extent, waiting.axes(0.2)
+    waiting.usage()
+    gb.simulate(given.structure, machine, duration=0.3, step=5e-3, estimate=False)
+    assert state((machine, waiting)) == before and (waiting.extent, waiting.axes(0.2)) == (first, second)
+    prepared = machine.over(0.0, 0.3)
+    assert prepared == machine.over(0.0, 0.3) == pickle.loads(pickle.dumps(prepared)) != waiting
