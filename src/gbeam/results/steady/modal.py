@@ -19,7 +19,7 @@ FAR = 2.0  # times the highest multiple of the speed: a mode above would press t
 FEW = 2  # modes drawn in any case
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Instability(Part):
     """An eigenvalue with a positive real part: ``divergence`` without oscillation, ``flutter`` with."""
 
@@ -127,7 +127,7 @@ class Modes(Figured):
         return self._with_warnings(*lines)
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Crossing(Part):
     """A mode met by a multiple of the speed: frequency = order × speed."""
 
