@@ -10,7 +10,7 @@ from gbeam.analysis.vibration.campbell import campbell
 from gbeam.analysis.vibration.modal import modes
 from gbeam.analysis.vibration.stability import critical_speed_map
 from gbeam.motion import Flight, Hub, constant
-from gbeam.report.steady.campbell import to_json
+from gbeam.results.declared import json_of
 
 from .beams import HUB, HUB_2009, beam_2009, slender
 
@@ -67,7 +67,7 @@ def test_it_ends_at_the_critical_speed():
     assert found.critical is not None and found.critical.value == pytest.approx(2.91074, abs=1e-5)
     assert found.speed[-1] < found.critical.value and found.frequency[-1, 0] < 1e-2
     assert found.critical.errors.shapes < 1e-8  # without a mass the first shape is the mode
-    assert to_json(found)["critical_speed_errors"]["shapes"] == found.critical.errors.shapes
+    assert json_of(found)["critical_speed_errors"]["shapes"] == found.critical.errors.shapes
     assert sum("TLAM's own" in each for each in found.warnings) == 1
 
 

@@ -131,7 +131,6 @@ VERBS = {
             _MOTION,
             _AT,
         ),
-        report=False,
     ),
     "optimize": Verb(
         "the values at which a figure is least",
@@ -146,7 +145,6 @@ VERBS = {
             _STARTS,
             _WRITE,
         ),
-        report=False,
     ),
     "fit": Verb(
         "the values of the scenario that a measurement shows",
@@ -159,7 +157,6 @@ VERBS = {
             _STARTS,
             _WRITE,
         ),
-        report=False,
     ),
     "shape": Verb(
         "the rate or torque of a hub that leaves the least vibration, and the scenario with it",
@@ -172,7 +169,6 @@ VERBS = {
             Option("check", "model that the commands are run on", choices=("TLAM", "FOAM", "SFOAM", "CFOAM", "exact")),
             _MOTION,
         ),
-        report=False,
     ),
     "models": Verb("the same by every model, compared with the exact one", report=False),
     "linearize": Verb(
