@@ -46,6 +46,7 @@ def test_viewer_shows_the_beam_move(opened: Any, report: Path) -> None:
     page.keyboard.press("End")
     assert page.evaluate(TIME) == page.evaluate("window.gbeam.viewer.clock.end")
     page.keyboard.press("Home")
+    page.evaluate("window.gbeam.viewer.clock.speed = 0.01")  # that it does not end before it is stopped
     page.keyboard.press("Space")
     page.wait_for_function(f"() => {TIME} > window.gbeam.viewer.clock.start")
     page.keyboard.press("Space")
