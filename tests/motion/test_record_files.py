@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -266,3 +267,11 @@ def test_files_that_are_not_what_their_names_say(tmp_path: Path, name: str) -> N
         with pytest.raises(InputError) as caught:
             fly(path)
         assert caught.value.where == "record.file"
+
+
+def test_numbers_of_a_vax_are_refused(tmp_path: Path) -> None:
+    header = struct.pack("<5i", 2000, 4, 1, 0, 2)  # version 4: VAX D-float, 4 by 1, real, a name of one letter
+    (tmp_path / "r.mat").write_bytes(header + b"t\0" + np.arange(4.0).tobytes())
+    with warnings.catch_warnings(), pytest.raises(InputError, match=r"VAX D-float.*may be corrupt.*save the record by"):
+        warnings.simplefilter("error")
+        fly(tmp_path / "r.mat", ("t", "0", "0", "t"))

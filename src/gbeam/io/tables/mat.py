@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from collections.abc import Sequence
 from functools import partial
 from typing import Any
@@ -39,7 +40,9 @@ def read_mat(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
         nothing else reads.
     """
     try:
-        columns = _any_version(path, words)
+        with warnings.catch_warnings():
+            warnings.filterwarnings("error", ".*may be corrupt")  # numbers of a VAX or a Cray, which SciPy misreads
+            columns = _any_version(path, words)
     except (InputError, MemoryError):
         raise
     except Exception as error:  # loadmat raises whatever a damaged file leads to
