@@ -32,7 +32,7 @@ TESTS = (
     "tests/motion/test_record_files.py",
     "tests/comparison/test_fatigue.py",
     "tests/scenario/test_units.py",
-    "tests/sweeps/test_sweep.py::test_files_and_words",
+    "tests/studies/test_sweep.py::test_files_and_words",
     "tests/scenario/test_locate.py",
 )
 

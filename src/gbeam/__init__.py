@@ -86,7 +86,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.studies.optimise import optimise as optimise
     from gbeam.studies.sensitivity import sensitivity as sensitivity
     from gbeam.studies.shape import shape as shape
-    from gbeam.sweeps.sweep import sweep as sweep
+    from gbeam.studies.sweep import sweep as sweep
 
 __version__ = "0.2.0"
 
@@ -162,7 +162,7 @@ _HOME = {
     "static": "analysis.equilibrium.static",
     "study": "analysis.study.study",
     "surface_gauges": "analysis.control.gauges",
-    "sweep": "sweeps.sweep",
+    "sweep": "studies.sweep",
     "tabulated": "motion.profiles.piecewise",
     "trapezoid": "motion.profiles.piecewise",
     "vector": "motion.profiles.combine",

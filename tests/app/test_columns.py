@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gbeam.app.columns import suggested
+from gbeam.app.preview import suggested
 
 NONE: dict[str, str] = {}
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from gbeam.cli.terminal import console
-from gbeam.cli.terminal.console import Watch
+from gbeam.cli import console
+from gbeam.cli.console import Watch
 
 
 class _Terminal(io.StringIO):

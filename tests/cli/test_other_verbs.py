@@ -67,7 +67,7 @@ def test_every_verb_has_help(verb: str, gbeam: Call) -> None:
     answer = gbeam(verb, "--help")
     assert answer.status == 0
     name = verb.replace("-", "_")
-    docstring = getattr(import_module(f"gbeam.cli.{VERBS[verb][0]}.{name}"), name).__doc__
+    docstring = getattr(import_module(f"gbeam.cli.verbs.{VERBS[verb][0]}"), name).__doc__
     assert " ".join(docstring.partition("Parameters\n")[0].split()) in " ".join(answer.out.split())
 
 

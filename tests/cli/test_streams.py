@@ -12,8 +12,8 @@ from typing import Any
 
 import pytest
 
+from gbeam.cli.process import shorten_warnings
 from gbeam.cli.program import report_defect
-from gbeam.cli.terminal.streams import shorten_warnings
 
 Call = Callable[..., Any]
 ESCAPE = "\x1b[31m"

@@ -183,7 +183,7 @@ def test_too_little_memory_is_no_defect(megabytes: int, fast: Path) -> None:
     "words", ["can't start new thread", "libhdf5.so.320: failed to map segment from shared object"]
 )
 def test_what_libraries_say_of_too_little_memory_is_understood(words: str) -> None:
-    from gbeam.cli.terminal.failures import lacks_memory
+    from gbeam.cli.failures import lacks_memory
 
     kind = RuntimeError if "thread" in words else ImportError
     assert (
@@ -196,7 +196,7 @@ def test_what_libraries_say_of_too_little_memory_is_understood(words: str) -> No
 
 def test_a_scheduler_that_is_not_there_is_one_line(fast: Path) -> None:
     pytest.importorskip("distributed")
-    code = "import sys, gbeam.sweeps.computing.cluster as c; c.CONNECTION = 1.0; from gbeam.cli import main; "
+    code = "import sys, gbeam.studies.cluster as c; c.CONNECTION = 1.0; from gbeam.cli import main; "
     code += "sys.exit(main(sys.argv[1:]))"
     sweep = [
         "sweep",

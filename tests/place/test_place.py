@@ -18,7 +18,7 @@ from gbeam import InputError
 from gbeam.analysis.imitation.choice import Choice
 from gbeam.analysis.imitation.place import place
 from gbeam.cli import main
-from gbeam.cli.verbs.runs.place import parse
+from gbeam.cli.verbs.machine import parse
 from gbeam.motion import AxisLimit, MachineLimits
 from gbeam.numerics.solvers.bounded_search import coarse, refine
 from gbeam.results.imitation.placement import MEASURES, Candidate, Placement

@@ -14,7 +14,7 @@ import pytest
 import gbeam as gb
 from gbeam.scenario.load import loads
 from gbeam.studies.derivatives import Neighbourhood
-from gbeam.sweeps.computing.evaluate import Question
+from gbeam.studies.evaluate import Question
 
 from ..scenarios import FLIGHT, FREE_HUB, SLEWING, SPECIMEN, model, response
 
@@ -190,8 +190,8 @@ def test_the_command_prints_a_table_and_writes_a_file_and_plots(fast: Path, gbea
 
 def test_values_may_be_others_than_the_scenarios(fast: Path) -> None:
     from gbeam.scenario.load import load
+    from gbeam.studies.evaluate import Question
     from gbeam.studies.parameters import physical_values
-    from gbeam.sweeps.computing.evaluate import Question
 
     base = load(fast)
     assert base.source is not None

@@ -7,11 +7,15 @@ import os
 import re
 import stat
 import tempfile
+from importlib.resources import files as resources
+from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import BinaryIO
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import TEXT_BYTES
+from gbeam.scenario.template import template
+from gbeam.scenario.text.revise import with_entry
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._()-]{0,99}")
 LARGEST = TEXT_BYTES  # of one file
@@ -104,3 +108,43 @@ def _is_regular(file: Path) -> bool:
         return stat.S_ISREG(file.lstat().st_mode)
     except (FileNotFoundError, NotADirectoryError, ValueError):  # ValueError: a null character in its name
         return False
+
+
+_TEMPLATES = {"Flight and centrifuge": "flight", "Hub": "hub"}
+_FLOWN = "F-16 turn of 8 g, with its record"
+_SCENARIO, _RECORD = "f16_8g_turn.toml", "f16_8g_turn.csv"
+NAMES = ("Flight and centrifuge", _FLOWN, "Hub")
+
+
+def example(name: str, records: Path) -> str:
+    """Return the text of an example; its record is put among those of a folder.
+
+    Raises
+    ------
+    InputError
+        If there is no such example, or no room for its record.
+    """
+    if name in _TEMPLATES:
+        return template(_TEMPLATES[name])
+    if name != _FLOWN:
+        raise InputError("example", f"is {name[:100]!r}", f"choose of {', '.join(NAMES)}")
+    record = _kept(_shipped(_RECORD).read_bytes(), records)
+    return with_entry(_shipped(_SCENARIO).read_text(encoding="utf-8"), ("motion", "flight", "record", "file"), record)
+
+
+def _shipped(name: str) -> Traversable:
+    """A file of the examples: where the package is installed, or in the tree that it runs from."""
+    packed = resources("gbeam.app") / "shipped" / name
+    tree = Path(__file__).parents[3] / "examples"
+    return packed if packed.is_file() else next(tree.rglob(name))
+
+
+def _kept(content: bytes, records: Path) -> str:
+    """Store a record, beside another of its name; return its name there."""
+    for name in (_RECORD, f"example {_RECORD}"):
+        try:
+            if regular(records, name).read_bytes() == content:
+                return name
+        except InputError:  # is not there
+            return store(records, name, content).name
+    raise InputError(_RECORD, "is there already, and is another record", f"rename it in {records}")

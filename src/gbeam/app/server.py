@@ -19,8 +19,7 @@ from pydantic import AfterValidator, Field
 from starlette.requests import ClientDisconnect
 
 from gbeam.app import documents, examples, files, verbs
-from gbeam.app.access import REPORT_POLICY, Door
-from gbeam.app.connections import AT_ONCE, Connections, listening
+from gbeam.app.access import AT_ONCE, REPORT_POLICY, Connections, Door, listening
 from gbeam.app.jobs import Jobs
 from gbeam.app.preview import head, load_curves
 from gbeam.errors import GbeamError, InputError

@@ -1,7 +1,7 @@
-"""The command line: one file per verb, imported when it is called.
+"""The command line: verbs, imported when they are called.
 
 A verb is a function with annotated parameters that reads a scenario, calls a public function of gbeam, prints what
-`gbeam.report` makes of the result, and returns its exit status. To add one, write its file and name it in
+`gbeam.report` makes of the result, and returns its exit status. To add one, write it in `verbs` and name it in
 `program.VERBS`. Errors are raised; `failures` prints them. Importing this imports nothing else: signals come first.
 """
 
@@ -28,10 +28,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     if argv is not None:
         return _status(list(argv))
-    from gbeam.cli.terminal.interrupts import end_on_signals, ignore_signals
+    from gbeam.cli.interrupts import end_on_signals, ignore_signals
 
     end_on_signals()
-    from gbeam.cli.terminal.streams import shorten_warnings
+    from gbeam.cli.process import shorten_warnings
 
     shorten_warnings()
     from gbeam.cli.process import begin
@@ -43,11 +43,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _status(arguments: list[str]) -> int:
-    from gbeam.cli.terminal import streams
+    from gbeam.cli import process as streams
 
     listening = streams.prepare()
+    from gbeam.cli.failures import FAILED, complain
     from gbeam.cli.program import run
-    from gbeam.cli.terminal.failures import FAILED, complain
 
     try:
         status = run(arguments)

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gbeam.cli.invocation import command
+from gbeam.cli.console import Watch
+from gbeam.cli.process import command
 from gbeam.cli.publication import refuse_unwritable
-from gbeam.cli.terminal.console import Watch
 from gbeam.errors import InputError
 
 if TYPE_CHECKING:

@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from gbeam.cli.inputs import naming, signed
-from gbeam.cli.invocation import command
-from gbeam.cli.process import figures_wanted
+from gbeam.cli.process import command, figures_wanted
 from gbeam.cli.publication import publish
 from gbeam.errors import InputError
 from gbeam.printable import printable
@@ -160,7 +159,7 @@ def write_found(answer: Fit | Optimum, scenario: Path, file: Path | None) -> Non
     """Write a scenario with the values that a search found, if a file is named."""
     if file is None:
         return
-    from gbeam.studies.search.bounds import with_values
+    from gbeam.studies.parameters import with_values
 
     with naming("--write"):
         text, place = with_values(answer.parameters, answer.values.tolist(), scenario, file.parent), file.resolve()

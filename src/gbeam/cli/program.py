@@ -14,34 +14,33 @@ os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 from cyclopts import App, CycloptsError
 
 import gbeam
-from gbeam.cli import invocation
-from gbeam.cli.process import end_at_once
-from gbeam.cli.terminal.failures import lacks_memory, report, report_defect, report_memory, report_syntax
+from gbeam.cli.failures import lacks_memory, report, report_defect, report_memory, report_syntax
+from gbeam.cli.process import end_at_once, note
 from gbeam.errors import GbeamError
 from gbeam.guards.limits import WORDS
 
-# Each verb's room, and its help: not only in its own docstring, so that `gbeam --help` imports no verb.
+# The file of each verb, and its help: not only in its own docstring, so that `gbeam --help` imports no verb.
 VERBS = {
-    "run": ("verbs.runs", "Compute the response in every environment of a scenario, and compare them."),
-    "static": ("verbs.steady", "Where the beam rests relative to its base at one time of the motions."),
-    "modes": ("verbs.steady", "Frequencies, damping and shapes about the equilibrium at one time of a motion."),
-    "campbell": ("verbs.steady", "Frequencies against the speed of a hub, and where its multiples meet them."),
-    "critical-speed": ("verbs.steady", "The hub rate, load or acceleration at which the beam's equilibrium is lost."),
-    "linearize": ("verbs.steady", "State-space model A, B, C, D about the equilibrium at one time of a motion."),
-    "models": ("verbs.runs", "The same scenario by every model, compared with the exact one."),
-    "plan": ("verbs.runs", "Plan the axis motions of a centrifuge within its limits; needs no beam."),
-    "place": ("verbs.runs", "Find where to put the specimen on the centrifuge."),
-    "sweep": ("verbs.studies", "Figures of many cases: over ranges, lists or samples of any values of a scenario."),
-    "sensitivity": ("verbs.studies", "Which values of a scenario a figure depends on, and how much."),
-    "report": ("verbs.runs", "Write a result as one page of HTML: tables, plots that zoom, and the beam in motion."),
-    "optimize": ("verbs.studies", "Values of a scenario at which a figure is least, within limits."),
-    "shape": ("verbs.studies", "The rate or torque of a hub that leaves the least vibration of its beam."),
-    "fit": ("verbs.studies", "Values of a scenario from a measurement, by least squares."),
-    "rerun": ("verbs.runs", "Compute a result again from what its file says, and compare every number."),
-    "app": ("verbs", "Edit, run and compare scenarios in a browser, on this computer only."),
-    "check": ("verbs", "Say what a scenario means, without computing a response."),
-    "new": ("verbs", "Write a commented scenario to start from."),
-    "schema": ("verbs", "Print the JSON schema of scenario files, for editors."),
+    "run": ("responses", "Compute the response in every environment of a scenario, and compare them."),
+    "static": ("steady_states", "Where the beam rests relative to its base at one time of the motions."),
+    "modes": ("steady_states", "Frequencies, damping and shapes about the equilibrium at one time of a motion."),
+    "campbell": ("steady_states", "Frequencies against the speed of a hub, and where its multiples meet them."),
+    "critical-speed": ("steady_states", "The hub rate, load or acceleration at which the beam's equilibrium is lost."),
+    "linearize": ("steady_states", "State-space model A, B, C, D about the equilibrium at one time of a motion."),
+    "models": ("responses", "The same scenario by every model, compared with the exact one."),
+    "plan": ("machine", "Plan the axis motions of a centrifuge within its limits; needs no beam."),
+    "place": ("machine", "Find where to put the specimen on the centrifuge."),
+    "sweep": ("many", "Figures of many cases: over ranges, lists or samples of any values of a scenario."),
+    "sensitivity": ("many", "Which values of a scenario a figure depends on, and how much."),
+    "report": ("responses", "Write a result as one page of HTML: tables, plots that zoom, and the beam in motion."),
+    "optimize": ("searches", "Values of a scenario at which a figure is least, within limits."),
+    "shape": ("searches", "The rate or torque of a hub that leaves the least vibration of its beam."),
+    "fit": ("searches", "Values of a scenario from a measurement, by least squares."),
+    "rerun": ("responses", "Compute a result again from what its file says, and compare every number."),
+    "app": ("files", "Edit, run and compare scenarios in a browser, on this computer only."),
+    "check": ("files", "Say what a scenario means, without computing a response."),
+    "new": ("files", "Write a commented scenario to start from."),
+    "schema": ("files", "Print the JSON schema of scenario files, for editors."),
 }
 _INTERRUPTED = 130
 
@@ -67,7 +66,7 @@ def run(tokens: list[str]) -> int:
     as_json = "--json" in tokens
     if len(tokens) > WORDS:
         return report_syntax(f"The command line has {len(tokens)} words, and {WORDS} are read at most.", as_json)
-    invocation.begin(tokens)
+    note(tokens)
     try:
         status = _app(tokens[0] if tokens else "")(
             tokens, exit_on_error=False, print_error=False, result_action="return_value"
@@ -109,6 +108,6 @@ def _app(chosen: str) -> App:
     for verb, (room, summary) in VERBS.items():
         # The help of the chosen verb is its own docstring, which says more.
         name = verb.replace("-", "_")
-        app.command(f"gbeam.cli.{room}.{name}:{name}", name=verb, help=None if verb == chosen else summary)
+        app.command(f"gbeam.cli.verbs.{room}:{name}", name=verb, help=None if verb == chosen else summary)
     app.register_install_completion_command(help="Let the shell complete verbs and options: bash, zsh or fish.")
     return app

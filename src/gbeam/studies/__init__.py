@@ -1,1 +1,1 @@
-"""What many runs of one scenario say together: which value matters, what a measurement means, which value is best."""
+"""Studies of many runs of one scenario: sweeps, sensitivities, fits, optima and shaped commands."""

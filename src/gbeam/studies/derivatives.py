@@ -24,8 +24,8 @@ from gbeam.motion.protocol import Motion
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Study
+from gbeam.studies.evaluate import Question
 from gbeam.studies.parameters import PhysicalValue
-from gbeam.sweeps.computing.evaluate import Question
 
 # Of a case and its answer, a Study of run or another verb's facts: what is differentiated, (m,).
 Read = Callable[[Case, Any], Floats]

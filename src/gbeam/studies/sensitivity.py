@@ -20,11 +20,11 @@ from gbeam.results.study import Study
 from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
 from gbeam.scenario.values.paths import path_text
+from gbeam.studies.answers import Facts, study_facts
 from gbeam.studies.derivatives import Neighbourhood, Progress, Slopes
+from gbeam.studies.evaluate import Question
+from gbeam.studies.figures import Keys, find, own_keys, unit_at, value_at
 from gbeam.studies.parameters import PhysicalValue, physical_values
-from gbeam.sweeps.computing.evaluate import Question
-from gbeam.sweeps.figures.answers import Facts, study_facts
-from gbeam.sweeps.figures.measures import Keys, find, own_keys, unit_at, value_at
 
 OPTION = "--of"
 _SHARE = 0.05  # by which the slopes on either side may differ

@@ -1,1 +1,1 @@
-"""One file per verb of the command line: read, call, print."""
+"""Verbs of the command line, a file for those that are alike: read, call, print."""

@@ -1,1 +1,0 @@
-"""The terminal: what is printed, how failures read, signals and streams that end."""

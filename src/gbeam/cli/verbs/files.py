@@ -1,0 +1,125 @@
+"""Verbs of files: ``gbeam check``, ``new`` and ``schema``; and ``gbeam app``, which edits and runs them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import Parameter
+
+from gbeam.cli.inputs import read
+from gbeam.cli.options import Json, Out, Overrides, ScenarioFile, option
+from gbeam.cli.outputs import show, write
+from gbeam.cli.publication import refuse_unwritable
+from gbeam.errors import InputError
+from gbeam.printable import printable
+
+
+def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = None, json: Json = False) -> int:
+    """Say what a scenario means, without computing a response.
+
+    Loads, validates and builds everything, and prints the beam's mass, its natural frequencies at rest, the motions
+    and the duration; where a value is a distribution it takes the centre. With --out also writes check.json. Exit
+    status: 0 the scenario is valid, 2 it is not.
+    """
+    given = read("check", scenario, overrides, out)
+
+    from gbeam.analysis.study.describe import describe
+    from gbeam.report import description as report
+
+    with given.placing():
+        description = describe(given.case)
+    source = given.scenario.source
+    assert source is not None  # it was read from a file
+    drawn = {path: str(each) for path, each in source.distributions.items()}
+    description = replace(description, distributions=drawn)
+    facts = given.signed(report.to_json(description))
+    write(out, "check", facts)
+    show(report.text(description), facts, json)
+    return 0
+
+
+def new(
+    file: Annotated[Path, Parameter(help="File to write, such as wing.toml; never overwritten.")],
+    /,
+    *,
+    kind: Annotated[Literal["flight", "hub"], Parameter(help="Flight and centrifuge, or a hub.")] = "flight",
+    json: Json = False,
+) -> int:
+    """Write a commented scenario to start from.
+
+    Exit status: 0 written, 2 there is such a file or it cannot be written.
+    """
+    from gbeam.scenario.template import template
+
+    if file.suffix != ".toml":
+        raise InputError(str(file), "does not end in .toml", f"name it {file.stem or 'wing'}.toml")
+    try:
+        with file.open("x", encoding="utf-8") as new_file, _removed_if_incomplete(file):
+            new_file.write(template(kind))
+            new_file.flush()
+    except FileExistsError:
+        raise InputError(str(file), "exists", "name a new file, or delete it first") from None
+    except OSError as error:
+        raise InputError(str(file), f"cannot be written ({error.strerror})", "name another place") from None
+    show(f"{file} written; `gbeam run {file}` computes it", {"file": str(file), "kind": kind}, json)
+    return 0
+
+
+@contextmanager
+def _removed_if_incomplete(file: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError:  # the disk is full
+        file.unlink()
+        raise
+
+
+def schema(
+    *,
+    json: Json = False,
+    markdown: Annotated[bool, option("--markdown", "The keys as a page to read instead.")] = False,
+) -> int:
+    """Print the JSON schema of scenario files, for editors; or every key, with unit, default and meaning.
+
+    Parameters
+    ----------
+    json
+        As every verb takes it: the schema is one JSON object anyway.
+    """
+    from gbeam.scenario import json_schema
+
+    if markdown and not json:
+        from gbeam.scenario.reference import reference
+
+        print(reference(), end="")
+        return 0
+    print(json_schema())
+    return 0
+
+
+def app(
+    *,
+    folder: Annotated[Path | None, Parameter(help="Where records and runs are kept; gbeam-app by default.")] = None,
+    port: Annotated[int, Parameter(help="To listen on, on this computer only; by default any that is free.")] = 0,
+) -> int:
+    """Edit, run and compare scenarios in a browser, on this computer only.
+
+    Prints the address to open, which holds a secret: whoever has it may run scenarios here. Needs the extra app. Runs
+    go on when the page is closed, and earlier ones are there again after a restart. Ends with Ctrl-C.
+    """
+    place = Path("gbeam-app") if folder is None else folder
+    if not 0 <= port < 65536:
+        raise InputError("--port", f"is {port}", "give 0 to 65535")
+    refuse_unwritable(place)
+    try:
+        from gbeam.app.server import serve
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] not in ("fastapi", "starlette", "uvicorn"):
+            raise
+        raise InputError("app", f"needs {error.name}, which is not installed", "pip install 'gbeam[app]'") from None
+    serve(place.resolve(), port, lambda address: print(printable(address), flush=True))
+    return 0

@@ -1,0 +1,208 @@
+"""Verbs of a centrifuge: ``gbeam plan`` and ``gbeam place``."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from gbeam.cli.console import Watch
+from gbeam.cli.failures import FAILED, complain
+from gbeam.cli.inputs import Input, naming, number, read, signed
+from gbeam.cli.options import (
+    CentrifugeName,
+    Check,
+    IgnoreLimits,
+    Json,
+    Measure,
+    Out,
+    Overrides,
+    Report,
+    ScenarioFile,
+    Widths,
+    option,
+)
+from gbeam.cli.outputs import folder_of, list_files, show, show_table, write
+from gbeam.cli.process import command, figures_wanted
+from gbeam.cli.publication import publish, refuse_unwritable
+from gbeam.errors import InputError
+
+SAMPLE = 0.005  # s, where neither the scenario nor the command line gives one
+
+
+def plan(
+    scenario: ScenarioFile,
+    /,
+    *,
+    overrides: Overrides = (),
+    out: Out = None,
+    json: Json = False,
+    sample: Annotated[
+        str | None, Parameter(help='Sample time of the commands, such as "5 ms"; else the scenario\'s, else 5 ms.')
+    ] = None,
+    ignore_limits: IgnoreLimits = False,
+    report: Report = False,
+) -> int:
+    """Plan the axis motions of the centrifuges of a scenario; it needs no beam.
+
+    Prints what the axes do, what that uses of the machine's limits, which peaks of the load are reproduced and why not
+    the others, and the largest load on the specimen, which a [beam] gives its length. Limits of [motion.NAME.accept]
+    that need no response are judged. With --out also writes the axis motions at the controller's sample time
+    (commands_NAME.csv and .mat) and plots, with --report plan.html. Exit status: 0 done, 1 a limit of the machine is
+    exceeded or one of acceptance not kept, 2 the input is wrong.
+    """
+    folder = folder_of(out, scenario, default=report)
+    if folder is not None:
+        refuse_unwritable(folder)
+
+    from gbeam.scenario import build_machines, build_specimen, load_environments, provenance, schema
+
+    with Watch(f"planning the machines of {scenario}"):
+        given = load_environments(scenario, overrides)
+        machines, beam = build_machines(given), build_specimen(given)
+    if not machines:
+        raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
+    every = None if sample is None else number("--sample", sample, "time")
+    if every is not None and every <= 0:
+        raise InputError("--sample", f"is {sample}", 'give a positive time, such as "5 ms"')
+
+    from gbeam.analysis.imitation import plan as analysis
+    from gbeam.report.machine import plan as words
+    from gbeam.results.imitation.criteria import judging
+
+    origin = provenance(given, command())
+    tables = {name: table for name, table in given.motion.items() if isinstance(table, schema.Centrifuge)}
+    plans = {
+        name: replace(
+            analysis.plan(
+                name, machines[name], table.tracks,
+                beam=beam, title=given.title, **judging(table.limits_of_acceptance),
+            ),
+            provenance=origin,
+        )
+        for name, table in tables.items()
+    }  # fmt: skip
+
+    def make(hidden: Path) -> None:
+        from gbeam.io.commands import write_commands
+
+        for name, each in plans.items():
+            own = tables[name].commands
+            time = every or (own.sample if own else SAMPLE)
+            write_commands(each, analysis.commands(machines[name], time), hidden)
+            if figures_wanted():
+                from gbeam.plots import figures, save
+
+                for kind, draw in figures(each, given.title).items():
+                    save(draw(), hidden, f"{kind}_{name}", "gbeam plan")
+
+        if report:
+            from gbeam.report.page.result import report_of_plans
+
+            facts = signed(words.to_json(given.title, plans.values()), origin)
+            (hidden / "plan.html").write_text(report_of_plans(facts, plans), encoding="utf-8")
+
+    if not json:
+        show_table(words.table(given.title, plans.values()))
+    files = [] if folder is None else publish(folder, make)
+    if json:
+        show("", signed(words.to_json(given.title, plans.values(), files), origin), json)
+    list_files(None if json else folder, files)
+    broken = [each for each in plans.values() if each.outcome != "done"]
+    for each in broken:
+        complain(f"motion.{each.name} {each.outcome}: {each.message}" + (" (allowed)" if ignore_limits else ""))
+    refused = [each for each in plans.values() if each.accepted is False]
+    for each in refused:
+        complain(f"motion.{each.name} not accepted: {each.refusal}")
+    return FAILED if refused or (broken and not ignore_limits) else 0
+
+
+def place(
+    scenario: ScenarioFile,
+    /,
+    *,
+    measure: Measure = "tip",
+    motion: CentrifugeName = None,
+    smoothing: Widths = (),
+    check: Check = True,
+    overrides: Overrides = (),
+    out: Out = None,
+    json: Json = False,
+    ignore_limits: IgnoreLimits = False,
+    report: Report = False,
+    write_back: Annotated[
+        bool,
+        option("--write", "Write the answer into the scenario file."),
+    ] = False,
+) -> int:
+    """Find the control point, mounting and smoothing that change the specimen's response least.
+
+    Prints the --set options that apply the answer; --write writes it, and no change made by --set, into the scenario
+    file, whose comments stay. Options that exceed the machine's limits are listed but not chosen, unless
+    --ignore-limits is given. With --out also writes place.json, with --report place.html. Exit status: 0 done, 1 every
+    option exceeds the limits, 2 the input is wrong.
+    """
+    weights = parse(measure)
+    widths = [number("--smoothing", text, "time") for text in smoothing]
+    folder = folder_of(out, scenario, default=report)
+    given = read("place", scenario, overrides, folder)
+    name, current = given.motion(motion, kind="centrifuge")
+
+    from gbeam.analysis.imitation import place as analysis
+    from gbeam.analysis.imitation.choice import choice_of
+    from gbeam.motion import Centrifuge
+    from gbeam.report.machine import placement as words
+
+    if not isinstance(current, Centrifuge):
+        fix = "add one that tracks the flight; `gbeam new` shows how"
+        raise InputError(f"motion.{name}", "is no centrifuge to put a specimen on", fix)
+    analysis.check_weights(weights, "--measure")
+    with naming("--smoothing"):
+        choice = choice_of(current, widths, limited=not ignore_limits)
+    with given.placing():
+        placement = analysis.place(
+            given.case.assemble(),
+            current.flight,
+            choice,
+            given.case.response,
+            weights,
+            current=current,
+            names=(given.case.tracks[name], name),
+            check=check,
+        )
+    written = _apply(given, scenario, name, placement.changes) if write_back and placement.changes else None
+    facts = given.signed(words.to_json(placement, written))
+    write(folder, "place", facts, report=report)
+    show(words.text(placement, written), facts, json)
+    if placement.outcome != "done":
+        complain(f"{placement.outcome}: motion.{name}: {placement.message}")
+        return FAILED
+    return 0
+
+
+def _apply(given: Input, file: Path, name: str, changes: dict[str, str]) -> str:
+    """Write the changes of one centrifuge into the scenario file; return its name."""
+    from gbeam.scenario.text.edit import edited
+
+    source = given.scenario.source
+    assert source is not None  # it was read from a file
+    text, place = edited(source, ("motion", name), changes), file.resolve()
+    with naming("--write"):
+        publish(place.parent, lambda hidden: (hidden / place.name).write_bytes(text.encode()))
+    return str(file)
+
+
+def parse(measure: str) -> dict[str, float]:
+    """Read a measure or a weighted sum of measures."""
+    weights: dict[str, float] = {}
+    for term in measure.split(","):
+        name, _, weight = term.partition("=")
+        try:
+            weights[name.strip()] = float(weight) if weight else 1.0
+        except ValueError:
+            raise InputError(
+                "--measure", f"has the weight {weight.strip()!r}", 'write "tip=1, root-moment=0.5"'
+            ) from None
+    return weights

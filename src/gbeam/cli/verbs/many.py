@@ -1,0 +1,183 @@
+"""Verbs of many runs: ``gbeam sweep`` and ``gbeam sensitivity``."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import Parameter
+
+from gbeam.cli.console import Watch
+from gbeam.cli.failures import FAILED, complain
+from gbeam.cli.inputs import names, number, signed
+from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile, option
+from gbeam.cli.outputs import commanded, folder_of, list_files, show, show_found, write_json
+from gbeam.cli.process import command, figures_wanted
+from gbeam.cli.publication import publish, refuse_unwritable
+
+Verb = Literal["run", "static", "modes", "critical-speed", "plan", "place"]
+
+
+def sweep(
+    scenario: ScenarioFile,
+    /,
+    *,
+    over: Annotated[
+        tuple[str, ...],
+        option(
+            "--over",
+            'What varies, PATH=VALUES; any number of times: "motion.centrifuge.arm=1 m:12 m:12" (from, to, how '
+            'many), "model.kind=FOAM, exact", "beam.damping_ratio=uniform(0.5 %, 2 %)".',
+        ),
+    ] = (),
+    measure: Annotated[
+        tuple[str, ...],
+        option("--measure", 'Figures of the verb by the end of their path in its JSON, "tip.z.max_abs, verdict.tip".'),
+    ] = (),
+    history: Annotated[
+        tuple[str, ...],
+        option(
+            "--history",
+            'Histories by motion, quantity (tip, root_force, root_moment) and axis, "flight.tip.z"; of verb run.',
+        ),
+    ] = (),
+    times: Annotated[int, Parameter(help="At which histories are given, over the whole response.")] = 501,
+    verb: Annotated[Verb | None, Parameter(help="Whose figures; run by default.")] = None,
+    motion: MotionName = None,
+    at: At = None,
+    samples: Annotated[int | None, Parameter(help="How many are drawn from distributions; 64 by default.")] = None,
+    sampler: Annotated[
+        Literal["sobol", "latin", "random", "saltelli"] | None,
+        Parameter(help="How they are drawn; sobol by default, saltelli for Sobol indices."),
+    ] = None,
+    seed: Annotated[int | None, Parameter(help="The same seed draws the same samples.")] = None,
+    workers: Annotated[int, Parameter(help="Processes of this machine.")] = 1,
+    scheduler: Annotated[str | None, Parameter(help="Address of a Dask scheduler whose workers compute.")] = None,
+    resume: Annotated[bool, option("--resume", "Compute only what is missing in --out.")] = False,
+    yes: Annotated[bool, option("--yes", "More than 100,000 cases are meant.")] = False,
+    netcdf: Annotated[bool, option("--netcdf", "Write sweep.nc beside sweep.zarr.")] = False,
+    overrides: Overrides = (),
+    out: Out = None,
+    json: Json = False,
+    report: Report = False,
+) -> int:
+    """Compute figures of many cases of one scenario: every combination of the values given, or samples of them.
+
+    What the command line does not say is what the scenario's [sweep] says. Values of the scenario that are
+    distributions, youngs_modulus = { normal = ["70 GPa", "2 GPa"] }, are drawn.
+
+    Every case is kept in --out (by default out/ and the scenario's name and -sweep) as soon as it is done: after an
+    interruption --resume does what is missing. Writes sweep.zarr, which xarray opens, sweep.json, a plot of each
+    measure, and with --report report.html. A case that fails is recorded as such. Exit status: 0 all cases computed,
+    those too that do not keep limits, which are counted as not accepted, 1 some are not done, 2 the input is wrong.
+    """
+    folder = out if out is not None else Path("out") / f"{scenario.stem}-sweep"
+    refuse_unwritable(folder)
+
+    from gbeam.studies.sweep import sweep as compute
+
+    with Watch() as watch:
+
+        def progress(done: int, failed: int, count: int) -> None:
+            watch(f"{done} of {count} cases" + (f", {failed} failed" if failed else ""), done / count)
+
+        answer = compute(
+            scenario,
+            over,
+            names(measure),
+            histories=names(history),
+            times=times,
+            verb=verb,
+            motion=motion,
+            at=None if at is None else number("--at", at, "time"),
+            overrides=overrides,
+            samples=samples,
+            sampler=sampler,
+            seed=seed,
+            workers=workers,
+            scheduler=scheduler,
+            store=folder,
+            resume=resume,
+            confirmed=yes,
+            progress=progress,
+        )
+
+    assert answer.provenance is not None  # it is of a scenario
+    answer = replace(answer, provenance=replace(answer.provenance, command=command()))
+
+    from gbeam.report.studies import sweep as words
+
+    def make(hidden: Path) -> None:
+        if figures_wanted():
+            from gbeam.plots import figures, save
+
+            for name, draw in figures(answer).items():
+                save(draw(), hidden, re.sub(r"[^\w.-]+", "_", re.sub(r"[\[\]]", "", name)), "gbeam sweep")
+        write_json(hidden / "sweep.json", signed(words.to_json(answer), answer.provenance))
+        if netcdf:
+            answer.save(hidden / "sweep.nc")
+        if report:
+            answer.report(hidden / "report.html")
+
+    from gbeam.io.layout.studies.sweeps import write_zarr
+
+    files = publish(folder, make)
+    write_zarr(answer, folder / "sweep.zarr")
+    files = sorted([*files, folder / "sweep.zarr"])
+    show(words.text(answer), signed(words.to_json(answer, files), answer.provenance), json)
+    if not json:
+        list_files(folder, files)
+    if answer.lost:
+        complain(f"{answer.lost} of {answer.outcome.size} cases are not done")
+    return FAILED if answer.lost else 0
+
+
+Differentiated = Literal["run", "static", "modes", "critical-speed", "plan"]
+
+
+def sensitivity(
+    scenario: ScenarioFile,
+    /,
+    *,
+    of: Annotated[
+        tuple[str, ...],
+        option("--of", 'Figures of the verb by the end of their path in its JSON, "tip.z.max_abs, verdict.tip".'),
+    ] = (),
+    by: Annotated[
+        tuple[str, ...],
+        option(
+            "--with", 'Only these values, "beam.length, beam.material.youngs_modulus"; by default every physical one.'
+        ),
+    ] = (),
+    verb: Annotated[Differentiated, Parameter(help="Whose figures.")] = "run",
+    motion: MotionName = None,
+    at: At = None,
+    overrides: Overrides = (),
+    out: Out = None,
+    json: Json = False,
+    report: Report = False,
+) -> int:
+    """Which values of a scenario a figure depends on, and how much: a ranked table and a tornado plot.
+
+    The derivatives of responses are those of the discrete solution, all from one run. With --out also writes
+    sensitivity.nc and a plot of each figure, with --report sensitivity.html. Exit status: 0 done, 1 the run is not
+    done, 2 the input is wrong.
+    """
+    folder = folder_of(out, scenario, default=report)
+    if folder is not None:
+        refuse_unwritable(folder)
+
+    from gbeam.studies.sensitivity import sensitivity as compute
+
+    with Watch() as watch:
+        time = None if at is None else number("--at", at, "time")
+        answer = compute(
+            scenario, names(of), names(by), verb=verb, motion=motion, at=time, overrides=overrides, progress=watch
+        )
+
+    from gbeam.report.studies import sensitivity as words
+
+    show_found(commanded(answer), words, "sensitivity", "sensitivity", folder, json=json, report=report)
+    return 0

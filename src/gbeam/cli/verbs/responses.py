@@ -1,0 +1,274 @@
+"""Verbs of responses: ``gbeam run`` and ``models``; and of results: ``gbeam report`` and ``rerun``."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import shlex
+from collections.abc import Iterator
+from contextlib import redirect_stdout, suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from threading import Thread
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from gbeam.cli.console import Watch
+from gbeam.cli.failures import FAILED, complain
+from gbeam.cli.inputs import read
+from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, Report, ScenarioFile
+from gbeam.cli.outputs import folder_of, list_files, show, show_table, write
+from gbeam.cli.process import figures_wanted
+from gbeam.cli.publication import publish, refuse_unwritable
+from gbeam.errors import InputError
+from gbeam.printable import printable
+from gbeam.scenario.values.paths import walk
+
+if TYPE_CHECKING:
+    from gbeam.results.provenance import Provenance
+    from gbeam.results.reproduction import Reproduction
+
+
+def run(
+    scenario: ScenarioFile,
+    /,
+    *,
+    overrides: Overrides = (),
+    out: Out = None,
+    json: Json = False,
+    ignore_limits: IgnoreLimits = False,
+    report: Report = False,
+) -> int:
+    """Compute the response in every environment of a scenario, and compare them.
+
+    Writes result.nc, plots and with --report report.html into --out, by default out/ and the scenario's name; with
+    --json only if --out or --report is given. Exit status: 0 done, 1 the computation failed, a machine's limit is
+    exceeded or a [motion.NAME.accept] is not met, 2 the input is wrong.
+    """
+    folder = folder_of(out, scenario, default=report or not json)
+    given = read("run", scenario, overrides, folder)
+    if folder is not None:
+        # A second of imports, beside the computation, which leaves a core idle.
+        Thread(target=_import_leaves, daemon=True).start()
+
+    from gbeam.analysis.study.study import study
+
+    with Watch() as watch, given.placing():
+        answer = study(given.case, watch)
+
+    def make(hidden: Path) -> None:
+        answer.save(hidden / "result.nc")
+        if report:
+            answer.report(hidden / "report.html")
+        if figures_wanted():
+            from gbeam.plots import write_plots
+
+            write_plots(answer, hidden, "gbeam run")
+
+    if not json:
+        from gbeam.report.study.summary import table
+
+        show_table(table(answer))
+    files = []
+    if folder is not None:
+        with Watch() as watch:
+            watch("writing results and plots", 0.0)
+            files = publish(folder, make)
+    if json:
+        from gbeam.report.study.summary_json import to_json
+
+        show("", given.signed(to_json(answer, files)), json)
+    list_files(None if json else folder, files)
+    for name, failure in answer.unfinished.items():
+        complain(f"motion.{name} {failure.outcome}: {failure.message}")
+    broken = {name: each.axes.exceeding for name, each in answer.responses.items() if each.axes}
+    for name, which in broken.items():
+        if which:
+            complain(f"motion.{name} limits exceeded: {which}" + (" (allowed)" if ignore_limits else ""))
+    refused = [each for each in answer.comparisons if each.accepted is False]
+    for each in refused:
+        complain(f"motion.{each.centrifuge} not accepted: {each.refusal}")
+    return 0 if answer.outcome == "done" and not refused and (ignore_limits or not any(broken.values())) else FAILED
+
+
+def _import_leaves() -> None:
+    with suppress(Exception):  # raised again where it is needed
+        if figures_wanted():
+            import gbeam.plots
+        import gbeam.io.netcdf  # noqa: F401
+
+
+def models(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = None, json: Json = False) -> int:
+    """The same scenario by every model, compared with the exact one.
+
+    Peak, residual vibration, its phase and the cost. A model that diverges or cannot answer has a row that says why.
+    The exact model in three dimensions takes minutes. With --out also writes models.json. Exit status: 0 done, 1 exact
+    has no answer to compare with, 2 the input is wrong.
+    """
+    given = read("models", scenario, overrides, out)
+
+    from gbeam.analysis.study.model_study import compare_models
+    from gbeam.report.study import models as report
+
+    with Watch() as watch, given.placing():
+        study = compare_models(given.case, progress=watch)
+    facts = given.signed(report.to_json(study))
+    write(out, "models", facts)
+    if json:
+        show("", facts, json)
+    else:
+        show_table(report.table(study))
+    for row in study.rows:
+        if row.model == study.reference and row.outcome != "done":
+            complain(f"motion.{row.motion}: nothing to compare with, {row.model} {row.outcome}: {row.message}")
+    return 0 if study.compared else FAILED
+
+
+_NAMES = {"result": "report", "sweep": "report"}  # others are called as their file
+
+
+def report(
+    result: Annotated[Path, Parameter(help="A result.nc of `gbeam run`, its folder, or the JSON of another verb.")],
+    /,
+    *,
+    out: Out = None,
+) -> int:
+    """Write a result as one page of HTML that opens without a network: tables, plots that zoom, the beam in motion.
+
+    Nothing is computed: what the page says is in the file. It goes beside the file, or into --out. Exit status: 0 done,
+    2 the file cannot be read or holds no result that has a report.
+    """
+    from gbeam.report.page.result import file_in, report_of_file
+
+    file = file_in(result) if result.is_dir() else result
+    folder = file.parent if out is None else out
+    refuse_unwritable(folder)
+    with Watch(f"reading {file}"):
+        page = report_of_file(file)
+    name = f"{_NAMES.get(file.stem, file.stem)}.html"
+    (written,) = publish(folder, lambda hidden: (hidden / name).write_text(page, encoding="utf-8"))
+    print(printable(str(written)))
+    return 0
+
+
+def rerun(
+    result: Annotated[Path, Parameter(help="A result.nc of `gbeam run`, or the JSON of another verb.")],
+    /,
+    *,
+    json: Json = False,
+) -> int:
+    """Compute a result again, from the scenario and the records that its file holds, and compare every number.
+
+    The JSON of other verbs, such as modes.json, holds no records: these are read from where they were.
+
+    It is reproduced where nothing differs in the last digit; with other versions, or on another platform, where nothing
+    differs by more than 1e-9 of its largest value. Says what differs, and what has changed since. Writes nothing. Exit
+    status: 0 reproduced, 1 not, 2 the file cannot be read or holds no scenario.
+    """
+    from gbeam.report import provenance as report
+
+    if result.suffix == ".json":
+        from gbeam.cli.verbs.responses import answer_again
+
+        again = answer_again(result)
+    else:
+        from gbeam.scenario.rerun import rerun
+
+        with Watch(f"reading {result} and computing it again"):
+            again = rerun(result)
+    show(report.reproduction_text(again), report.reproduction_json(again), json)
+    if not again.reproduced:
+        complain(f"not reproduced: {len(again.differences)} of {again.compared} differ")
+        return FAILED
+    return 0
+
+
+_ABOUT = {"provenance", "files", "seconds", "written", "lines"}  # of the computation, or the figures in words
+
+
+def answer_again(file: Path) -> Reproduction:
+    """Run the command of a verb's JSON again, on the scenario that the JSON holds, and compare every value.
+
+    Parameters
+    ----------
+    file : Path
+        Such as modes.json.
+
+    Raises
+    ------
+    InputError
+        If it is no such file, or the scenario or a record is not the one that was run.
+    """
+    from gbeam.scenario.rerun import checked, records, reproduction
+
+    facts, origin = _read(file)
+    checked(str(file), origin)
+    with TemporaryDirectory(prefix="gbeam-") as folder:
+        scenario = Path(folder) / "scenario.toml"
+        scenario.write_text(origin.scenario, encoding="utf-8")
+        again = _answered(file, origin, scenario, tuple(records(origin, Path(folder))))
+    return reproduction(str(file), dict(_leaves(facts)), dict(_leaves(again)), origin)
+
+
+def _read(file: Path) -> tuple[dict[str, Any], Provenance]:
+    from pydantic import TypeAdapter, ValidationError
+
+    from gbeam.guards.json_files import read_json
+    from gbeam.results.provenance import Environment, Provenance
+
+    fix = "give the JSON that a verb of gbeam wrote into --out, or a result.nc"
+    facts = read_json(file, fix)
+    try:
+        origin = facts["provenance"]
+        environment = TypeAdapter(Environment).validate_python(origin)
+        origin = origin | {"sha256": origin["scenario_sha256"], "environment": environment}
+        return facts, TypeAdapter(Provenance).validate_python(origin)
+    except (ValidationError, KeyError, TypeError):
+        raise InputError(str(file), "is no JSON of gbeam with a provenance", fix) from None
+
+
+def _answered(file: Path, origin: Provenance, scenario: Path, changes: tuple[str, ...]) -> dict[str, Any]:
+    from gbeam.cli.program import parsed
+
+    try:
+        verb, bound = parsed(shlex.split(origin.command)[1:])
+    except ValueError as error:
+        raise InputError(str(file), f"names a command that cannot be run ({error})", "run the verb again") from None
+    arguments = bound.arguments
+    if "scenario" not in arguments:
+        raise InputError(str(file), "is of no verb that reads a scenario", "give the result of another")
+    arguments |= {"scenario": scenario, "overrides": (*arguments.get("overrides", ()), *changes), "json": True}
+    written = {"out": None, "report": False, "write": None, "write_back": False}  # nothing is
+    arguments |= {name: value for name, value in written.items() if name in bound.signature.parameters}
+    if "resume" in bound.signature.parameters:  # a sweep has a store in any case; its cluster may be gone
+        arguments |= {"out": scenario.parent / "out", "resume": False, "scheduler": None}
+    printed = io.StringIO()
+    with redirect_stdout(printed):
+        verb(*bound.args, **bound.kwargs)
+    return dict(json.loads(printed.getvalue()))
+
+
+def _leaves(facts: Any) -> Iterator[tuple[str, Any]]:
+    """Numbers, texts and lists of numbers by their places."""
+    for path, value in walk(facts, _is_array):
+        place = ".".join(map(str, path))
+        if not _ABOUT.isdisjoint(path):
+            continue
+        if isinstance(value, list):
+            yield place, [math.nan if each is None else _number(each) for each in value]
+        else:
+            yield place, _number(value) if isinstance(value, (int, float)) else str(value)
+
+
+def _is_array(node: Any) -> bool:
+    return isinstance(node, list) and all(isinstance(each, (int, float)) or each is None for each in node)
+
+
+def _number(value: float) -> float:
+    """A float, infinite where a JSON's whole number is beyond all of them."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf

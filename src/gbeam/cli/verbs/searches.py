@@ -1,0 +1,229 @@
+"""Verbs of searches: ``gbeam fit``, ``optimize`` and ``shape``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import Parameter
+
+from gbeam.cli.console import Watch
+from gbeam.cli.failures import FAILED, complain
+from gbeam.cli.inputs import names, number, search_bounds
+from gbeam.cli.options import (
+    At,
+    Json,
+    MotionName,
+    Out,
+    Overrides,
+    Report,
+    ScenarioFile,
+    SearchBounds,
+    Starts,
+    WriteTo,
+    option,
+)
+from gbeam.cli.outputs import commanded, folder_of, refuse_changes, show_found, write_found
+from gbeam.cli.publication import refuse_unwritable
+
+
+def fit(
+    scenario: ScenarioFile,
+    /,
+    *,
+    data: Annotated[
+        Path,
+        Parameter(
+            help='Measured columns "time" and "tip.z [mm]", "root_moment.y", "strain.z@10 mm" and others; or "mode", '
+            '"frequency" and "damping_ratio".'
+        ),
+    ],
+    free: Annotated[
+        tuple[str, ...],
+        option("--free", 'Values to find, "beam.material.youngs_modulus, beam.damping_ratio".'),
+    ] = (),
+    bounds: SearchBounds = (),
+    motion: MotionName = None,
+    at: At = None,
+    starts: Starts = 1,
+    write: WriteTo = None,
+    overrides: Overrides = (),
+    out: Out = None,
+    json: Json = False,
+    report: Report = False,
+) -> int:
+    """Find values of a scenario from measured histories, or from frequencies and damping, by least squares.
+
+    Says how sure each value is, and which values the data cannot tell apart. With --out also writes fit.nc and a
+    plot of data and residuals, with --report fit.html. Exit status: 0 done, 1 the data do not say the values, 2 the
+    input is wrong.
+    """
+    folder = folder_of(out, scenario, default=report)
+    if folder is not None:
+        refuse_unwritable(folder)
+    refuse_changes(write, overrides)
+
+    from gbeam.studies.fit import fit as compute
+
+    limits = search_bounds(bounds)
+    with Watch() as watch:
+        time = None if at is None else number("--at", at, "time")
+        answer = compute(
+            scenario,
+            data,
+            names(free),
+            bounds=limits,
+            motion=motion,
+            at=time,
+            starts=starts,
+            overrides=overrides,
+            progress=watch,
+        )
+
+    from gbeam.report.studies import fit as words
+
+    write_found(answer, scenario, write)
+    show_found(commanded(answer), words, "fit", "fit", folder, json=json, report=report, written=write)
+    return 0
+
+
+Verb = Literal["run", "static", "modes", "critical-speed", "plan"]
+
+
+def optimize(
+    scenario: ScenarioFile,
+    /,
+    *,
+    minimise: Annotated[
+        str, Parameter(name=["--minimise", "--minimize"], help='A figure of the verb, "tip.y.residual_amplitude".')
+    ],
+    over: Annotated[
+        tuple[str, ...],
+        option("--over", 'Values to choose, "motion.centrifuge.control_point, motion.centrifuge.smoothing".'),
+    ] = (),
+    subject_to: Annotated[
+        tuple[str, ...],
+        option(
+            "--subject-to",
+            '"limits" of the machines, or a bound on a figure, "tip.z.max_abs <= 2 mm"; any number of times.',
+        ),
+    ] = (),
+    bounds: SearchBounds = (),
+    verb: Annotated[Verb, Parameter(help="Whose figures.")] = "run",
+    motion: MotionName = None,
+    at: At = None,
+    starts: Starts = 1,
+    write: WriteTo = None,
+    overrides: Overrides = (),
+    out: Out = None,
+    json: Json = False,
+    report: Report = False,
+) -> int:
+    """Find the values of a scenario at which a figure is least, within bounds and limits, by exact derivatives.
+
+    One search finds the nearest valley, from the scenario's values; --starts 5 tries others. With --out also writes
+    optimum.nc and a plot of the way, with --report optimum.html. Exit status: 0 done, 1 no values within the bounds
+    keep the requirements, 2 the input is wrong.
+    """
+    folder = folder_of(out, scenario, default=report)
+    if folder is not None:
+        refuse_unwritable(folder)
+    refuse_changes(write, overrides)
+
+    from gbeam.studies.optimise import optimise as compute
+
+    required = [each.strip() for text in subject_to for each in text.split(",") if each.strip()]
+    with Watch() as watch:
+        answer = compute(
+            scenario,
+            minimise,
+            names(over),
+            subject_to=required,
+            bounds=search_bounds(bounds),
+            verb=verb,
+            motion=motion,
+            at=None if at is None else number("--at", at, "time"),
+            starts=starts,
+            overrides=overrides,
+            progress=watch,
+        )
+
+    from gbeam.report.studies import optimum as words
+
+    write_found(answer, scenario, write)
+    show_found(commanded(answer), words, "optimize", "optimum", folder, json=json, report=report, written=write)
+    if answer.outcome != "done":
+        complain(f"{answer.outcome}: no values were found that keep the requirements")
+        return FAILED
+    return 0
+
+
+def shape(
+    scenario: ScenarioFile,
+    /,
+    *,
+    angle: Annotated[str | None, Parameter(help='To turn by, from rest to rest, "1 rad"; or --rate.')] = None,
+    rate: Annotated[str | None, Parameter(help='To reach from rest, "3 rad/s"; or --angle.')] = None,
+    duration: Annotated[str | None, Parameter(help='Of the command, "6 s"; by default the scenario\'s own.')] = None,
+    limit: Annotated[
+        str | None, Parameter(help='On the torque, "45 N m", or the angular acceleration of a hub without one.')
+    ] = None,
+    robust: Annotated[str, Parameter(help='Share by which all frequencies may be wrong, "20 %".')] = "0",
+    check: Annotated[
+        Literal["TLAM", "FOAM", "SFOAM", "CFOAM", "exact"] | None,
+        Parameter(help="Model that the commands are run on; the scenario's by default."),
+    ] = None,
+    motion: MotionName = None,
+    overrides: Overrides = (),
+    out: Out = None,
+    json: Json = False,
+    report: Report = False,
+) -> int:
+    """Find the rate or torque of a hub that leaves the least vibration of its beam, beside ZVD and a smooth step.
+
+    It does what the scenario's own rate does, in the same time, unless --angle, --rate or --duration say otherwise;
+    a free hub is driven by a torque and needs --angle or --rate. With --out also writes shaping.nc, command.json, a
+    scenario in which the command drives the hub, and plots of the commands and of what they leave where frequencies
+    are wrong, with --report shaping.html. Exit status: 0 done, 1 no command does it or a run is not done, 2 the
+    input is wrong.
+    """
+    folder = folder_of(out, scenario, default=report)
+    if folder is not None:
+        refuse_unwritable(folder)
+
+    from gbeam.studies.shape import hub_of, scenario_with
+    from gbeam.studies.shape import shape as compute
+
+    def given(option: str, text: str | None, kind: str) -> float | None:
+        return None if text is None else number(option, text, kind)
+
+    from gbeam.scenario.build import read_scenario
+
+    case = read_scenario(scenario, overrides)
+    free = hub_of(case, motion)[1].free
+    bound = given("--limit", limit, "torque" if free else "angular acceleration")
+    with Watch() as watch:
+        answer = compute(
+            case,
+            angle=given("--angle", angle, "angle"),
+            rate=given("--rate", rate, "angular rate"),
+            duration=given("--duration", duration, "time"),
+            limit=float("inf") if bound is None else bound,
+            robust=number("--robust", robust, "ratio"),
+            check=check or "",
+            motion=motion,
+            progress=watch,
+        )
+
+    from gbeam.report.studies import shaping as words
+
+    answer = commanded(answer)
+
+    def write_command(hidden: Path) -> None:
+        (hidden / "command.json").write_text(scenario_with(answer, case) + "\n", encoding="utf-8")
+
+    show_found(answer, words, "shape", "shaping", folder, json=json, report=report, more=write_command)
+    if answer.outcome != "done":
+        complain(f"a command's run has {answer.outcome}")
+        return FAILED
+    return 0

@@ -1,1 +1,0 @@
-"""Verbs of one steady state: rest, modes, critical speeds, linear models."""

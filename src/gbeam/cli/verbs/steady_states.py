@@ -1,0 +1,342 @@
+"""Verbs of one steady state: ``gbeam static``, ``modes``, ``campbell``, ``critical-speed`` and ``linearize``."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+from gbeam.cli.console import Watch
+from gbeam.cli.inputs import Input, naming, number, numbers, read
+from gbeam.cli.options import (
+    At,
+    Balanced,
+    Inputs,
+    Json,
+    Masses,
+    ModesKept,
+    MotionName,
+    Out,
+    Outputs,
+    Overrides,
+    Positions,
+    Rate,
+    Report,
+    ScenarioFile,
+    Speed,
+    StrainAt,
+    To,
+    Vary,
+)
+from gbeam.cli.outputs import folder_of, list_files, show, write, write_json
+from gbeam.cli.process import figures_wanted
+from gbeam.cli.publication import publish
+from gbeam.errors import InputError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def static(
+    scenario: ScenarioFile,
+    /,
+    *,
+    motion: MotionName = None,
+    at: At = None,
+    overrides: Overrides = (),
+    out: Out = None,
+    json: Json = False,
+    report: Report = False,
+) -> int:
+    """Where the beam rests relative to its base at one time of the motions, and what its sections carry.
+
+    Without --motion for all of them. With --out also writes static.json and plots of shapes and loads, with
+    --report static.html. Exit status: 0 done, 1 there is no equilibrium, 2 the input is wrong.
+    """
+    folder = folder_of(out, scenario, default=report)
+    given = read("static", scenario, overrides, folder)
+    chosen = dict(given.case.motions) if motion is None else dict([given.motion(motion)])
+    time = given.time(at)
+
+    from gbeam.analysis.equilibrium.static import static
+    from gbeam.report.steady import deflection as words
+
+    with Watch(), given.placing():
+        structure = given.structure()
+        deflections = [static(structure, each, time, name=name) for name, each in chosen.items()]
+    title = given.case.title
+    facts = given.signed(words.to_json(title, deflections))
+
+    def figures() -> dict[str, Figure]:
+        from gbeam.plots import plot_static
+
+        loads = {f"loads_{each.motion}": each.plot("loads", title=title).figure for each in deflections}
+        return {"static": plot_static(deflections, title), **loads}
+
+    write(folder, "static", facts, figures, report=report)
+    show(words.text(deflections), facts, json)
+    return 0
+
+
+def modes(
+    scenario: ScenarioFile,
+    /,
+    *,
+    motion: MotionName = None,
+    at: At = None,
+    gyroscopic: Annotated[bool, Parameter(name="--gyroscopic", help="Keep Coriolis coupling.")] = True,
+    overrides: Overrides = (),
+    out: Out = None,
+    json: Json = False,
+    report: Report = False,
+) -> int:
+    """Frequencies, damping and shapes about the equilibrium at one time of a motion.
+
+    With --out also writes modes.json and a plot of the shapes, with --report modes.html. Exit status: 0
+    done, 1 there is no equilibrium, 2 the input is wrong.
+    """
+    folder = folder_of(out, scenario, default=report)
+    given = read("modes", scenario, overrides, folder)
+    name, chosen = given.motion(motion)
+    time = given.time(at)
+
+    from gbeam.analysis.vibration import modal
+    from gbeam.report.steady import modes as words
+    from gbeam.results.declared import json_of
+
+    with Watch(), given.placing():
+        modes = modal.modes(given.structure(), chosen, time, gyroscopic=gyroscopic, name=name)
+    facts = given.signed(json_of(modes))
+
+    write(folder, "modes", facts, lambda: {"modes": modes.plot(title=given.case.title).figure}, report=report)
+    show(words.text(modes), facts, json)
+    return 0
+
+
+def campbell(
+    scenario: ScenarioFile,
+    /,
+    *,
+    motion: MotionName = None,
+    start: Annotated[Speed, Parameter(name="--from")] = None,
+    end: Annotated[Speed, Parameter(name="--to")] = None,
+    modes: Annotated[int, Parameter(name="--modes", help="How many to follow.")] = 8,
+    orders: Annotated[int, Parameter(name="--orders", help="Multiples of the speed, 1 to this.")] = 4,
+    overrides: Overrides = (),
+    out: Out = None,
+    json: Json = False,
+    report: Report = False,
+) -> int:
+    """Frequencies against the speed of a hub, in the unit of --to or --from, and where its multiples meet them.
+
+    Writes campbell.json, the diagram and with --report campbell.html into --out, by default out/ and the scenario's
+    name; with --json only if --out or --report is given. Exit status: 0 done, 1 there is no equilibrium, 2 the input is
+    wrong, such as a motion without a hub.
+    """
+    folder = folder_of(out, scenario, default=report or not json)
+    given = read("campbell", scenario, overrides, folder)
+    name, chosen = given.motion(motion, kind="hub")
+    low = 0.0 if start is None else number("--from", start, "angular rate")
+    high = None if end is None else number("--to", end, "angular rate")
+    if orders < 0:
+        raise InputError("--orders", f"is {orders}", "give 0 or more")
+    if high is None and chosen.free:
+        fix = 'give the largest speed, such as "5 rad/s"'
+        raise InputError("--to", "is missing: the hub is driven by a torque", fix)
+
+    from gbeam.analysis.vibration import campbell as analysis
+    from gbeam.report.steady import campbell as words
+    from gbeam.results.declared import json_of
+
+    with Watch(), given.placing(to="--to", modes="--modes"):
+        diagram = analysis.campbell(
+            given.case.assemble(), chosen, start=low, end=high, modes=modes, orders=range(1, orders + 1), name=name
+        )
+    facts = given.signed(json_of(diagram))
+
+    from gbeam.scenario.values.units import unit_of
+
+    # In words and in the diagram speeds are in the unit in which they are given.
+    unit, size = unit_of(end or start or "0", "angular rate")
+
+    def figures() -> dict[str, Figure]:
+        from gbeam.plots import plot_campbell
+
+        return {"campbell": plot_campbell(diagram, given.case.title, (1 / size, unit))}
+
+    files = write(folder, "campbell", facts, figures, report=report)
+    show(words.text(diagram, unit, size), facts, json)
+    if not json:
+        list_files(folder, files)
+    return 0
+
+
+KINDS = {"rate": "angular rate", "loads": "ratio", "acceleration": "acceleration"}
+
+
+def critical_speed(
+    scenario: ScenarioFile,
+    /,
+    *,
+    motion: MotionName = None,
+    vary: Vary = "rate",
+    at: At = None,
+    to: To = None,
+    masses: Masses = None,
+    positions: Positions = None,
+    overrides: Overrides = (),
+    out: Out = None,
+    json: Json = False,
+    report: Report = False,
+) -> int:
+    """The hub rate, load or acceleration at which the beam's equilibrium is lost.
+
+    Where there is none up to the end of the search, the value is null and the reason says so; that is an answer, with
+    exit status 0. 2: the input is wrong, such as a motion without a hub. With --out writes critical_speed.json, and a
+    map also as CSV and plot; with --report also critical_speed.html.
+    """
+    folder = folder_of(out, scenario, default=report)
+    given = read("critical-speed", scenario, overrides, folder)
+    upper = None if to is None else number("--to", to, KINDS[vary])
+    if upper is not None and not upper > 0:
+        raise InputError("--to", f"is {to}", "give a value above zero, where the search ends")
+    if masses is None and positions is not None:
+        raise InputError("--positions", "stands without --masses", 'add --masses "0.1 kg, 0.5 kg"')
+    if masses is not None:
+        if vary != "rate":
+            raise InputError("--masses", f"stands beside --vary {vary}", "a map is of hub rates")
+        return critical_map(given, motion, masses, positions, upper, folder, json, report)
+    name, chosen = given.motion(motion, kind="hub")
+    time = given.time(at)
+
+    from gbeam.analysis.equilibrium.point import held_base
+    from gbeam.analysis.vibration import stability
+    from gbeam.report.steady import critical as words
+
+    with Watch() as watch, given.placing():
+        structure = given.case.assemble().at_time(time)
+        if vary == "rate":
+            critical = stability.critical_speed(structure, chosen, upper=upper, name=name, progress=watch)
+        elif vary == "loads":
+            critical = stability.critical_load(structure, held_base(chosen, time), upper=upper, progress=watch)
+        else:
+            critical = stability.buckling_acceleration(structure, upper=upper, progress=watch)
+    facts = given.signed(words.to_json(critical, name))
+    write(folder, "critical_speed", facts, report=report)
+    show(words.text(critical, name), facts, json)
+    return 0
+
+
+def critical_map(
+    given: Input,
+    motion: str | None,
+    masses: str,
+    positions: str | None,
+    upper: float | None,
+    out: Path | None,
+    json: bool,
+    report: bool,
+) -> int:
+    """Print and write the map; the arguments are those of :func:`~.critical_speed.critical_speed`."""
+    name, chosen = given.motion(motion, kind="hub")
+    case = given.case
+    kilograms = numbers("--masses", masses, "mass")
+    length = case.beam.length
+    places = [length * i / 8 for i in range(1, 9)] if positions is None else numbers("--positions", positions, "length")
+    if max(places) > length:
+        raise InputError("--positions", f"has {max(places):g} m, off the beam", f"give 0 to {length:g} m")
+
+    from gbeam.analysis.vibration.stability import critical_speed_map
+    from gbeam.report.steady import critical as words
+    from gbeam.results.declared import json_of
+
+    with Watch() as watch, given.placing():
+        critical = critical_speed_map(
+            case.beam, case.model, chosen, kilograms, places, upper, name=name, progress=watch
+        )
+    facts = given.signed(json_of(critical))
+
+    def make(hidden: Path) -> None:
+        write_json(hidden / "critical_speed.json", facts)
+        (hidden / "critical_speed.csv").write_text(words.map_csv(critical), encoding="utf-8")
+        if report:
+            from gbeam.report.page.document import html
+
+            (hidden / "critical_speed.html").write_text(html(facts, {}), encoding="utf-8")
+        if figures_wanted():
+            from gbeam.plots import save
+
+            save(critical.plot(title=case.title).figure, hidden, "critical_speed", "gbeam critical-speed")
+
+    if out is not None:
+        publish(out, make)
+    show(words.map_text(critical), facts, json)
+    return 0
+
+
+def linearize(
+    scenario: ScenarioFile,
+    /,
+    *,
+    motion: MotionName = None,
+    at: At = None,
+    rate: Rate = None,
+    modes: ModesKept = None,
+    balanced: Balanced = None,
+    strain_at: StrainAt = (),
+    inputs: Inputs = None,
+    outputs: Outputs = None,
+    overrides: Overrides = (),
+    out: Out = None,
+    json: Json = False,
+) -> int:
+    """State-space model A, B, C, D about the equilibrium at one time of a motion.
+
+    With --out writes linear.json and linear.mat. Exit status: 0 done, 1 there is no equilibrium, 2 the input is wrong.
+    """
+    given = read("linearize", scenario, overrides, out)
+    name, chosen = given.motion(motion, kind="" if rate is None else "hub")
+    time = given.time(at)
+    steady = None if rate is None else number("--rate", rate, "angular rate")
+    stations = [number("--strain-at", text, "length") for text in strain_at]
+    for option, beside, both in (
+        ("--balanced", "--modes", modes is not None and balanced is not None),
+        ("--rate", "--at", rate is not None and at is not None),
+    ):
+        if both:
+            raise InputError(option, f"stands beside {beside}", "give one of them")
+
+    from gbeam.analysis.control.gauges import surface_gauges
+    from gbeam.analysis.control.linearization import linearize
+    from gbeam.report.steady import state_space as report
+
+    with naming("--strain-at"):
+        gauges = surface_gauges(given.case.beam, stations)
+    options = {"order": "--balanced", "modes": "--modes", "inputs": "--inputs", "outputs": "--outputs"}
+    with Watch(), given.placing(**options):
+        system = linearize(given.case.assemble(), chosen, time, rate=steady, gauges=gauges, name=name)
+        system = system.select(inputs=_names(inputs), outputs=_names(outputs))
+        if modes is not None or balanced is not None:
+            from gbeam.analysis.control import reduction
+
+            if modes is not None:
+                system = reduction.modal_truncation(system, modes)
+            elif balanced is not None:
+                system, _ = reduction.balanced_truncation(system, balanced)
+    system = replace(system, provenance=given.case.provenance)
+    facts = given.signed(report.to_json(system, gauges))
+
+    def make(hidden: Path) -> None:
+        system.to_mat(hidden / "linear.mat")
+        write_json(hidden / "linear.json", facts)
+
+    if out is not None:
+        publish(out, make)
+    show(report.text(system, gauges), facts, json)
+    return 0
+
+
+def _names(text: str | None) -> tuple[str, ...] | None:
+    return None if text is None else tuple(name.strip() for name in text.split(","))

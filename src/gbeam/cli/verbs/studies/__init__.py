@@ -1,1 +1,0 @@
-"""Verbs of many runs: sweeps, sensitivities, fits, optima."""

@@ -1,0 +1,322 @@
+"""The cases of a sweep: combinations of ranges and lists of values, with samples of distributions."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.errors import InputError
+from gbeam.guards.limits import refuse_more
+from gbeam.results.studies.sweep import SAMPLE, Parameter
+from gbeam.scenario.values.distributions import Distribution, quantities, read_distribution, written
+from gbeam.scenario.values.paths import parse_path
+from gbeam.scenario.values.units import NUMBER
+
+SAMPLERS = ("sobol", "latin", "random", "saltelli")
+DEFAULT_SAMPLES = 64
+
+
+@dataclass(frozen=True)
+class Cases:
+    """All cases, in the order of the result's arrays.
+
+    Parameters
+    ----------
+    grid, drawn : tuple of Variation
+        Each with its values.
+    samples : int
+        Zero where nothing is drawn.
+    sampler : str
+    """
+
+    grid: tuple[Variation, ...]
+    drawn: tuple[Variation, ...]
+    samples: int
+    sampler: str = "sobol"
+
+    @property
+    def variations(self) -> tuple[Variation, ...]:
+        """All that varies."""
+        return self.grid + self.drawn
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of the result's arrays."""
+        return tuple(len(each.texts) for each in self.grid) + ((self.samples,) if self.drawn else ())
+
+    @property
+    def independent(self) -> int:
+        """How many samples, of the first, are draws from all distributions: the others repeat parts of them."""
+        return 2 * self.samples // (len(self.drawn) + 2) if self.sampler == "saltelli" else self.samples
+
+    def __len__(self) -> int:
+        return math.prod(self.shape)
+
+    def overrides(self, case: int) -> tuple[str, ...]:
+        """Changes of the scenario that make a case."""
+        at = [int(i) for i in np.unravel_index(case, self.shape)]
+        chosen = [(each, each.texts[i]) for each, i in zip(self.grid, at, strict=False)]  # the sample is the last
+        chosen += [(each, each.texts[at[-1]]) for each in self.drawn]
+        return tuple(f"{each.path}={text}" for each, text in chosen)
+
+
+def read_cases(
+    over: Sequence[str],
+    samples: int | None = None,
+    sampler: str = "sobol",
+    seed: int = 0,
+    distributions: Mapping[str, Distribution] | None = None,
+) -> Cases:
+    """Read what varies, and draw what is to be drawn.
+
+    Parameters
+    ----------
+    over : sequence of str
+        ``PATH=VALUES`` each: see :func:`gbeam.studies.cases.read_variation`.
+    samples : int, optional
+        How many are drawn from the distributions; 64 by default.
+    sampler : str
+        sobol (scrambled), latin (hypercube) or random; saltelli for Sobol indices: of d distributions it makes
+        samples × (d + 2) cases.
+    seed : int
+        The same seed draws the same samples.
+    distributions : mapping of str to Distribution, optional
+        Those that stand in the scenario, by path: what `over` does not vary is drawn from them.
+
+    Raises
+    ------
+    InputError
+        If nothing varies, a path is given twice, or there is nothing to draw the samples from.
+    """
+    variations = [read_variation(text) for text in over]
+    paths = [each.path for each in variations]
+    own = distributions or {}
+    variations += [drawn_from(path, each) for path, each in own.items() if path not in paths]
+    if not variations:
+        raise InputError(OPTION, "is missing", 'say what varies: --over "motion.centrifuge.arm=1 m:12 m:12"')
+    for path in paths:
+        if paths.count(path) > 1:
+            raise InputError(OPTION, f"varies {path} twice", "give all its values in one")
+        if path == SAMPLE:
+            raise InputError(OPTION, f"varies {path!r}, which is no key of a scenario", "check the key")
+    grid = tuple(each for each in variations if not each.distribution)
+    drawn = tuple(each for each in variations if each.distribution)
+    if samples is not None and not drawn:
+        raise InputError(
+            "--samples", "stands without a distribution", 'draw from one: "beam.damping_ratio=uniform(0.5 %, 2 %)"'
+        )
+    if sampler == "saltelli" and not drawn:
+        raise InputError("--sampler", "is saltelli, without a distribution", "draw from one, or leave it out")
+    if not drawn:
+        return Cases(grid, (), 0)
+    count = DEFAULT_SAMPLES if samples is None else samples
+    if count < 1:
+        raise InputError("--samples", f"is {count}", "give one or more")
+    size = count * len(drawn) * (len(drawn) + 2 if sampler == "saltelli" else 1)
+    refuse_more("--samples", "values", size, MAX_VALUES, 8.0, "give fewer")
+    if seed < 0:
+        raise InputError("--seed", f"is {seed}", "give zero or more")
+    if sampler not in SAMPLERS:
+        raise InputError("--sampler", f"is {sampler!r}", f"choose {', '.join(SAMPLERS)}")
+    if sampler == "saltelli":
+        unit = _saltelli(_points(count, 2 * len(drawn), "sobol", seed))
+    else:
+        unit = _points(count, len(drawn), sampler, seed)
+    return Cases(grid, tuple(each.drawn(unit[:, k]) for k, each in enumerate(drawn)), len(unit), sampler)
+
+
+def _saltelli(points: np.ndarray) -> np.ndarray:
+    """Two halves A and B of points (n, 2 d), and A with each column of B in turn: ((d + 2) n, d).
+
+    Saltelli et al., Computer Physics Communications 181 (2010), 259-270, Table 2.
+    """
+    a, b = np.split(points, 2, axis=1)
+    mixed = []
+    for column in range(a.shape[1]):
+        mixed.append(a.copy())
+        mixed[-1][:, column] = b[:, column]
+    return np.concatenate([a, b, *mixed])
+
+
+def _points(count: int, dimensions: int, sampler: str, seed: int) -> np.ndarray:
+    """Points in the open unit cube, (count, dimensions)."""
+    from scipy.stats import qmc  # half a second
+
+    if sampler == "sobol":
+        # Of a power of two, which alone is balanced, the first: more samples later begin with the same.
+        points = qmc.Sobol(dimensions, rng=seed).random_base2(math.ceil(math.log2(count)))[:count]
+    elif sampler == "latin":
+        points = qmc.LatinHypercube(dimensions, rng=seed).random(count)
+    else:
+        points = np.random.default_rng(seed).random((count, dimensions))
+    tiny = np.finfo(float).eps
+    return np.asarray(np.clip(points, tiny, 1 - tiny))
+
+
+OPTION = "--over"
+_CALL = re.compile(r"\s*([a-z]+)\s*\((.*)\)\s*", re.DOTALL)
+MAX_VALUES = 10_000_000  # of one parameter: 80 MB
+
+
+def _scipy(name: str) -> Callable[..., Any]:
+    def quantile(probability: NDArray[Any], *arguments: float) -> Any:
+        from scipy import stats  # half a second
+
+        return getattr(stats, name).ppf(probability, *arguments)
+
+    return quantile
+
+
+def _lognormal(probability: NDArray[Any], median: float, spread: float) -> Any:
+    return median * np.exp(spread * _scipy("norm")(probability))
+
+
+def _triangular(probability: NDArray[Any], low: float, mode: float, high: float) -> Any:
+    return _scipy("triang")(probability, (mode - low) / (high - low), low, high - low)
+
+
+# Inverses of the cumulative distribution functions: of probabilities (n,) and the distribution's arguments.
+QUANTILES: Mapping[str, Callable[..., Any]] = {
+    "normal": _scipy("norm"),
+    "lognormal": _lognormal,
+    "uniform": lambda probability, low, high: low + probability * (high - low),
+    "triangular": _triangular,
+}
+
+
+@dataclass(frozen=True)
+class Variation:
+    """What one ``PATH=VALUES`` says, before anything is drawn.
+
+    Parameters
+    ----------
+    path : str
+    texts : tuple of str
+        The values as they replace the scenario's, for a range or a list.
+    values : (n,) array
+        The same as numbers in `unit`, or as words.
+    unit : str
+    distribution : Distribution or None
+        What the values are drawn from; None for a range or a list.
+    """
+
+    path: str
+    texts: tuple[str, ...] = ()
+    values: NDArray[Any] | None = None
+    unit: str = ""
+    distribution: Distribution | None = None
+
+    def drawn(self, probability: NDArray[Any]) -> Variation:
+        """The same with the values at probabilities (n,), (0, 1)."""
+        assert self.distribution is not None
+        quantile = QUANTILES[self.distribution.family]
+        with np.errstate(over="ignore"):
+            values = np.asarray(quantile(probability, *self.distribution.arguments), dtype=float)
+        if not np.isfinite(values).all():
+            fix = "give a smaller spread"
+            raise InputError(f"{OPTION} {self.path}", f"{self.distribution} draws values beyond every number", fix)
+        texts = tuple(written(float(value), self.unit) for value in values)
+        return replace(self, texts=texts, values=values)
+
+    def parameter(self, unit: str) -> Parameter:
+        """The result's record of it; `unit` is the scenario's where none was written."""
+        assert self.values is not None
+        drawn = str(self.distribution) if self.distribution else ""
+        numeric = np.issubdtype(self.values.dtype, np.number)
+        return Parameter(self.path, self.values, (self.unit or unit) if numeric else "", drawn)
+
+
+def read_variation(text: str) -> Variation:
+    """Read ``PATH=VALUES``.
+
+    Parameters
+    ----------
+    text : str
+        VALUES is a range ``4:10:7`` (from, to, how many; ``4 g/s:10 g/s:7`` with units, ``log(1:100:5)`` in equal
+        ratios), a list ``4 g/s, 6 g/s`` or ``FOAM, TLAM``, or a distribution ``normal(70 GPa, 2 GPa)``.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
+    path, equals, values = text.partition("=")
+    path = path.strip()
+    if not equals or parse_path(path) is None:
+        raise InputError(OPTION, f"{text!r} is not PATH=VALUES", 'write it such as "motion.centrifuge.arm=1 m:12 m:12"')
+    if not values.strip():
+        raise InputError(
+            OPTION, f"{path} has no values", "give a range 1:12:12, a list 1, 2, 5 or normal(70 GPa, 2 GPa)"
+        )
+    call = _CALL.fullmatch(values)
+    if call and call[1] == "log":
+        return _range(path, call[2], logarithmic=True)
+    if call:
+        with _of(path):
+            return drawn_from(path, read_distribution(call[1], call[2].split(",")))
+    if values.count(":") == 2 and '"' not in values:
+        return _range(path, values, logarithmic=False)
+    return _list(path, values)
+
+
+def drawn_from(path: str, distribution: Distribution) -> Variation:
+    """What is drawn from a distribution for a path."""
+    return Variation(path, unit=distribution.unit, distribution=distribution)
+
+
+def _range(path: str, text: str, *, logarithmic: bool) -> Variation:
+    parts = text.split(":")
+    if len(parts) != 3:
+        raise InputError(OPTION, f"{path} has the range {text!r}", "write FROM:TO:COUNT, such as 1 m:12 m:12")
+    with _of(path):
+        (low, high), unit = quantities(parts[:2])
+    try:
+        count = int(parts[2])
+    except ValueError:
+        # The unit may stand at the very end: 4:10:7 g/s.
+        match = NUMBER.fullmatch(parts[2])
+        if match is None or not match[1].isdigit() or unit:
+            raise InputError(OPTION, f"{path} has the count {parts[2].strip()!r}", "give a whole number") from None
+        count, unit = int(match[1]), match[2]
+    if count < 1:
+        raise InputError(OPTION, f"{path} has {count} values", "give one or more")
+    if count > MAX_VALUES:
+        raise InputError(OPTION, f"{path} has {count:g} values", f"give {MAX_VALUES:g} or fewer")
+    if count == 1 and low != high:
+        raise InputError(OPTION, f"{path} goes from {low:g} to {high:g} in one value", "give two or more")
+    if logarithmic and not low * high > 0:
+        raise InputError(OPTION, f"{path} goes from {low:g} to {high:g} in equal ratios", "give two values above zero")
+    values = np.geomspace(low, high, count) if logarithmic else np.linspace(low, high, count)
+    # 0.1 + 0.2 is no value that anyone wants to read back.
+    values = np.array([float(f"{value:.12g}") for value in values])
+    return Variation(path, tuple(written(float(value), unit) for value in values), values, unit)
+
+
+def _list(path: str, text: str) -> Variation:
+    parts = [part.strip().strip('"') for part in text.split(",")]
+    if not all(parts):
+        raise InputError(OPTION, f"{path} has an empty value in {text.strip()!r}", "leave no comma without a value")
+    if len(set(parts)) < len(parts):
+        twice = next(part for part in parts if parts.count(part) > 1)
+        raise InputError(OPTION, f"{path} has {twice!r} twice", "give each value once")
+    if all(NUMBER.fullmatch(part) for part in parts):
+        with _of(path):
+            values, unit = quantities(parts)
+        return Variation(path, tuple(written(value, unit) for value in values), np.array(values), unit)
+    return Variation(path, tuple(parts), np.array(parts, dtype=object))
+
+
+@contextmanager
+def _of(path: str) -> Iterator[None]:
+    """Name the option and the path in the InputErrors raised inside."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(OPTION, f"{path} {error.problem}", error.fix) from None

@@ -1,0 +1,278 @@
+"""Cases from a scenario's text to their figures, one by one or integrated together: what a worker computes.
+
+A case's digits do not depend on the cases beside it (:func:`gbeam.simulate_batch`); whether it is integrated with
+others depends on the sweep and on the case alone.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import groupby, islice
+
+import numpy as np
+
+from gbeam.analysis.response.batch import TOGETHER, simulate_batch
+from gbeam.analysis.study.case import Case
+from gbeam.analysis.study.study import study_of
+from gbeam.errors import ComputationError, GbeamError, InputError
+from gbeam.mechanics.structure import Structure
+from gbeam.results.response import Response
+from gbeam.results.result import Floats
+from gbeam.results.studies.sweep import ANSWERED
+from gbeam.results.study import Failure
+from gbeam.scenario.build import build
+from gbeam.scenario.load import change
+from gbeam.scenario.schema.scenario import Scenario
+from gbeam.scenario.text.source import Source
+from gbeam.scenario.values.suggest import advise
+from gbeam.studies.answers import VERBS, Facts, Needs, reduced, study_facts
+from gbeam.studies.figures import History, Keys, own_keys, value_at
+
+Function = Callable[[Case], float]
+NO_FACTS: Facts = {"outcome": "done"}  # where functions measure the case, no verb answers
+# Figures of a motion, and of a comparison, which are the same to the last digit where no loads are computed.
+_WITHOUT_LOADS = ("tip", "stations", "hub", "step", "steps", "damping_ratio", "axes", "limits", "tracking_error")
+_VERDICT_WITHOUT_LOADS = (("verdict", "tip"), ("verdict", "followed"))
+
+
+@dataclass(frozen=True)
+class Row:
+    """What one case gave: its figures, how it ended, and why it is not done or which limits it does not keep."""
+
+    case: int
+    values: tuple[float, ...]
+    outcome: str
+    message: str = ""
+
+    @property
+    def failed(self) -> bool:
+        """Whether it has come to nothing, or was cut off."""
+        return self.outcome not in ("done", *ANSWERED)
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is computed of every case.
+
+    Parameters
+    ----------
+    source : Source
+        The scenario, parsed once, with the changes that all cases share.
+    verb : str
+    motion : str or None
+    at : float or None
+        Time at which the motion is frozen, s; the start of the response by default.
+    keys : tuple of keys
+        Of the figures in the verb's JSON.
+    functions : tuple of callable
+        Of the case: further figures.
+    histories : tuple of History
+        Further figures, one for each of `times`.
+    times : (t,)
+        s.
+    together : bool
+        Whether cases that can be are integrated together.
+    """
+
+    source: Source
+    verb: str
+    motion: str | None
+    at: float | None = None
+    keys: tuple[Keys, ...] = ()
+    functions: tuple[Function, ...] = ()
+    histories: tuple[History, ...] = ()
+    times: Floats = field(default_factory=lambda: np.empty(0))
+    together: bool = False
+
+    def __post_init__(self) -> None:
+        if self.verb not in VERBS:
+            raise InputError("--verb", f"is {self.verb!r}", advise(self.verb, VERBS))
+
+    @cached_property
+    def width(self) -> int:
+        """How many figures a case has."""
+        return len(self.keys) + len(self.functions) + len(self.histories) * len(self.times)
+
+    @cached_property
+    def needs(self) -> Needs:
+        """What the figures are taken from; before their keys are known, anything."""
+        if not self.keys and not self.histories:
+            return Needs()
+        errors = any("error" in str(key) for keys in self.keys for key in own_keys(keys))
+        loads = any(map(_of_loads, self.keys)) or any(each.quantity != "tip" for each in self.histories)
+        return Needs(errors, loads)
+
+    @property
+    def needs_facts(self) -> bool:
+        """Whether the verb has to answer."""
+        return bool(self.keys or self.histories)
+
+    def scenario(self, overrides: Sequence[str]) -> Scenario:
+        """One case's scenario, validated."""
+        return change(self.source, overrides)
+
+    def case(self, overrides: Sequence[str]) -> Case:
+        """The objects of one case.
+
+        Raises
+        ------
+        ScenarioError
+            If the scenario does not allow these values.
+        """
+        return build(self.scenario(overrides))
+
+    def facts(self, case: Case) -> Facts:
+        """What the verb answers, as JSON."""
+        return VERBS[self.verb](case, self.motion, self.at, self.needs)
+
+    def row(self, number: int, overrides: Sequence[str]) -> Row:
+        """Compute one case. What goes wrong in it is part of the row: the other cases go on."""
+        try:
+            case = self.case(overrides)
+            facts = self.facts(case) if self.needs_facts else NO_FACTS
+        except Exception as error:
+            return without_figures(number, self.width, error)
+        return self.measured(number, case, facts)
+
+    def measured(self, number: int, case: Case, facts: Facts) -> Row:
+        """The row of a case that is built, from what the verb answers to it."""
+        try:
+            values = [value_at(facts, keys) for keys in self.keys] + [float(each(case)) for each in self.functions]
+            for history in self.histories:
+                values += history.at(facts["study"], self.times).tolist()
+        except Exception as error:
+            return without_figures(number, self.width, error)
+        return Row(number, tuple(values), *ended(facts))
+
+
+def _of_loads(keys: Keys) -> bool:
+    """Whether a figure may be one of loads."""
+    match keys[0]:
+        case "motions":
+            return len(keys) < 3 or keys[2] not in _WITHOUT_LOADS
+        case "comparisons":
+            return keys[2:] not in _VERDICT_WITHOUT_LOADS
+    return True
+
+
+def ended(facts: Facts) -> tuple[str, str]:
+    """Outcome of a case, or what limits make of it, and its message."""
+    state = str(facts.get("state", facts["outcome"]))
+    return state if state in ANSWERED else str(facts["outcome"]), str(facts.get("message") or "")
+
+
+def without_figures(number: int, width: int, error: Exception) -> Row:
+    """Row of a case that came to nothing, with the reason."""
+    nothing = (math.nan,) * width
+    if isinstance(error, ComputationError):
+        return Row(number, nothing, error.outcome, _line(error))
+    if isinstance(error, GbeamError):
+        return Row(number, nothing, "refused", _line(error))
+    return Row(number, nothing, "failed", f"{type(error).__name__}: {_line(error)}")  # a defect, or a measure's own
+
+
+def _line(error: Exception) -> str:
+    """First line of a message; a scenario's shows the source on the others."""
+    text = str(error).strip()
+    return text.splitlines()[0] if text else type(error).__name__
+
+
+Task = tuple[int, tuple[str, ...]]  # number of the case, and its changes
+Posed = tuple[int, Case, Structure]
+_ALONE = ("response", "model")  # tables: cases in which they differ have few steps or sizes in common
+
+
+def width(question: Question) -> int:
+    """How many cases are best computed at once."""
+    return TOGETHER if question.together else 1
+
+
+def may_share(verb: str, paths: Sequence[str]) -> bool:
+    """Whether cases that differ at these paths are worth integrating together."""
+    return verb == "run" and not any(path.partition(".")[0] in _ALONE for path in paths)
+
+
+def settled(question: Question, case: Case, cases: int) -> Question:
+    """The question, its figures known, with whether a case, and so every one of a sweep of so many, stands with others.
+
+    An automatic step takes several runs, whose programs a few cases do not repay; so do numbers of shapes that are
+    found case by case.
+    """
+    settings = reduced(case, question.needs).response
+    enough = settings.step is not None or cases >= TOGETHER
+    able = not settings.estimate and not case.model.automatic
+    return replace(question, together=question.together and enough and able)
+
+
+def rows(question: Question, tasks: Sequence[Task]) -> list[Row]:
+    """Compute some cases."""
+    if not question.together:
+        return [question.row(*task) for task in tasks]
+    left = iter(tasks)
+    made: list[Row] = []
+    while some := list(islice(left, TOGETHER)):  # no more responses at once
+        made += _together(question, some)
+    return made
+
+
+def _together(question: Question, tasks: Sequence[Task]) -> list[Row]:
+    made: list[Row] = []
+    posed: list[Posed] = []
+    structures: dict[tuple[str, ...], Structure] = {}
+    for number, overrides in tasks:
+        try:
+            case = question.case(overrides)
+            of_beam = tuple(each for each in overrides if not each.startswith("motion."))
+            structure = structures[of_beam] = structures.get(of_beam) or case.assemble()
+            posed.append((number, case, structure))
+        except Exception as error:
+            made.append(without_figures(number, question.width, error))
+    # What varies in a motion may end a record elsewhere.
+    for _, alike in groupby(posed, key=lambda each: each[1].response):
+        made += _integrated(question, list(alike), set(structures) == {()})
+    return made
+
+
+def _integrated(question: Question, posed: Sequence[Posed], one_structure: bool) -> Iterator[Row]:
+    """Rows of cases with the same settings."""
+    answers = {name: _responses(question, posed, name, one_structure) for name in posed[0][1].motions}
+    for k, (number, case, _) in enumerate(posed):
+        yield _row(question, number, case, {name: each[k] for name, each in answers.items()})
+
+
+def _responses(
+    question: Question, posed: Sequence[Posed], name: str, one_structure: bool
+) -> list[Response | Exception]:
+    """Responses in one environment, or why there is none."""
+    settings = reduced(posed[0][1], question.needs).response
+    try:
+        cases = ((structure, case.motions[name]) for _, case, structure in posed)
+        made = dict(simulate_batch(cases, settings, one_structure=one_structure))
+    except Exception as error:
+        if len(posed) == 1:
+            return [error]
+        half = len(posed) // 2  # one that fails ends its batch
+        return [
+            each for part in (posed[:half], posed[half:]) for each in _responses(question, part, name, one_structure)
+        ]
+    return [replace(made[k], name=name, provenance=case.provenance) for k, (_, case, _) in enumerate(posed)]
+
+
+def _row(question: Question, number: int, case: Case, answers: Mapping[str, Response | Exception]) -> Row:
+    responses: dict[str, Response] = {}
+    failures: dict[str, Failure] = {}
+    try:
+        for name, answer in answers.items():
+            if isinstance(answer, ComputationError):
+                failures[name] = Failure(answer.outcome, str(answer))
+            elif isinstance(answer, Exception):
+                raise answer
+            else:
+                responses[name] = answer
+        facts = study_facts(study_of(case, responses, failures))
+    except Exception as error:
+        return without_figures(number, question.width, error)
+    return question.measured(number, case, facts)

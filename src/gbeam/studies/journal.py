@@ -1,0 +1,261 @@
+"""The store of a sweep that is under way: one line per case, which survives whatever ends the process.
+
+The first line says which sweep it is. Every line ends with its checksum, begun from that of the first one, and is
+synchronised before the next batch begins. Lines are only ever appended; where some are damaged the whole ones are
+written beside and renamed, and the cases of the others are computed again.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import os
+import re
+import zlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from io import FileIO
+from pathlib import Path
+from typing import Any
+
+import gbeam
+from gbeam.errors import ComputationError, InputError
+from gbeam.guards.lock import alone
+from gbeam.studies.cases import Cases
+from gbeam.studies.evaluate import Question, Row
+
+NAME = "cases.jsonl"
+LOCK = ".lock"
+_LINE = re.compile(rb'(\{.*), "crc32": (\d{1,10})\}\n')
+Line = dict[str, Any] | None
+_LISTED = 5  # damaged lines that are named
+_ANOTHER = "name another folder"
+
+
+class Journal:
+    """Cases as they are done.
+
+    Parameters
+    ----------
+    folder : Path
+        Made when the first case is written.
+    sweep : mapping
+        What the sweep is: equal for the same sweep, told apart by its keys where it is another.
+    """
+
+    def __init__(self, folder: Path, sweep: Mapping[str, Any]) -> None:
+        self.folder, self._file = folder, folder / NAME
+        self._sweep: dict[str, Any] = json.loads(json.dumps(sweep))
+        self.figures: Sequence[Any] = ()  # keys and unit of each, as the cases done have them
+        self.warnings: tuple[str, ...] = ()
+        self._out: FileIO | None = None
+        self._seed = 0  # of the rows' checksums
+
+    @property
+    def finished(self) -> bool:
+        """Whether all the cases of the one in the folder, whichever sweep it is, are done; or there is none."""
+        first, rows = self._known()
+        return not first or len({row["case"] for row in rows if row}) >= first["cases"]
+
+    def read(self) -> list[Row]:
+        """The cases done; none where there is no store.
+
+        Raises
+        ------
+        InputError
+            If it is another sweep's, or cannot be read.
+        """
+        first, rows = self._known()
+        if not first:
+            return []
+        differing = [key for key in self._sweep if first.get(key) != self._sweep[key]]
+        if differing:
+            raise InputError(
+                "--out",
+                f"{self.folder} holds another sweep: its {' and '.join(differing)} "
+                f"{'differ' if len(differing) > 1 else 'differs'}",
+                _ANOTHER,
+            )
+        self.figures = list(first["figures"])
+        damaged = [str(number) for number, row in enumerate(rows, 2) if row is None]
+        if damaged:
+            named = ", ".join(damaged[:_LISTED]) + (", …" if len(damaged) > _LISTED else "")
+            self.warnings = (
+                f"{len(damaged)} of the {len(rows)} cases kept in {self._file} were damaged (line {named}) and "
+                f"computed again; the other {len(rows) - len(damaged)} are as they were",
+            )
+        return [_row(row) for row in rows if row is not None]
+
+    @contextmanager
+    def writing(self, *, resume: bool) -> Iterator[None]:
+        """Hold the store for writing; what another process holds is refused.
+
+        Raises
+        ------
+        InputError
+            If another process writes to it, or it holds what would be lost.
+        ComputationError
+            If it cannot be written.
+        """
+        with ExitStack() as held:
+            try:
+                self.folder.mkdir(parents=True, exist_ok=True)
+            except OSError as error:
+                raise InputError("--out", f"{self.folder} cannot be made ({error.strerror})", _ANOTHER) from None
+            held.enter_context(alone(self.folder / LOCK, "--out", f"wait for its end, or {_ANOTHER}"))
+            with self._written():
+                self._begin(resume)
+                self._out = held.enter_context(open(self._file, "ab", buffering=0))
+            yield
+
+    def add(self, rows: Iterable[Row]) -> None:
+        """Write some cases.
+
+        Raises
+        ------
+        ComputationError
+            If they cannot be written, or the store was removed.
+        """
+        assert self._out is not None
+        text = b""
+        for row in rows:
+            values = [value if math.isfinite(value) else None for value in row.values]
+            line = {"case": row.case, "outcome": row.outcome, "message": row.message, "values": values}
+            text += _line(line, self._seed)
+        with self._written():
+            while text:
+                text = text[self._out.write(text) :]
+            os.fsync(self._out.fileno())
+        if not self._still_there(self._out.fileno()):
+            message = f"{self._file} was removed while the sweep ran: nothing of what was done is kept"
+            raise ComputationError("interrupted", message)
+
+    def _still_there(self, handle: int) -> bool:
+        """Whether the file of the store's name is the open one: not removed, and no other."""
+        try:
+            return os.path.samestat(os.stat(self._file), os.fstat(handle))
+        except OSError:
+            return False
+
+    def _begin(self, resume: bool) -> None:
+        """Leave a store of whole lines, one that is nobody else's."""
+        if resume:
+            self.read()  # others may have written since
+        else:
+            refuse_unfinished(self)
+        known = _parsed(self._file.read_bytes()) if resume and self._file.exists() else []
+        whole = [line for line, values in known if values] or [_line({**self._sweep, "figures": list(self.figures)})]
+        self._seed = json.loads(whole[0])["crc32"]
+        if known and len(whole) == len(known):
+            return
+        beside = self._file.with_suffix(".new")
+        with open(beside, "wb") as out:
+            out.writelines(whole)
+            out.flush()
+            os.fsync(out.fileno())
+        os.replace(beside, self._file)
+        if os.name == "posix":  # the name too
+            folder = os.open(self.folder, os.O_RDONLY)
+            try:
+                os.fsync(folder)
+            finally:
+                os.close(folder)
+
+    def _known(self) -> tuple[Line, list[Line]]:
+        """What the first line says and what the others do, None of a damaged one, but for those cut off at the end."""
+        try:
+            lines = _parsed(self._file.read_bytes()) if self._file.exists() else []
+        except OSError as error:
+            raise InputError("--out", f"{self._file} cannot be read ({error.strerror})", _ANOTHER) from None
+        first, *rows = [values for _, values in lines] or [None]
+        if lines and (first is None or "figures" not in first):
+            problem = f"{self._file} is not the store of a sweep, or its first line is damaged"
+            raise InputError("--out", problem, f"remove it, or {_ANOTHER}")
+        while rows and rows[-1] is None:
+            rows.pop()
+        return first, rows
+
+    @contextmanager
+    def _written(self) -> Iterator[None]:
+        """Turn what the disk refuses into a named outcome."""
+        try:
+            yield
+        except OSError as error:
+            message = f"{self._file}: {error.strerror or error}; what is done is kept: --resume does the rest"
+            raise ComputationError("interrupted", message) from None
+
+
+def _line(values: Mapping[str, Any], seed: int = 0) -> bytes:
+    """A line of the store: JSON with a checksum of the rest as the last value."""
+    text = json.dumps(values).encode()[:-1]
+    return text + b', "crc32": %d}\n' % zlib.crc32(text, seed)
+
+
+def _parsed(data: bytes) -> list[tuple[bytes, Line]]:
+    """The lines with what they say, None where they are damaged; without a whole first line all are."""
+    lines = data.splitlines(keepends=True)
+    parsed = [(line, _read(line, 0)) for line in lines[:1]]
+    if parsed and (first := parsed[0][1]):
+        parsed += [(line, _read(line, first["crc32"])) for line in lines[1:]]
+    return parsed
+
+
+def _read(line: bytes, seed: int) -> Line:
+    match = _LINE.fullmatch(line)
+    if match is None or zlib.crc32(match[1], seed) != int(match[2]):
+        return None
+    values: dict[str, Any] = json.loads(line)
+    return values
+
+
+def _row(line: Mapping[str, Any]) -> Row:
+    values = tuple(math.nan if value is None else float(value) for value in line["values"])
+    return Row(int(line["case"]), values, str(line["outcome"]), str(line["message"]))
+
+
+def identity(question: Question, cases: Cases, measures: Sequence[str], histories: Sequence[Any]) -> dict[str, Any]:
+    """What makes two sweeps the same: version, scenario, what varies, and what is measured."""
+    digest = hashlib.sha256()
+    for each in cases.variations:
+        for text in each.texts:
+            digest.update(text.encode() + b"\n")
+    return {
+        "version": gbeam.__version__,
+        "scenario": hashlib.sha256(question.source.text.encode()).hexdigest(),
+        "changes": [each.text for each in question.source.overrides],
+        "question": [question.verb, question.motion, question.at],
+        "parameters": [each.path for each in cases.variations],
+        "values": digest.hexdigest(),
+        "measures": list(measures),
+        "histories": list(histories),
+        "cases": len(cases),
+    }
+
+
+def opened(
+    store: str | os.PathLike[str] | None, resume: bool, sweep: Mapping[str, Any]
+) -> tuple[Journal | None, list[Row]]:
+    """The store of a sweep, and the cases done in it.
+
+    Raises
+    ------
+    InputError
+        If there is nothing to resume, or something that would be lost.
+    """
+    if store is None:
+        if resume:
+            raise InputError("--resume", "stands without a store", "name the folder with --out")
+        return None, []
+    journal = Journal(Path(store), sweep)
+    if resume:
+        return journal, journal.read()
+    refuse_unfinished(journal)
+    return journal, []
+
+
+def refuse_unfinished(journal: Journal) -> None:
+    """Raise InputError if the store holds cases that would be lost."""
+    if not journal.finished:
+        problem = f"{journal.folder} holds a sweep that is not finished"
+        raise InputError("--out", problem, f"add --resume, or {_ANOTHER}")

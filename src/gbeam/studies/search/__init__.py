@@ -1,1 +1,0 @@
-"""How fits and optima search: within bounds, from several starts, by derivatives."""

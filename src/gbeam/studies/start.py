@@ -1,0 +1,181 @@
+"""The first cases of a sweep: which figures the measures mean, their units, and how long a case takes.
+
+They are computed once, as any other: their rows are part of the sweep.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gbeam.analysis.study.case import Case
+from gbeam.errors import GbeamError, InputError
+from gbeam.scenario.build import build
+from gbeam.scenario.schema.scenario import Scenario
+from gbeam.studies.cases import Cases
+from gbeam.studies.evaluate import NO_FACTS, Question, Row, ended, settled, width, without_figures
+from gbeam.studies.evaluate import rows as computed
+from gbeam.studies.figures import find, is_truth, read_history, unit_at
+
+_FEW = 8  # cases that stand together in the computation that is timed
+TRIED = 20  # cases, all over the sweep, of which one must be possible
+_IMPORTS = 2.0  # s: a first case that takes less may be imports and compilation above all; another one is timed
+
+# Keys, unit and whether it is true or false, of each figure, as a store keeps them.
+Figures = Sequence[tuple[Sequence[str | int], str, bool]]
+
+
+@dataclass(frozen=True)
+class OverTime:
+    """Histories by their names, each at `count` times over the response of the first case."""
+
+    names: tuple[str, ...] = ()
+    count: int = 0
+
+    def of(self, question: Question, case: Case) -> Question:
+        """The question with these histories."""
+        if not self.names:
+            return question
+        first = case.response.start
+        times = np.linspace(first, first + case.response.duration, self.count)
+        return replace(question, histories=tuple(read_history(each, case.motions) for each in self.names), times=times)
+
+
+NO_HISTORIES = OverTime()
+
+
+@dataclass(frozen=True)
+class Start:
+    """What the first cases show of the others.
+
+    Parameters
+    ----------
+    question : Question
+        With the keys of its figures.
+    units : tuple of str
+        Of the figures.
+    truths : tuple of bool
+        Which of them are true or false.
+    example : Scenario
+        Of a case that is possible.
+    rows : tuple of Row
+        Of the cases computed.
+    seconds : float
+        That a case takes.
+    """
+
+    question: Question
+    units: tuple[str, ...]
+    truths: tuple[bool, ...]
+    example: Scenario
+    rows: tuple[Row, ...]
+    seconds: float
+
+    @property
+    def figures(self) -> Figures:
+        """Keys, unit and kind of each figure; a function has no keys."""
+        keys = self.question.keys or ((),) * len(self.units)
+        return list(zip(keys, self.units, self.truths, strict=True))
+
+
+def start(
+    question: Question, cases: Cases, missing: Sequence[int], names: Sequence[str], histories: OverTime = NO_HISTORIES
+) -> Start:
+    """Compute first cases until one is possible.
+
+    Parameters
+    ----------
+    question : Question
+        With its functions, if functions of the case are its measures; without keys.
+    cases : Cases
+    missing : sequence of int
+        Cases not yet computed, one at least.
+    names : sequence of str
+        Of the measures.
+    histories : OverTime
+
+    Raises
+    ------
+    InputError
+        If a measure names no figure, or several.
+    GbeamError
+        What the first case raised, where none of 20 all over the sweep is possible.
+    """
+    reason: GbeamError | None = None
+    rows: list[Row] = []
+    figures = len(names) + len(histories.names) * histories.count
+    for index in np.unique(np.linspace(0, len(missing) - 1, TRIED).astype(int)):
+        number, begin = missing[index], time.perf_counter()
+        try:
+            scenario = question.scenario(cases.overrides(number))
+            case = build(scenario)
+            needed = histories.names or not question.functions
+            facts = question.facts(case) if needed else NO_FACTS
+        except GbeamError as error:
+            reason = reason or error
+            rows.append(without_figures(number, figures, error))
+            continue
+        units, truths = ("",) * len(names), (False,) * len(names)
+        if not question.functions:
+            try:
+                keys = tuple(find(facts, name) for name in names)
+            except InputError as error:
+                if facts["outcome"] == "done":
+                    raise
+                reason = reason or error
+                rows.append(Row(number, (math.nan,) * figures, *ended(facts)))
+                continue
+            question = replace(question, keys=keys)
+            units = tuple(unit_at(facts, each) for each in keys)
+            truths = tuple(is_truth(facts, each) for each in keys)
+        question = settled(histories.of(question, case), case, len(cases))
+        own = (number, cases.overrides(number))
+        rows += computed(question, [own]) if question.together else [question.measured(number, case, facts)]
+        seconds = time.perf_counter() - begin
+        after = missing[index + 1 : index + 1 + min(_FEW, width(question))] or missing[:1]
+        after = [each for each in after if all(each != row.case for row in rows)]
+        if after and (seconds < _IMPORTS or question.together):
+            more, seconds = _timed(question, cases, after)
+            rows += more
+        return Start(question, units, truths, scenario, tuple(rows), seconds)
+    assert reason is not None
+    raise reason
+
+
+def go_on(
+    question: Question,
+    cases: Cases,
+    missing: Sequence[int],
+    done: Sequence[Row],
+    figures: Figures,
+    histories: OverTime = NO_HISTORIES,
+) -> Start:
+    """The same of a sweep some of whose cases are done, by which its figures are known; nothing may be missing."""
+    question = replace(question, keys=tuple(tuple(keys) for keys, *_ in figures if keys))
+    possible = [row for row in done if row.outcome != "refused"] or done
+    scenario = question.scenario(cases.overrides(possible[0].case))
+    if histories.names or question.together:
+        case = build(scenario)
+        question = settled(histories.of(question, case), case, len(cases))
+    rows: list[Row] = []
+    seconds = 0.0
+    few = min(_FEW, width(question))
+    for first in (0, few):  # what is imported and compiled once comes with the first
+        if chosen := missing[first : first + few]:
+            more, seconds = _timed(question, cases, chosen)
+            rows += more
+        if seconds >= _IMPORTS:
+            break
+    units, truths = tuple(unit for _, unit, _ in figures), tuple(truth for *_, truth in figures)
+    return Start(question, units, truths, scenario, tuple(rows), seconds)
+
+
+def _timed(question: Question, cases: Cases, numbers: Sequence[int]) -> tuple[list[Row], float]:
+    """Rows of some cases, and the time that one of them takes, s."""
+    begin = time.perf_counter()
+    rows = computed(question, [(number, cases.overrides(number)) for number in numbers])
+    return rows, (time.perf_counter() - begin) / len(numbers)

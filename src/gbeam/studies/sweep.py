@@ -1,0 +1,310 @@
+"""Many cases of one scenario, from what varies to the arrays of what was measured."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import nullcontext
+from dataclasses import replace
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+from gbeam.analysis.study.case import Case
+from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
+from gbeam.guards.limits import HISTORY_BYTES, WORKERS, refuse_more
+from gbeam.results.studies.sweep import Sweep
+from gbeam.scenario.build import scenario_of
+from gbeam.scenario.origin import provenance
+from gbeam.scenario.schema.common.fields import kind_of
+from gbeam.scenario.schema.scenario import Scenario
+from gbeam.scenario.values.kinds import KINDS
+from gbeam.scenario.values.paths import parse_path
+from gbeam.studies.cases import Cases, read_cases
+from gbeam.studies.cluster import on_scheduler
+from gbeam.studies.evaluate import Function, Question, Row, Task, may_share, width
+from gbeam.studies.figures import OPTION as HISTORY
+from gbeam.studies.figures import TIMES
+from gbeam.studies.journal import Journal, identity, opened
+from gbeam.studies.start import NO_HISTORIES, OverTime, Start, go_on, start
+from gbeam.studies.statistics import indices, statistics
+from gbeam.studies.workers import processes, serially
+
+MANY = 100_000  # cases beyond which a sweep is begun only when that is confirmed
+_BATCH = 0.5  # s: what is lost at most when a process ends, and how often the store is synchronised
+_LONGEST = 256  # cases in a batch
+Progress = Callable[[int, int, int], None]
+
+
+@typed
+def sweep(
+    scenario: str | os.PathLike[str] | Case,
+    over: Mapping[str, Any] | Sequence[str] = (),
+    measure: Sequence[str] | Mapping[str, Function] = (),
+    *,
+    histories: Sequence[str] = (),
+    times: int = TIMES,
+    verb: str | None = None,
+    motion: str | None = None,
+    at: float | None = None,
+    overrides: Sequence[str] = (),
+    samples: int | None = None,
+    sampler: str | None = None,
+    seed: int | None = None,
+    workers: int = 1,
+    scheduler: str | None = None,
+    store: str | os.PathLike[str] | None = None,
+    resume: bool = False,
+    confirmed: bool = False,
+    progress: Progress | None = None,
+) -> Sweep:
+    """Compute figures of many cases of one scenario. What is not given is what the scenario's [sweep] says.
+
+    Parameters
+    ----------
+    scenario : path or Case
+        The scenario's file, or what :func:`gbeam.read_scenario` makes of it.
+    over : mapping of str to values, or sequence of str
+        What varies: values by the key's path, ``{"motion.centrifuge.arm": ["1 m", "3.3 m"]}``, numbers in SI; or texts
+        such as ``"motion.centrifuge.arm=1 m:12 m:12"`` (a range: from, to, how many), ``"model.kind=FOAM, exact"`` (a
+        list) or ``"beam.damping_ratio=uniform(0.5 %, 2 %)"`` (normal, lognormal, uniform or triangular).
+    measure : sequence of str, or mapping of str to callable
+        Figures of the verb's JSON by the end of their path, such as ``tip.z.max_abs`` or ``verdict.tip``; or functions
+        of a :class:`gbeam.Case` that return a number, by name.
+    histories : sequence of str
+        Histories over time as further measures, ``flight.tip.z``: of tip, root_force or root_moment along x, y or z.
+        Where samples are drawn, their quantiles at every time are the bands that the response stays in.
+    times : int
+        At which histories are given, spread evenly over the response of the first case; 501 by default.
+    verb : str
+        run (the default), static, modes, critical-speed, plan or place.
+    motion : str, optional
+        Which motion, for a verb that answers for one.
+    at : float, optional
+        Time at which that motion is frozen, s; the start of the response by default.
+    overrides : sequence of str
+        Changes of the scenario that all cases share, such as ``beam.length=250 mm``.
+    samples : int, optional
+        Of what is drawn, 64 by default: distributions in `over`, and those that stand in the scenario in place of a
+        value, ``youngs_modulus = { normal = ["70 GPa", "2 GPa"] }``.
+    sampler : str
+        sobol (the default), latin or random; or saltelli, which makes samples × (d + 2) cases of d distributions, and
+        gives Sobol indices.
+    seed : int
+        The same seed draws the same samples.
+    workers : int
+        Processes of this machine; measures that are functions have to be at the top level of a module.
+    scheduler : str, optional
+        Address of a Dask scheduler, whose workers compute instead.
+    store : path, optional
+        Folder in which every case is kept as soon as it is done.
+    resume : bool
+        Whether to take from the store what is done.
+    confirmed : bool
+        Whether more than 100,000 cases are meant.
+    progress : callable, optional
+        Called with the number of cases done, of those that failed among them, and of all.
+
+    Returns
+    -------
+    Sweep
+        A case that fails is recorded as such; the rest goes on.
+
+    Raises
+    ------
+    InputError, ScenarioError
+        If the scenario, what varies or a measure is wrong, no case is possible, or the store is another sweep's or in
+        use.
+    ComputationError
+        If the scheduler is lost; the store keeps what is done.
+    """
+    base = scenario_of(scenario, overrides, distributions=True)
+    assert base.source is not None  # it was read from a file
+    table = base.sweep
+    if table is not None:
+        over, measure, histories = over or table.over, measure or table.measure, histories or table.history
+        verb, samples = verb or table.verb, table.samples if samples is None else samples
+        sampler, seed = sampler or table.sampler, table.seed if seed is None else seed
+    verb = verb or "run"
+    names = tuple(measure)
+    if not (names or histories):
+        raise InputError("--measure", "is missing", 'name figures: --measure "tip.z.max_abs, verdict.tip"')
+    over_time = _over_time(tuple(histories), times, verb)
+    if not 1 <= workers <= WORKERS:
+        raise InputError("--workers", f"is {workers}", f"give 1 to {WORKERS}; a --scheduler has any number")
+    cases = read_cases(_texts(over), samples, sampler or "sobol", seed := seed or 0, base.source.distributions)
+    size = len(over_time.names) * over_time.count * len(cases)
+    refuse_more("--times", "values of histories", size, HISTORY_BYTES // 8, 8.0, "give fewer times, or fewer cases")
+    functions = tuple(measure.values()) if isinstance(measure, Mapping) else ()
+    share = not functions and may_share(verb, [each.path for each in cases.variations])
+    question = Question(base.source, verb, motion, at, functions=functions, together=share)
+    journal, done = opened(store, resume, identity(question, cases, names, [over_time.names, over_time.count]))
+    known = {row.case for row in done}
+    missing = [number for number in range(len(cases)) if number not in known] if known else range(len(cases))
+    several = workers > 1 and scheduler is None and len(missing) > 1
+    with processes(workers, functions) if several else nullcontext() as pool:
+        if journal is not None and done:
+            begun = go_on(question, cases, missing, done, journal.figures, over_time)
+        else:
+            begun = start(question, cases, missing, names, over_time)
+        question = begun.question
+        _confirm(len(missing), begun.seconds / workers, confirmed)
+        tried = {row.case for row in begun.rows}
+        left = len(missing) - len(tried)
+        size = int(min(_LONGEST, _BATCH / max(begun.seconds, 1e-4), left / (4 * workers)))
+        tasks = ((number, cases.overrides(number)) for number in missing if number not in tried)
+        batches = _batches(tasks, max(1, size // width(question)) * width(question))
+        if scheduler is not None:
+            found = on_scheduler(question, batches, scheduler)
+        else:
+            found = serially(question, batches) if pool is None else pool.rows(question, batches)
+        rows = [*done, *begun.rows]
+        if journal is None:
+            rows += _collected(found, rows, len(cases), progress)
+        else:
+            journal.figures = begun.figures
+            with journal.writing(resume=resume):
+                journal.add(begun.rows)
+                rows += _collected(found, rows, len(cases), progress, journal)
+    made = assembled(base.title, cases, names, begun, rows, seed)
+    return replace(made, warnings=() if journal is None else journal.warnings, provenance=provenance(base))
+
+
+def _over_time(histories: tuple[str, ...], times: int, verb: str) -> OverTime:
+    """The histories that are measured."""
+    if not histories:
+        return NO_HISTORIES
+    if verb != "run":
+        raise InputError(HISTORY, f"stands with --verb {verb}, which has no history", "leave --verb out")
+    if times < 2:
+        raise InputError("--times", f"is {times}", "give two or more")
+    return OverTime(histories, times)
+
+
+def _texts(over: Mapping[str, Any] | Sequence[str]) -> list[str]:
+    """What varies, as texts."""
+    if not isinstance(over, Mapping):
+        return list(over)
+    return [f"{path}={values if isinstance(values, str) else _listed(path, values)}" for path, values in over.items()]
+
+
+def _listed(path: str, values: Iterable[Any]) -> str:
+    try:
+        return ", ".join(value if isinstance(value, str) else repr(np.asarray(value).item()) for value in values)
+    except (TypeError, ValueError):
+        fix = "give a list of numbers or texts, or a range as a text, 1 m:12 m:12"
+        raise InputError("--over", f"{path} is {values!r}", fix) from None
+
+
+def _confirm(count: int, seconds: float, confirmed: bool) -> None:
+    if count > MANY and not confirmed:
+        raise InputError(
+            "--over",
+            f"makes {count:.4g} cases, which take about {duration(count * seconds)} here",
+            "vary less, draw samples instead, or confirm with --yes",
+        )
+
+
+def duration(seconds: float) -> str:
+    """Write a duration in the unit that suits."""
+    for size, unit in ((365.25 * 86400, "years"), (86400, "days"), (3600, "h"), (60, "min")):
+        if seconds >= 2 * size:
+            return f"{seconds / size:.2g} {unit}" if seconds < 100 * size else f"{seconds / size:.0f} {unit}"
+    return f"{seconds:.2g} s"
+
+
+def _batches(tasks: Iterator[Task], size: int) -> Iterator[list[Task]]:
+    while batch := list(islice(tasks, size)):
+        yield batch
+
+
+def _collected(
+    found: Iterator[list[Row]],
+    before: Sequence[Row],
+    count: int,
+    progress: Progress | None,
+    journal: Journal | None = None,
+) -> list[Row]:
+    """The rows found, each batch kept and reported before the next is awaited."""
+    rows: list[Row] = []
+    failed = sum(row.failed for row in before)
+    if progress is not None:
+        progress(len(before), failed, count)
+    for some in found:
+        if journal is not None:
+            journal.add(some)
+        rows += some
+        failed += sum(row.failed for row in some)
+        if progress is not None:
+            progress(len(before) + len(rows), failed, count)
+    return rows
+
+
+def assembled(title: str, cases: Cases, names: Sequence[str], begun: Start, rows: Iterable[Row], seed: int) -> Sweep:
+    """Return the result of a sweep.
+
+    Parameters
+    ----------
+    title : str
+    cases : Cases
+    names : sequence of str
+        Of the measures, in the order of a row's values.
+    begun : Start
+        With a scenario whose schema knows the SI units of what varies.
+    rows : iterable of Row
+        In any order; the cases without one are pending.
+    seed : int
+        Of what is drawn, and of the bootstrap of Sobol indices.
+    """
+    question = begun.question
+    values = np.full((question.width, len(cases)), math.nan)
+    outcome = np.full(len(cases), "pending", dtype=object)
+    message = np.full(len(cases), "", dtype=object)
+    for row in rows:
+        values[:, row.case] = row.values
+        outcome[row.case], message[row.case] = row.outcome, row.message
+    shape, times = cases.shape, len(question.times)
+    measures = {name: values[k].reshape(shape) for k, name in enumerate(names)}
+    over_time = values[len(names) :].reshape(len(question.histories), times, *shape)
+    histories = {each.name: np.moveaxis(over_time[k], 0, -1) for k, each in enumerate(question.histories)}
+    found = Sweep(
+        title=title,
+        verb=question.verb,
+        parameters=tuple(each.parameter(_unit(begun.example, each.path)) for each in cases.variations),
+        measures=measures,
+        units=dict(zip(names, begun.units, strict=True)) | {each.name: each.unit for each in question.histories},
+        outcome=outcome.reshape(shape),
+        message=message.reshape(shape),
+        histories=histories,
+        time=question.times,
+    )
+    return with_statistics(found, cases, dict(zip(names, begun.truths, strict=True)), seed) if cases.drawn else found
+
+
+def with_statistics(sweep: Sweep, cases: Cases, truths: Mapping[str, bool], seed: int) -> Sweep:
+    """The same with what its samples say; they are the last dimension of the measures."""
+    first = slice(cases.independent)
+    # A figure of a case that was cut off, such as the peak until it diverged, is none of the answer.
+    done = sweep.computed
+    measures = {name: np.where(done, values, math.nan) for name, values in sweep.measures.items()}
+    histories = {name: np.where(done[..., None], values, math.nan) for name, values in sweep.histories.items()}
+    known = {name: statistics(values[..., first], truth=truths[name]) for name, values in measures.items()}
+    known |= {name: statistics(np.swapaxes(values[..., first, :], -1, -2)) for name, values in histories.items()}
+    shares = {}
+    if cases.sampler == "saltelli":
+        paths = [each.path for each in cases.drawn]
+        shares = {name: indices(values, paths, seed) for name, values in measures.items()}
+    return replace(sweep, statistics=known, indices=shares)
+
+
+def _unit(scenario: Scenario, path: str) -> str:
+    """SI unit of what stands at a path; empty for what has none."""
+    *above, key = parse_path(path) or ("",)
+    node: Any = scenario
+    for step in above:
+        node = node[step] if isinstance(step, int) or isinstance(node, Mapping) else getattr(node, step, None)
+    kind = kind_of(node, key) if isinstance(key, str) and hasattr(type(node), "model_fields") else ""
+    return KINDS[kind].unit if kind else ""

@@ -1,1 +1,0 @@
-"""How cases are computed: one, several together, in processes, on a scheduler."""

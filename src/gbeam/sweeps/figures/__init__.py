@@ -1,1 +1,0 @@
-"""What is measured of a case: figures of every verb, histories, and statistics over the cases."""

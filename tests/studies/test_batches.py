@@ -1,0 +1,144 @@
+"""Cases integrated together: the answers of one case alone, and the same bytes in any company."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+from gbeam.analysis.response.batch import simulate_batch
+from gbeam.scenario.load import load
+from gbeam.studies.evaluate import Question, may_share, rows, settled
+
+LEVEL = "motion.flight.acceleration.z.level"
+MEASURES = ["flight.tip.z.max_abs", "spin.tip.z.max_abs", "verdict.tip", "flight.loads.root_moment.y.max_abs"]
+FIXED = ("response.step=5 ms",)
+
+
+def test_a_case_has_the_figures_of_its_own_run(fast: Path) -> None:
+    found = gb.sweep(fast, {LEVEL: ["3 g", "6 g", "8 g"]}, MEASURES, overrides=FIXED)
+    for k, level in enumerate(("3 g", "6 g", "8 g")):
+        study = gb.study(gb.read_scenario(fast, [*FIXED, f"{LEVEL}={level}"]))
+        flight, spin = study.responses["flight"], study.responses["spin"]
+        assert flight.peaks.loads is not None
+        alone = [
+            flight.peaks.max_abs[2],
+            spin.peaks.max_abs[2],
+            study.comparisons[0].peaks["tip"].ratio - 1,
+            flight.peaks.loads.moment[0].components.value[1],
+        ]
+        assert [found.measures[name][k] for name in MEASURES] == pytest.approx(alone, rel=1e-9)
+
+
+def test_bytes_depend_neither_on_the_company_nor_on_the_workers_nor_on_the_store(fast: Path) -> None:
+    over = {LEVEL: "2 g:8 g:40"}  # more than stand together
+
+    def bytes_of(found: gb.Sweep) -> list[bytes]:
+        return [found.measures[name].tobytes() for name in MEASURES]
+
+    whole = gb.sweep(fast, over, MEASURES, overrides=FIXED, store="there")
+    lines = Path("there/cases.jsonl").read_text(encoding="utf-8").splitlines(keepends=True)
+    kept = np.random.default_rng(1).choice(np.arange(1, 41), 17, replace=False)
+    Path("there/cases.jsonl").write_text(lines[0] + "".join(lines[k] for k in kept), encoding="utf-8")
+    resumed = gb.sweep(fast, over, MEASURES, overrides=FIXED, store="there", resume=True)
+    two = gb.sweep(fast, over, MEASURES, overrides=FIXED, workers=2)
+    assert bytes_of(whole) == bytes_of(resumed) == bytes_of(two)
+
+
+def test_a_case_that_fails_leaves_its_batch_as_it_is(fast: Path) -> None:
+    over = {"motion.spin.control_point": ["100 mm", "400 mm", "200 mm"], LEVEL: ["4 g", "600 g"]}
+    found = gb.sweep(fast, over, MEASURES, overrides=FIXED)
+    fine = gb.sweep(fast, {**over, "motion.spin.control_point": ["100 mm"]}, MEASURES, overrides=FIXED)
+    assert found.outcome[:, 0].tolist() == ["done", "refused", "done"] and set(found.outcome[:, 1]) != {"done"}
+    assert all(found.measures[name][0, 0] == fine.measures[name][0, 0] for name in MEASURES)
+
+
+def test_each_case_of_a_batch_that_fails_is_computed_once(fast: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The batch of a case that raises is halved until that one is alone; every other has its own figures."""
+    source, computed = load(fast).source, []
+    assert source is not None
+    whole = Question(source, "run", None, keys=(("motions", "flight", "tip", "z", "max_abs"),), together=True)
+    tasks = [(k, (*FIXED, f"{LEVEL}={2 + k / 2} g", f"beam.length={200 + k} mm")) for k in range(11)]
+    alone = [rows(whole, [task])[0] for task in tasks]
+    real = simulate_batch
+
+    def failing(cases: Any, *args: Any, **more: Any) -> Any:
+        some = list(cases)
+        if any(abs(structure.length - 0.206) < 1e-9 for structure, _ in some):
+            raise RuntimeError("case 6 fails")
+        computed.extend(round(1e3 * structure.length) for structure, motion in some if motion.kind == "flight")
+        return real(iter(some), *args, **more)
+
+    monkeypatch.setattr("gbeam.studies.evaluate.simulate_batch", failing)
+    found = rows(whole, tasks)
+    assert [row.case for row in found] == list(range(11)) and sorted(computed) == [*range(200, 206), *range(207, 211)]
+    for row, own in zip(found, alone, strict=True):
+        if row.case == 6:
+            assert row.outcome == "failed" and row.message == "RuntimeError: case 6 fails"
+        else:
+            assert row == own and row.outcome == "done"
+
+
+def test_what_no_measure_needs_changes_no_digit(fast: Path) -> None:
+    source = load(fast).source
+    assert source is not None
+    tip, error = ("motions", "flight", "tip", "z", "max_abs"), ("motions", "flight", "error_estimate")
+    plain = Question(source, "run", None, keys=(tip,))
+    judged = replace(plain, keys=(tip, error))
+    (bare,), (whole,) = (rows(each, [(0, ())]) for each in (plain, judged))
+    assert bare.values[0] == whole.values[0] and whole.values[1] > 0
+    assert not plain.needs.errors and judged.needs.errors
+
+
+def test_loads_that_are_not_measured_change_no_digit(fast: Path) -> None:
+    over, tips = {LEVEL: ["3 g", "6 g"]}, [*MEASURES[:3], "verdict.followed", "spin.axes.1.rate.max_abs"]
+    lean = gb.sweep(fast, over, tips, overrides=FIXED)
+    whole = gb.sweep(fast, over, [*tips, MEASURES[3]], overrides=FIXED)
+    assert all(np.array_equal(lean.measures[name], whole.measures[name]) for name in tips)
+    assert np.isfinite([lean.measures[name] for name in tips]).all()
+
+
+@pytest.mark.parametrize(
+    ("keys", "loads"),
+    [
+        ("motions.flight.tip.z.max_abs", False),
+        ("motions.spin.step", False),
+        ("comparisons.spin.verdict.tip", False),
+        ("motions.flight.loads.root_moment.y.max_abs", True),
+        ("comparisons.spin.verdict.stress", True),
+    ],
+)
+def test_loads_are_computed_where_a_figure_is_one_of_them(fast: Path, keys: str, loads: bool) -> None:
+    source = load(fast).source
+    assert source is not None and Question(source, "run", None, keys=(tuple(keys.split(".")),)).needs.loads == loads
+
+
+def test_few_cases_of_an_automatic_step_are_computed_one_by_one(fast: Path) -> None:
+    for given, cases, together in (((), 31, False), ((), 32, True), (FIXED, 2, True)):
+        source = load(fast, given).source
+        assert source is not None
+        question = Question(source, "run", None, keys=(("motions", "flight", "tip", "z", "max_abs"),), together=True)
+        case = question.case(())
+        assert settled(question, case, cases).together == together
+        assert not settled(question, replace(case, model=replace(case.model, automatic=True)), cases).together
+
+
+def test_many_cases_of_an_automatic_step_have_the_figures_of_their_own_runs(fast: Path) -> None:
+    """The machine's runs, which spin up, are integrated alone."""
+    found = gb.sweep(fast, {LEVEL: "3 g:8 g:32"}, MEASURES, overrides=["response.duration=0.6 s"])
+    levels = np.linspace(3, 8, 32).tolist()
+    for k in (0, 17):
+        given = [f"{LEVEL}={levels[k]!r} g", "response.duration=0.6 s", "response.estimate=false"]
+        study = gb.study(gb.read_scenario(fast, given))
+        peaks = study.responses["flight"].peaks
+        assert peaks.loads is not None
+        alone = [peaks.max_abs[2], peaks.loads.moment[0].components.value[1]]
+        assert [found.measures[MEASURES[i]][k] for i in (0, 3)] == pytest.approx(alone, rel=1e-9)
+
+
+def test_cases_with_other_steps_stay_apart() -> None:
+    assert may_share("run", [LEVEL]) and not may_share("run", ["response"]) and not may_share("modes", [LEVEL])
