@@ -117,7 +117,7 @@ jobs._command = lambda state: [sys.executable, "-c", {code!r}]
 def test_strangers_hold_no_connection_and_no_descriptor(start: Start, tmp_path: Path) -> None:
     """Of 160 descriptors 400 connections, none of which asks for anything, would take more than there are."""
     few = "import resource; resource.setrlimit(resource.RLIMIT_NOFILE, (160, 160))"
-    few += "\nfrom gbeam.app import connections\nconnections.PATIENCE = 0.5"
+    few += "\nfrom gbeam.app import access as connections\nconnections.PATIENCE = 0.5"
     server = start(tmp_path / "kept", few + QUICK.format(code="print('{}')"))
     idle = [socket.create_connection(("127.0.0.1", server.port), SOON) for _ in range(400)]
     begun = time.monotonic()

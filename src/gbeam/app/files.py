@@ -113,7 +113,7 @@ def _is_regular(file: Path) -> bool:
 _TEMPLATES = {"Flight and centrifuge": "flight", "Hub": "hub"}
 _FLOWN = "F-16 turn of 8 g, with its record"
 _SCENARIO, _RECORD = "f16_8g_turn.toml", "f16_8g_turn.csv"
-NAMES = ("Flight and centrifuge", _FLOWN, "Hub")
+EXAMPLES = ("Flight and centrifuge", _FLOWN, "Hub")
 
 
 def example(name: str, records: Path) -> str:
@@ -127,7 +127,7 @@ def example(name: str, records: Path) -> str:
     if name in _TEMPLATES:
         return template(_TEMPLATES[name])
     if name != _FLOWN:
-        raise InputError("example", f"is {name[:100]!r}", f"choose of {', '.join(NAMES)}")
+        raise InputError("example", f"is {name[:100]!r}", f"choose of {', '.join(EXAMPLES)}")
     record = _kept(_shipped(_RECORD).read_bytes(), records)
     return with_entry(_shipped(_SCENARIO).read_text(encoding="utf-8"), ("motion", "flight", "record", "file"), record)
 

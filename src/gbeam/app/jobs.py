@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 from gbeam.app.files import SHORT, made, names, private, regular, write
-from gbeam.app.verbs import VERBS
+from gbeam.app.verbs import verbs
 from gbeam.errors import InputError
 from gbeam.results.imitation.criteria import GOOD
 
@@ -330,7 +330,7 @@ def _read(file: Path) -> dict[str, Any]:
     except (ValueError, RecursionError):
         return nothing
     sound = isinstance(known, dict) and all(isinstance(known.get(key), type(value)) for key, value in nothing.items())
-    words = sound and known["verb"] in VERBS and all(isinstance(each, str) for each in known["arguments"])
+    words = sound and known["verb"] in verbs() and all(isinstance(each, str) for each in known["arguments"])
     return known if words else nothing
 
 
@@ -344,7 +344,7 @@ def _last_line(log: Path) -> str:
 
 def _command(state: Mapping[str, Any]) -> list[str]:
     """A verb with its result as a report and as JSON; in words where it has no report."""
-    result = ["--report", "--json"] if VERBS[state["verb"]].report else []
+    result = ["--report", "--json"] if verbs()[state["verb"]].report else []
     arguments = [state["verb"], _SCENARIO, *state["arguments"], "--out", "out", *result]
     return [sys.executable, "-m", "gbeam.app.limited", str(MEMORY), str(SECONDS), *arguments]
 

@@ -18,7 +18,7 @@ from fastapi.responses import FileResponse, JSONResponse, Response
 from pydantic import AfterValidator, Field
 from starlette.requests import ClientDisconnect
 
-from gbeam.app import documents, examples, files, verbs
+from gbeam.app import documents, files, verbs
 from gbeam.app.access import AT_ONCE, REPORT_POLICY, Connections, Door, listening
 from gbeam.app.jobs import Jobs
 from gbeam.app.preview import head, load_curves
@@ -89,12 +89,12 @@ def create_app(folder: Path) -> FastAPI:
     @app.get("/api/examples")
     def offered_examples() -> Sequence[str]:
         """The names of scenarios to start from."""
-        return examples.NAMES
+        return files.EXAMPLES
 
     @app.post("/api/example")
     def example(name: Short) -> dict[str, Any]:
         """A scenario to start from, whose record is kept."""
-        return documents.described(examples.example(name, records), records)
+        return documents.described(files.example(name, records), records)
 
     @app.post("/api/document")
     def document(text: Text) -> dict[str, Any]:

@@ -67,11 +67,11 @@ Rate = Annotated[
 ]
 ModesKept = Annotated[
     int | None,
-    Parameter(name="--modes", help="Keep so many of the slowest modes, besides what has no frequency; by default all."),
+    Parameter(name="--modes", help='Keep so many of the slowest modes, "4", besides what has no frequency; else all.'),
 ]
 Balanced = Annotated[
     int | None,
-    Parameter(name="--balanced", help="Keep so many states by balanced truncation, besides what does not decay."),
+    Parameter(name="--balanced", help='Keep so many states by balanced truncation, "6", besides what does not decay.'),
 ]
 StrainAt = Annotated[
     tuple[str, ...],
@@ -90,7 +90,10 @@ Speed = Annotated[
 # Of fit and optimize.
 SearchBounds = Annotated[
     tuple[str, ...],
-    option("--bounds", 'Of a value, "beam.damping_ratio=0.1 %:5 %"; by default a tenth to ten times the scenario\'s.'),
+    option(
+        "--bounds",
+        'Of a value, "beam.damping_ratio=0.1 %:5 %", any number of times; else 0.1 to 10 times its own.',
+    ),
 ]
 Starts = Annotated[int, Parameter(help="Searches: one from the scenario's values, the others spread over the bounds.")]
 WriteTo = Annotated[

@@ -11,7 +11,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # No plugin has a part in reading a scenario, and the search for plugins takes as long as the reading.
 os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 
-from cyclopts import App, CycloptsError
+from cyclopts import App, ArgumentCollection, CycloptsError
 
 import gbeam
 from gbeam.cli.failures import lacks_memory, report, report_defect, report_memory, report_syntax
@@ -95,6 +95,16 @@ def parsed(tokens: list[str]) -> tuple[Callable[..., object], BoundArguments]:
     except CycloptsError as error:
         raise ValueError(str(error)) from None
     return verb, bound
+
+
+def verbs() -> dict[str, str]:
+    """Every verb, with the words of what it answers."""
+    return {verb: about for verb, (_, about) in VERBS.items()}
+
+
+def arguments(verb: str) -> ArgumentCollection:
+    """The arguments of a verb, with the words, choices and defaults of each."""
+    return _app(verb)[verb].assemble_argument_collection()
 
 
 def _app(chosen: str) -> App:

@@ -28,13 +28,13 @@ def sweep(
         tuple[str, ...],
         option(
             "--over",
-            'What varies, PATH=VALUES; any number of times: "motion.centrifuge.arm=1 m:12 m:12" (from, to, how '
+            'What varies, PATH=VALUES; any number of times: "beam.length=250 mm:350 mm:5" (from, to, how '
             'many), "model.kind=FOAM, exact", "beam.damping_ratio=uniform(0.5 %, 2 %)".',
         ),
     ] = (),
     measure: Annotated[
         tuple[str, ...],
-        option("--measure", 'Figures of the verb by the end of their path in its JSON, "tip.z.max_abs, verdict.tip".'),
+        option("--measure", 'Figures of the verb by the end of their path in its JSON, "tip.size.max_abs".'),
     ] = (),
     history: Annotated[
         tuple[str, ...],
@@ -47,12 +47,12 @@ def sweep(
     verb: Annotated[Verb | None, Parameter(help="Whose figures; run by default.")] = None,
     motion: MotionName = None,
     at: At = None,
-    samples: Annotated[int | None, Parameter(help="How many are drawn from distributions; 64 by default.")] = None,
+    samples: Annotated[int | None, Parameter(help='How many are drawn of distributions, "200"; 64 by default.')] = None,
     sampler: Annotated[
         Literal["sobol", "latin", "random", "saltelli"] | None,
         Parameter(help="How they are drawn; sobol by default, saltelli for Sobol indices."),
     ] = None,
-    seed: Annotated[int | None, Parameter(help="The same seed draws the same samples.")] = None,
+    seed: Annotated[int | None, Parameter(help='The same seed, "1", draws the same samples.')] = None,
     workers: Annotated[int, Parameter(help="Processes of this machine.")] = 1,
     scheduler: Annotated[str | None, Parameter(help="Address of a Dask scheduler whose workers compute.")] = None,
     resume: Annotated[bool, option("--resume", "Compute only what is missing in --out.")] = False,
