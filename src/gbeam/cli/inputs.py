@@ -12,15 +12,13 @@ from gbeam.cli.console import Watch
 from gbeam.cli.process import command
 from gbeam.cli.publication import refuse_unwritable
 from gbeam.errors import InputError
+from gbeam.questions import motion_of, prepared
 
 if TYPE_CHECKING:
     from gbeam.analysis.study.case import Case
-    from gbeam.mechanics.structure import Structure
     from gbeam.motion.protocol import Motion
     from gbeam.results.provenance import Provenance
     from gbeam.scenario import Scenario
-
-STATIONS = 81  # along the beam, at which shapes are given
 
 
 @dataclass(frozen=True)
@@ -56,36 +54,17 @@ class Input:
         InputError
             If there is no such motion, or more than one could be meant.
         """
-        motions = self.case.motions
-        if name is not None:
-            if name not in motions:
-                raise InputError("--motion", f"is {name!r}", f"the scenario has {', '.join(motions)}")
-            return self._prepared(name)
-        alike = {key: motion for key, motion in motions.items() if motion.kind == kind}
-        choice = alike or motions
-        if len(choice) > 1 and (alike or not kind):
-            raise InputError("--motion", "is missing", f"name one of {', '.join(choice)}")
-        # Without any of the kind the first motion is as good as another: it is refused with its reason.
-        return self._prepared(next(iter(choice)))
-
-    def _prepared(self, name: str) -> tuple[str, Motion]:
-        """A motion prepared for the response's times; what that refuses, at its place."""
-        first = self.case.response.start
+        chosen = motion_of(self.case.motions, name, kind)
         try:
-            return name, self.case.motions[name].over(first, first + self.case.response.duration)
+            return chosen, prepared(self.case, chosen)
         except InputError as error:
             from gbeam.scenario import placed
 
-            raise placed(self.scenario, [error.within(f"motion.{name}")]) from None
+            raise placed(self.scenario, [error.within(f"motion.{chosen}")]) from None
 
     def time(self, text: str | None) -> float:
         """Time of ``--at``, s; the response's start where it is not given."""
         return self.case.response.start if text is None else number("--at", text, "time")
-
-    def structure(self) -> Structure:
-        """The scenario's beam in its model, with stations all along it."""
-        length = self.case.beam.length
-        return self.case.assemble([length * i / (STATIONS - 1) for i in range(STATIONS)])
 
     def signed(self, facts: dict[str, Any]) -> dict[str, Any]:
         """The facts of a result, as JSON, with where they come from."""

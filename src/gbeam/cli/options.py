@@ -3,9 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
+
+from gbeam.questions import QUESTIONS, differentiable
+
+if TYPE_CHECKING:
+    Verb = str
+    _Smooth = str
+else:
+    Verb = Literal[tuple(QUESTIONS)]
+    _Smooth = Literal[differentiable()]
 
 
 def option(name: str, words: str) -> Parameter:
@@ -42,6 +51,8 @@ IgnoreLimits = Annotated[
     bool,
     option("--ignore-limits", "Exit with 0 though a machine's limit is exceeded."),
 ]
+
+SmoothVerb = Annotated[_Smooth, Parameter(help="Whose figures.")]
 
 # Of critical-speed.
 Vary = Annotated[

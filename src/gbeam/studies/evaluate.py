@@ -19,6 +19,7 @@ from gbeam.analysis.study.case import Case
 from gbeam.analysis.study.study import study_of
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.mechanics.structure import Structure
+from gbeam.questions import QUESTIONS, Needs, reduced
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.studies.sweep import ANSWERED
@@ -28,7 +29,7 @@ from gbeam.scenario.load import change
 from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.text.source import Source
 from gbeam.scenario.values.suggest import advise
-from gbeam.studies.answers import VERBS, Facts, Needs, reduced, study_facts
+from gbeam.studies.answers import Facts, answered, study_facts
 from gbeam.studies.figures import History, Keys, own_keys, value_at
 
 Function = Callable[[Case], float]
@@ -88,8 +89,8 @@ class Question:
     together: bool = False
 
     def __post_init__(self) -> None:
-        if self.verb not in VERBS:
-            raise InputError("--verb", f"is {self.verb!r}", advise(self.verb, VERBS))
+        if self.verb not in QUESTIONS:
+            raise InputError("--verb", f"is {self.verb!r}", advise(self.verb, QUESTIONS))
 
     @cached_property
     def width(self) -> int:
@@ -126,7 +127,7 @@ class Question:
 
     def facts(self, case: Case) -> Facts:
         """What the verb answers, as JSON."""
-        return VERBS[self.verb](case, self.motion, self.at, self.needs)
+        return answered(self.verb, case, self.motion, self.at, self.needs)
 
     def row(self, number: int, overrides: Sequence[str]) -> Row:
         """Compute one case. What goes wrong in it is part of the row: the other cases go on."""

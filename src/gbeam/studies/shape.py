@@ -19,6 +19,7 @@ from gbeam.guards.arguments import typed
 from gbeam.mechanics.models import KINDS
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.piecewise import constant
+from gbeam.questions import motion_of
 from gbeam.results.studies.shaping import ShapedCommand
 from gbeam.scenario.build import build, scenario_of
 from gbeam.scenario.values.suggest import advise
@@ -102,13 +103,12 @@ def shape(
 def hub_of(case: Case, name: str | None) -> tuple[str, Hub]:
     """The hub of a case, by its name where there are several; InputError if there is none."""
     hubs = {each: motion for each, motion in case.motions.items() if isinstance(motion, Hub)}
-    if name is None and len(hubs) == 1:
-        return next(iter(hubs.items()))
-    if name not in hubs:
-        fix = f"name one of {', '.join(hubs)}" if hubs else "add a motion of kind hub"
-        problem = "is missing" if name is None and hubs else "has no hub" if not hubs else f"is {name!r}"
-        raise InputError("--motion" if hubs else "motion", problem, fix)
-    return name, hubs[name]
+    if not hubs:
+        raise InputError("motion", "has no hub", "add a motion of kind hub")
+    if name is not None and name not in hubs:
+        raise InputError("--motion", f"is {name!r}", f"name one of {', '.join(hubs)}")
+    chosen = motion_of(hubs, name)
+    return chosen, hubs[chosen]
 
 
 def _at_rest(hub: Hub) -> Hub:

@@ -28,6 +28,7 @@ from gbeam.cli.outputs import folder_of, list_files, show, show_table, write
 from gbeam.cli.process import command, figures_wanted
 from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.errors import InputError
+from gbeam.questions import machine_of
 
 SAMPLE = 0.005  # s, where neither the scenario nor the command line gives one
 
@@ -148,16 +149,13 @@ def place(
     widths = [number("--smoothing", text, "time") for text in smoothing]
     folder = folder_of(out, scenario, default=report)
     given = read("place", scenario, overrides, folder)
-    name, current = given.motion(motion, kind="centrifuge")
+    given.motion(motion, kind="centrifuge")
+    name, current = machine_of(given.case, motion)
 
     from gbeam.analysis.imitation import place as analysis
     from gbeam.analysis.imitation.choice import choice_of
-    from gbeam.motion import Centrifuge
     from gbeam.report.machine import placement as words
 
-    if not isinstance(current, Centrifuge):
-        fix = "add one that tracks the flight; `gbeam new` shows how"
-        raise InputError(f"motion.{name}", "is no centrifuge to put a specimen on", fix)
     analysis.check_weights(weights, "--measure")
     with naming("--smoothing"):
         choice = choice_of(current, widths, limited=not ignore_limits)

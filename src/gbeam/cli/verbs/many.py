@@ -12,12 +12,10 @@ from cyclopts import Parameter
 from gbeam.cli.console import Watch
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import names, number, signed
-from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile, option
+from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile, SmoothVerb, Verb, option
 from gbeam.cli.outputs import commanded, folder_of, list_files, show, show_found, write_json
 from gbeam.cli.process import command, figures_wanted
 from gbeam.cli.publication import publish, refuse_unwritable
-
-Verb = Literal["run", "static", "modes", "critical-speed", "plan", "place"]
 
 
 def sweep(
@@ -134,9 +132,6 @@ def sweep(
     return FAILED if answer.lost else 0
 
 
-Differentiated = Literal["run", "static", "modes", "critical-speed", "plan"]
-
-
 def sensitivity(
     scenario: ScenarioFile,
     /,
@@ -151,7 +146,7 @@ def sensitivity(
             "--with", 'Only these values, "beam.length, beam.material.youngs_modulus"; by default every physical one.'
         ),
     ] = (),
-    verb: Annotated[Differentiated, Parameter(help="Whose figures.")] = "run",
+    verb: SmoothVerb = "run",
     motion: MotionName = None,
     at: At = None,
     overrides: Overrides = (),

@@ -19,6 +19,7 @@ from gbeam.cli.options import (
     Report,
     ScenarioFile,
     SearchBounds,
+    SmoothVerb,
     Starts,
     WriteTo,
     option,
@@ -87,9 +88,6 @@ def fit(
     return 0
 
 
-Verb = Literal["run", "static", "modes", "critical-speed", "plan"]
-
-
 def optimize(
     scenario: ScenarioFile,
     /,
@@ -109,7 +107,7 @@ def optimize(
         ),
     ] = (),
     bounds: SearchBounds = (),
-    verb: Annotated[Verb, Parameter(help="Whose figures.")] = "run",
+    verb: SmoothVerb = "run",
     motion: MotionName = None,
     at: At = None,
     starts: Starts = 1,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
+from gbeam import questions
 from gbeam.cli.console import Watch
 from gbeam.cli.inputs import Input, naming, number, numbers, read
 from gbeam.cli.options import (
@@ -34,6 +35,7 @@ from gbeam.cli.outputs import folder_of, list_files, show, write, write_json
 from gbeam.cli.process import figures_wanted
 from gbeam.cli.publication import publish
 from gbeam.errors import InputError
+from gbeam.questions import Needs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -57,15 +59,14 @@ def static(
     """
     folder = folder_of(out, scenario, default=report)
     given = read("static", scenario, overrides, folder)
-    chosen = dict(given.case.motions) if motion is None else dict([given.motion(motion)])
+    if motion is not None:
+        given.motion(motion)
     time = given.time(at)
 
-    from gbeam.analysis.equilibrium.static import static
     from gbeam.report.steady import deflection as words
 
     with Watch(), given.placing():
-        structure = given.structure()
-        deflections = [static(structure, each, time, name=name) for name, each in chosen.items()]
+        deflections = questions.static(given.case, motion, time, Needs(shapes=True))
     title = given.case.title
     facts = given.signed(words.to_json(title, deflections))
 
@@ -99,15 +100,14 @@ def modes(
     """
     folder = folder_of(out, scenario, default=report)
     given = read("modes", scenario, overrides, folder)
-    name, chosen = given.motion(motion)
+    name, _ = given.motion(motion)
     time = given.time(at)
 
-    from gbeam.analysis.vibration import modal
     from gbeam.report.steady import modes as words
     from gbeam.results.declared import json_of
 
     with Watch(), given.placing():
-        modes = modal.modes(given.structure(), chosen, time, gyroscopic=gyroscopic, name=name)
+        modes = questions.modes(given.case, name, time, Needs(shapes=True), gyroscopic=gyroscopic)
     facts = given.signed(json_of(modes))
 
     write(folder, "modes", facts, lambda: {"modes": modes.plot(title=given.case.title).figure}, report=report)
@@ -146,14 +146,11 @@ def campbell(
         fix = 'give the largest speed, such as "5 rad/s"'
         raise InputError("--to", "is missing: the hub is driven by a torque", fix)
 
-    from gbeam.analysis.vibration import campbell as analysis
     from gbeam.report.steady import campbell as words
     from gbeam.results.declared import json_of
 
     with Watch(), given.placing(to="--to", modes="--modes"):
-        diagram = analysis.campbell(
-            given.case.assemble(), chosen, start=low, end=high, modes=modes, orders=range(1, orders + 1), name=name
-        )
+        diagram = questions.campbell(given.case, name, start=low, end=high, modes=modes, orders=orders)
     facts = given.signed(json_of(diagram))
 
     from gbeam.scenario.values.units import unit_of
@@ -208,21 +205,13 @@ def critical_speed(
         if vary != "rate":
             raise InputError("--masses", f"stands beside --vary {vary}", "a map is of hub rates")
         return critical_map(given, motion, masses, positions, upper, folder, json, report)
-    name, chosen = given.motion(motion, kind="hub")
+    name, _ = given.motion(motion, kind="hub")
     time = given.time(at)
 
-    from gbeam.analysis.equilibrium.point import held_base
-    from gbeam.analysis.vibration import stability
     from gbeam.report.steady import critical as words
 
     with Watch() as watch, given.placing():
-        structure = given.case.assemble().at_time(time)
-        if vary == "rate":
-            critical = stability.critical_speed(structure, chosen, upper=upper, name=name, progress=watch)
-        elif vary == "loads":
-            critical = stability.critical_load(structure, held_base(chosen, time), upper=upper, progress=watch)
-        else:
-            critical = stability.buckling_acceleration(structure, upper=upper, progress=watch)
+        critical = questions.critical_speed(given.case, name, time, vary=vary, upper=upper, progress=watch)
     facts = given.signed(words.to_json(critical, name))
     write(folder, "critical_speed", facts, report=report)
     show(words.text(critical, name), facts, json)

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
 
+from gbeam.questions import QUESTIONS
 from gbeam.scenario.schema.common.fields import Table
+
+if TYPE_CHECKING:
+    Verb = str
+else:
+    Verb = Literal[tuple(QUESTIONS)]
 
 
 class Sweep(Table):
@@ -25,9 +31,7 @@ class Sweep(Table):
     history: tuple[str, ...] = Field(
         default=(), description="histories over time by motion, quantity and axis, such as flight.tip.z"
     )
-    verb: Literal["run", "static", "modes", "critical-speed", "plan", "place"] = Field(
-        default="run", description="whose figures"
-    )
+    verb: Verb = Field(default="run", description="whose figures")
     samples: int | None = Field(
         default=None, ge=1, strict=True, description="how many are drawn from distributions; 64"
     )

@@ -1,0 +1,285 @@
+"""The questions that a case answers, each declared once: its function, what it needs, which record it gives.
+
+Sweeps, sensitivities and optimisation take their figures from these answers, by the names in this list; so do the
+command line, the app and the schema of scenarios. To add one, decorate its function; nothing heavy is imported here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from gbeam.errors import InputError
+
+if TYPE_CHECKING:
+    from gbeam.analysis.study.case import Case
+    from gbeam.mechanics.structure import Structure
+    from gbeam.motion.protocol import Motion
+    from gbeam.results.imitation.placement import Placement
+    from gbeam.results.imitation.plan import MachinePlan
+    from gbeam.results.steady.equilibrium import Deflection
+    from gbeam.results.steady.modal import Campbell, Modes
+    from gbeam.results.steady.stability import Critical
+    from gbeam.results.study import Study
+
+HUB, CENTRIFUGE = "hub", "centrifuge"
+STATIONS = 81  # along the beam, at which shapes are given
+
+
+@dataclass(frozen=True)
+class Needs:
+    """Which parts of an answer are read; the costly ones that are not need not be computed.
+
+    Parameters
+    ----------
+    errors : bool
+        Estimates of its own errors: most of the time of a steady state.
+    loads : bool
+        Loads of the sections.
+    shapes : bool
+        Shapes all along the beam, not only at the case's own stations.
+    """
+
+    errors: bool = True
+    loads: bool = True
+    shapes: bool = False
+
+
+@dataclass(frozen=True)
+class Question:
+    """A question that a case answers.
+
+    Parameters
+    ----------
+    name : str
+        The command line's verb.
+    about : str
+        In one sentence.
+    answer : callable
+        Of a case, the name of a motion or None, the time at which it is frozen or None, what is needed and options by
+        name: a record, or several.
+    motion : str or None
+        Kind of motion that answers, empty for any; None where all that can answer do.
+    differentiable : bool
+        Whether its figures are smooth in the scenario's values.
+    words : str
+        Module of :mod:`gbeam.report` whose ``text`` says the answer in words; by default a table of its quantities.
+    """
+
+    name: str
+    about: str
+    answer: Callable[..., Any]
+    motion: str | None = ""
+    differentiable: bool = True
+    words: str = ""
+
+
+QUESTIONS: dict[str, Question] = {}
+_Answer = Callable[..., Any]
+
+
+def question(name: str, about: str, **more: Any) -> Callable[[_Answer], _Answer]:
+    """Declare the question that a function answers: see :class:`Question`."""
+
+    def declare(answer: _Answer) -> _Answer:
+        QUESTIONS[name] = Question(name, about, answer, **more)
+        return answer
+
+    return declare
+
+
+def differentiable() -> tuple[str, ...]:
+    """Names of the questions whose figures have derivatives."""
+    return tuple(name for name, each in QUESTIONS.items() if each.differentiable)
+
+
+def motion_of(motions: Mapping[str, Motion], name: str | None, kind: str = "") -> str:
+    """The name of the motion that answers: the one named, or else the only one, or the only one of a kind.
+
+    Raises
+    ------
+    InputError
+        If there is no such motion, or more than one could be meant.
+    """
+    if name is not None:
+        if name not in motions:
+            raise InputError("--motion", f"is {name!r}", f"the scenario has {', '.join(motions)}")
+        return name
+    alike = [each for each, motion in motions.items() if motion.kind == kind]
+    choice = alike or list(motions)
+    if len(choice) > 1 and (alike or not kind):
+        raise InputError("--motion", "is missing", f"name one of {', '.join(choice)}")
+    return choice[0]  # without any of the kind it is refused with its reason, as any other would be
+
+
+def prepared(case: Case, name: str) -> Motion:
+    """A motion prepared for the response's times."""
+    first = case.response.start
+    return case.motions[name].over(first, first + case.response.duration)
+
+
+def reduced(case: Case, needs: Needs) -> Case:
+    """The case whose responses have what is needed, to the last digit as before.
+
+    Automatic numbers of shapes follow from the errors, and an automatic step from the loads.
+    """
+    if needs.errors or case.model.automatic:
+        return case
+    response = replace(case.response, estimate=False)
+    if response.step is not None and not needs.loads:
+        response = replace(response, loads=False)
+    return replace(case, response=response)
+
+
+def _structure(case: Case, needs: Needs) -> Structure:
+    """The case's structure; where no errors are needed it does not know what it was made of, and states none."""
+    length = case.beam.length
+    structure = case.assemble([length * i / (STATIONS - 1) for i in range(STATIONS)] if needs.shapes else None)
+    return structure if needs.errors else replace(structure, source=None)
+
+
+def _time(case: Case, at: float | None) -> float:
+    return case.response.start if at is None else at
+
+
+@question("run", "Compute the response in every environment of a scenario, and compare them.", motion=None)
+def run(case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()) -> Study:
+    """Responses in all motions."""
+    from gbeam.analysis.study.study import study
+
+    return study(reduced(case, needs))
+
+
+@question("static", "Where the beam rests relative to its base at one time of the motions.", motion=None)
+def static(
+    case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
+) -> tuple[Deflection, ...]:
+    """Deflections at rest in all motions, or one."""
+    from gbeam.analysis.equilibrium.static import static
+
+    structure, time = _structure(case, needs), _time(case, at)
+    names = list(case.motions) if motion is None else [motion_of(case.motions, motion)]
+    return tuple(static(structure, prepared(case, name), time, name=name) for name in names)
+
+
+@question(
+    "modes",
+    "Frequencies, damping and shapes about the equilibrium at one time of a motion.",
+    words="gbeam.report.steady.modes",
+)
+def modes(
+    case: Case,
+    motion: str | None = None,
+    at: float | None = None,
+    needs: Needs = Needs(),
+    *,
+    gyroscopic: Annotated[bool, "Keep Coriolis coupling."] = True,
+) -> Modes:
+    """Small vibrations about the equilibrium."""
+    from gbeam.analysis.vibration import modal
+
+    name, time = motion_of(case.motions, motion), _time(case, at)
+    return modal.modes(_structure(case, needs), prepared(case, name), time, gyroscopic=gyroscopic, name=name)
+
+
+@question(
+    "critical-speed",
+    "The hub rate, load or acceleration at which the beam's equilibrium is lost.",
+    motion=HUB,
+)
+def critical_speed(
+    case: Case,
+    motion: str | None = None,
+    at: float | None = None,
+    needs: Needs = Needs(),
+    *,
+    vary: Literal["rate", "loads", "acceleration"] = "rate",
+    upper: float | None = None,
+    progress: Callable[[str, float], None] | None = None,
+) -> Critical:
+    """The rate of a hub, factor of the loads or acceleration of the root up to `upper` at which beams buckle."""
+    from gbeam.analysis.equilibrium.point import held_base
+    from gbeam.analysis.vibration import stability
+
+    name, time = motion_of(case.motions, motion, HUB), _time(case, at)
+    base, structure = prepared(case, name), _structure(case, needs).at_time(time)
+    if vary == "loads":
+        return stability.critical_load(structure, held_base(base, time), upper=upper, progress=progress)
+    if vary == "acceleration":
+        return stability.buckling_acceleration(structure, upper=upper, progress=progress)
+    return stability.critical_speed(structure, base, upper=upper, name=name, progress=progress)
+
+
+@question("plan", "Plan the axis motions of a centrifuge within its limits; needs no beam.", motion=None)
+def plan(
+    case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
+) -> tuple[MachinePlan, ...]:
+    """Plans of all centrifuges, or one."""
+    from gbeam.analysis.imitation.plan import plan
+    from gbeam.results.imitation.criteria import judging
+
+    named = None if motion is None else motion_of(case.motions, motion)
+    machines = [name for name, m in case.motions.items() if m.kind == CENTRIFUGE and named in (None, name)]
+    if not machines:
+        raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
+    return tuple(
+        plan(name, prepared(case, name), case.tracks[name], beam=case.beam, **judging(case.accept.get(name, {})))  # type: ignore[arg-type]
+        for name in machines
+    )
+
+
+@question("place", "Find where to put the specimen on the centrifuge.", motion=CENTRIFUGE, differentiable=False)
+def place(case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()) -> Placement:
+    """The best placement, without the check by simulation, which costs more: ``run`` at the placement is that."""
+    from gbeam.analysis.imitation.choice import choice_of
+    from gbeam.analysis.imitation.place import place
+
+    name, current = machine_of(case, motion)
+    choice, names = choice_of(current), (case.tracks[name], name)
+    return place(case.assemble(), current.flight, choice, case.response, {"tip": 1.0}, current=current, names=names)
+
+
+@question(
+    "campbell",
+    "Frequencies against the speed of a hub, and where its multiples meet them.",
+    motion=HUB,
+    differentiable=False,
+)
+def campbell(
+    case: Case,
+    motion: str | None = None,
+    at: float | None = None,
+    needs: Needs = Needs(),
+    *,
+    start: float = 0.0,
+    end: float | None = None,
+    modes: int = 8,
+    orders: int = 4,
+) -> Campbell:
+    """Frequencies from one rate of a hub to another, rad/s, and crossings with multiples of the rate."""
+    from gbeam.analysis.vibration import campbell
+
+    name = motion_of(case.motions, motion, HUB)
+    structure, multiples = case.assemble(), range(1, orders + 1)
+    return campbell.campbell(
+        structure, prepared(case, name), start=start, end=end, modes=modes, orders=multiples, name=name
+    )
+
+
+def machine_of(case: Case, motion: str | None) -> tuple[str, Any]:
+    """The centrifuge that answers, and its name.
+
+    Raises
+    ------
+    InputError
+        If it is no centrifuge.
+    """
+    from gbeam.motion import Centrifuge
+
+    name = motion_of(case.motions, motion, CENTRIFUGE)
+    current = prepared(case, name)
+    if not isinstance(current, Centrifuge):
+        fix = "add one that tracks the flight; `gbeam new` shows how"
+        raise InputError(f"motion.{name}", "is no centrifuge to put a specimen on", fix)
+    return name, current
