@@ -12,11 +12,11 @@ import numpy as np
 from gbeam.analysis.study.case import Case
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
+from gbeam.progress import Progress
 from gbeam.results.result import Floats
 from gbeam.results.studies.fit import Fit, FittedColumn
 from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
-from gbeam.studies.derivatives import Progress
 from gbeam.studies.measurement import Measurement, read_measurement
 from gbeam.studies.parameters import PhysicalValue
 from gbeam.studies.search.bounds import Bounds, bounds_of, named
@@ -41,7 +41,7 @@ def fit(
     at: float | None = None,
     starts: int = 1,
     overrides: Sequence[str] = (),
-    progress: Progress | None = None,
+    progress: Progress = None,
 ) -> Fit:
     """Find values of a scenario by least squares from measured histories, or from frequencies and damping.
 
@@ -69,8 +69,8 @@ def fit(
         with how many of them agree.
     overrides : sequence of str
         Changes of the scenario, such as ``beam.length=250 mm``.
-    progress : callable, optional
-        Called with what is being done and the fraction of it done.
+    progress : callable or bool, optional
+        Called with what is being done and the fraction of it done; True shows a bar.
 
     Returns
     -------

@@ -14,13 +14,14 @@ import numpy as np
 from gbeam.analysis.study.case import Case
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
+from gbeam.progress import Progress
 from gbeam.results.studies.optimum import BROKEN, Optimum, Requirement
 from gbeam.results.study import Study
 from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
 from gbeam.scenario.values.kinds import KINDS
 from gbeam.scenario.values.units import UnitError, argument
-from gbeam.studies.derivatives import Neighbourhood, Progress
+from gbeam.studies.derivatives import Neighbourhood
 from gbeam.studies.search.bounds import Bounds, bounds_of, named
 from gbeam.studies.search.descent import Goal, Search
 from gbeam.studies.search.starts import agreeing
@@ -47,7 +48,7 @@ def optimise(
     at: float | None = None,
     starts: int = 1,
     overrides: Sequence[str] = (),
-    progress: Progress | None = None,
+    progress: Progress = None,
 ) -> Optimum:
     """Find the values of a scenario at which a figure is least.
 
@@ -75,8 +76,8 @@ def optimise(
         Searches: one from the scenario's values, the others from values spread over the bounds.
     overrides : sequence of str
         Changes of the scenario, such as ``beam.length=250 mm``.
-    progress : callable, optional
-        Called with what is being done and the fraction of it done.
+    progress : callable or bool, optional
+        Called with what is being done and the fraction of it done; True shows a bar.
 
     Returns
     -------

@@ -13,8 +13,9 @@ from gbeam.analysis.response.tangents.differentiated import Grid
 from gbeam.analysis.study.case import Case
 from gbeam.errors import ComputationError, GbeamError
 from gbeam.mechanics.models import Model
+from gbeam.progress import Progress
 from gbeam.results.result import Floats
-from gbeam.studies.derivatives import Neighbourhood, Progress
+from gbeam.studies.derivatives import Neighbourhood
 from gbeam.studies.parameters import PhysicalValue
 from gbeam.studies.search.starts import starting_points
 from gbeam.studies.sensitivity import facts_of, needed, values_at
@@ -51,7 +52,7 @@ class Search:
     parameters: Sequence[PhysicalValue]
     goal: Goal
     first: Neighbourhood
-    progress: Progress | None
+    progress: Progress
     evaluations: int = 0
     tried: list[tuple[Floats, float]] = field(default_factory=list)
     ranks: list[tuple[float, float]] = field(default_factory=list)  # of those tried, each better than before

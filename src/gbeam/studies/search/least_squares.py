@@ -11,8 +11,9 @@ from gbeam.analysis.response.tangents.differentiated import Grid
 from gbeam.analysis.study.case import Case
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.mechanics.models import Model
+from gbeam.progress import Progress
 from gbeam.results.result import Floats
-from gbeam.studies.derivatives import Neighbourhood, Progress
+from gbeam.studies.derivatives import Neighbourhood
 from gbeam.studies.measurement import Measurement
 from gbeam.studies.parameters import PhysicalValue
 from gbeam.sweeps.computing.evaluate import Question
@@ -32,7 +33,7 @@ class Fitted:
     question: Question
     parameters: Sequence[PhysicalValue]
     measurement: Measurement
-    progress: Progress | None
+    progress: Progress
     grids: dict[str, Grid] | None = None
     shapes: Model | None = None
     evaluations: int = 0

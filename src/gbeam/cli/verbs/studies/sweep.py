@@ -80,10 +80,6 @@ def sweep(
     from gbeam.sweeps.sweep import sweep as compute
 
     with Watch() as watch:
-
-        def progress(done: int, failed: int, count: int) -> None:
-            watch(f"{done} of {count} cases" + (f", {failed} failed" if failed else ""), done / count)
-
         answer = compute(
             scenario,
             over,
@@ -102,7 +98,7 @@ def sweep(
             store=folder,
             resume=resume,
             confirmed=yes,
-            progress=progress,
+            progress=watch,
         )
 
     assert answer.provenance is not None  # it is of a scenario
