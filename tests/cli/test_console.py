@@ -10,8 +10,11 @@ from pathlib import Path
 
 import pytest
 
+import gbeam as gb
+from gbeam import progress
 from gbeam.cli import console
 from gbeam.cli.console import Watch
+from tests.specimens import laden
 
 
 class _Terminal(io.StringIO):
@@ -22,7 +25,7 @@ class _Terminal(io.StringIO):
 @pytest.fixture(autouse=True)
 def _impatient(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(console, "PATIENCE", 0.02)
-    monkeypatch.setattr(console, "EVERY", 0.02)
+    monkeypatch.setattr(progress, "EVERY", 0.02)
 
 
 def test_plain_lines_where_there_is_no_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -38,13 +41,13 @@ def test_plain_lines_where_there_is_no_terminal(monkeypatch: pytest.MonkeyPatch)
 
 def test_the_last_line_alone_in_a_file_that_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(sys, "stderr", io.StringIO())
-    monkeypatch.setenv(console.FILE, str(tmp_path / "progress.txt"))
+    monkeypatch.setenv(progress.FILE, str(tmp_path / "progress.txt"))
     for what in ("flight: run", "spin: run"):
         with Watch() as watch:
             watch(what, 0.25)
             time.sleep(0.1)
     assert (tmp_path / "progress.txt").read_text() == "spin: run: 25%\n"
-    monkeypatch.setenv(console.FILE, str(tmp_path / "none" / "progress.txt"))
+    monkeypatch.setenv(progress.FILE, str(tmp_path / "none" / "progress.txt"))
     with Watch() as watch:
         watch("it goes on", 0.5)
         time.sleep(0.05)
@@ -53,7 +56,7 @@ def test_the_last_line_alone_in_a_file_that_is_named(monkeypatch: pytest.MonkeyP
 
 def test_time_left_is_that_of_the_phase(monkeypatch: pytest.MonkeyPatch) -> None:
     now = [0.0]
-    monkeypatch.setattr(console, "monotonic", lambda: now[0])
+    monkeypatch.setattr(progress, "monotonic", lambda: now[0])
     watch = Watch()
     watch("a", 0.5)
     now[0] = 40.0
@@ -87,3 +90,19 @@ def test_what_is_quick_shows_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     with Watch() as watch:
         watch("flight: run", 0.5)
     assert sys.stderr.getvalue() == "" and time.monotonic() - begun < 5  # type: ignore[attr-defined]
+
+
+def test_progress_true_shows_a_bar_from_the_first_second(monkeypatch: pytest.MonkeyPatch) -> None:
+    specimen, shown = laden("FOAM"), []
+    monkeypatch.setattr(sys, "stderr", _Terminal())
+    monkeypatch.setattr(progress.Bar, "_draw", lambda self: shown.append(self.line()) or self._over.wait(60))
+    turn = gb.Flight(z=gb.trapezoid(5.0, jerk=20.0, hold=0.1))
+    run = gb.simulate(specimen, turn, duration=0.6, step=0.01, estimate=False, progress=True)
+    assert shown == ["compiling"]
+    assert run == gb.simulate(specimen, turn, duration=0.6, step=0.01, estimate=False, progress=False)
+
+
+def test_a_bar_counts_the_cases_of_a_sweep() -> None:
+    bar = progress.Bar()
+    bar(3, 1, 12)
+    assert bar.line().startswith("3 of 12 cases, 1 failed: 25%")

@@ -28,7 +28,7 @@ from typing import Any
 from unittest import mock
 
 from gbeam.cli import main
-from gbeam.cli.console import INTERVAL
+from gbeam.progress import INTERVAL
 from gbeam.scenario import loads
 
 ROOT = Path(__file__).parents[2]

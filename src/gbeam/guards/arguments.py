@@ -16,6 +16,7 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.quantities import refuse_units
 from gbeam.printable import shortened
+from gbeam.progress import Bar
 
 F = TypeVar("F", bound=Callable[..., Any])
 Test = Callable[[Any], bool]
@@ -58,6 +59,9 @@ def typed(function: F) -> F:
     @functools.wraps(function)
     def call(*args: Any, **keywords: Any) -> Any:
         given = (*zip(names, args, strict=False), *keywords.items())
+        if ("progress", True) in given:
+            with Bar() as bar:
+                return call(**dict(given) | {"progress": bar})
         check(given, True)
         try:
             return function(*args, **keywords)

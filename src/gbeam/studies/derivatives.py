@@ -21,6 +21,7 @@ from gbeam.analysis.study.study import study, study_of
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
+from gbeam.progress import Progress, tell
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Study
@@ -29,7 +30,6 @@ from gbeam.studies.parameters import PhysicalValue
 
 # Of a case and its answer, a Study of run or another verb's facts: what is differentiated, (m,).
 Read = Callable[[Case, Any], Floats]
-Progress = Callable[[str, float], None]
 _NEAR = 1e-5  # of the value: on either side, about a run whose own derivative is exact
 _RUNS, _FACTS = 1e-4, 1e-3  # the same, of differences of whole runs and of other answers
 _AT_ZERO = 1e-6  # in SI units, in place of a share of what is zero
@@ -95,11 +95,11 @@ class Neighbourhood:
         grids: Mapping[str, Grid] | None = None,
         parts: Mapping[str, bool] = MappingProxyType({}),
         adapt: Callable[[Case], Case] | None = None,
-        progress: Progress | None = None,
+        progress: Progress = None,
     ) -> None:
         self.question, self.parameters, self.parts = question, parameters, parts
         self._about: dict[str, Differentiated] = {}
-        self.progress, self.adapt = progress or (lambda *_: None), adapt or (lambda case: case)
+        self.progress, self.adapt = progress, adapt or (lambda case: case)
         self.values = [each.value for each in parameters] if values is None else [float(value) for value in values]
         self.case = self.adapt(question.case(self._changes(None, 0.0)))
         self.answer: Any
@@ -128,7 +128,7 @@ class Neighbourhood:
         values = read(self.case, self.answer)
         rows = []
         for k, each in enumerate(self.parameters):
-            self.progress(each.path, k / len(self.parameters))
+            tell(self.progress, each.path, k / len(self.parameters))
             step = self._step(k, _FACTS)
 
             def at(steps: float, k: int = k, step: float = step) -> Floats:
@@ -188,7 +188,7 @@ class Neighbourhood:
         }
         rows = []
         for k, each in enumerate(self.parameters):
-            self.progress(each.path, k / len(self.parameters))
+            tell(self.progress, each.path, k / len(self.parameters))
             if k in jumping:
                 step = self._step(k, _RUNS)
 

@@ -14,11 +14,12 @@ from gbeam.analysis.study.case import Case
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.models import Model
+from gbeam.progress import Progress
 from gbeam.results.result import Floats
 from gbeam.results.studies.fit import Fit, FittedColumn
 from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
-from gbeam.studies.derivatives import Neighbourhood, Progress
+from gbeam.studies.derivatives import Neighbourhood
 from gbeam.studies.evaluate import Question
 from gbeam.studies.measurement import Measurement, read_measurement
 from gbeam.studies.parameters import Bounds, PhysicalValue, agreeing, bounds_of, named, starting_points
@@ -40,7 +41,7 @@ def fit(
     at: float | None = None,
     starts: int = 1,
     overrides: Sequence[str] = (),
-    progress: Progress | None = None,
+    progress: Progress = None,
 ) -> Fit:
     """Find values of a scenario by least squares from measured histories, or from frequencies and damping.
 
@@ -68,8 +69,8 @@ def fit(
         with how many of them agree.
     overrides : sequence of str
         Changes of the scenario, such as ``beam.length=250 mm``.
-    progress : callable, optional
-        Called with what is being done and the fraction of it done.
+    progress : callable or bool, optional
+        Called with what is being done and the fraction of it done; True shows a bar.
 
     Returns
     -------
@@ -194,7 +195,7 @@ class Fitted:
     question: Question
     parameters: Sequence[PhysicalValue]
     measurement: Measurement
-    progress: Progress | None
+    progress: Progress
     grids: dict[str, Grid] | None = None
     shapes: Model | None = None
     evaluations: int = 0

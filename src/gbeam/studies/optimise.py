@@ -16,6 +16,7 @@ from gbeam.analysis.study.case import Case
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.models import Model
+from gbeam.progress import Progress
 from gbeam.results.result import Floats
 from gbeam.results.studies.optimum import BROKEN, Optimum, Requirement
 from gbeam.results.study import Study
@@ -24,7 +25,7 @@ from gbeam.scenario.origin import provenance
 from gbeam.scenario.values.kinds import KINDS
 from gbeam.scenario.values.units import UnitError, argument
 from gbeam.studies.answers import Facts
-from gbeam.studies.derivatives import Neighbourhood, Progress
+from gbeam.studies.derivatives import Neighbourhood
 from gbeam.studies.evaluate import Question
 from gbeam.studies.figures import Keys, unit_at
 from gbeam.studies.parameters import Bounds, PhysicalValue, agreeing, bounds_of, named, starting_points
@@ -48,7 +49,7 @@ def optimise(
     at: float | None = None,
     starts: int = 1,
     overrides: Sequence[str] = (),
-    progress: Progress | None = None,
+    progress: Progress = None,
 ) -> Optimum:
     """Find the values of a scenario at which a figure is least.
 
@@ -76,8 +77,8 @@ def optimise(
         Searches: one from the scenario's values, the others from values spread over the bounds.
     overrides : sequence of str
         Changes of the scenario, such as ``beam.length=250 mm``.
-    progress : callable, optional
-        Called with what is being done and the fraction of it done.
+    progress : callable or bool, optional
+        Called with what is being done and the fraction of it done; True shows a bar.
 
     Returns
     -------
@@ -212,7 +213,7 @@ class Search:
     parameters: Sequence[PhysicalValue]
     goal: Goal
     first: Neighbourhood
-    progress: Progress | None
+    progress: Progress
     evaluations: int = 0
     tried: list[tuple[Floats, float]] = field(default_factory=list)
     ranks: list[tuple[float, float]] = field(default_factory=list)  # of those tried, each better than before

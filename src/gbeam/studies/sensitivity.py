@@ -14,6 +14,7 @@ import numpy as np
 from gbeam.analysis.study.case import Case
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.arguments import typed
+from gbeam.progress import Progress
 from gbeam.results.result import Flags, Floats
 from gbeam.results.studies.sensitivity import Sensitivity
 from gbeam.results.study import Study
@@ -21,7 +22,7 @@ from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
 from gbeam.scenario.values.paths import path_text
 from gbeam.studies.answers import Facts, study_facts
-from gbeam.studies.derivatives import Neighbourhood, Progress, Slopes
+from gbeam.studies.derivatives import Neighbourhood, Slopes
 from gbeam.studies.evaluate import Question
 from gbeam.studies.figures import Keys, find, own_keys, unit_at, value_at
 from gbeam.studies.parameters import PhysicalValue, physical_values
@@ -43,7 +44,7 @@ def sensitivity(
     motion: str | None = None,
     at: float | None = None,
     overrides: Sequence[str] = (),
-    progress: Progress | None = None,
+    progress: Progress = None,
 ) -> Sensitivity:
     """Differentiate figures of a scenario with respect to physical values in it.
 
@@ -68,8 +69,8 @@ def sensitivity(
         Time at which that motion is frozen, s; the start of the response by default.
     overrides : sequence of str
         Changes of the scenario, such as ``beam.length=250 mm``.
-    progress : callable, optional
-        Called with what is being done and the fraction of it done.
+    progress : callable or bool, optional
+        Called with what is being done and the fraction of it done; True shows a bar.
 
     Returns
     -------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -19,6 +19,7 @@ from gbeam.guards.arguments import typed
 from gbeam.mechanics.models import KINDS
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.piecewise import constant
+from gbeam.progress import Progress
 from gbeam.questions import motion_of
 from gbeam.results.studies.shaping import ShapedCommand
 from gbeam.scenario.build import build, scenario_of
@@ -41,7 +42,7 @@ def shape(
     check: str = "",
     motion: str | None = None,
     overrides: Sequence[str] = (),
-    progress: Callable[[str, float], None] | None = None,
+    progress: Progress = None,
 ) -> ShapedCommand:
     """Find the command of a scenario's hub that leaves the least vibration: see :func:`gbeam.shape_command`.
 
@@ -63,8 +64,8 @@ def shape(
         Which hub, where there are several.
     overrides : sequence of str
         Changes of the scenario, such as ``beam.length=250 mm``.
-    progress : callable, optional
-        Called with what is being done and the fraction of it done.
+    progress : callable or bool, optional
+        Called with what is being done and the fraction of it done; True shows a bar.
 
     Returns
     -------

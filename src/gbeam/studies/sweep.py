@@ -16,6 +16,7 @@ from gbeam.analysis.study.case import Case
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import HISTORY_BYTES, WORKERS, refuse_more
+from gbeam.progress import tell
 from gbeam.results.studies.sweep import Sweep
 from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
@@ -36,7 +37,7 @@ from gbeam.studies.workers import processes, serially
 MANY = 100_000  # cases beyond which a sweep is begun only when that is confirmed
 _BATCH = 0.5  # s: what is lost at most when a process ends, and how often the store is synchronised
 _LONGEST = 256  # cases in a batch
-Progress = Callable[[int, int, int], None]
+Progress = Callable[[int, int, int], None] | bool | None
 
 
 @typed
@@ -59,7 +60,7 @@ def sweep(
     store: str | os.PathLike[str] | None = None,
     resume: bool = False,
     confirmed: bool = False,
-    progress: Progress | None = None,
+    progress: Progress = None,
 ) -> Sweep:
     """Compute figures of many cases of one scenario. What is not given is what the scenario's [sweep] says.
 
@@ -105,8 +106,8 @@ def sweep(
         Whether to take from the store what is done.
     confirmed : bool
         Whether more than 100,000 cases are meant.
-    progress : callable, optional
-        Called with the number of cases done, of those that failed among them, and of all.
+    progress : callable or bool, optional
+        Called with the number of cases done, of those that failed among them, and of all; True shows a bar.
 
     Returns
     -------
@@ -225,21 +226,19 @@ def _collected(
     found: Iterator[list[Row]],
     before: Sequence[Row],
     count: int,
-    progress: Progress | None,
+    progress: Progress,
     journal: Journal | None = None,
 ) -> list[Row]:
     """The rows found, each batch kept and reported before the next is awaited."""
     rows: list[Row] = []
     failed = sum(row.failed for row in before)
-    if progress is not None:
-        progress(len(before), failed, count)
+    tell(progress, len(before), failed, count)
     for some in found:
         if journal is not None:
             journal.add(some)
         rows += some
         failed += sum(row.failed for row in some)
-        if progress is not None:
-            progress(len(before) + len(rows), failed, count)
+        tell(progress, len(before) + len(rows), failed, count)
     return rows
 
 

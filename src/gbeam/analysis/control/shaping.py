@@ -7,7 +7,6 @@ as it turns, is then made least by Gauss-Newton steps along the exact derivative
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -22,6 +21,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.spline import SplineProfile
 from gbeam.numerics.solvers.quadratic import solve_quadratic
+from gbeam.progress import Progress, tell
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.studies.shaping import CommandRun, ShapedCommand
@@ -47,7 +47,7 @@ def shape_command(
     robust: float = 0.0,
     pieces: int = 24,
     check: Structure | None = None,
-    progress: Callable[[str, float], None] | None = None,
+    progress: Progress = None,
 ) -> ShapedCommand:
     """Find the command of a hub that leaves the least vibration of its beam.
 
@@ -76,8 +76,8 @@ def shape_command(
         Of the spline, 12 or more.
     check : Structure, optional
         That the commands are run on, such as one of the exact model; by default `structure`.
-    progress : callable, optional
-        Called with what is being done and the fraction of it done.
+    progress : callable or bool, optional
+        Called with what is being done and the fraction of it done; True shows a bar.
 
     Returns
     -------
@@ -101,21 +101,20 @@ def shape_command(
         raise InputError("robust", f"is {robust:g}", "give a share from 0 to less than 1, such as 0.2")
     if not limit > 0:
         raise InputError("limit", f"is {limit:g}", "give a positive number")
-    report = progress or (lambda *_: None)
     commands, vibration = Commands(structure, hub, goal, pieces), Vibration.of(structure, hub)
     others = usual(commands, vibration)
     scale = float(np.mean(vibration.amplitude(commands.time, others["smooth-step"], np.ones(1))))
     design = _Design(commands, vibration, limit, robust, scale)
     inner = design.linear()
     if robust == 0:
-        inner = _refined(structure, design, inner, report)
+        inner = _refined(structure, design, inner, progress)
     profiles = {"shaped": commands.of(inner), **{name: commands.profile(drive) for name, drive in others.items()}}
     drives = {"shaped": commands.fixed + commands.drive @ inner, **others}
     tested = structure if check is None else check
     settings = _settings(vibration, goal.duration)
     runs = []
     for k, (name, profile) in enumerate(profiles.items()):
-        report(f"{tested.kind}: {name}", k / len(profiles))
+        tell(progress, f"{tested.kind}: {name}", k / len(profiles))
         response = simulate(tested, driven(hub, profile), replace(settings, step=None), name=name)
         runs.append(
             CommandRun(
@@ -192,14 +191,14 @@ def _settings(vibration: Vibration, duration: float) -> ResponseSettings:
     return ResponseSettings(duration + after, residual_from=duration, integrator="gauss", estimate=False, loads=False)
 
 
-def _refined(structure: Structure, design: _Design, inner: Floats, report: Callable[[str, float], None]) -> Floats:
+def _refined(structure: Structure, design: _Design, inner: Floats, progress: Progress) -> Floats:
     """Gauss-Newton steps on what the structure's own run leaves of the tip's vibration."""
     commands = design.commands
     settings = _settings(Vibration.of(structure, commands.hub), commands.goal.duration)
     grid: Grid | None = None
     best, least = inner, np.inf
     for k in range(_ROUNDS):
-        report(f"{structure.kind}: refining", k / _ROUNDS)
+        tell(progress, f"{structure.kind}: refining", k / _ROUNDS)
         hub = driven(commands.hub, commands.of(inner))
         if grid is None:
             done = simulate(structure, hub, settings)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, Unpack
 
@@ -18,6 +17,7 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
+from gbeam.progress import Progress, tell
 from gbeam.results.parts.errors import StepErrors
 from gbeam.results.response import Response
 
@@ -29,7 +29,7 @@ def simulate(
     settings: ResponseSettings | None = None,
     *,
     name: str = "",
-    progress: Callable[[str, float], None] | None = None,
+    progress: Progress = None,
     **options: Unpack[Settings],
 ) -> Response:
     """Compute the response of a beam in one environment.
@@ -48,8 +48,8 @@ def simulate(
         Or what it is made of, by keyword: ``simulate(structure, motion, duration=10.0)``.
     name : str
         For the result.
-    progress : callable, optional
-        Called with what is being done and the fraction done.
+    progress : callable or bool, optional
+        Called with what is being done and the fraction done; True shows a bar.
 
     Returns
     -------
@@ -76,7 +76,7 @@ def simulate(
     kept = posed.kept
 
     def how(what: str) -> dict[str, Any]:
-        return {"stop": posed.too_far, "progress": None if progress is None else lambda share: progress(what, share)}
+        return {"stop": posed.too_far, "progress": lambda share: tell(progress, what, share)}
 
     up = ramp(posed.problem, settings, kept, -before, before, **how("spinning up")) if before else None
     if up is not None and not up.whole:

@@ -19,6 +19,7 @@ from gbeam.guards.arguments import typed
 from gbeam.mechanics.models import KINDS, Model
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
+from gbeam.progress import Progress, tell
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Failure, ModelRow, ModelStudy
@@ -40,9 +41,7 @@ def counterpart(model: Model, kind: str) -> Model:
 
 
 @typed
-def compare_models(
-    case: Case, kinds: Sequence[str] = tuple(KINDS), progress: Callable[[str, float], None] | None = None
-) -> ModelStudy:
+def compare_models(case: Case, kinds: Sequence[str] = tuple(KINDS), progress: Progress = None) -> ModelStudy:
     """Run a case with every model and compare the tip's displacement with the exact model's.
 
     Parameters
@@ -52,8 +51,8 @@ def compare_models(
         rotation.
     kinds : sequence of str
         Models to run beside exact.
-    progress : callable, optional
-        Called with what is being done and the fraction done.
+    progress : callable or bool, optional
+        Called with what is being done and the fraction done; True shows a bar.
 
     Returns
     -------
@@ -79,8 +78,7 @@ def compare_models(
         for name, motion in case.motions.items():
 
             def report(what: str, share: float, doing: str = f"{kind} on {name}", done: int = i) -> None:
-                if progress is not None:
-                    progress(f"{doing}: {what}", (done + share) / len(chosen))
+                tell(progress, f"{doing}: {what}", (done + share) / len(chosen))
 
             run = partial(_answer, structure, motion, case.response, name, report)
             answers[kind, name] = _timed(run)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
@@ -12,6 +12,7 @@ from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.study.case import Case
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
+from gbeam.progress import Progress, tell
 from gbeam.results.imitation.criteria import judging
 from gbeam.results.response import Response
 from gbeam.results.study import Failure, Study
@@ -20,15 +21,15 @@ ENOUGH = 1e-3  # error from too few shapes, at most, where their numbers are aut
 
 
 @typed
-def study(case: Case, progress: Callable[[str, float], None] | None = None) -> Study:
+def study(case: Case, progress: Progress = None) -> Study:
     """Compute the response in every environment of a case and compare each centrifuge with its flight.
 
     Parameters
     ----------
     case : Case
         From :func:`gbeam.read_scenario`, or made by hand.
-    progress : callable, optional
-        Called with what is being done and the fraction of it done.
+    progress : callable or bool, optional
+        Called with what is being done and the fraction of it done; True shows a bar.
 
     Returns
     -------
@@ -80,9 +81,7 @@ def study_of(
     return Study(case.title, dict(responses), comparisons, dict(failures), provenance=case.provenance)
 
 
-def _answers(
-    case: Case, progress: Callable[[str, float], None] | None
-) -> tuple[dict[str, Response], dict[str, Failure]]:
+def _answers(case: Case, progress: Progress) -> tuple[dict[str, Response], dict[str, Failure]]:
     """The responses in all environments, and why some have none."""
     structure = case.assemble()
 
@@ -90,8 +89,7 @@ def _answers(
         motion = case.motions[name]
 
         def report(what: str, share: float) -> None:
-            if progress is not None:
-                progress(f"{name}: {what}", share)
+            tell(progress, f"{name}: {what}", share)
 
         response = simulate(structure, motion, case.response, name=name, progress=report)
         return replace(response, provenance=case.provenance)

@@ -20,6 +20,7 @@ from gbeam.motion.bases.base import Base
 from gbeam.numerics.solvers.eigen import symmetric_modes
 from gbeam.numerics.solvers.oscillations import stability_margin
 from gbeam.numerics.solvers.roots import brent
+from gbeam.progress import Progress, tell
 from gbeam.results.parts.errors import ErrorEstimate
 from gbeam.results.result import Floats
 from gbeam.results.steady.stability import Critical
@@ -30,10 +31,9 @@ HALVINGS = 16
 CLOSE = 1e-6  # of the critical value: how closely a root is found
 
 Path = Callable[[float], tuple[Structure, Base]]
-Progress = Callable[[str, float], None]
 
 
-def judged(found: Critical, path: Path, progress: Progress | None = None) -> Critical:
+def judged(found: Critical, path: Path, progress: Progress = None) -> Critical:
     """A critical value with its estimated errors, and warnings where they are above one in a hundred.
 
     Parameters
@@ -77,7 +77,7 @@ def _lowest(slender: Structure, structure: Structure, base: Base) -> Floats:
     return symmetric_modes((stiffness + stiffness.T) / 2, slender.coefficients.mass)[1][:, :1].T
 
 
-def _unseen(found: Critical, path: Path, progress: Progress | None) -> tuple[str, ...]:
+def _unseen(found: Critical, path: Path, progress: Progress) -> tuple[str, ...]:
     """What to say where a beam that twists loses what a model without torsion keeps: a strip on edge buckles sideways.
 
     Looked for at shares of the end of the search, each half of the one above.
@@ -97,9 +97,7 @@ def _apart(value: float, reference: float) -> float:
     return math.inf if math.isinf(reference) else abs(value / reference - 1)
 
 
-def _lost(
-    rich: Structure, path: Path, near: float, progress: Progress | None, shares: Sequence[float] = SHARES
-) -> float:
+def _lost(rich: Structure, path: Path, near: float, progress: Progress, shares: Sequence[float] = SHARES) -> float:
     """Value at which a richer model loses its equilibrium; infinity where it keeps it to the last of the shares."""
 
     @cache
@@ -112,8 +110,7 @@ def _lost(
 
     low = 0.0
     for i, share in enumerate(shares):
-        if progress is not None:
-            progress(f"errors of the critical value, by {rich.kind} with more shapes", i / len(shares))
+        tell(progress, f"errors of the critical value, by {rich.kind} with more shapes", i / len(shares))
         if margin(share * near) < 0:
             return brent(margin, low, share * near, xtol=CLOSE * near)
         low = share * near

@@ -16,7 +16,7 @@ import numpy as np
 
 from gbeam.analysis.equilibrium.point import REST, steady_base
 from gbeam.analysis.vibration.loss import first_loss_along
-from gbeam.analysis.vibration.loss_errors import Path, Progress, doubtful_loss, judged
+from gbeam.analysis.vibration.loss_errors import Path, doubtful_loss, judged
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
@@ -27,6 +27,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.protocol import Motion
+from gbeam.progress import Progress, tell
 from gbeam.results.parts.errors import PARTS, ErrorEstimate
 from gbeam.results.steady.stability import Critical, CriticalMap, MapErrors
 from gbeam.structure.beam import Beam
@@ -60,7 +61,7 @@ def critical_speed(
     *,
     upper: float | None = None,
     name: str = "",
-    progress: Progress | None = None,
+    progress: Progress = None,
 ) -> Critical:
     """Lowest hub rate at which the beam's relative equilibrium is lost, the hub's rate being held.
 
@@ -73,8 +74,8 @@ def critical_speed(
         End of the search, rad/s; by default ten times the lowest natural frequency.
     name : str
         Of the motion, for what is said of it.
-    progress : callable, optional
-        Called with what is done and the share of it.
+    progress : callable or bool, optional
+        Called with what is done and the share of it; True shows a bar.
 
     Returns
     -------
@@ -107,7 +108,7 @@ def critical_speed_map(
     upper: float | None = None,
     *,
     name: str = "",
-    progress: Progress | None = None,
+    progress: Progress = None,
 ) -> CriticalMap:
     """Critical hub rates with one more mass on the beam, against its size and position (2009 Fig. 9).
 
@@ -122,8 +123,8 @@ def critical_speed_map(
         End of the search, rad/s; by default ten times the lowest natural frequency without the mass.
     name : str
         Of the motion.
-    progress : callable, optional
-        Called with what is done and the share of it.
+    progress : callable or bool, optional
+        Called with what is done and the share of it; True shows a bar.
 
     Returns
     -------
@@ -141,8 +142,7 @@ def critical_speed_map(
     worst = ErrorEstimate(total=0.0)
     for i, mass in enumerate(masses):
         for j, at in enumerate(positions):
-            if progress is not None:
-                progress("critical hub rates", (i * len(positions) + j) / speed.size)
+            tell(progress, "critical hub rates", (i * len(positions) + j) / speed.size)
             loaded = replace(beam, masses=(*beam.masses, PointMass(at, mass)))
             turning = _turning(assemble(loaded, model), hub)
             found = judged(first_loss_along(turning, limit, "hub rate", "rad/s"), turning)
@@ -157,9 +157,7 @@ def critical_speed_map(
 
 
 @typed
-def buckling_acceleration(
-    structure: Structure, *, upper: float | None = None, progress: Progress | None = None
-) -> Critical:
+def buckling_acceleration(structure: Structure, *, upper: float | None = None, progress: Progress = None) -> Critical:
     """Acceleration of the root along +x at which the beam, pushed by it, buckles under its own inertia.
 
     The heavy column of Greenhill (1881): 7.8373 EI/(m L³) for a uniform beam without masses.
@@ -169,8 +167,8 @@ def buckling_acceleration(
     structure : Structure
     upper : float, optional
         End of the search, m/s²; by default ten times the length times the square of the lowest natural frequency.
-    progress : callable, optional
-        Called with what is done and the share of it.
+    progress : callable or bool, optional
+        Called with what is done and the share of it; True shows a bar.
 
     Returns
     -------
@@ -186,7 +184,7 @@ def buckling_acceleration(
 
 @typed
 def critical_load(
-    structure: Structure, base: Base | None = None, *, upper: float | None = None, progress: Progress | None = None
+    structure: Structure, base: Base | None = None, *, upper: float | None = None, progress: Progress = None
 ) -> Critical:
     """Factor on all loads on the beam at which its relative equilibrium is lost.
 
@@ -200,8 +198,8 @@ def critical_load(
         Frozen motion of the base, arrays (3,); by default at rest.
     upper : float, optional
         End of the search; by default ten times the factor that makes the loads' stiffness as large as the beam's.
-    progress : callable, optional
-        Called with what is done and the share of it.
+    progress : callable or bool, optional
+        Called with what is done and the share of it; True shows a bar.
 
     Returns
     -------

@@ -77,10 +77,6 @@ def sweep(
     from gbeam.studies.sweep import sweep as compute
 
     with Watch() as watch:
-
-        def progress(done: int, failed: int, count: int) -> None:
-            watch(f"{done} of {count} cases" + (f", {failed} failed" if failed else ""), done / count)
-
         answer = compute(
             scenario,
             over,
@@ -99,7 +95,7 @@ def sweep(
             store=folder,
             resume=resume,
             confirmed=yes,
-            progress=progress,
+            progress=watch,
         )
 
     assert answer.provenance is not None  # it is of a scenario

@@ -1,0 +1,147 @@
+"""Progress on stderr: what is done, its share and the time left."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from threading import Event, Thread
+from time import monotonic
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self, TypeAlias
+
+from gbeam.printable import on_one_line
+
+if TYPE_CHECKING:
+    from rich.progress import Progress as _Drawn
+
+INTERVAL = "GBEAM_PROGRESS"  # environment: seconds between lines, for programs that read them, on a terminal too
+FILE = "GBEAM_PROGRESS_FILE"  # environment: the file that has the last line, in place of stderr
+EVERY = 5.0  # s between lines where there is no terminal and no notebook
+_REDRAW = 0.1  # s
+
+# Argument of the public functions: called with what is being done and the share of it; True shows a Bar.
+Progress: TypeAlias = Callable[[str, float], None] | bool | None
+
+
+class Bar:
+    """Progress of a computation: a bar on a terminal or in a notebook, else a plain line every few seconds.
+
+    Use it as a context, and call it with what is being done and the fraction done; or, of a sweep, with the numbers of
+    cases that are done, of those that failed among them, and of all.
+
+    Parameters
+    ----------
+    first : str
+        What is being done until it is called.
+    patience : float
+        Time without a sign of life that needs no explanation, s.
+    """
+
+    def __init__(self, first: str = "compiling", *, patience: float = 0.0) -> None:
+        self._now = (first, 0.0)
+        self._patience = patience
+        self._since = monotonic()  # when that was begun
+        self._over = Event()
+        # A thread, not a look at the clock in __call__: the long silence is compilation, before the first call.
+        self._thread = Thread(target=self._show, daemon=True)
+        self._bar: _Drawn | None = None
+
+    def __call__(self, *news: Any) -> None:
+        """Show how much of what is done."""
+        what, share = news if len(news) == 2 else _of_cases(*news)
+        before, done = self._now
+        if what != before or share < done:
+            self._since = monotonic()
+        self._now = what, share
+
+    def line(self) -> str:
+        """What is done, its share and the time left, as far as they are known."""
+        what, share = self._now
+        if not share:
+            return on_one_line(what)
+        return f"{on_one_line(what)}: {share:.0%}{_left(monotonic() - self._since, share)}"
+
+    def _show(self) -> None:
+        every = _interval()
+        if self._over.wait(self._patience if every is None else every):
+            return
+        if every is None and (sys.stderr.isatty() or _in_notebook()):
+            self._draw()
+            return
+        while True:
+            self._say()
+            if self._over.wait(EVERY if every is None else every):
+                return
+
+    def _say(self) -> None:
+        file = os.environ.get(FILE)
+        if not file:
+            print(f"gbeam: {self.line()}", file=sys.stderr, flush=True)
+            return
+        with suppress(OSError):  # progress is not worth a failure
+            Path(file).write_text(f"{self.line()}\n", encoding="utf-8")
+
+    def _draw(self) -> None:
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TextColumn
+
+        text = TextColumn("{task.description}", markup=False)
+        self._bar = Progress(text, BarColumn(), console=Console(stderr=True), transient=True)
+        task = self._bar.add_task("", total=1.0)
+        self._bar.start()
+        while not self._over.wait(_REDRAW):
+            share = self._now[1]
+            self._bar.update(task, description=self.line(), completed=share, total=1.0 if share else None)
+
+    def _stop(self) -> None:
+        self._over.set()
+        if self._bar is not None:
+            self._bar.stop()  # which shows the cursor again
+
+    def __enter__(self) -> Self:
+        if sys.stderr is not None:
+            self._thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._over.set()
+        if self._thread.is_alive():
+            self._thread.join()  # it may be starting the bar at this moment
+        self._stop()
+
+
+def tell(progress: Callable[..., None] | bool | None, *news: Any) -> None:
+    """Call `progress` where there is one."""
+    if callable(progress):
+        progress(*news)
+
+
+def _of_cases(done: int, failed: int, count: int) -> tuple[str, float]:
+    return f"{done} of {count} cases" + (f", {failed} failed" if failed else ""), done / count
+
+
+def _in_notebook() -> bool:
+    from rich.console import Console
+
+    return Console(stderr=True).is_jupyter
+
+
+def _interval() -> float | None:
+    """Seconds between lines by the environment; None where it names no time."""
+    try:
+        return max(float(os.environ.get(INTERVAL, "")), 0.1)
+    except ValueError:
+        return None
+
+
+def _left(passed: float, share: float) -> str:
+    """Time left in words, once enough is done to say."""
+    if share < 0.02 or passed < 1:
+        return ""
+    left = passed * (1 - share) / share
+    return f", {left:.0f} s left" if left < 100 else f", {left / 60:.0f} min left"
