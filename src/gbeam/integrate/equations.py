@@ -16,7 +16,7 @@ Drive = Callable[[Array], Any]  # times (t,) -> what drives the equations there,
 
 @record
 class LinearTerms:
-    """C, K (k, n, n) and F (k, n) as sums over features φ of the inputs: C = Σ φ_k C_k, K = Σ φ_k K_k, F = Σ φ_k F_k."""
+    """C, K (k, n, n) and F (k, n) as sums over features φ of the inputs, such as C = Σ φ_k C_k."""
 
     velocity: Array
     stiffness: Array

@@ -71,7 +71,7 @@ class Enrichment:
     def model(
         self, kind: str, *, directions: tuple[bool, bool, bool] = (True, True, True)
     ) -> tuple[Structure, NDArray[np.int_]]:
-        """Make a model with new shapes along some of x, y, z, and say which of its coordinates are the structure's own."""
+        """Make a model with new shapes along some of x, y, z, and say which coordinates are the structure's own."""
         key = kind, directions
         if key not in self._made:
             self._made[key] = self._model(kind, directions)

@@ -142,7 +142,7 @@ def causes(theory: Theory, p: Any, beam: Any, plate: Any) -> dict[str, float]:
 
 
 def mode_causes(theory: Theory, base: Base, loads: Any, mode: Any, rate: Any, plate: Floats) -> dict[str, float]:
-    """Share of each cause in the energy of modes (k, own) at rates (k,) on a base (3,), without what a free hub adds."""
+    """Share of each cause in the energy of modes (k, own) at rates (k,) on a base (3,), without a free hub's."""
     a, w, alpha = (np.asarray(x)[None] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B))
     given = None if loads is None else np.asarray(loads)[None]
     features = theory.thick.coefficients.features(a, w, alpha, given)[0]

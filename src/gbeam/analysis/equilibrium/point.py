@@ -141,7 +141,7 @@ def held_base(motion: Motion | None, time: float) -> Base:
 def placed(
     structure: Structure, base: Base, q: Array | None, qd: Array | None
 ) -> tuple[Array, Array, Coefficients | None, bool]:
-    """Coordinates and rates, by default of the relative equilibrium with its coefficients, and whether they are that."""
+    """Coordinates and rates, by default of the relative equilibrium with its coefficients, and whether they are."""
     found = None
     if q is None:
         (at, _), found = equilibrium_about(structure, base)

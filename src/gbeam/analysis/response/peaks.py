@@ -110,7 +110,7 @@ def vector_peaks(time: Floats, vectors: Floats) -> tuple[Floats, Floats]:
 
 
 def peaks_of_coordinates(trajectory: Trajectory, vectors: Floats, of: Callable[[Floats], Floats]) -> Floats:
-    """Largest sizes (4,) of components and length of a vector of q, also at quintic Hermite polynomials between steps."""
+    """Largest sizes (4,) of components and length of a vector of q, also at Hermite polynomials between steps."""
     time, sizes = trajectory.time, _sizes(vectors[:, None])
     t, q = quintic_hermite(time, trajectory.q, trajectory.qd, trajectory.qdd, near_maxima(time, sizes))
     value, _ = maxima(time, sizes, t, _sizes(of(q)[:, :, None]))

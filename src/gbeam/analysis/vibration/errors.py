@@ -49,7 +49,7 @@ def doubtful(errors: FrequencyErrors) -> tuple[str, ...]:
 
 
 class ByTheory(NamedTuple):
-    """Errors (k,) that the theory of slender beams makes, the causes of the largest, and frequencies unknown to it, Hz."""
+    """Errors (k,) by the theory of slender beams, the causes of the largest, and frequencies unknown to it, Hz."""
 
     shares: Floats
     causes: dict[str, float]
@@ -57,7 +57,7 @@ class ByTheory(NamedTuple):
 
 
 class Richer:
-    """A structure's model with more shapes, the exact one, and the thick beam, about the base where it turns fastest."""
+    """A structure's model with more shapes, the exact one, and the thick beam, on the base where it turns fastest."""
 
     def __init__(self, structure: Structure, base: Base) -> None:
         more, (_, along_y, along_z) = enrichment(structure, base), structure.counts

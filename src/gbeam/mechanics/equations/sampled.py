@@ -25,7 +25,7 @@ TURN = 1e-3  # by which a coordinate moves in the imaginary time τ, as a share 
 
 
 def paths(place: Any, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
-    """Places, velocities and accelerations (t, p, 3) of points placed by a function of coordinates, q, qd, qdd (t, n)."""
+    """Places, velocities and accelerations (t, p, 3) of points placed by a function of q; q, qd, qdd (t, n)."""
     r = np.asarray(place(q))
     fast = max(np.abs(qd).max(initial=0.0), np.sqrt(np.abs(qdd).max(initial=0.0)))
     if fast == 0:

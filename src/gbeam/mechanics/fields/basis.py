@@ -67,7 +67,7 @@ def bending_shapes(x: Array, length: float, count: int) -> Shapes:
 
 
 def legendre_shapes(x: Array, length: float, count: int) -> Shapes:
-    """Integrated Legendre shapes ∫₀ˣ P_k(2s/L − 1) ds/L, k = 0 … count−1: zero at the root, with polynomials as slopes."""
+    """Integrated Legendre shapes ∫₀ˣ P_k(2s/L − 1) ds/L, k = 0 … count−1: zero at the root, slopes polynomials."""
     xi = 2 * np.asarray(x) / length - 1
     values, slopes, curvatures = np.zeros((3, len(xi), count))
     for k in range(count):

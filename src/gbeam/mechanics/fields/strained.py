@@ -67,7 +67,7 @@ class StrainedField:
         return Places(places.r0, places.first, self.weighted(even, arms)), Turns(turn, bend)
 
     def weighted(self, weight: Array, arm: Array) -> Array:
-        """Σ w H of the points plus Σ (∂²R/∂q²) a, (k, 3, n, n), for weights (k, p) and arms (k, 3, p) in section axes."""
+        """Σ w H of the points plus Σ (∂²R/∂q²) a, (k, 3, n, n), for weights (k, p) and section arms (k, 3, p)."""
         (*strain, twist, bend_y, bend_z), angle = self.strains, self.angles(self.node_cumulative)
         kappa, n = (twist, bend_y, bend_z), self.strains.shape[-1]
         at_nodes = weight @ self.cumulative

@@ -116,7 +116,7 @@ def pose(structure: Structure, motion: Motion, settings: ResponseSettings) -> tu
 
 
 def steps_within(structure: Structure, displacement: Floats) -> int | None:
-    """Steps after which stations (t, s, 3) of a projected field moved by the beam's length, or particles without bound."""
+    """Steps until stations (t, s, 3) of a projected field moved by the beam's length, or particles without bound."""
     if structure.kind == "exact":
         return None
     limit = BOUNDLESS if structure.field is None else structure.length
