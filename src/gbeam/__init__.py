@@ -64,15 +64,15 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.motion.profiles.pulse import Sine as Sine
     from gbeam.motion.profiles.pulse import SmoothStep as SmoothStep
     from gbeam.motion.profiles.spline import SplineProfile as SplineProfile
+    from gbeam.results.cases import Sensitivity as Sensitivity
+    from gbeam.results.cases import Sweep as Sweep
     from gbeam.results.imitation.comparison import Comparison as Comparison
     from gbeam.results.response import Response as Response
-    from gbeam.results.steady.state_space import Gauge as Gauge
-    from gbeam.results.steady.state_space import StateSpace as StateSpace
-    from gbeam.results.studies.fit import Fit as Fit
-    from gbeam.results.studies.optimum import Optimum as Optimum
-    from gbeam.results.studies.sensitivity import Sensitivity as Sensitivity
-    from gbeam.results.studies.shaping import ShapedCommand as ShapedCommand
-    from gbeam.results.studies.sweep import Sweep as Sweep
+    from gbeam.results.searches import Fit as Fit
+    from gbeam.results.searches import Optimum as Optimum
+    from gbeam.results.searches import ShapedCommand as ShapedCommand
+    from gbeam.results.state_space import Gauge as Gauge
+    from gbeam.results.state_space import StateSpace as StateSpace
     from gbeam.results.study import Study as Study
     from gbeam.scenario.build import read_scenario as read_scenario
     from gbeam.scenario.rerun import rerun as rerun
@@ -99,9 +99,9 @@ _HOME = {
     "Choice": "analysis.imitation.choice",
     "Comparison": "results.imitation.comparison",
     "ComputationError": "errors",
-    "Fit": "results.studies.fit",
+    "Fit": "results.searches",
     "Flight": "motion.bases.flight",
-    "Gauge": "results.steady.state_space",
+    "Gauge": "results.state_space",
     "GbeamError": "errors",
     "Hub": "motion.bases.hub",
     "Initial": "analysis.response.initial",
@@ -110,21 +110,21 @@ _HOME = {
     "MachineLimits": "motion.centrifuge.machine.limits",
     "Material": "structure.material",
     "Model": "mechanics.models",
-    "Optimum": "results.studies.optimum",
+    "Optimum": "results.searches",
     "PointMass": "structure.bodies",
     "Response": "results.response",
     "ResponseSettings": "analysis.response.settings",
     "Root": "structure.support",
     "Section": "structure.section",
-    "Sensitivity": "results.studies.sensitivity",
-    "ShapedCommand": "results.studies.shaping",
+    "Sensitivity": "results.cases",
+    "ShapedCommand": "results.searches",
     "Sine": "motion.profiles.pulse",
     "SmoothStep": "motion.profiles.pulse",
     "SplineProfile": "motion.profiles.spline",
-    "StateSpace": "results.steady.state_space",
+    "StateSpace": "results.state_space",
     "Structure": "mechanics.structure",
     "Study": "results.study",
-    "Sweep": "results.studies.sweep",
+    "Sweep": "results.cases",
     "Sum": "motion.profiles.combine",
     "assemble": "mechanics.assembly",
     "balanced_truncation": "analysis.control.reduction",

@@ -16,11 +16,10 @@ if TYPE_CHECKING:
     from gbeam.analysis.study.case import Case
     from gbeam.mechanics.structure import Structure
     from gbeam.motion.protocol import Motion
+    from gbeam.results.equilibrium import Critical, Deflection
     from gbeam.results.imitation.placement import Placement
     from gbeam.results.imitation.plan import MachinePlan
-    from gbeam.results.steady.equilibrium import Deflection
-    from gbeam.results.steady.modal import Campbell, Modes
-    from gbeam.results.steady.stability import Critical
+    from gbeam.results.modal import Campbell, Modes
     from gbeam.results.study import Study
 
 HUB, CENTRIFUGE = "hub", "centrifuge"

@@ -16,7 +16,7 @@ from gbeam.analysis.equilibrium.point import evaluated_at, linear_matrices, on_b
 from gbeam.analysis.vibration.modal import modes
 from gbeam.motion import Base, Hub, constant
 from gbeam.report.steady.state_space import text, to_json
-from gbeam.results.steady.state_space import Signal, StateSpace
+from gbeam.results.state_space import Signal, StateSpace
 
 from .beams import ALUMINIUM, BOX, FREE_2009, HUB_2009, beam_2009, structure_2009
 

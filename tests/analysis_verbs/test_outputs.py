@@ -14,7 +14,7 @@ from gbeam.analysis.control.nonlinear import nonlinear_system
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.motion import Flight, Hub, constant
 from gbeam.results.response import BaseMotion
-from gbeam.results.steady.state_space import Gauge
+from gbeam.results.state_space import Gauge
 
 from ..specimens import COMPLETE
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from gbeam.plots import plot_campbell
-from gbeam.results.steady.modal import Campbell
+from gbeam.results.modal import Campbell
 
 from ..scenarios import SLEWING, SLEWING_AND_FLYING
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.report.page.result import shown
-from gbeam.results.parts.outline import Outline
+from gbeam.results.parts import Outline
 from gbeam.results.study import Study
 
 from ..plots.conftest import study

@@ -16,14 +16,12 @@ from scipy.integrate import cumulative_trapezoid
 
 from gbeam import Hub, SmoothStep, simulate
 from gbeam.errors import InputError
-from gbeam.io.histories import csv_of
-from gbeam.io.stored import read_stored
+from gbeam.io.stored import csv_of, read_stored
 from gbeam.results.imitation.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
 from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.fatigue import Fatigue, StressCycles
-from gbeam.results.imitation.measures import RootHistory, RootLoads, Sizes, Statistics
+from gbeam.results.imitation.measures import Fatigue, RootHistory, RootLoads, Sizes, Statistics, StressCycles
 from gbeam.results.machine import AxesResult, LimitUse, Shortfall
-from gbeam.results.parts.section_forces import Loads
+from gbeam.results.parts import Loads
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import BaseMotion, HubResult, Peaks, Response
 from gbeam.results.study import Failure, Study

@@ -29,7 +29,7 @@ from gbeam import (
 from gbeam.mechanics.influence import influence
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.motion import Base
-from gbeam.results.parts.section_forces import Loads
+from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
 
 from ..differences import along, rate

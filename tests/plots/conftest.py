@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from gbeam.results.errors import ErrorEstimate, Errors
 from gbeam.results.imitation.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.machine import AxesResult, LimitUse
-from gbeam.results.parts.errors import ErrorEstimate, Errors
 from gbeam.results.response import BaseMotion, HubResult, Peaks, Response
 from gbeam.results.study import Study
 

@@ -28,12 +28,12 @@ from gbeam.plots import (
     write_plots,
 )
 from gbeam.plots.drawing.lines import FLIGHT
+from gbeam.results.equilibrium import Deflection
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.measures import Mismatch, RootHistory, RootLoads, Shock
 from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.machine import LimitUse
-from gbeam.results.parts.section_forces import Loads
-from gbeam.results.steady.equilibrium import Deflection
+from gbeam.results.parts import Loads
 from gbeam.results.study import Study
 
 

@@ -27,11 +27,9 @@ from gbeam.report.page import series
 from gbeam.report.page.document import html as page_of
 from gbeam.report.page.result import report_of, report_of_file
 from gbeam.report.words import as_json
-from gbeam.results.parts.outline import Outline
+from gbeam.results.parts import Outline
 from gbeam.results.result import Result
-from gbeam.results.studies.fit import FittedColumn
-from gbeam.results.studies.optimum import Requirement
-from gbeam.results.studies.shaping import CommandRun
+from gbeam.results.searches import CommandRun, FittedColumn, Requirement
 from gbeam.results.study import Study
 
 BEAM = gb.Beam(0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9), damping_ratio=0.01)

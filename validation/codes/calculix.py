@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 import gbeam as gb
-from gbeam.results.steady.modal import Modes
+from gbeam.results.modal import Modes
 from validation.codes.calculix_beam import Answer, Spin, Strip, solve
 from validation.table import Row
 

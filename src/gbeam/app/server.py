@@ -25,8 +25,7 @@ from gbeam.app.preview import head, load_curves
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.limits import SCENARIO_BYTES
 from gbeam.guards.lock import alone
-from gbeam.io.histories import csv_of
-from gbeam.io.stored import read_stored
+from gbeam.io.stored import csv_of, read_stored
 from gbeam.scenario.text.source import parse
 
 _KINDS = {".js": "text/javascript", ".css": "text/css", ".html": "text/html; charset=utf-8"}

@@ -19,10 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from rich.console import RenderableType
 
-    from gbeam.results.studies.fit import Fit
-    from gbeam.results.studies.optimum import Optimum
-    from gbeam.results.studies.sensitivity import Sensitivity
-    from gbeam.results.studies.shaping import ShapedCommand
+    from gbeam.results.cases import Sensitivity
+    from gbeam.results.searches import Fit, Optimum, ShapedCommand
 
 Found = TypeVar("Found", "Fit", "Optimum", "Sensitivity", "ShapedCommand")
 _PLAIN_WIDTH = 110  # columns of a table where stdout is a file

@@ -20,29 +20,20 @@ from gbeam.io.layout.comparisons import comparison_group
 from gbeam.io.layout.declared import whole_group
 from gbeam.io.layout.machine import plan_group
 from gbeam.io.layout.responses import response_group
-from gbeam.io.layout.steady import deflection_group
-from gbeam.io.layout.studies.fits import fit_group
-from gbeam.io.layout.studies.optima import optimum_group
-from gbeam.io.layout.studies.sensitivities import sensitivity_group
-from gbeam.io.layout.studies.shaping import shaping_group
-from gbeam.io.layout.studies.sweeps import sweep_group
-from gbeam.io.layout.tables import models_group, placement_group, state_space_group
+from gbeam.io.layout.studies import fit_group, optimum_group, sensitivity_group, shaping_group, sweep_group
+from gbeam.io.layout.tables import deflection_group, models_group, placement_group, state_space_group
 from gbeam.io.provenance import provenance_attrs, provenance_variables
+from gbeam.results.cases import Sensitivity, Sweep
+from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.placement import Placement
 from gbeam.results.imitation.plan import MachinePlan
+from gbeam.results.modal import Campbell, Modes
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
-from gbeam.results.steady.equilibrium import Deflection
-from gbeam.results.steady.modal import Campbell, Modes
-from gbeam.results.steady.stability import Critical, CriticalMap
-from gbeam.results.steady.state_space import StateSpace
-from gbeam.results.studies.fit import Fit
-from gbeam.results.studies.optimum import Optimum
-from gbeam.results.studies.sensitivity import Sensitivity
-from gbeam.results.studies.shaping import ShapedCommand
-from gbeam.results.studies.sweep import Sweep
+from gbeam.results.searches import Fit, Optimum, ShapedCommand
+from gbeam.results.state_space import StateSpace
 from gbeam.results.study import ModelStudy, Study
 
 FACTS = "facts"  # the variable of the root with the figures as JSON

@@ -1,9 +1,10 @@
-"""Files of results read back as they were written: every variable and attribute, undecoded."""
+"""Results read from a file, and the histories of a run as a table of text."""
 
 from __future__ import annotations
 
 import io
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from gbeam.io.hdf5 import contents, contents_of, image
 from gbeam.io.netcdf import groups_of
 from gbeam.io.provenance import provenance_of
 from gbeam.results.provenance import Provenance
-from gbeam.results.result import Result
+from gbeam.results.result import Floats, Result
 
 
 @dataclass(frozen=True)
@@ -68,3 +69,55 @@ def read_stored(path: str | os.PathLike[str]) -> Stored:
 def _stored(variables: dict[str, Any], attrs: dict[str, dict[str, Any]]) -> Stored:
     arrays = {name: each if isinstance(each, str) else np.asarray(each) for name, each in variables.items()}
     return Stored(arrays, attrs)
+
+
+_HEAD = "motion,time_s"
+_VECTORS = {  # variable, name of its columns, unit
+    "tip": ("tip", "m"),
+    "section_force": ("root_force", "N"),
+    "section_moment": ("root_moment", "N_m"),
+    "root_acceleration": ("root_acceleration", "m_per_s2"),
+    "load_reference": ("load_target", "m_per_s2"),
+    "load_actual": ("load_made", "m_per_s2"),
+    "axis_angle": ("axis_angle", "rad"),
+    "axis_rate": ("axis_rate", "rad_per_s"),
+    "axis_acceleration": ("axis_acceleration", "rad_per_s2"),
+}
+
+
+def csv_of(stored: Stored) -> str:
+    """Return one line for each time of each motion, SI, base axes; what a motion does not have is empty.
+
+    Of the sections' forces, moments and stress it has those of the root, in the axes of its section.
+    """
+    names = [path.split("/")[1] for path in stored.variables if path.startswith("motions/") and path.endswith("/time")]
+    columns = [
+        f"{name}_{part}_{unit}"
+        for variable, (name, unit) in _VECTORS.items()
+        for part in ("123" if variable.startswith("axis") else "xyz")
+    ]
+    lines = [",".join([_HEAD, *columns, "stress_Pa"])]
+    for name in names:
+        lines.extend(_rows(stored, name, len(columns)))
+    return "\n".join(lines) + "\n"
+
+
+def _rows(stored: Stored, name: str, count: int) -> Iterator[str]:
+    place = f"motions/{name}/"
+    time = stored.variables[f"{place}time"]
+    values = np.full((len(time), count + 1), np.nan)
+    for k, variable in enumerate(_VECTORS):
+        found = stored.variables.get(place + ("displacement" if variable == "tip" else variable))
+        if found is not None:
+            values[:, 3 * k : 3 * k + 3] = _at_one_place(found, last=variable == "tip")
+    stress = stored.variables.get(f"{place}stress")
+    if stress is not None:
+        values[:, -1] = stress[:, 0]
+    quoted = f'"{name}"' if "," in name or '"' in name else name
+    for t, row in zip(time, values, strict=True):
+        yield f"{quoted},{t:.9g}," + ",".join("" if np.isnan(each) else f"{each:.9g}" for each in row)
+
+
+def _at_one_place(values: Floats, *, last: bool) -> Floats:
+    """Of a vector at several places that at the last, or the first."""
+    return values[:, -1 if last else 0] if values.ndim == 3 else values

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.mechanics.structure import Structure
-from gbeam.results.parts.section_forces import Influence
+from gbeam.results.parts import Influence
 
 Array = Any
 

@@ -21,7 +21,7 @@ from gbeam.mechanics.equations.sampled import paths
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
-from gbeam.results.parts.section_forces import Loads
+from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
 from gbeam.structure.stress import extreme_stresses, worst_fibre
 

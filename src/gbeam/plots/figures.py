@@ -25,19 +25,14 @@ from gbeam.plots.studies.shaping import plot_robustness, plot_shaping
 from gbeam.plots.studies.sweep import plot_sweep
 from gbeam.plots.studies.uncertainty import plot_history, plot_indices, plot_probability
 from gbeam.plots.tip import plot_tip
+from gbeam.results.cases import PROBABILITY, Sensitivity, Sweep
+from gbeam.results.equilibrium import CriticalMap, Deflection
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.machine import AxesResult
+from gbeam.results.modal import Campbell, Modes
 from gbeam.results.response import Response
-from gbeam.results.steady.equilibrium import Deflection
-from gbeam.results.steady.modal import Campbell, Modes
-from gbeam.results.steady.stability import CriticalMap
-from gbeam.results.studies.fit import Fit
-from gbeam.results.studies.optimum import Optimum
-from gbeam.results.studies.sensitivity import Sensitivity
-from gbeam.results.studies.shaping import ShapedCommand
-from gbeam.results.studies.sweep import Sweep
-from gbeam.results.studies.uncertainty import PROBABILITY
+from gbeam.results.searches import Fit, Optimum, ShapedCommand
 from gbeam.results.study import Study
 
 Draw = Callable[[], Figure]

@@ -12,10 +12,10 @@ from gbeam.plots.drawing.lines import components, line
 from gbeam.plots.drawing.stretches import shade, stretches
 from gbeam.plots.drawing.style import colour, heading, judged, limits, named, panels, show_zero, styled
 from gbeam.plots.drawing.units import unit_for
-from gbeam.results.parts.section_forces import Loads
+from gbeam.results.equilibrium import Deflection
+from gbeam.results.parts import Loads
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
-from gbeam.results.steady.equilibrium import Deflection
 
 FORCES = ("axial N", "shear V_y", "shear V_z")
 MOMENTS = ("torque", "bending M_y", "bending M_z")

@@ -12,10 +12,9 @@ from matplotlib.figure import Figure
 from gbeam.plots.drawing.lines import FLIGHT, machine
 from gbeam.plots.drawing.style import REFERENCE, colour, heading, judged, moving, named, panels, show_zero, styled
 from gbeam.plots.drawing.units import Unit, not_drawn, unit_for
+from gbeam.results.equilibrium import CriticalMap, Deflection
+from gbeam.results.modal import Campbell, Modes, near_multiples
 from gbeam.results.result import Floats
-from gbeam.results.steady.equilibrium import Deflection
-from gbeam.results.steady.modal import Campbell, Modes, near_multiples
-from gbeam.results.steady.stability import CriticalMap
 
 _LINES = {"x": ":", "y": "-", "z": "--"}
 SHOWN = 6  # shapes drawn

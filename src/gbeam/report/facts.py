@@ -11,19 +11,15 @@ from gbeam.report.steady import critical, deflection
 from gbeam.report.studies import fit, optimum, sensitivity, shaping, sweep
 from gbeam.report.study import summary_json
 from gbeam.report.words import as_json
+from gbeam.results.cases import Sensitivity, Sweep
 from gbeam.results.declared import json_of
+from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
 from gbeam.results.imitation.placement import Placement
 from gbeam.results.imitation.plan import MachinePlan
+from gbeam.results.modal import Campbell, Modes
 from gbeam.results.response import Response
 from gbeam.results.result import Result
-from gbeam.results.steady.equilibrium import Deflection
-from gbeam.results.steady.modal import Campbell, Modes
-from gbeam.results.steady.stability import Critical, CriticalMap
-from gbeam.results.studies.fit import Fit
-from gbeam.results.studies.optimum import Optimum
-from gbeam.results.studies.sensitivity import Sensitivity
-from gbeam.results.studies.shaping import ShapedCommand
-from gbeam.results.studies.sweep import Sweep
+from gbeam.results.searches import Fit, Optimum, ShapedCommand
 from gbeam.results.study import Study
 
 _JSON: dict[type, Callable[[Any], dict[str, Any]]] = {

@@ -6,7 +6,7 @@ from dataclasses import asdict
 from typing import Any
 
 from gbeam.results.provenance import Provenance
-from gbeam.results.reproduction import Reproduction
+from gbeam.results.study import Reproduction
 
 LISTED = 20  # differences in words
 

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from gbeam.printable import json_printable
-from gbeam.results.parts.errors import PARTS, ErrorEstimate, FrequencyErrors
-from gbeam.results.parts.section_forces import yield_margin
+from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
+from gbeam.results.parts import yield_margin
 from gbeam.results.result import Result
 
 

@@ -10,11 +10,9 @@ import numpy as np
 
 from gbeam.arrays.namespace import is_traced
 from gbeam.results.declared import quantity
+from gbeam.results.errors import Errors
 from gbeam.results.machine import AxesResult
-from gbeam.results.parts.errors import Errors
-from gbeam.results.parts.outline import Outline
-from gbeam.results.parts.peaks import Peaks
-from gbeam.results.parts.section_forces import Influence, Loads
+from gbeam.results.parts import Influence, Loads, Outline, Peaks
 from gbeam.results.result import Figured, Floats, Part, brief
 
 

@@ -19,7 +19,7 @@ from gbeam.guards.limits import BINARY_BYTES, existing, refuse_large_file
 from gbeam.io.netcdf import FACTS
 from gbeam.io.provenance import RECORD
 from gbeam.results.provenance import Provenance, present
-from gbeam.results.reproduction import Difference, Reproduction
+from gbeam.results.study import Difference, Reproduction
 from gbeam.scenario.build import build
 from gbeam.scenario.load import loads
 from gbeam.scenario.origin import fingerprint

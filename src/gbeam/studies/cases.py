@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import refuse_more
-from gbeam.results.studies.sweep import SAMPLE, Parameter
+from gbeam.results.cases import SAMPLE, Parameter
 from gbeam.scenario.values.distributions import Distribution, quantities, read_distribution, written
 from gbeam.scenario.values.paths import parse_path
 from gbeam.scenario.values.units import NUMBER

@@ -20,9 +20,9 @@ from gbeam.analysis.study.study import study_of
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.mechanics.structure import Structure
 from gbeam.questions import QUESTIONS, Needs, reduced
+from gbeam.results.cases import ANSWERED
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
-from gbeam.results.studies.sweep import ANSWERED
 from gbeam.results.study import Failure
 from gbeam.scenario.build import build
 from gbeam.scenario.load import change

@@ -12,8 +12,8 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.results.declared import units_of
+from gbeam.results.equilibrium import Deflection
 from gbeam.results.result import Floats
-from gbeam.results.steady.equilibrium import Deflection
 from gbeam.scenario.values.paths import path_text
 from gbeam.scenario.values.suggest import advise, closest
 from gbeam.studies.answers import DECLARED, Facts

@@ -16,7 +16,7 @@ from gbeam.guards.arguments import typed
 from gbeam.mechanics.models import Model
 from gbeam.progress import Progress
 from gbeam.results.result import Floats
-from gbeam.results.studies.fit import Fit, FittedColumn
+from gbeam.results.searches import Fit, FittedColumn
 from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
 from gbeam.studies.derivatives import Neighbourhood

@@ -18,7 +18,7 @@ from gbeam.guards.arguments import typed
 from gbeam.mechanics.models import Model
 from gbeam.progress import Progress
 from gbeam.results.result import Floats
-from gbeam.results.studies.optimum import BROKEN, Optimum, Requirement
+from gbeam.results.searches import BROKEN, Optimum, Requirement
 from gbeam.results.study import Study
 from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance

@@ -15,8 +15,8 @@ from gbeam.analysis.study.case import Case
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.progress import Progress
+from gbeam.results.cases import Sensitivity
 from gbeam.results.result import Flags, Floats
-from gbeam.results.studies.sensitivity import Sensitivity
 from gbeam.results.study import Study
 from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance

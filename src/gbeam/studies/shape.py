@@ -21,7 +21,7 @@ from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.piecewise import constant
 from gbeam.progress import Progress
 from gbeam.questions import motion_of
-from gbeam.results.studies.shaping import ShapedCommand
+from gbeam.results.searches import ShapedCommand
 from gbeam.scenario.build import build, scenario_of
 from gbeam.scenario.values.suggest import advise
 

@@ -11,8 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gbeam.results.result import Floats
-from gbeam.results.studies.uncertainty import (
+from gbeam.results.cases import (
     BOUNDS,
     CONFIDENCE,
     MEAN,
@@ -22,6 +21,7 @@ from gbeam.results.studies.uncertainty import (
     Indices,
     Statistics,
 )
+from gbeam.results.result import Floats
 
 RESAMPLES = 200  # of the bootstrap of Sobol indices
 TOGETHER = 10  # of them, which bounds their memory

@@ -17,7 +17,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import HISTORY_BYTES, WORKERS, refuse_more
 from gbeam.progress import tell
-from gbeam.results.studies.sweep import Sweep
+from gbeam.results.cases import Sweep
 from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
 from gbeam.scenario.schema.common.fields import kind_of

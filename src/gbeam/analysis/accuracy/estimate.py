@@ -12,8 +12,8 @@ from gbeam.analysis.accuracy.doubts import of_bodies
 from gbeam.analysis.accuracy.response_errors import Begin, Quantities, Rings, Solution, lacking
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
-from gbeam.results.parts.errors import ErrorEstimate, Errors
-from gbeam.results.parts.section_forces import Loads
+from gbeam.results.errors import ErrorEstimate, Errors
+from gbeam.results.parts import Loads
 from gbeam.results.result import Floats
 
 FEWEST, PER_PERIOD = 500, 6  # samples looked at, in all and in a period of the lowest mode

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.results.steady.state_space import Gauge
+from gbeam.results.state_space import Gauge
 from gbeam.structure.beam import Beam
 
 

@@ -28,7 +28,7 @@ from gbeam.mechanics.structure import Sections, Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.complex_step import complex_step
-from gbeam.results.steady.state_space import ACCURATE, Gauge, Signal, StateSpace
+from gbeam.results.state_space import ACCURATE, Gauge, Signal, StateSpace
 from gbeam.structure.stress import fibre_strain
 
 Array = Any

@@ -19,7 +19,7 @@ from gbeam.analysis.equilibrium.point import REST, on_base
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
-from gbeam.results.steady.state_space import Gauge, import_control
+from gbeam.results.state_space import Gauge, import_control
 
 
 @typed

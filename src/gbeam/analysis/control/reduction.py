@@ -11,7 +11,7 @@ import scipy.linalg
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.results.result import Floats
-from gbeam.results.steady.state_space import Signal, StateSpace, Truncation
+from gbeam.results.state_space import Signal, StateSpace, Truncation
 
 Parts = tuple[StateSpace, StateSpace]
 RIGID = 1e-7  # of the largest eigenvalue: what is slower has none, as a free hub's angle

@@ -24,7 +24,7 @@ from gbeam.numerics.solvers.quadratic import solve_quadratic
 from gbeam.progress import Progress, tell
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
-from gbeam.results.studies.shaping import CommandRun, ShapedCommand
+from gbeam.results.searches import CommandRun, ShapedCommand
 
 RATIOS = np.linspace(0.7, 1.3, 61)
 # Weight of a smooth step's roughness beside what it leaves; less for a span of frequencies, which takes a larger drive.

@@ -19,8 +19,8 @@ from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
 from gbeam.motion.bases.base import Base
-from gbeam.results.parts.errors import ErrorEstimate, Errors
-from gbeam.results.parts.section_forces import Loads
+from gbeam.results.errors import ErrorEstimate, Errors
+from gbeam.results.parts import Loads
 from gbeam.results.result import Floats
 
 NOTHING = 1e-6  # of the other load, over a length of the beam: a force or moment that is less is none

@@ -17,8 +17,8 @@ from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
+from gbeam.results.equilibrium import Deflection
 from gbeam.results.response import BaseMotion
-from gbeam.results.steady.equilibrium import Deflection
 
 
 @typed

@@ -19,7 +19,7 @@ from gbeam.results.imitation.accounting import TOLERANCE
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.criteria import Limit, checked_limits
 from gbeam.results.imitation.measures import Mismatch, RootHistory, RootLoads, Shock, Sizes, Statistics
-from gbeam.results.parts.section_forces import Influence
+from gbeam.results.parts import Influence
 from gbeam.results.response import Response
 from gbeam.results.result import Flags, Floats
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gbeam.numerics.peaks import turning_points
-from gbeam.results.imitation.fatigue import Fatigue, StressCycles
+from gbeam.results.imitation.measures import Fatigue, StressCycles
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 

@@ -21,7 +21,7 @@ from gbeam.guards.arguments import typed
 from gbeam.integrate.trajectory import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
-from gbeam.results.parts.errors import StepErrors
+from gbeam.results.errors import StepErrors
 from gbeam.results.response import Response
 
 Item = TypeVar("Item")

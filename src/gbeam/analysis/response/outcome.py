@@ -15,8 +15,8 @@ from gbeam.integrate.trajectory import Trajectory
 from gbeam.mechanics.fields.exact import ExactField
 from gbeam.mechanics.fields.rooted import RootedField
 from gbeam.mechanics.structure import Structure
-from gbeam.results.parts.errors import Errors
-from gbeam.results.parts.peaks import Peaks
+from gbeam.results.errors import Errors
+from gbeam.results.parts import Peaks
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Floats
 

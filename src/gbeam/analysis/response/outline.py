@@ -11,7 +11,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.flight import Flight
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.attitude import attitude
-from gbeam.results.parts.outline import Outline
+from gbeam.results.parts import Outline
 from gbeam.results.result import Floats
 
 POINTS = 16  # along the beam, at most

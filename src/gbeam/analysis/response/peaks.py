@@ -11,8 +11,7 @@ from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.integrate.trajectory import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.numerics.peaks import FEWEST, Floats, Indices, maxima, near_maxima, quintic_hermite, seven_point
-from gbeam.results.parts.peaks import Extremes, LoadPeaks, Peaks, VectorPeaks
-from gbeam.results.parts.section_forces import Loads
+from gbeam.results.parts import Extremes, LoadPeaks, Loads, Peaks, VectorPeaks
 
 
 def displacement_peaks(

@@ -27,10 +27,9 @@ from gbeam.motion import Centrifuge, Flight
 from gbeam.motion.bases.base import Base
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
+from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
 from gbeam.results.machine import AxesResult
-from gbeam.results.parts.errors import ErrorEstimate, Errors, StepErrors
-from gbeam.results.parts.peaks import Peaks
-from gbeam.results.parts.section_forces import Loads
+from gbeam.results.parts import Loads, Peaks
 from gbeam.results.response import BaseMotion, HubResult, Response
 from gbeam.results.result import Floats
 

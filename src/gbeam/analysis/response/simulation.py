@@ -18,7 +18,7 @@ from gbeam.guards.checks import choice
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
-from gbeam.results.parts.errors import StepErrors
+from gbeam.results.errors import StepErrors
 from gbeam.results.response import Response
 
 

@@ -23,9 +23,9 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.solvers.oscillations import mac, matched
 from gbeam.numerics.solvers.roots import brent
-from gbeam.results.parts.errors import PARTS, FrequencyErrors
+from gbeam.results.errors import PARTS, FrequencyErrors
+from gbeam.results.modal import Campbell, Crossing
 from gbeam.results.result import Complex, Floats
-from gbeam.results.steady.modal import Campbell, Crossing
 
 CONFIDENT = 0.9  # a mode that resembles itself less from one speed to the next is looked at in between
 SURE = 0.95  # of a critical speed: nearer, a frequency goes to zero and has no relative error

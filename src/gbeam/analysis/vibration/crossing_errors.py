@@ -9,9 +9,9 @@ from gbeam.analysis.accuracy.doubts import LIMIT, cause_and_cure, percent
 from gbeam.analysis.equilibrium.point import OperatingPoint
 from gbeam.analysis.vibration.errors import Richer
 from gbeam.errors import ComputationError
-from gbeam.results.parts.errors import ErrorEstimate
+from gbeam.results.errors import ErrorEstimate
+from gbeam.results.modal import Crossing
 from gbeam.results.result import Complex
-from gbeam.results.steady.modal import Crossing
 
 
 def crossing_errors(

@@ -23,7 +23,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
 from gbeam.motion.bases.base import Base
 from gbeam.numerics.solvers.oscillations import ZERO, eigenvalues, mac, matched
-from gbeam.results.parts.errors import FrequencyErrors
+from gbeam.results.errors import FrequencyErrors
 from gbeam.results.result import Complex, Floats
 
 BENT = 0.01  # of its kinetic energy: a mode of twist with less bending is excited by nothing that bends the beam

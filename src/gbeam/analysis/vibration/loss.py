@@ -16,7 +16,7 @@ from gbeam.motion.bases.base import Base
 from gbeam.numerics.solvers.eigen import symmetric_modes
 from gbeam.numerics.solvers.oscillations import stability_margin
 from gbeam.numerics.solvers.roots import brent
-from gbeam.results.steady.stability import Critical
+from gbeam.results.equilibrium import Critical
 
 SCAN = 64  # points at which a loss is looked for before its root is closed in on
 

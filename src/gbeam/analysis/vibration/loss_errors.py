@@ -21,9 +21,9 @@ from gbeam.numerics.solvers.eigen import symmetric_modes
 from gbeam.numerics.solvers.oscillations import stability_margin
 from gbeam.numerics.solvers.roots import brent
 from gbeam.progress import Progress, tell
-from gbeam.results.parts.errors import ErrorEstimate
+from gbeam.results.equilibrium import Critical
+from gbeam.results.errors import ErrorEstimate
 from gbeam.results.result import Floats
-from gbeam.results.steady.stability import Critical
 
 # Shares of the critical value at which richer models are looked at, from below.
 SHARES = 0.25, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.995, 1.005, 1.02, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0

@@ -16,8 +16,8 @@ from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.solvers.oscillations import ZERO, eigenvalues, growth_limit
+from gbeam.results.modal import Instability, Modes
 from gbeam.results.result import Complex, Floats
-from gbeam.results.steady.modal import Instability, Modes
 
 
 def _sensitivity(structure: Structure, q: Any) -> tuple[Floats, Floats]:

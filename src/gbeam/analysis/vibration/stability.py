@@ -28,8 +28,8 @@ from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
-from gbeam.results.parts.errors import PARTS, ErrorEstimate
-from gbeam.results.steady.stability import Critical, CriticalMap, MapErrors
+from gbeam.results.equilibrium import Critical, CriticalMap, MapErrors
+from gbeam.results.errors import PARTS, ErrorEstimate
 from gbeam.structure.beam import Beam
 from gbeam.structure.bodies import PointMass
 

@@ -115,7 +115,7 @@ def sweep(
         if report:
             answer.report(hidden / "report.html")
 
-    from gbeam.io.layout.studies.sweeps import write_zarr
+    from gbeam.io.layout.studies import write_zarr
 
     files = publish(folder, make)
     write_zarr(answer, folder / "sweep.zarr")

@@ -28,7 +28,7 @@ from gbeam.scenario.values.paths import walk
 
 if TYPE_CHECKING:
     from gbeam.results.provenance import Provenance
-    from gbeam.results.reproduction import Reproduction
+    from gbeam.results.study import Reproduction
 
 
 def run(

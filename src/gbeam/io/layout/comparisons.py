@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from gbeam.io.groups import AXIS, Group, Variable, coordinate, flags, known, variable
-from gbeam.io.layout.accounting import judged_attrs, judged_variables
+from gbeam.io.layout.machine import judged_attrs, judged_variables
 from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.fatigue import Fatigue
-from gbeam.results.imitation.measures import RootHistory, Shock, Statistics
+from gbeam.results.imitation.measures import Fatigue, RootHistory, Shock, Statistics
 
 _A, _TA = ("axis",), ("time", "axis")
 _SECTION_AXES = "S: axes of the deformed root section"

@@ -1,13 +1,27 @@
-"""What a file holds of answers that are tables: every model's, candidates for a placement, a state-space model."""
+"""Files of answers that are tables: models, placements, state-space models, and a static deflection."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from gbeam.io.groups import Group, coordinate, labels, variable, words
+from gbeam.io.groups import Group, Variable, coordinate, known_attrs, labels, variable, words
+from gbeam.io.layout.declared import whole_group
+from gbeam.io.layout.responses import error_attrs, load_variables, section_coordinate
+from gbeam.results.equilibrium import Deflection
 from gbeam.results.imitation.placement import Placement
-from gbeam.results.steady.state_space import StateSpace
+from gbeam.results.state_space import StateSpace
 from gbeam.results.study import ModelStudy
+
+
+def deflection_group(deflection: Deflection) -> Group:
+    """Return what a file holds of a static deflection."""
+    group = whole_group(deflection)
+    if deflection.loads is not None:  # of one time
+        loads = load_variables(deflection.loads).items()
+        group.variables.update({name: Variable(each.dims[1:], each.values[0], each.attrs) for name, each in loads})
+        group.coordinates.update(section_coordinate(deflection.loads))
+    return Group(group.variables, group.coordinates, known_attrs(group.attrs | error_attrs(deflection.errors)))
+
 
 _ROW = {
     "peak": ("m", "peak of the tip's displacement"),

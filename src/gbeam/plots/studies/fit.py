@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from gbeam.plots.drawing.style import REFERENCE, colour, heading, panels, styled, subtitle
 from gbeam.plots.drawing.units import scaled_label
-from gbeam.results.studies.fit import Fit, FittedColumn
+from gbeam.results.searches import Fit, FittedColumn
 
 _DOTS = 400  # data that can be told apart
 _BAND = 2.0  # sigma

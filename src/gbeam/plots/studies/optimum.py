@@ -8,7 +8,7 @@ from matplotlib.ticker import MaxNLocator
 
 from gbeam.plots.drawing.style import REFERENCE, colour, heading, panels, styled, subtitle
 from gbeam.plots.drawing.units import scaled_label
-from gbeam.results.studies.optimum import Optimum
+from gbeam.results.searches import Optimum
 
 
 @styled

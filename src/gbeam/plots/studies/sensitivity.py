@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from gbeam.errors import InputError
 from gbeam.plots.drawing.style import REFERENCE, colour, heading, panels, styled
-from gbeam.results.studies.sensitivity import Sensitivity
+from gbeam.results.cases import Sensitivity
 
 _BARS = 14  # that can be read; the others are less
 _HEIGHT = 0.13  # of a panel's usual height, for a bar

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from gbeam.plots.drawing.style import REFERENCE, colour, heading, panels, styled
 from gbeam.plots.drawing.units import scaled_label
-from gbeam.results.studies.shaping import ShapedCommand
+from gbeam.results.searches import ShapedCommand
 
 
 @styled

@@ -12,8 +12,8 @@ from matplotlib.ticker import MaxNLocator
 from gbeam.errors import InputError
 from gbeam.plots.drawing.style import colour, heading, panels, styled, subtitle
 from gbeam.plots.drawing.units import scaled_label
+from gbeam.results.cases import SAMPLE, Parameter, Sweep
 from gbeam.results.result import Floats
-from gbeam.results.studies.sweep import SAMPLE, Parameter, Sweep
 
 FAMILY = 6  # lines that can be told apart; more are a heat map
 

@@ -7,8 +7,7 @@ from matplotlib.figure import Figure
 
 from gbeam.plots.drawing.style import colour, heading, panels, show_zero, styled, subtitle
 from gbeam.plots.drawing.units import scaled_label
-from gbeam.results.studies.sweep import Parameter, Sweep
-from gbeam.results.studies.uncertainty import PROBABILITY
+from gbeam.results.cases import PROBABILITY, Parameter, Sweep
 
 _POINTS = 3  # of a grid that are drawn as bands of their own
 

@@ -11,9 +11,9 @@ from gbeam.report.page.bodies import study
 from gbeam.report.page.bodies.steady import crossings_table, modes_table, tracks_table
 from gbeam.report.page.parts import Value, badge, heading, listed, paragraph, table
 from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.modal import Campbell, Modes
 from gbeam.results.response import Response
 from gbeam.results.result import Result
-from gbeam.results.steady.modal import Campbell, Modes
 from gbeam.results.study import Study
 
 

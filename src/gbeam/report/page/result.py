@@ -21,9 +21,9 @@ from gbeam.report.page.scene import scene
 from gbeam.report.page.series import Numbers
 from gbeam.report.provenance import to_json as origin_json
 from gbeam.results.imitation.plan import MachinePlan
+from gbeam.results.modal import Modes
 from gbeam.results.provenance import Provenance
 from gbeam.results.result import Result
-from gbeam.results.steady.modal import Modes
 from gbeam.results.study import Study
 
 _FIX = "give the result.nc of `gbeam run`, its folder, or the JSON of another verb"

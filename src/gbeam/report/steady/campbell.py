@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gbeam.report.steady.critical import answer
 from gbeam.report.words import percent, warning_lines
-from gbeam.results.steady.modal import Campbell
+from gbeam.results.modal import Campbell
 
 
 def text(diagram: Campbell, unit: str = "rad/s", size: float = 1.0) -> str:

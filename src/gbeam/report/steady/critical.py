@@ -9,7 +9,7 @@ import numpy as np
 
 from gbeam.report.words import error_words, percent, warning_lines
 from gbeam.results.declared import json_of
-from gbeam.results.steady.stability import Critical, CriticalMap
+from gbeam.results.equilibrium import Critical, CriticalMap
 
 # By what was raised.
 KEYS = {

@@ -10,9 +10,9 @@ import numpy as np
 
 from gbeam.report.words import error_words, percent, stress_words, tidy, warning_lines, xyz, xyz_lists
 from gbeam.results.declared import json_of
-from gbeam.results.parts.errors import Errors
-from gbeam.results.parts.section_forces import Loads
-from gbeam.results.steady.equilibrium import Deflection
+from gbeam.results.equilibrium import Deflection
+from gbeam.results.errors import Errors
+from gbeam.results.parts import Loads
 
 
 def to_json(title: str, deflections: Iterable[Deflection]) -> dict[str, Any]:

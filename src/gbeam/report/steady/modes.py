@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from gbeam.report.words import percent, warning_lines
-from gbeam.results.steady.modal import Modes
+from gbeam.results.modal import Modes
 
 ROUNDING = 1e-10  # a damping ratio smaller than this is none
 

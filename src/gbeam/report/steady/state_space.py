@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.report.words import frequency_errors, percent, warning_lines
-from gbeam.results.steady.state_space import ACCURATE, Gauge, StateSpace, Truncation
+from gbeam.results.state_space import ACCURATE, Gauge, StateSpace, Truncation
 
 WIDTH = 100  # columns of the text
 

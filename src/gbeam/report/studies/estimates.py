@@ -7,9 +7,8 @@ import math
 import numpy as np
 
 from gbeam.report.words import columns, number
+from gbeam.results.cases import PROBABILITY, Indices, Statistics, Sweep
 from gbeam.results.result import Floats
-from gbeam.results.studies.sweep import Sweep
-from gbeam.results.studies.uncertainty import PROBABILITY, Indices, Statistics
 
 
 def estimates(sweep: Sweep, name: str, heads: list[str]) -> list[str]:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from gbeam.report.words import columns, number, warning_lines
-from gbeam.results.studies.fit import Fit
+from gbeam.results.searches import Fit
 
 
 def to_json(fit: Fit, files: Iterable[Path] = ()) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from gbeam.report.words import columns, number, percent, warning_lines
-from gbeam.results.studies.optimum import Optimum, Requirement
+from gbeam.results.searches import Optimum, Requirement
 
 
 def to_json(optimum: Optimum, files: Iterable[Path] = ()) -> dict[str, Any]:

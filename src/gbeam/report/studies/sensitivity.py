@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.report.words import columns, number, percent, warning_lines
-from gbeam.results.studies.sensitivity import Sensitivity
+from gbeam.results.cases import Sensitivity
 
 
 def to_json(sensitivity: Sensitivity, files: Iterable[Path] = ()) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from gbeam.report.words import columns, number, percent, warning_lines
-from gbeam.results.studies.shaping import ShapedCommand
+from gbeam.results.searches import ShapedCommand
 
 
 def to_json(command: ShapedCommand, files: Iterable[Path] = ()) -> dict[str, Any]:

@@ -10,9 +10,8 @@ import numpy as np
 
 from gbeam.report.studies.estimates import estimates
 from gbeam.report.words import columns, number, warning_lines
+from gbeam.results.cases import BOUNDS, ORDERS, Indices, Statistics, Sweep
 from gbeam.results.result import Floats
-from gbeam.results.studies.sweep import Sweep
-from gbeam.results.studies.uncertainty import BOUNDS, ORDERS, Indices, Statistics
 
 _ROWS = 40  # of the table on the screen
 _FAILURES = 5  # that are named

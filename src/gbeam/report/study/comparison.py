@@ -11,8 +11,7 @@ from gbeam.report.machine import accounting
 from gbeam.report.words import number, xyz
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.criteria import RULES
-from gbeam.results.imitation.fatigue import Fatigue, StressCycles
-from gbeam.results.imitation.measures import Mismatch, RootLoads, Sizes
+from gbeam.results.imitation.measures import Fatigue, Mismatch, RootLoads, Sizes, StressCycles
 from gbeam.results.imitation.verdict import metres, percent
 
 _PLACES = ("flight", "centrifuge", "difference")

@@ -9,8 +9,7 @@ import numpy as np
 
 from gbeam.report.machine.tracking import ends_line, followed, not_followed_stretches, tracking_json
 from gbeam.report.words import error_words, number, percent, stress_words
-from gbeam.results.parts.peaks import LoadPeaks
-from gbeam.results.parts.section_forces import Loads
+from gbeam.results.parts import LoadPeaks, Loads
 from gbeam.results.response import HubResult, Response
 
 ROUNDING = 1e-9  # of what it belongs to: a smaller number is none

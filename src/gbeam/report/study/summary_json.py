@@ -14,8 +14,7 @@ from gbeam.report.machine import limits
 from gbeam.report.machine.tracking import ends, peak, tracking_json
 from gbeam.report.study import comparison, sentences
 from gbeam.results.machine import AxesResult
-from gbeam.results.parts.peaks import Extremes, LoadPeaks, VectorPeaks
-from gbeam.results.parts.section_forces import Loads, yield_margin
+from gbeam.results.parts import Extremes, LoadPeaks, Loads, VectorPeaks, yield_margin
 from gbeam.results.response import HubResult, Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Study

@@ -9,10 +9,9 @@ import numpy as np
 
 from gbeam.results.imitation.accounting import Accounting, PeakPair
 from gbeam.results.imitation.criteria import Judged, Limit
-from gbeam.results.imitation.fatigue import Fatigue
-from gbeam.results.imitation.measures import Mismatch, RootLoads, Shock, Statistics
+from gbeam.results.imitation.measures import Fatigue, Mismatch, RootLoads, Shock, Statistics
 from gbeam.results.imitation.verdict import verdict
-from gbeam.results.parts.section_forces import yield_margin
+from gbeam.results.parts import yield_margin
 from gbeam.results.result import Figured, Flags, Floats
 
 

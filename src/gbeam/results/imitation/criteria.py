@@ -14,8 +14,7 @@ from gbeam.errors import InputError
 
 if TYPE_CHECKING:
     from gbeam.results.imitation.accounting import Accounting, PeakPair
-    from gbeam.results.imitation.fatigue import Fatigue
-    from gbeam.results.imitation.measures import Shock
+    from gbeam.results.imitation.measures import Fatigue, Shock
 
 Limit = float | tuple[float, float]
 Value = tuple[float, str]  # and where it occurs

@@ -18,7 +18,7 @@ import numpy as np
 
 from gbeam.analysis.response.peaks import peaks_of_coordinates
 from gbeam.integrate.trajectory import Trajectory
-from gbeam.results.parts.errors import StepErrors
+from gbeam.results.errors import StepErrors
 from gbeam.results.result import Floats
 
 # Believed of a history; runs that hardly converge differ by less than their error.

@@ -13,7 +13,7 @@ from gbeam.errors import InputError
 from gbeam.integrate.schemes import Scheme, gauss, generalized_alpha, hht, newmark
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
-from gbeam.results.parts.errors import StepErrors
+from gbeam.results.errors import StepErrors
 from gbeam.results.result import Floats
 
 MAX_STEPS = 4_000_000

@@ -26,8 +26,8 @@ from gbeam.integrate.trajectory import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
+from gbeam.results.errors import StepErrors
 from gbeam.results.machine import AxesResult
-from gbeam.results.parts.errors import StepErrors
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 

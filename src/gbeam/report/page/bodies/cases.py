@@ -12,8 +12,8 @@ from gbeam.report.machine.placement import largest
 from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, plot_places, table, verbatim
 from gbeam.report.page.series import Numbers, Plots
 from gbeam.report.words import number
+from gbeam.results.cases import BOUNDS
 from gbeam.results.imitation.accounting import PeakPair
-from gbeam.results.studies.uncertainty import BOUNDS
 
 Facts = Mapping[str, Any]
 _PLACES = {"current": "now", "best": "placed", "middle": "at mid-span"}

@@ -13,7 +13,7 @@ from gbeam.report.page.scene import shape
 from gbeam.report.page.series import Numbers, Plots
 from gbeam.report.steady.modes import ROUNDING
 from gbeam.report.words import number, percent
-from gbeam.results.steady.modal import near_multiples
+from gbeam.results.modal import near_multiples
 
 Facts = Mapping[str, Any]
 

@@ -1,4 +1,4 @@
-"""What a sweep found: figures of many cases, along the parameters that were varied."""
+"""Figures of many cases: sensitivities, sweeps, and what samples say."""
 
 from __future__ import annotations
 
@@ -11,7 +11,56 @@ from numpy.typing import NDArray
 
 from gbeam.results.imitation.criteria import EXCEEDED, NOT_ACCEPTED
 from gbeam.results.result import Figured, Flags, Floats, Part
-from gbeam.results.studies.uncertainty import Indices, Statistics
+
+CONFIDENCE = 0.95
+BOUNDS = ("estimate", "low", "high")
+MEAN, SPREAD, PROBABILITY = "mean", "standard deviation", "probability"
+QUANTILES = {"5 %": 0.05, "median": 0.5, "95 %": 0.95}
+ORDERS = ("first", "total")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Statistics(Part):
+    """Estimates of a figure's distribution at every point of a sweep's grid.
+
+    Parameters
+    ----------
+    names : tuple of str
+        mean, standard deviation, 5 %, median and 95 % (quantiles); or probability, of what is true or not.
+    values : (..., len(names), 3)
+        Estimate, and the ends of its interval of 95 % confidence; NaN where there are too few draws for one.
+    count : (...) int
+        Draws with a figure.
+    """
+
+    names: tuple[str, ...]
+    values: Floats
+    count: NDArray[np.int_]
+
+    def __getitem__(self, name: str) -> Floats:
+        """Estimate of one name and its bounds, (..., 3)."""
+        return np.asarray(self.values[..., self.names.index(name), :])
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Indices(Part):
+    """Sobol indices of a figure: which share of its variance each parameter makes.
+
+    Parameters
+    ----------
+    parameters : tuple of str
+        Paths, d of them.
+    values : (..., d, 2, 3)
+        First order (by itself) and total (with all that it acts together with): estimate and ends of its interval of
+        95 % confidence.
+    count : (...) int
+        Base samples of which all cases have a figure.
+    """
+
+    parameters: tuple[str, ...]
+    values: Floats
+    count: NDArray[np.int_]
+
 
 SAMPLE = "sample"  # the dimension of what is drawn from distributions
 # Outcomes of cases that are computed to the end, with every figure, and do not keep limits.
@@ -129,3 +178,73 @@ class Sweep(Figured):
         ended = ", ".join(f"{number} {name}" for name, number in self.counts.items())
         words = f"Sweep of {self.verb} over {shape}: {ended}; {', '.join([*self.measures, *self.histories])}"
         return self._with_warnings(words)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Sensitivity(Figured):
+    """Derivatives of figures of one scenario with respect to physical values in it.
+
+    Parameters
+    ----------
+    title : str
+        Of the scenario.
+    verb : str
+        Whose figures they are.
+    measures : tuple of str
+    units : tuple of str
+        SI, of the measures.
+    figures : (m,)
+        The measures' values.
+    parameters : tuple of str
+        Paths in the scenario.
+    parameter_units : tuple of str
+        SI.
+    values : (p,)
+        Of the parameters.
+    derivatives : (m, p)
+        SI.
+    errors : (m, p)
+        Of those derivatives that are differences: how far the formulas of second and fourth order are apart. NaN where
+        the derivative is exact.
+    methods : tuple of str
+        Of each parameter: ``exact``, the derivative of the discrete solution, or ``difference``.
+    kinks : (m, p) of bool
+        Whether the slopes on either side differ, so that the derivative is their mean.
+    run_error : float
+        Estimated error of the runs that the figures are read from, the largest of displacement and loads, relative to
+        their largest; NaN of other verbs. Exact derivatives are those of these runs and have no error of their own.
+    not_varied : tuple of str
+        Values of the scenario that may not be a little more or less, and why; they have no derivative.
+    """
+
+    title: str
+    verb: str
+    measures: tuple[str, ...]
+    units: tuple[str, ...]
+    figures: Floats
+    parameters: tuple[str, ...]
+    parameter_units: tuple[str, ...]
+    values: Floats
+    derivatives: Floats
+    errors: Floats
+    methods: tuple[str, ...]
+    kinks: Flags
+    run_error: float = np.nan
+    not_varied: tuple[str, ...] = ()
+
+    @property
+    def relative(self) -> Floats:
+        """Relative change of each figure over that of each parameter, p/f ∂f/∂p, (m, p); NaN where a figure is zero."""
+        size = np.where(self.figures == 0, np.nan, self.figures)
+        return self.derivatives * self.values / size[:, None]
+
+    def ranked(self, measure: str = "") -> NDArray[np.intp]:
+        """Indices of the parameters by how much one percent of each changes a `measure`, the first by default."""
+        k = self.measures.index(measure) if measure else 0
+        return np.argsort(-np.abs(self.derivatives[k] * self.values), kind="stable")
+
+    def __repr__(self) -> str:
+        first = self.ranked()[:3]
+        shares = ", ".join(f"{self.parameters[j]} {self.relative[0, j]:+.3g} %/%" for j in first)
+        what = f"{', '.join(self.measures)} to {len(self.parameters)} values"
+        return self._with_warnings(f"Sensitivity of {what}: {self.measures[0]} by {shares}")

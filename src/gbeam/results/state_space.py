@@ -11,7 +11,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.results.parts.errors import FrequencyErrors
+from gbeam.results.errors import FrequencyErrors
 from gbeam.results.result import Floats, Part, Result
 
 ACCURATE = 0.01  # error of a frequency that is within what a design takes for accurate

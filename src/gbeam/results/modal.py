@@ -9,10 +9,10 @@ from typing import ClassVar
 import numpy as np
 
 from gbeam.results.declared import declared, fact, part, quantity, rows
-from gbeam.results.parts.errors import ErrorEstimate, FrequencyErrors
+from gbeam.results.equilibrium import Critical
+from gbeam.results.errors import ErrorEstimate, FrequencyErrors
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Complex, Figured, Floats, Part
-from gbeam.results.steady.stability import Critical
 
 SHOWN = 6  # frequencies in a short description
 FAR = 2.0  # times the highest multiple of the speed: a mode above would press the others to the ground

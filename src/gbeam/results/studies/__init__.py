@@ -1,1 +1,0 @@
-"""Results of many runs of one scenario."""
