@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fuzz.cases import ROOT, Case, Random
 from fuzz.scenarios import NUMBERS, UNITS, WORDS, texts
-from gbeam.cli.program import VERBS
+from gbeam.cli.program import verbs
 
 # Options of one verb or another, each with a sound value; a flag has none.
 OPTIONS: dict[str, str | None] = {
@@ -43,7 +43,7 @@ def command(chosen: Random) -> Case:
     if chosen.random() < 0.15:
         return _study(chosen)
     verb = chosen.choice(
-        QUICK if chosen.random() < 0.9 else (*WORDS, "rnu", *(each for each in VERBS if each != "app"))
+        QUICK if chosen.random() < 0.9 else (*WORDS, "rnu", *(each for each in verbs() if each != "app"))
     )
     words = [verb]
     if chosen.random() < 0.9:

@@ -12,8 +12,8 @@ import pytest
 
 from gbeam.app.verbs import arguments
 from gbeam.app.verbs import verbs as offered
-from gbeam.cli.program import VERBS as PROGRAM
 from gbeam.cli.program import parsed
+from gbeam.cli.program import verbs as program
 
 from ..calling import Answer
 from ..scenarios import FAST, RAMPS
@@ -364,4 +364,4 @@ def test_options_are_the_command_lines(verb: str) -> None:
 
 def test_every_verb_of_a_scenario_is_on_the_page() -> None:
     apart = {"app", "new", "check", "schema", "report", "rerun"}  # of the page itself, or of no scenario
-    assert {*PROGRAM} - {*offered()} == apart and {*offered()} <= {*PROGRAM}
+    assert {*program()} - {*offered()} == apart and {*offered()} <= {*program()}

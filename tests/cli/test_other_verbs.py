@@ -8,13 +8,12 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from gbeam.cli.program import VERBS
+from gbeam.cli import program
 
 Call = Callable[..., Any]
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -62,12 +61,11 @@ def test_version(gbeam: Call) -> None:
     assert gbeam("--version").out.strip()
 
 
-@pytest.mark.parametrize("verb", VERBS)
+@pytest.mark.parametrize("verb", program.verbs())
 def test_every_verb_has_help(verb: str, gbeam: Call) -> None:
     answer = gbeam(verb, "--help")
     assert answer.status == 0
-    name = verb.replace("-", "_")
-    docstring = getattr(import_module(f"gbeam.cli.verbs.{VERBS[verb][0]}"), name).__doc__
+    docstring = program.function(verb).__doc__ or ""
     assert " ".join(docstring.partition("Parameters\n")[0].split()) in " ".join(answer.out.split())
 
 
@@ -97,7 +95,7 @@ def test_help_is_light() -> None:
         heavy, (out,) = imported(("jax", "numpy", "xarray", "matplotlib", "pint", "pydantic", "scipy"), ("--help",))
         seconds.append(spent() - start)
     assert heavy == []
-    assert all(verb in out for verb in VERBS)
+    assert all(verb in out for verb in program.verbs())
     assert min(seconds) < 0.5
 
 

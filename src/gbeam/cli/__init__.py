@@ -1,8 +1,9 @@
 """The command line: verbs, imported when they are called.
 
 A verb is a function with annotated parameters that reads a scenario, calls a public function of gbeam, prints what
-`gbeam.report` makes of the result, and returns its exit status. To add one, write it in `verbs` and name it in
-`program.VERBS`. Errors are raised; `failures` prints them. Importing this imports nothing else: signals come first.
+`gbeam.report` makes of the result, and returns its exit status. To add one, declare a question in `gbeam.questions`,
+or write it in `verbs` and name it in `program`. Errors are raised; `failures` prints them. Importing this imports
+nothing else: signals come first.
 """
 
 from __future__ import annotations

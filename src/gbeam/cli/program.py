@@ -18,12 +18,12 @@ from gbeam.cli.failures import lacks_memory, report, report_defect, report_memor
 from gbeam.cli.process import end_at_once, note
 from gbeam.errors import GbeamError
 from gbeam.guards.limits import WORDS
+from gbeam.questions import QUESTIONS
 
-# The file of each verb, and its help: not only in its own docstring, so that `gbeam --help` imports no verb.
-VERBS = {
+# The file of each verb that has one, and its help: not only in its own docstring, so that `gbeam --help` imports none.
+_FILES = {
     "run": ("responses", "Compute the response in every environment of a scenario, and compare them."),
     "static": ("steady_states", "Where the beam rests relative to its base at one time of the motions."),
-    "modes": ("steady_states", "Frequencies, damping and shapes about the equilibrium at one time of a motion."),
     "campbell": ("steady_states", "Frequencies against the speed of a hub, and where its multiples meet them."),
     "critical-speed": ("steady_states", "The hub rate, load or acceleration at which the beam's equilibrium is lost."),
     "linearize": ("steady_states", "State-space model A, B, C, D about the equilibrium at one time of a motion."),
@@ -99,7 +99,14 @@ def parsed(tokens: list[str]) -> tuple[Callable[..., object], BoundArguments]:
 
 def verbs() -> dict[str, str]:
     """Every verb, with the words of what it answers."""
-    return {verb: about for verb, (_, about) in VERBS.items()}
+    return {name: each.about for name, each in QUESTIONS.items()} | {verb: about for verb, (_, about) in _FILES.items()}
+
+
+def function(verb: str) -> Callable[..., object]:
+    """The function of a verb."""
+    called = _app(verb)[verb].default_command
+    assert called is not None
+    return called
 
 
 def arguments(verb: str) -> ArgumentCollection:
@@ -112,12 +119,13 @@ def _app(chosen: str) -> App:
         name="gbeam",
         help="How a flexible beam responds while its base moves a lot: in flight, on a centrifuge, on a hub.",
         version=gbeam.__version__,
-        help_format="markdown" if chosen in VERBS else "plaintext",  # whose renderer is not worth its import
+        help_format="markdown" if chosen in verbs() else "plaintext",  # whose renderer is not worth its import
         suppress_keyboard_interrupt=False,
     )
-    for verb, (room, summary) in VERBS.items():
+    for verb, about in verbs().items():
         # The help of the chosen verb is its own docstring, which says more.
-        name = verb.replace("-", "_")
-        app.command(f"gbeam.cli.verbs.{room}:{name}", name=verb, help=None if verb == chosen else summary)
+        file, _ = _FILES.get(verb, ("question", ""))
+        called = f"gbeam.cli.verbs.{file}:{verb.replace('-', '_')}"
+        app.command(called, name=verb, help=None if verb == chosen else about)
     app.register_install_completion_command(help="Let the shell complete verbs and options: bash, zsh or fish.")
     return app

@@ -13,16 +13,17 @@ if TYPE_CHECKING:
     from gbeam.results.study import Study
 
 Facts = Mapping[str, Any]
+DECLARED = ""  # key of the units of a record that declares them; no figure's path begins so
 
 
 def answered(verb: str, case: Case, motion: str | None, at: float | None, needs: Needs) -> Facts:
     """The facts of a question's answer."""
-    from gbeam.results.declared import json_of
+    from gbeam.results.declared import json_of, units_of
 
     question = QUESTIONS[verb]
     answer = question.answer(case, motion, at, needs)
     facts = _FACTS.get(verb)
-    return json_of(answer) if facts is None else facts(case, motion, answer)
+    return {**json_of(answer), DECLARED: units_of(type(answer))} if facts is None else facts(case, motion, answer)
 
 
 def study_facts(answer: Study) -> Facts:

@@ -13,11 +13,10 @@ import numpy as np
 from gbeam.errors import InputError
 from gbeam.results.declared import units_of
 from gbeam.results.equilibrium import Deflection
-from gbeam.results.modal import Modes
 from gbeam.results.result import Floats
 from gbeam.scenario.values.paths import path_text
 from gbeam.scenario.values.suggest import advise, closest
-from gbeam.studies.answers import Facts
+from gbeam.studies.answers import DECLARED, Facts
 
 if TYPE_CHECKING:
     from gbeam.results.study import Study
@@ -223,7 +222,6 @@ _CANDIDATE = {
 _FIGURES: Tree = {
     "motions": {ANY: _MOTION},
     "comparisons": {ANY: _COMPARISON},
-    **units_of(Modes),
     "options": _CANDIDATE,
     "before": _CANDIDATE,
     **_all("m", "control_point current_control_point"),
@@ -236,7 +234,7 @@ _FIGURES: Tree = {
 
 def declared(facts: Any, keys: tuple[str | int, ...]) -> str | None:
     """Unit of the figure at `keys`, empty where it has none; None where no unit is declared for its place."""
-    tree: Any = _FIGURES
+    tree: Any = facts.get(DECLARED, _FIGURES)
     for word in (key for key in keys if isinstance(key, str)):
         tree = tree if isinstance(tree, str) else tree.get(word, tree.get(ANY))
         if tree is None:

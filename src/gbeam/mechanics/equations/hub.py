@@ -31,7 +31,7 @@ class Ground:
 
 @record
 class Weight:
-    """Gravity (3,) at θ = 0 on hub and beam: the first moment of mass about the axis, S0 + S1 q + ½ q S2 q, base axes."""
+    """Gravity (3,) at θ = 0 on hub and beam: the first moment of mass about the axis, S0 + S1 q + ½ q S2 q, base."""
 
     gravity: Array
     R_HB: Array

@@ -42,7 +42,13 @@ def _kind(facts: Mapping[str, Any]) -> str | None:
         motions = facts["motions"].values() if each and "motions" in facts else ()
         if all(key in facts for key in keys) and all(key in motion for motion in motions for key in each):
             return name
-    return None
+    # Of a question without a page of its own: its figures, each with its unit.
+    return str(facts["kind"]) if "kind" in facts and "units" in facts else None
+
+
+def _figures(facts: Mapping[str, Any], *_: Any) -> str:
+    """The inside of the page of a question that has none of its own."""
+    return table(("", "", ""), [(key, facts[key], unit) for key, unit in facts["units"].items()], words=(0, 2))
 
 
 def html(facts: Mapping[str, Any], variables: Mapping[str, Any], origin: Mapping[str, Any] | None = None) -> str:
@@ -71,7 +77,8 @@ def html(facts: Mapping[str, Any], variables: Mapping[str, Any], origin: Mapping
     numbers = Numbers()
     plots = Plots(numbers)
     header: dict[str, Any] = {"maps": []}
-    body = KINDS[kind][2](facts, variables, numbers, plots, header)
+    make = KINDS[kind][2] if kind in KINDS else _figures
+    body = make(facts, variables, numbers, plots, header)
     header["plots"] = plots.specs
     title = facts.get("title") or _title(origin) or f"gbeam {kind}"
     warnings = study.warnings(facts) if "motions" in facts else facts.get("warnings", [])

@@ -1,0 +1,115 @@
+"""The verb of a question that has no file of its own: its options are those of the question's function."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from functools import partial
+from importlib import import_module
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Annotated, Any, get_args, get_type_hints
+
+from cyclopts import Parameter
+
+from gbeam.cli.console import Watch
+from gbeam.cli.inputs import number, read
+from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile
+from gbeam.cli.outputs import folder_of, show, write
+from gbeam.questions import QUESTIONS, Needs, Question
+
+_KEYWORD = inspect.Parameter.KEYWORD_ONLY
+_BEFORE = {"motion": (MotionName, None), "at": (At, None)}
+_AFTER = {"overrides": (Overrides, ()), "out": (Out, None), "json": (Json, False), "report": (Report, False)}
+_STATUS = "Exit status: 0 done, 1 there is no answer, 2 the input is wrong."
+
+
+def __getattr__(name: str) -> Callable[..., int]:
+    """The function of a verb by its name, made when it is called."""
+    for each in QUESTIONS.values():
+        if each.name.replace("-", "_") == name:
+            return verb_of(each)
+    raise AttributeError(name)
+
+
+def verb_of(question: Question) -> Callable[..., int]:
+    """The function of a question's verb."""
+    name, kinds, own = question.name.replace("-", "_"), dict[str, str](), {}
+    options = [each for each in inspect.signature(question.answer).parameters.values() if each.kind is _KEYWORD]
+    written = SimpleNamespace(__annotations__={each.name: each.annotation for each in options})
+    hints = get_type_hints(written, question.answer.__globals__, include_extras=True)
+    for each in options:
+        hint, words, *kind = get_args(hints[each.name])
+        kinds[each.name] = kind[0] if kind else ""
+        own[each.name] = Annotated[str | None if kind else hint, Parameter(help=words)], each.default
+
+    arguments = {**_BEFORE, **own, **_AFTER}
+
+    def verb(scenario: Path, /, **options: Any) -> int:
+        defaults = {key: default for key, (_, default) in arguments.items()}
+        return _answer(question, name, kinds, scenario, **(defaults | options))
+
+    verb.__name__ = name
+    verb.__doc__ = (
+        f"{question.about}\n\nWith --out also writes {name}.json and plots, with --report {name}.html. {_STATUS}"
+    )
+    signature = [inspect.Parameter("scenario", inspect.Parameter.POSITIONAL_ONLY, annotation=ScenarioFile)]
+    for key, (annotation, default) in arguments.items():
+        signature.append(inspect.Parameter(key, _KEYWORD, default=default, annotation=annotation))
+    verb.__signature__ = inspect.Signature(signature)  # type: ignore[attr-defined]
+    verb.__annotations__ = {each.name: each.annotation for each in signature}
+    return verb
+
+
+def _answer(
+    question: Question,
+    name: str,
+    kinds: dict[str, str],
+    scenario: Path,
+    *,
+    motion: str | None,
+    at: str | None,
+    overrides: tuple[str, ...],
+    out: Path | None,
+    json: bool,
+    report: bool,
+    **options: Any,
+) -> int:
+    folder = folder_of(out, scenario, default=report)
+    given = read(question.name, scenario, overrides, folder)
+    chosen = motion
+    if question.motion is not None or motion is not None:
+        chosen, _ = given.motion(motion, kind=question.motion or "")
+    time = given.time(at)
+    places = {key: f"--{key.replace('_', '-')}" for key in kinds}
+    for key, value in options.items():
+        if kinds[key] and isinstance(value, str):
+            options[key] = number(places[key], value, kinds[key])
+    with Watch(), given.placing(**places):
+        answer = question.answer(given.case, chosen, time, Needs(shapes=True), **options)
+
+    from gbeam.results.declared import json_of, units_of
+
+    of_kind = {} if question.words else {"kind": question.name, "units": units_of(type(answer))}
+    facts = given.signed(json_of(answer) | of_kind)
+    plot = partial(answer.plot, title=given.case.title) if hasattr(answer, "plot") else None
+    write(folder, name, facts, None if plot is None else lambda: {name: plot().figure}, report=report)
+    show(_words(question, answer), facts, json)
+    return 0
+
+
+def _words(question: Question, answer: Any) -> str:
+    """An answer in words, or its numbers, each on a line with what it is."""
+    if question.words:
+        return str(import_module(question.words).text(answer))
+    from gbeam.report.words import number as digits
+    from gbeam.results.declared import declarations
+
+    lines = [question.about]
+    for name, each in declarations(type(answer)):
+        value, unit = getattr(answer, name), each.unit if isinstance(each.unit, str) else each.unit(answer)
+        if isinstance(value, (bool, str)):
+            lines.append(f"  {each.words}: {value}")
+        elif getattr(value, "ndim", 0) == 0 and isinstance(value, (int, float)):
+            lines.append(f"  {each.words}: {digits(value)} {unit}".rstrip())
+    return "\n".join([*lines, *(f"warning: {each}" for each in answer.warnings)])
