@@ -28,25 +28,7 @@ _MANY = 12  # figures that a message lists
 
 
 def find(facts: Facts, name: str) -> Keys:
-    """Find the figure that a measure means.
-
-    Parameters
-    ----------
-    facts : mapping
-        Of a case that is done.
-    name : str
-        The end of a path, such as ``tip.z.max_abs``; more of the path where several end so.
-
-    Returns
-    -------
-    tuple of str or int
-        The keys that lead to the figure.
-
-    Raises
-    ------
-    InputError
-        If no figure's path ends so, or several do.
-    """
+    """Return the keys of the figure whose path in the facts of a case ends as `name` does, such as ``tip.z.max_abs``."""
     every = {path_text(keys): keys for keys, _ in _figures(facts)}
     wanted = f".{name}"
     fits = [path for path in every if f".{path}".endswith(wanted)]
@@ -289,13 +271,7 @@ class History:
 
 
 def read_history(text: str, motions: Collection[str]) -> History:
-    """Read ``flight.tip.z``; the motion may be left out where there is one.
-
-    Raises
-    ------
-    InputError
-        If it is none.
-    """
+    """Read ``flight.tip.z``; the motion may be left out where there is one."""
     *before, quantity, axis = ["", "", *text.split(".")]
     motion = ".".join(part for part in before if part)
     if axis not in ("x", "y", "z") or quantity not in UNITS:

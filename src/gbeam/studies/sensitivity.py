@@ -143,13 +143,7 @@ def _kinks(slopes: Slopes, values: Sequence[float], units: Sequence[str]) -> Fla
 
 
 def figure(facts: Facts, name: str, option: str = OPTION) -> Keys:
-    """Keys of a figure that has a derivative.
-
-    Raises
-    ------
-    InputError
-        If there is no such figure, or it is a count, a flag or an estimate of an error.
-    """
+    """Keys of a figure that has a derivative."""
     try:
         keys = find(facts, name)
     except InputError as error:

@@ -140,15 +140,7 @@ def _goal(hub: Hub, name: str) -> tuple[float | None, float | None]:
 def scenario_with(
     command: ShapedCommand, scenario: str | os.PathLike[str] | Case, overrides: Sequence[str] = ()
 ) -> str:
-    """A scenario, as JSON, in which a table of the shaped command drives the hub; it lasts beyond it.
-
-    Parameters
-    ----------
-    command : ShapedCommand
-        Of :func:`shape`.
-    scenario, overrides
-        As it was called.
-    """
+    """Return a scenario, as JSON, in which a table of the shaped command drives the hub; it lasts beyond the command."""
     base = scenario_of(scenario, overrides)
     assert base.source is not None  # it was read from a file
     data: dict[str, Any] = json.loads(json.dumps(base.source.data))

@@ -243,21 +243,7 @@ def _collected(
 
 
 def assembled(title: str, cases: Cases, names: Sequence[str], begun: Start, rows: Iterable[Row], seed: int) -> Sweep:
-    """Return the result of a sweep.
-
-    Parameters
-    ----------
-    title : str
-    cases : Cases
-    names : sequence of str
-        Of the measures, in the order of a row's values.
-    begun : Start
-        With a scenario whose schema knows the SI units of what varies.
-    rows : iterable of Row
-        In any order; the cases without one are pending.
-    seed : int
-        Of what is drawn, and of the bootstrap of Sobol indices.
-    """
+    """Return the result of rows in any order; the cases without one are pending."""
     question = begun.question
     values = np.full((question.width, len(cases)), math.nan)
     outcome = np.full(len(cases), "pending", dtype=object)
