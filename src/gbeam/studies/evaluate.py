@@ -119,12 +119,30 @@ class Question:
     def measured(self, number: int, case: Case, facts: Facts) -> Row:
         """The row of a case that is built, from what the verb answers to it."""
         try:
-            values = [value_at(facts, keys) for keys in self.keys] + [float(each(case)) for each in self.functions]
+            values = [value_at(facts, keys) for keys in self.keys]
+            own, problem = _measured(self.functions, case)
+            values += own
             for history in self.histories:
                 values += history.at(facts["study"], self.times).tolist()
         except Exception as error:
             return without_figures(number, self.width, error)
-        return Row(number, tuple(values), *ended(facts))
+        outcome, message = ended(facts)
+        return Row(number, tuple(values), outcome, message or problem)
+
+
+def _measured(functions: Sequence[Function], case: Case) -> tuple[list[float], str]:
+    """Values of measures, NaN of those that fail, and why these do; where all do, the case has failed."""
+    values, problems, last = [], [], Exception()
+    for k, function in enumerate(functions):
+        try:
+            values.append(float(function(case)))
+        except Exception as error:
+            values.append(math.nan)
+            problems.append(f"measure {k + 1}: {type(error).__name__}: {_line(error)}")
+            last = error
+    if problems and len(problems) == len(functions):
+        raise last
+    return values, "; ".join(problems)
 
 
 def _of_loads(keys: Keys) -> bool:

@@ -35,7 +35,7 @@ LENGTH = "beam.length"
 
 @dataclass(frozen=True)
 class PhysicalValue:
-    """A number in a scenario, SI, by its path; `followers` are positions at the tip, which move with the beam's length."""
+    """A number in a scenario, SI, by its path; `followers` are positions at the tip, which move with its length."""
 
     path: str
     value: float
@@ -107,7 +107,7 @@ def named(base: Scenario, names: Sequence[str], option: str) -> list[PhysicalVal
 
 
 def bounds_of(each: PhysicalValue, given: Bounds, option: str) -> tuple[float, float]:
-    """Return the bounds given for a value, or a tenth to ten times it; they have to hold it, as a search begins there."""
+    """Return the bounds given for a value, or a tenth to ten times it; they hold it, as a search begins there."""
     if each.path in given:
         low, high = (_quantity(each, end) for end in given[each.path])
         if not low < high:
