@@ -17,11 +17,7 @@ def is_jax(value: Any) -> bool:
 
 
 def namespace(*values: Any) -> Any:
-    """Return ``jax.numpy`` if one of the values is a JAX array, else ``numpy``.
-
-    Numbers, lists and None count as NumPy's. The same lines then serve plain arrays, and JAX arrays under ``grad``,
-    ``vmap`` and ``jit``.
-    """
+    """Return ``jax.numpy`` if one of the values is a JAX array, else ``numpy``."""
     for value in values:
         if is_jax(value):
             import jax.numpy as jnp

@@ -41,9 +41,8 @@ class Value:
 
 @dataclass_transform(frozen_default=True, field_specifiers=(static, dataclasses.field))
 def record(cls: type[_T]) -> type[_T]:
-    """Make a class a frozen dataclass that is a pytree; it compares by its fields, arrays number by number.
-
-    A class with an ``__init__`` of its own keeps it, and sets its fields by :func:`assign`.
+    """Make a class a frozen dataclass that is a pytree, compared by its fields; an ``__init__`` of its own uses
+    :func:`assign`.
     """
     made = dataclasses.dataclass(frozen=True, eq=False, init="__init__" not in cls.__dict__)(cls)
     for method in (Value.__eq__, __hash__):

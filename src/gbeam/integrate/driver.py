@@ -32,32 +32,8 @@ def integrate(
     stop: Callable[[Floats], int | None] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Trajectory:
-    """Integrate `count` steps of length `step`.
-
-    Parameters
-    ----------
-    equations : LinearEquations or NonlinearEquations
-    scheme : Scheme
-    q, qd : (n,)
-        Initial state; the accelerations follow from the equations.
-    step : float
-        s.
-    count : int
-    start : float
-        Initial time, s.
-    corners : Corners, optional
-        Where the drive has corners and jumps: a step within which lies one that the scheme feels is split there. The
-        result has the ends of whole steps.
-    stop : callable, optional
-        Of the coordinates (k, n) of a chunk: the number of steps after which the run ends, or None.
-    progress : callable, optional
-        Called with the fraction done.
-
-    Returns
-    -------
-    Trajectory
-        Of count + 1 times; fewer where a step failed, a value was not finite, or `stop` said so. Traced equations are
-        run to the end without a look at their values: a step that fails leaves NaN.
+    """Integrate `count` steps from q, qd (n,), split at `corners`, until `stop` says after how many steps of a chunk
+    (k, n) to end; a failed step ends the trajectory, or where JAX traces the equations leaves NaN.
     """
     steps = fitted(start, step, count, None if corners is None else corners.felt_by(scheme))
     return through(equations, scheme, q, qd, steps, stop=stop, progress=progress)

@@ -16,13 +16,7 @@ Drive = Callable[[Array], Any]  # times (t,) -> what drives the equations there,
 
 @record
 class LinearTerms:
-    """C, K and F as sums over features φ of the inputs: C = Σ φ_k C_k, K = Σ φ_k K_k, F = Σ φ_k F_k.
-
-    Parameters
-    ----------
-    velocity, stiffness : (k, n, n)
-    force : (k, n)
-    """
+    """C, K (k, n, n) and F (k, n) as sums over features φ of the inputs, such as C = Σ φ_k C_k."""
 
     velocity: Array
     stiffness: Array
@@ -42,19 +36,8 @@ class LinearTerms:
 
 @dataclass(frozen=True, eq=False)
 class LinearEquations:
-    """M q̈ + C(t) q̇ + K(t) q = F(t).
-
-    Parameters
-    ----------
-    mass : (n, n)
-    matrices : callable
-        Inputs at times (t,) -> C (t, n, n), K (t, n, n), F (t, n).
-    drive : callable
-        Times (t,) s -> inputs.
-    terms, features : callable, optional
-        The same matrices as sums: their terms, and inputs at times (t,) -> features (t, k).
-    rest : tuple of (n, n), optional
-        C and K, symmetric, of the vibration to which steps are fitted: :mod:`gbeam.integrate.fitting`.
+    """M q̈ + C(t) q̇ + K(t) q = F(t): `matrices` maps inputs at times (t,) to C, K, F; `terms` and `features` give the
+    same as sums; to `rest`, symmetric C and K, steps are fitted.
     """
 
     mass: Array
@@ -67,16 +50,7 @@ class LinearEquations:
 
 @dataclass(frozen=True, eq=False)
 class NonlinearEquations:
-    """r(q, q̇, q̈; inputs(t)) = 0, linear in q̈.
-
-    Parameters
-    ----------
-    residual : callable record
-        (q, q̇, q̈, inputs at one time) -> (n,); its arrays are arguments of the compiled program, so that equations of
-        equal sizes share one.
-    drive : callable
-        Times (t,) s -> inputs.
-    """
+    """r(q, q̇, q̈; inputs(t)) = 0, (n,), linear in q̈; the residual's arrays are arguments of the compiled program."""
 
     residual: Any
     drive: Drive

@@ -50,9 +50,8 @@ def chunk(
     steps: Steps,
     added: tuple[Array | float, Array | float] = (0.0, 0.0),
 ) -> tuple[Array, tuple[Array, Array, Array]]:
-    """Take steps from z (m, n); returns the next z, and q, q̇, q̈ at the ends of those that are kept, (k, n) each.
-
-    The steps have what is `added` to M and C, each (n, n); see :mod:`gbeam.integrate.fitting`.
+    """Take steps from z (m, n) with terms `added` to M and C; returns the next z, and q, q̇, q̈ (k, n) at the ends that
+    are kept.
     """
     t = scheme.tableau(steps.length[:1] if steps.equal else steps.length)
     count, stages, (m, n) = len(steps), len(scheme.offsets), z.shape

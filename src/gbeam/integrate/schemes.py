@@ -28,18 +28,8 @@ Floats = NDArray[np.float64]
 
 @record
 class Tableau:
-    """A scheme at one length of step, or, with a leading axis, at several; see the module.
-
-    Parameters
-    ----------
-    w_q, w_v : (s, m)
-    c_q, c_v : (s, s)
-    g : (m, m)
-    d : (m, s)
-    end_z, end_x : (2, m), (2, s)
-        q and q̇ at the end of the step, of z and x.
-    first : (m, 3)
-        The first z of the initial q, q̇, q̈.
+    """A scheme at one length of step, or at several on a leading axis: w (s, m), c (s, s), g (m, m), d (m, s), q and q̇
+    at the end (2, m), (2, s), first z of the initial q, q̇, q̈ (m, 3).
     """
 
     w_q: Floats
@@ -55,19 +45,8 @@ class Tableau:
 
 @dataclass(frozen=True, eq=False)
 class Scheme:
-    """An integration scheme.
-
-    Parameters
-    ----------
-    name : str
-    order : int
-    offsets : tuple of float
-        Times of the stages in a step, in steps.
-    unit : Tableau
-        At a step of one second.
-    exponent : callable, optional
-        z -> μ with R(μ) = e^z, R being what a step of q̇ = λ q multiplies q by at λh. Steps of a scheme that has it are
-        fitted to the vibration of linear equations at rest: :mod:`gbeam.integrate.fitting`.
+    """An integration scheme with stages at `offsets` of a step; `exponent`, z -> μ with R(μ) = e^z, fits steps of
+    linear equations.
     """
 
     name: str
@@ -93,9 +72,8 @@ class Scheme:
 
 
 def powers_of_step(m: int, stages: int) -> dict[str, NDArray[np.int64]]:
-    """Powers of the step, from −2 to 2, that the entries of a tableau's arrays have.
-
-    z = (q*, v*, c) and (q, q̇, q̈) are of the orders 0, 1, 2 of one over the step.
+    """Powers of the step, from −2 to 2, in a tableau's entries: z = (q*, v*, c) and (q, q̇, q̈) are of orders 0, 1, 2
+    in 1/step.
     """
     k, pair, x = np.arange(m), np.arange(2)[:, None], np.full(stages, 2)
     return {
@@ -153,13 +131,7 @@ def _one_step(name: str, alpha_m: float, alpha_f: float, beta: float, gamma: flo
 
 
 def newmark(beta: float = 0.25, gamma: float = 0.5) -> Scheme:
-    """Newmark (1959); the defaults are the average acceleration: no damping, unconditionally stable.
-
-    Raises
-    ------
-    InputError
-        If the parameters make the scheme unstable.
-    """
+    """Newmark (1959); the defaults are the average acceleration: no damping, unconditionally stable."""
     if not (gamma >= 0.5 and 2 * beta >= gamma):
         raise InputError(
             "beta",
@@ -170,26 +142,14 @@ def newmark(beta: float = 0.25, gamma: float = 0.5) -> Scheme:
 
 
 def hht(alpha: float) -> Scheme:
-    """Hilber, Hughes and Taylor (1977): alpha from −1/3 to 0, more damping the lower.
-
-    Raises
-    ------
-    InputError
-        If alpha lies beyond.
-    """
+    """Hilber, Hughes and Taylor (1977): alpha from −1/3 to 0, more damping the lower."""
     if not -1 / 3 <= alpha <= 0:
         raise InputError("alpha", f"is {alpha:g}", "give a value from -1/3 to 0")
     return _one_step("hht", 0.0, -alpha, (1 - alpha) ** 2 / 4, 0.5 - alpha)
 
 
 def generalized_alpha(rho_inf: float) -> Scheme:
-    """Chung and Hulbert (1993): spectral radius rho_inf at infinite frequency, 0 (most damping) to 1.
-
-    Raises
-    ------
-    InputError
-        If rho_inf lies beyond.
-    """
+    """Chung and Hulbert (1993): spectral radius rho_inf at infinite frequency, 0 (most damping) to 1."""
     if not 0 <= rho_inf <= 1:
         raise InputError("rho_inf", f"is {rho_inf:g}", "give a value from 0 to 1")
     alpha_m, alpha_f = (2 * rho_inf - 1) / (rho_inf + 1), rho_inf / (rho_inf + 1)

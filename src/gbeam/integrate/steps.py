@@ -69,21 +69,8 @@ def leaves(inputs: Any) -> Iterator[Any]:
 
 @dataclass(frozen=True, eq=False)
 class Steps:
-    """Steps in order, (t,) each.
-
-    Parameters
-    ----------
-    begin, length, end : s
-    first, last : s
-        The ends of the step, or just inside it where the drive jumps there.
-    kept : bool
-        Whether the end belongs to the result.
-    jump : bool
-        Whether the drive jumps at the end.
-    anew : bool
-        Whether the scheme starts anew at the end: the drive jumps there, or the next step has another length.
-    resume, following : s
-        The next step's `first` and `length`.
+    """Steps in order, (t,) each: `first` and `last` lie just inside a step at a jump; `resume`, `following` are the
+    next one's.
     """
 
     begin: Floats
@@ -121,11 +108,7 @@ class Steps:
 
 
 def fitted(start: float, step: float, count: int, corners: Corners | None = None) -> Steps:
-    """Return `count` steps of length `step`, each split at the corners within it; splits are not kept.
-
-    Times are products, not sums, so that they do not drift. Equal ones are the same object where they are few, and were
-    the last: cases of a batch mostly share theirs.
-    """
+    """Return `count` steps of length `step`, split at the corners within them; times are products and do not drift."""
     if count > FEW:
         return _fitted(start, step, count, corners)
     given = None if corners is None else (corners.time.tobytes(), corners.jump.tobytes())

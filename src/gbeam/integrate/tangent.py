@@ -36,26 +36,8 @@ def tangent(
     *,
     within: System | None = None,
 ) -> tuple[Floats, Floats, Floats]:
-    """Derivatives of a run with respect to p parameters.
-
-    Parameters
-    ----------
-    system : callable
-        The equations linearised about the states that it is given.
-    scheme : Scheme
-    steps : Steps
-        Of the run, (t,).
-    run : Trajectory
-        At the start and at the ends of all steps, split ones too, (t + 1,).
-    q, qd : (n, p)
-        Derivatives of the initial state.
-    within : callable, optional
-        The same of the equations that the steps solve, where these are fitted; `system` by default.
-
-    Returns
-    -------
-    q, qd, qdd : (t + 1, n, p)
-        At the run's times.
+    """Derivatives (t + 1, n, p) of a run's q, q̇, q̈ by p parameters, from those of its start (n, p), by equations
+    linearised about its states; `within` are those that fitted steps solve.
     """
     shape = (len(steps) + 1, *q.shape)
     made = np.empty(shape), np.empty(shape), np.empty(shape)

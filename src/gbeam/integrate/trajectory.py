@@ -10,17 +10,7 @@ from gbeam.integrate.steps import Floats
 
 @dataclass(frozen=True)
 class Trajectory:
-    """Coordinates over time, as far as the integration got.
-
-    Parameters
-    ----------
-    time : (t,) s
-    q, qd, qdd : (t, n)
-    converged : bool
-        False where the acceleration could not be computed in the step after the last time.
-    stopped : bool
-        Whether the caller's condition stopped it.
-    """
+    """Coordinates (t, n) over time (t,), as far as the integration got before it failed or was stopped."""
 
     time: Floats
     q: Any

@@ -90,20 +90,7 @@ def assembled(
     families: Families | None,
     shapes: str,
 ) -> Structure:
-    """Put a beam into a model with given shapes, quadrature and stations of output, the tip last.
-
-    Parameters
-    ----------
-    beam : Beam
-    kind : str
-        The model's.
-    counts : numbers of shapes
-    rule : Quadrature
-    at : (s,) m
-    families : the shapes; those of the bare uniform beam unless given
-    shapes : str
-        What they are called.
-    """
+    """Put a beam into a model with given shapes, quadrature and stations of output (s,) m, the tip last."""
     row = KINDS[kind]
     bodies = [m.at for m in beam.masses]
     loaded = [load.at for load in beam.loads if load.at is not None]

@@ -21,17 +21,7 @@ def rest_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
 
 
 def damping_matrix(ratio: Any, mass: Array, stiffness: Array) -> Array:
-    """Modal damping matrix M Φ diag(2ζω) Φᵀ M, (n, n).
-
-    Parameters
-    ----------
-    ratio : float, or a sequence of one per mode, ascending in frequency
-
-    Raises
-    ------
-    InputError
-        If a list of ratios does not fit the number of modes.
-    """
+    """Modal damping matrix M Φ diag(2ζω) Φᵀ M, (n, n), of one ratio or one per mode, ascending in frequency."""
     n, ratio = mass.shape[0], as_array(ratio)
     if ratio.ndim and len(ratio) != n:
         raise InputError(

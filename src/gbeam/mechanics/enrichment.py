@@ -31,14 +31,8 @@ NODES, PER_PANEL = 14, 8  # of the quadrature: over the beam with one shape, and
 
 
 def enrichment(structure: Structure, base: Base | None = None) -> Enrichment:
-    """A structure's own shapes and those that it lacks.
-
-    Parameters
-    ----------
-    structure : Structure
-        With a source.
-    base : Base, optional
-        Motion of the base, at one time or many: what it pulls along the beam changes the shapes that are lacking.
+    """Find a structure's own shapes and those that it lacks under what the base, at one time or many, pulls along the
+    beam.
     """
     alone = _alone(structure)
     force = None if base is None else alone.bent_by(base)
@@ -51,14 +45,8 @@ def _alone(structure: Structure) -> Enrichment:
 
 
 class Enrichment:
-    """A structure's own shapes and those that it lacks, from which models with all of them are made.
-
-    Parameters
-    ----------
-    structure : Structure
-        With a source.
-    force : (g,), optional
-        Axial force at the nodes that changes the shapes that are lacking, N.
+    """A structure's own shapes and those that it lacks under an axial force (g,) N, from which models with all are
+    made.
     """
 
     def __init__(self, structure: Structure, force: Array | None = None) -> None:
@@ -83,14 +71,7 @@ class Enrichment:
     def model(
         self, kind: str, *, directions: tuple[bool, bool, bool] = (True, True, True)
     ) -> tuple[Structure, NDArray[np.int_]]:
-        """A model with the shapes of some directions, and where the structure's own coordinates are in it.
-
-        Parameters
-        ----------
-        kind : str
-        directions : tuple of bool
-            Whether new shapes along x, y and z are in it.
-        """
+        """Make a model with new shapes along some of x, y, z, and say which coordinates are the structure's own."""
         key = kind, directions
         if key not in self._made:
             self._made[key] = self._model(kind, directions)

@@ -13,10 +13,8 @@ Array = Any
 
 
 def influence(structure: Structure) -> Influence:
-    """Static answer of the straight beam at rest to uniform and linearly growing acceleration fields.
-
-    The fields are those of the base itself: translation, angular acceleration about z and y (a_y = α_z x, a_z = −α_y x)
-    and a centripetal field (a_x = −ω² x), so that the answer holds for any model, section and bodies.
+    """Static answers of the straight beam to uniform, angular (a_y = α_z x, a_z = −α_y x) and centripetal (−ω² x)
+    accelerations.
     """
     c = structure.coefficients
     linear = np.stack([-c.f_ww[2, 2], c.f_al[2], -c.f_al[1]])

@@ -10,21 +10,8 @@ from gbeam.guards.arguments import typed
 
 @dataclass(frozen=True)
 class Kind:
-    """A row of the table of models.
-
-    Parameters
-    ----------
-    exact : bool
-        The exact field, or the one of the projected displacements.
-    foreshortening : bool
-        Whether transverse displacement shortens the projected field.
-    truncated : bool
-        Whether the Taylor polynomial of the places ends with the second order and the equations with the first, which
-        makes them linear on a prescribed base.
-    hub_force : bool
-        Whether a free hub feels Q_θ.
-    axial : bool
-        Whether there are axial coordinates.
+    """A row of the table of models: exact or projected field, foreshortening, truncation, Q_θ on a free hub, axial
+    coordinates.
     """
 
     exact: bool = False

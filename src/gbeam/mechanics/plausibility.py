@@ -25,20 +25,8 @@ def input_warnings(
     span: tuple[float, float] = (0.0, 0.0),
     base: Any = None,
 ) -> tuple[str, ...]:
-    """Warnings of what is implausible in the input of any analysis; none where JAX traces it.
-
-    Parameters
-    ----------
-    structure : Structure
-        With what :func:`gbeam.assemble` found implausible in its beam.
-    motion : Motion, optional
-    name : str
-        Of the motion.
-    span : tuple of float
-        First and last time that matter, s.
-    base : Base or BaseMotion, optional
-        Motion of the root at the times that matter, (t, 3), where it is known; else that of the motion over the span,
-        but for a machine's, which takes a plan to know.
+    """Warn of what is implausible in any analysis's input, also in the `base` at times that matter; never where JAX
+    traces it.
     """
     if structure.traced or holds_jax(motion):
         return ()

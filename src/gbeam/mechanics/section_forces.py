@@ -39,24 +39,8 @@ def section_forces(
     *,
     motion: Motion | None = None,
 ) -> Loads | None:
-    """Loads at the root and the structure's stations for given motions of beam and base.
-
-    Parameters
-    ----------
-    structure : Structure
-    base : BaseMotion
-        (t, 3) each.
-    q, qd, qdd : (t, n)
-        Coordinates, their rates and accelerations; zeros of the last two for a relative equilibrium.
-    time : (t,)
-        s.
-    motion : Motion, optional
-        Of the base; on a hub the torque that the beam takes is given too.
-
-    Returns
-    -------
-    Loads
-        None where the structure has no sections.
+    """Loads at the root and the stations for motions of base (t, 3) and beam (t, n); None where the structure has no
+    sections.
     """
     if structure.sections is None:
         return None
@@ -100,26 +84,8 @@ def sections(
     *,
     compiled: bool = True,
 ) -> tuple[Array, ...]:
-    """What the sections carry, and how they accelerate, over times t.
-
-    Parameters
-    ----------
-    structure : Structure
-    outboard : Sections
-        Of the root and some stations, the last ones of the structure's.
-    base : Base
-        (t, 3) each.
-    q, qd, qdd : (t, n)
-    values : (t, loads, 6) or None
-        Components of the loads on the beam.
-    compiled : bool
-        Whether a complete model's paths are found by JAX, to the last digits; else by NumPy.
-
-    Returns
-    -------
-    force, moment : (t, s, 3) base axes, N and N m
-    force, moment : (t, s, 3) section axes
-    acceleration : (t, s, 3) base axes, m/s²; specific force where gravity acts
+    """Force and moment (t, s, 3) in base and in section axes, and acceleration (or specific force), at `outboard` over
+    times.
     """
     count = outboard.mass.shape[0] - 1
     moving = _of_polynomial if structure.linear else _of_field if compiled else _of_samples
@@ -212,16 +178,7 @@ def _cross(xp: Any, left: Array, right: Array) -> Array:
 
 
 def about_the_hub(loads: Loads, motion: Motion | None, alpha_WB_B: Array) -> Loads:
-    """The same loads, on a hub with the torque about its axis, however the beam is mounted on it.
-
-    Parameters
-    ----------
-    loads : Loads
-    motion : Motion or None
-        Of the base. Where a hub's inertia is given, so is the torque of its drive.
-    alpha_WB_B : (t, 3)
-        Angular acceleration of the base, rad/s².
-    """
+    """Add the torque about a hub's axis, and its drive's where its inertia is given, to loads under α (t, 3)."""
     if motion is None or motion.kind != "hub":
         return loads
     hub: Any = motion

@@ -31,19 +31,8 @@ Array = Any
 
 @record
 class Sections:
-    """A beam's sections at its root and stations, and what lies outboard of each.
-
-    Parameters
-    ----------
-    values : SectionValues or None
-        Areas, second moments and extreme fibres, (s,) each; None of particles, cut nowhere but at the root and the tip.
-    mass : (s, particles) kg
-        Of the particles outboard of each section.
-    loaded : (s, loaded points)
-        Share of each that lies outboard of each section.
-    yield_strength : float or None
-        Of the material, Pa.
-    fatigue_exponent : float
+    """Sections at root and stations: values (s,), outboard masses (s, particles) kg, shares of loads (s, loaded),
+    strength Pa.
     """
 
     values: Any
@@ -55,14 +44,7 @@ class Sections:
 
 @dataclass(frozen=True, eq=False)
 class Source(Value):
-    """What a structure was made of.
-
-    Parameters
-    ----------
-    beam : Beam
-    shapes : str
-        Which shapes its model has.
-    """
+    """What a structure was made of: its beam, and which shapes its model has."""
 
     beam: Beam
     shapes: str

@@ -37,28 +37,9 @@ CORNERS = np.array([(1, 1), (1, -1), (-1, 1), (-1, -1)])  # particles of a thick
 
 
 class Theory(NamedTuple):
-    """A beam by two theories.
-
-    Parameters
-    ----------
-    slender : Structure
-        Linear, with the coordinates of the structure first, in its order, and others.
-    thick : Structure
-        With shears and twist after these, and rotary inertia.
-    columns : dict of str to slice
-        The thick beam's coordinates of ``shear`` and of ``twist``.
-    curvature : (2, g, n)
-        Slopes of the curvatures about y and z at the nodes, by coordinate of the thick beam.
-    rigidity : (2, g)
-        EI_y and EI_z of the model there times the quadrature's weights, N m³.
-    node : (g,) m
-    bodies : (b, 3, n)
-        Slopes of the places of the bodies' centres.
-    beam : Beam
-    own : int
-        Number of the structure's coordinates.
-    beyond : mass (n, own), terms (features, n, own) and (features, n)
-        What the thick beam's equations have beyond the slender one's, of the structure's coordinates.
+    """A beam by slender and by thick theory, with the structure's `own` coordinates first: `columns` of shear and
+    twist, `curvature` (2, g, n), `rigidity` (2, g) N m³, `bodies` (b, 3, n), and what the thick one's equations have
+    `beyond`.
     """
 
     slender: Structure
@@ -87,22 +68,15 @@ class Theory(NamedTuple):
 
 @lru_cache(maxsize=4)  # keyed by values, as enrichment is
 def theory_of(structure: Structure) -> Theory:
-    """A structure's beam by two theories.
-
-    Parameters
-    ----------
-    structure : Structure
-        With a source.
-    """
+    """A structure's beam, which it must have, by two theories."""
     more = enrichment(structure)
     families = own_families(structure, more.beam, more.rule)
     return _Parts(structure, more.beam, more.rule).theory(families)
 
 
 class _Parts:
-    """What a beam's energies are made of, at the nodes of a quadrature and at its bodies, loads and stations.
-
-    Strains are columns of their values at the nodes, family by family, and of the stretches of the root's springs.
+    """What a beam's energies are made of at nodes, bodies, loads and stations: strains by nodal values, family by
+    family, and springs.
     """
 
     def __init__(self, structure: Structure, beam: Beam, rule: Quadrature) -> None:

@@ -17,14 +17,8 @@ ZONE = 0.9  # of one term's length: what several terms leave of it
 
 
 def stiffening(beam: Beam, x: Array, bent: Array) -> tuple[Array, Array]:
-    """Factors on EI_y and EI_z at positions by which the strip is stiffer than the beam with its own rigidities.
-
-    Parameters
-    ----------
-    beam : Beam
-    x : (p,) m
-    bent : (2, p)
-        Sizes of the curvatures about y and about z, 1/m.
+    """Factors (p,) on EI_y and EI_z at x (p,) by which the strip is stiffer than a beam, at sizes of curvatures (2, p),
+    1/m.
     """
     ratio, (width, thickness) = float(beam.material.ratio), beam.section.at(x).extents()
     most = ratio**2 / (1 - ratio**2)
@@ -37,11 +31,9 @@ def stiffening(beam: Beam, x: Array, bent: Array) -> tuple[Array, Array]:
 
 
 def near_clamp_or_bent(ratio: float, x: Array, across: Array, through: Array, curvature: Array) -> Array:
-    """How far sections are kept flat, from 0 (free to bend across) to 1 (as in a plate), at positions (p,).
-
-    The strip's energy D/2 ∫ (w'' + c'' g)² + c² + 2ν (w'' + c'' g) c + 2 (1 − ν) (c' y)² dA, g = y²/2 − b²/24, makes
-    b⁴/720 c'''' − (1 − ν) b²/6 c'' + c = −ν w'', with c = c' = 0 at the clamp; the stretch E h/2 ∫ (w'' c g)² dA
-    adds (1 − ν²) (b² w''/h)²/60 c (the parameter of Searle, 1907).
+    """How far sections are kept flat, from 0 (free to bend across) to 1 (as in a plate), at positions (p,): c = c' = 0
+    at the clamp in b⁴/720 c'''' − (1 − ν) b²/6 c'' + c = −ν w'', to which the stretch adds (1 − ν²) (b² w''/h)²/60 c
+    (Searle, 1907).
     """
     mean = (1 - ratio) / 6
     root = np.sqrt(mean**2 - 4 / 720)

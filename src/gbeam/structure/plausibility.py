@@ -27,13 +27,8 @@ DISPARATE = 1e9  # of two sizes: of the smaller one's sixteen digits so many are
 
 
 def implausible_beam(beam: Beam, bends: tuple[bool, bool]) -> tuple[str, ...]:
-    """Warnings of what is implausible in a beam, with the scenario's names; none where JAX traces it.
-
-    Parameters
-    ----------
-    beam : Beam
-    bends : tuple of bool
-        Whether it can bend along y, and along z, in its model: slenderness matters there only.
+    """Warn, in the scenario's names, of what is implausible in a beam that `bends` along y and z; never where JAX
+    traces it.
     """
     if _traced(beam):
         return ()

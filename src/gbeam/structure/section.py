@@ -263,9 +263,8 @@ class Section(Value):
 
 @record
 class SectionValues:
-    """Section properties at positions: area m², inertia_y and inertia_z m⁴, extreme fibres along y and z m.
-
-    The extreme fibres are the corners (±y, ±z), or where `round` a circle through (y, 0) and (0, z).
+    """Section properties at positions: area m², I_y and I_z m⁴, and extreme fibres m: corners (±y, ±z), or where
+    `round` a circle.
     """
 
     area: Array

@@ -97,17 +97,8 @@ def general_shear(
 
 
 class Shape(NamedTuple):
-    """A shape: the names of its dimensions, and what follows from their values.
-
-    Parameters
-    ----------
-    values : callable
-        Of the dimensions: area m², I_y and I_z m⁴, extreme fibres along y and z m.
-    torsion : callable
-        Of the dimensions: torsion constant, m⁴.
-    shear : callable
-        Of Poisson's ratio and the dimensions: shear coefficients along y and z.
-    required, optional : tuple of str
+    """A shape: area m², I_y, I_z m⁴ and extreme fibres m (`values`), torsion constant m⁴, shear coefficients, of its
+    dimensions.
     """
 
     values: Rule

@@ -15,20 +15,9 @@ _ROUND = 24  # directions of fibres of a round section; the worst lies within 7.
 
 
 def extreme_stresses(values: SectionValues, force: Array, moment: Array) -> tuple[Array, Array]:
-    """Largest and smallest normal stress over sections: tension and, where negative, compression.
-
-    Parameters
-    ----------
-    values : SectionValues
-        Of sections (s,).
-    force, moment : (..., s, 3)
-        N, V_y, V_z, N, and torque, M_y, M_z, N m, in axes of the sections.
-
-    Returns
-    -------
-    largest, smallest : (..., s)
-        N/A ± (|M_y| c_z/I_y + |M_z| c_y/I_z) Pa, with the extreme fibres c_y and c_z of a rectangle about the section;
-        of a round section N/A ± √(M_y² + M_z²) c/I. NaN where the extreme fibres are unknown.
+    """Largest and smallest normal stress (..., s) Pa, N/A ± (|M_y| c_z/I_y + |M_z| c_y/I_z), or N/A ± √(M_y² + M_z²)
+    c/I of round sections, from force N and moment N m (..., s, 3) in section axes; NaN where extreme fibres are
+    unknown.
     """
     xp = namespace(force, moment, values.area)
     along_z = moment[..., 1] * values.extreme_fibre_z / values.inertia_y
@@ -56,21 +45,8 @@ def fibre_strain(beam: Beam, at: Array, force: Array, moment: Array, y: Array, z
 
 
 def worst_fibre(values: SectionValues, section: int, force: Array, moment: Array) -> Array:
-    """Normal stress over time at that extreme fibre of one section where it ranges most.
-
-    Parameters
-    ----------
-    values : SectionValues
-        Of sections (s,).
-    section : int
-        Which of them.
-    force, moment : (t, s, 3)
-        As in :func:`extreme_stresses`.
-
-    Returns
-    -------
-    (t,) Pa
-        N/A + M_y z/I_y − M_z y/I_z at one of the corners (±y, ±z), or of 24 points around a round section.
+    """Normal stress (t,) Pa, N/A + M_y z/I_y − M_z y/I_z, at that corner of a section, or that of 24 points around a
+    round one, where it ranges most; force and moment (t, s, 3).
     """
     here = values[section]
     points = [(1, 1), (1, -1), (-1, 1), (-1, -1)]

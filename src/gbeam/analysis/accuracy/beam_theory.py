@@ -28,16 +28,8 @@ WORDS = {"shear": "shear", "rotary": "rotary inertia", "twist": "twist", "plate"
 
 
 class Lacking(NamedTuple):
-    """What a solution lacks by the theory of slender beams.
-
-    Parameters
-    ----------
-    sizes : dict of str to float
-        Largest sizes over time of the differences, by the fields of Quantities.
-    causes : dict of str to float
-        Share of each cause in the solution's energy, of first order.
-    bodies : (b,)
-        Largest distances by which the bodies' centres are elsewhere, m.
+    """Largest differences of quantities to the theory of thick beams, each cause's share of the energy, and bodies'
+    distances (b,) m.
     """
 
     sizes: dict[str, float]
@@ -61,17 +53,7 @@ class _Gap(NamedTuple):
 
 
 def response_theory(structure: Structure, motion: Motion, solution: Solution, begin: Begin | None = None) -> Lacking:
-    """What a response lacks; NaN where the thick beam has no answer.
-
-    Parameters
-    ----------
-    structure : Structure
-        With a source.
-    motion : Motion
-    solution : Solution
-    begin : callable, optional
-        Coordinates and rates (n,) of another structure at the start; left out, it begins in its equilibrium.
-    """
+    """Find what a response lacks; NaN where the thick beam has no answer; without `begin` it starts in equilibrium."""
     theory, index = theory_of(structure), np.arange(structure.size)
     full, thin = (lifted(each, index, motion, solution) for each in (theory.thick, theory.slender))
     plate = theory.plate(full.p)
@@ -96,14 +78,8 @@ def response_theory(structure: Structure, motion: Motion, solution: Solution, be
 
 
 def static_theory(structure: Structure, resting: Callable[[Structure], Sampled]) -> Lacking:
-    """What an equilibrium lacks; NaN where the thick beam has none.
-
-    Parameters
-    ----------
-    structure : Structure
-        With a source.
-    resting : callable
-        Of a structure whose first coordinates are this one's: the equilibrium in its coordinates, of one time.
+    """Find what an equilibrium lacks, given a function that finds it for another structure; NaN where the thick beam
+    has none.
     """
     theory = theory_of(structure)
     full, thin = resting(theory.thick), resting(theory.slender)
@@ -166,10 +142,7 @@ def causes(theory: Theory, p: Any, beam: Any, plate: Any) -> dict[str, float]:
 
 
 def mode_causes(theory: Theory, base: Base, loads: Any, mode: Any, rate: Any, plate: Floats) -> dict[str, float]:
-    """Share of each cause in the energy of modes (k, own) of circular frequencies (k,) about a base (3,) and loads.
-
-    What a free hub adds is left out.
-    """
+    """Share of each cause in the energy of modes (k, own) at rates (k,) on a base (3,), without a free hub's."""
     a, w, alpha = (np.asarray(x)[None] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B))
     given = None if loads is None else np.asarray(loads)[None]
     features = theory.thick.coefficients.features(a, w, alpha, given)[0]

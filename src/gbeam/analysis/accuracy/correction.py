@@ -140,15 +140,8 @@ def _hub_operator(hub: FreeHub, at: Sampled, velocity: Floats, stiffness: Floats
 
 
 class Vibration(NamedTuple):
-    """Modes about a solution's mean stiffness, and which of them its samples resolve.
-
-    Parameters
-    ----------
-    square : (n,) rad²/s²
-        Of the circular frequencies.
-    modes : (n, n)
-        In columns, of unit length in M.
-    resolved : (n,) bool
+    """Modes (n, n) about a solution's mean stiffness, in columns of unit length in M, and which of them its samples
+    resolve.
     """
 
     square: Floats
@@ -168,18 +161,8 @@ class Vibration(NamedTuple):
         return Vibration(square, modes, resolved)
 
     def shaken(self, of: Operator, residual: Floats, start: State) -> tuple[Floats, Floats]:
-        """How far the start, and corners and jumps of a residual (t, n), may make the unresolved modes ring.
-
-        Samples that show no vibration show what excites it: beside a corner or a jump the second difference of the
-        force on a mode is larger than the force that its ring has. At the start it rings by as much as it is away from
-        where that force would hold it.
-
-        Returns
-        -------
-        rate : (k,) rad/s
-            Circular frequencies of the modes.
-        amplitude : (n, k)
-            Coordinates of their largest rings.
+        """Rates (k,) rad/s and amplitudes (n, k) at which the start, and corners and jumps of a residual (t, n), may
+        make unresolved modes ring: beside a corner the second difference of the force exceeds the ring's own.
         """
         fast = ~self.resolved
         rate, force = np.sqrt(self.square[fast]), residual @ self.modes[:, fast]
@@ -195,15 +178,7 @@ class Vibration(NamedTuple):
 
 
 def responses(of: Operator, vibration: Vibration, time: Floats) -> Callable[[Floats, State], Correction]:
-    """The linear response to −R, (t, n) each, as a function of R (t, n) and of where the beam begins and how fast.
-
-    Parameters
-    ----------
-    of : Operator
-    vibration : Vibration
-        Of the same.
-    time : (t,) s
-    """
+    """The linear response to −R, (t, n), as a function of R (t, n) and of the initial state."""
     square, modes, kept = vibration
     step = _interval(time)
     phi, stiff = modes[:, kept], modes[:, ~kept]

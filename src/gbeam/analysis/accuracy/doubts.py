@@ -26,9 +26,8 @@ def cause_and_cure(shapes: float, model: float, beam_theory: float, theory: str)
 
 
 def of_bodies(structure: Structure, lacking: Lacking, tip: float, limit: float) -> Iterator[str]:
-    """What to say of bodies that are elsewhere by more than a share of the tip's displacement, m.
-
-    The tip lies on the axis, which a twist does not move.
+    """Warn of bodies, off the axis that the tip lies on, that are elsewhere by more than a share of its displacement,
+    m.
     """
     assert structure.source is not None
     for i, (body, moved) in enumerate(zip(structure.source.beam.masses, lacking.bodies, strict=False)):

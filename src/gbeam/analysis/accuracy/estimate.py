@@ -35,26 +35,8 @@ def response_errors(
     begin: Begin | None = None,
     tolerance: float = math.inf,
 ) -> tuple[Errors, tuple[str, ...]]:
-    """Estimated errors of a response, as fractions of the largest displacement, load and stress, and what to say.
-
-    Parameters
-    ----------
-    structure : Structure
-    motion : Motion
-    solution : Solution
-        At every step.
-    tip : (t, 3) m
-        At the times of the results, and
-    loads : Loads or None
-        likewise.
-    steps : (3,)
-        Errors of displacement, loads and stress from the time step, fractions.
-    stride : int
-        Steps to each of the results.
-    begin : callable, optional
-        Of a structure with more shapes: its coordinates and rates at the start; left out, it begins in equilibrium.
-    tolerance : float
-        Share of the tip's largest displacement by which a body off the axis may be elsewhere without a word.
+    """Estimated errors of a response, as fractions of the largest tip displacement (t, 3), load and stress, and
+    warnings; `steps` are those of the time step, and the solution has `stride` steps to each of the results.
     """
     if structure.source is None or loads is None or len(tip) < 3:
         alone = [ErrorEstimate(step=step, total=step) for step in steps]
@@ -97,9 +79,8 @@ def response_errors(
 
 
 def _missed(rings: Rings, sizes: dict[str, float], errors: Errors, fastest: float) -> float:
-    """Circular frequency of the fastest mode that may ring by more than the error stated, rad/s; zero if none may.
-
-    None above the `fastest` that the steps resolve: to look at all of them would show nothing more.
+    """Circular frequency of the fastest mode, up to the `fastest` resolved, that may ring by more than the error,
+    rad/s, or zero.
     """
     limits = zip(("tip", "force", "moment"), (errors.displacement, errors.loads, errors.loads), strict=True)
     visible = np.zeros(len(rings.rate), dtype=bool)

@@ -21,19 +21,8 @@ from gbeam.results.result import Floats
 
 @dataclass(frozen=True, eq=False)
 class Sampled:
-    """A solution at times t, in the coordinates of a structure with more shapes.
-
-    Parameters
-    ----------
-    time : (t,) s
-    base : Base
-        (t, 3) each.
-    p, pd, pdd : (t, n)
-    hub : (t, 3) or None
-        Angle, rate and acceleration of a free hub, and
-    motion : Hub or None
-        the hub.
-    loads : (t, loads, 6) or None
+    """A solution at times (t,) in the coordinates (t, n) of a structure with more shapes; `hub` (t, 3) has angle, rate
+    and acceleration.
     """
 
     time: Floats

@@ -55,14 +55,7 @@ class Rings(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """A solution at equal intervals.
-
-    Parameters
-    ----------
-    time : (t,) s
-    y, yd, ydd : (t, n)
-        Coordinates, rates and accelerations; of a free hub its angle first.
-    """
+    """A solution at equal intervals: y and its rates (t, n), of a free hub its angle first."""
 
     time: Floats
     y: Floats
@@ -82,19 +75,7 @@ def lacking(
     *,
     begin: Begin | None = None,
 ) -> tuple[Parts, Rings]:
-    """What a solution lacks, quantity by quantity, over time, and what its samples may hide.
-
-    Parameters
-    ----------
-    structure : Structure
-        With a source.
-    motion : Motion
-    solution : Solution
-    own : Quantities, optional
-        Of the solution, where they are known.
-    begin : callable, optional
-        Coordinates and rates (n,) of a beam with more shapes at the start; left out, it begins in its equilibrium.
-    """
+    """Find what a solution lacks, quantity by quantity, over time, and what its samples may hide."""
     more = enrichment(structure, _base(motion, solution)[0])
     count = len(solution.time)
     few = solution.some(np.linspace(0, count - 1, min(count, SCAN)).astype(int))
@@ -152,14 +133,7 @@ def quantities(structure: Structure, at: Sampled) -> Quantities:
 
 
 def driven(more: Enrichment, lifted: Callable[[Structure, IntArray], Sampled]) -> tuple[bool, bool, bool]:
-    """Whether new shapes along x, y and z would be moved by a solution.
-
-    Parameters
-    ----------
-    more : Enrichment
-    lifted : callable
-        A structure with more shapes, and where its own are in it -> the solution in its coordinates.
-    """
+    """Whether new shapes along x, y and z would be moved by a solution, lifted into a structure that has them."""
     structure = more.structure
     if all(structure.counts):
         return True, True, True

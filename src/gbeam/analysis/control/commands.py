@@ -22,16 +22,7 @@ _TIMES = 2001  # over a command: the splines are smooth, and vanish at the ends 
 
 @dataclass(frozen=True)
 class Goal:
-    """What a command must do.
-
-    Parameters
-    ----------
-    value : float
-        Angle turned, rad, or rate reached, rad/s.
-    to_rate : bool
-    duration : float
-        s.
-    """
+    """The angle to turn, rad, or the rate to reach, rad/s, and in which time, s."""
 
     value: float
     to_rate: bool
@@ -39,17 +30,8 @@ class Goal:
 
 
 class Commands:
-    """All splines of so many pieces that drive a hub from rest.
-
-    The drive u is the torque on a free hub, or the angular acceleration of one with a prescribed rate.
-
-    Parameters
-    ----------
-    structure : Structure
-    hub : Hub
-        At rest; with an inertia and no rate it is free.
-    goal : Goal
-    pieces : int
+    """Splines of so many pieces that drive a hub from rest, by the torque if it is free, else by its angular
+    acceleration.
     """
 
     def __init__(self, structure: Structure, hub: Hub, goal: Goal, pieces: int) -> None:
@@ -123,14 +105,8 @@ def turning_inertia(structure: Structure, hub: Hub) -> float:
 
 @dataclass(frozen=True)
 class Vibration:
-    """The modes of a hub at rest, by what a drive leaves in the tip's displacement.
-
-    Parameters
-    ----------
-    eigenvalue : (k,) complex
-        1/s, of the positive imaginary part.
-    gain : (k,)
-        Size of the tip's displacement over the mode's excitation ∫ exp(−λt) u dt, m.
+    """The modes of a hub at rest: eigenvalues (k,) and the tip's displacement over the excitation ∫ exp(−λt) u dt, (k,)
+    m.
     """
 
     eigenvalue: Complex

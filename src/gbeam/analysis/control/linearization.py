@@ -37,24 +37,8 @@ BASE_RATES = tuple(Signal(f"base_rate_{i}", "rad/s") for i in "xyz")
 
 @record
 class Outputs:
-    """What is measured, as a function of (y, ẏ, ÿ, u).
-
-    Tip displacement relative to the base axes; tip acceleration, absolute, or specific force where gravity acts; moment
-    of the base on the root, which is what the section there carries; strains by what the sections at the gauges carry;
-    on a free hub its angle and rate. Vectors in base axes; acceleration, moments and forces as in
-    :mod:`gbeam.mechanics.section_forces`.
-
-    Parameters
-    ----------
-    structure : Structure
-        With the gauges among its stations.
-    residual : OnBase or OnHub
-    outboard : Sections
-        Of the root, the gauges' stations and the tip.
-    at : (gauges,)
-        Index of each gauge's section among these.
-    strains : (gauges, 6)
-        At each gauge of unit components of force and moment in its section.
+    """Outputs of (y, ẏ, ÿ, u): tip displacement and (absolute) acceleration, root moment, strains (from gauges' section
+    forces by `strains` (gauges, 6)) and a free hub's angle and rate, in base axes.
     """
 
     structure: Structure

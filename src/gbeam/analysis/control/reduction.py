@@ -25,9 +25,8 @@ def _named(system: StateSpace, a: Floats, b: Floats, c: Floats, d: Floats, stem:
 
 
 def _split(system: StateSpace, chosen: Callable[[complex], bool]) -> Parts:
-    """Split a system into two that act side by side: the chosen eigenvalues, and the rest (which has no D).
-
-    By an ordered Schur form and a Sylvester equation, which take also a double integrator, where eigenvectors fail.
+    """Split a system into chosen eigenvalues and the rest (without D), by Schur and Sylvester, which take a double
+    integrator.
     """
     schur, basis, count = scipy.linalg.schur(system.a, output="real", sort=lambda re, im=0.0: chosen(complex(re, im)))
     first, second = schur[:count, :count], schur[count:, count:]

@@ -53,10 +53,7 @@ def displaced(structure: Any, axes: tuple[int, ...], wanted: Array) -> Array:
 
 
 def _root(function: Any, start: Array) -> Array:
-    """Where a function of x and a share of what drives it vanishes, as the share grows in strides from none to all.
-
-    Derivatives are by the implicit function theorem.
-    """
+    """Root of a function of x and a share of its drive, as the share grows to one; derivatives are implicit."""
 
     def newton(of: Any, start: Array) -> tuple[Array, Array]:
         def correct(k: Any, state: tuple[Array, Array]) -> tuple[Array, Array]:

@@ -27,18 +27,8 @@ _ROW, _COLUMN = np.tril_indices(3, -1)
 
 
 class Loss(NamedTuple):
-    """A stretch of time in which a disturbance grows.
-
-    Parameters
-    ----------
-    start, end : float
-        s.
-    growth : float
-        Logarithm of the factor by which a disturbance grows.
-    flutter : bool
-        Whether loads that follow the beam feed it.
-    causes : tuple of str
-        What the base and the loads do at the start, in words.
+    """A stretch of time in which a disturbance grows by a factor of logarithm `growth`, and what base and loads do at
+    its start.
     """
 
     start: float
@@ -67,17 +57,8 @@ class Drive(NamedTuple):
 
 
 def worst_loss(structure: Structure, time: Array, base: BaseMotion, q: Array) -> Loss | None:
-    """Stretch of a run in which a disturbance grows most; None where none grows.
-
-    Parameters
-    ----------
-    structure : Structure
-    time : (t,)
-        s.
-    base : BaseMotion
-        (t, 3) each.
-    q : (t, n)
-        Coordinates: a complete model is judged about these, and not while it is on its way to where it is stable.
+    """Stretch of a run in which a disturbance grows most, about q (t, n) of a complete model unless on its way to
+    stability.
     """
     c, slow = structure.coefficients, replace(structure, compiled=False)
     loads = None if c.loads is None or structure.history is None else structure.history(time)
@@ -119,11 +100,8 @@ def worst_loss(structure: Structure, time: Array, base: BaseMotion, q: Array) ->
 
 
 def _doubtful(c: Coefficients, drive: Drive) -> tuple[Array, Array]:
-    """Indices of the times at which the straight beam may not be stable, and how fast something may grow, (t,) 1/s.
-
-    Its K loses definiteness where what is added exceeds the elastic stiffness; the sizes of the terms, each measured
-    against that once, bound it from above, and only where they do not its eigenvalues are found: nothing grows faster
-    than by the root of the lowest. Of loads that follow the beam there is no such bound.
+    """Indices of the times at which the straight beam may not be stable, and bounds (t,) 1/s of growth: eigenvalues are
+    found only where bounds by the sizes of terms do not suffice, which do not cover loads that follow the beam.
     """
     scale = np.linalg.inv(np.linalg.cholesky(c.stiffness))  # measures a stiffness against the elastic one
     w, most = drive.w_WB_B, np.zeros(len(drive.w_WB_B))

@@ -89,21 +89,15 @@ def equilibrium_about(structure: Structure, base: Base) -> tuple[Equilibrium, Co
 
 
 def expanded(structure: Structure, q: Array) -> tuple[Coefficients, Array]:
-    """Coefficients of small departures from coordinates `q` (n,), and the elastic forces there, (n,).
-
-    Those of the straight beam are its structure's own.
-    """
+    """Coefficients of small departures from coordinates `q` (n,), and the elastic forces there, (n,)."""
     if np.any(q):
         return structure.about(q)
     return structure.coefficients, np.zeros(structure.size)
 
 
 def _along_a_path(structure: Structure, base: Base, values: Array | None) -> tuple[Equilibrium, Coefficients]:
-    """Newton's method from the straight beam; where one stride fails, along a path of growing load.
-
-    A beam that is stable stays so along the path until its stability is lost at one share of the load. Where a stride
-    ends at a beam that is not, elsewhere than the path led, Newton's method may have left the path: shorter strides say
-    whether it has.
+    """Newton's method from the straight beam, or where one stride fails or may have left the path, in shorter strides
+    of load.
     """
     straight = np.zeros(structure.size)
     about = structure.coefficients
@@ -143,13 +137,8 @@ def keeps(c: Coefficients, base: Base, values: Array | None) -> bool:
 def _newton(
     structure: Structure, base: Base, values: Array | None, share: float, q: Array
 ) -> tuple[Array, Array, Coefficients, bool]:
-    """Solve at a share of all loads: accelerations and what is applied by the share, rates by its root.
-
-    Corrections that do not shrink lead away from the equilibrium that is near, perhaps to one that is far: failed.
-
-    Returns
-    -------
-    coordinates (n,), tangent stiffness (n, n), the coefficients that it is of, and whether the method converged
+    """Solve at a share of loads and accelerations (rates by its root); returns q, tangent stiffness, coefficients and
+    whether it converged: corrections that do not shrink may lead far away, and fail.
     """
     frozen = share * base.a_WO_B, np.sqrt(share) * base.w_WB_B, share * base.alpha_WB_B
     loads = None if values is None else share * values

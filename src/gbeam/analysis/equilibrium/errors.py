@@ -28,15 +28,7 @@ LOST = "shapes and model are not judged: the exact model with more shapes comes 
 
 
 def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | None) -> tuple[Errors, tuple[str, ...]]:
-    """Estimated errors of an equilibrium, as fractions of displacement, root load and stress, and what to say of them.
-
-    Parameters
-    ----------
-    point : OperatingPoint
-    displacement : (s, 3) m
-    loads : Loads or None
-        Of one time.
-    """
+    """Estimated errors of an equilibrium, as fractions of displacement (s, 3), root load and stress, and warnings."""
     structure = point.structure
     if structure.source is None or loads is None:
         return Errors(note=UNKNOWN), ()

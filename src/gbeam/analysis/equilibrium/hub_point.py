@@ -16,10 +16,7 @@ Array = Any
 
 
 def _about_rest(point: OperatingPoint) -> tuple[OnHub, Array]:
-    """A linear residual about a point, and the point's y in its coordinates.
-
-    Where nothing moves its hub's row is the complete one's.
-    """
+    """A linear residual about a point, and its y there; where nothing moves the hub's row is the complete one's."""
     residual, y = point.residual, point.y
     assert isinstance(residual, OnHub)
     if point.structure.linear:
@@ -48,10 +45,7 @@ def on_hub(
     angle: float = 0.0,
     qd: Array | None = None,
 ) -> OperatingPoint:
-    """Operating point on a free hub at a rate, rad/s, and acceleration, rad/s²; the torque is what that needs.
-
-    `q` and `qd` as for :func:`on_base`.
-    """
+    """Operating point on a free hub at a rate, rad/s, and acceleration, rad/s², with the torque that they need."""
     base = hub.mount.base(*(np.asarray(float(x)) for x in (angle, rate, acceleration)))
     at, moving, found, rests = placed(structure, base, q, qd)
     residual = OnHub(structure.on_free_hub(hub), hub.mount)

@@ -16,28 +16,8 @@ Array = Any
 def operating_point(
     structure: Structure, motion: Motion | None, time: float = 0.0, q: Array | None = None, qd: Array | None = None
 ) -> OperatingPoint:
-    """Freeze a motion at a time, with the beam in relative equilibrium.
-
-    A free hub turns at the rate that gives hub and beam the angular momentum that torque and damper have left since
-    time zero, and accelerates as its torque demands, the beam not vibrating. On a spring it rests at the angle at which
-    the spring balances the torque.
-
-    Parameters
-    ----------
-    structure : Structure
-    motion : Motion or None
-        None for a base at rest.
-    time : float
-        s.
-    q, qd : (n,), optional
-        Coordinates and rates in place of the equilibrium's.
-
-    Raises
-    ------
-    InputError
-        If a free hub without a spring swings in gravity or under loads: only a response says how it moves.
-    ComputationError
-        ``not converged``: there is no such equilibrium.
+    """Freeze a motion at a time, with the beam in relative equilibrium or at q, qd (n,); a free hub keeps the angular
+    momentum that torque and damper left since time zero, or rests where its spring balances the torque.
     """
     loaded, structure = structure.history is not None, structure.at_time(time)
     if motion is None or not motion.free:

@@ -37,18 +37,8 @@ class Linear(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class OperatingPoint:
-    """A state (y, ẏ, ÿ; u) at which a residual vanishes, and the base's motion there.
-
-    Parameters
-    ----------
-    structure : Structure
-    residual : OnBase or OnHub
-    y, yd, ydd : (n,) beam coordinates; on a free hub (n + 1,), the hub's angle first
-    u : (inputs,) as the residual packs them
-    base : Base
-        Frozen motion of the root.
-    found : Coefficients, optional
-        Those about its coordinates, where the search for its equilibrium has them.
+    """A state (y, ẏ, ÿ; u) at which a residual vanishes, and the base's motion there; `found` are coefficients already
+    known.
     """
 
     structure: Structure
@@ -151,10 +141,7 @@ def held_base(motion: Motion | None, time: float) -> Base:
 def placed(
     structure: Structure, base: Base, q: Array | None, qd: Array | None
 ) -> tuple[Array, Array, Coefficients | None, bool]:
-    """Coordinates and rates, those of the relative equilibrium unless given; and whether that is where they are.
-
-    Of an equilibrium the coefficients about it, too.
-    """
+    """Coordinates and rates, by default of the relative equilibrium with its coefficients, and whether they are."""
     found = None
     if q is None:
         (at, _), found = equilibrium_about(structure, base)
@@ -175,9 +162,8 @@ def beam_acceleration(
 
 
 def on_base(structure: Structure, base: Base, q: Array | None = None, qd: Array | None = None) -> OperatingPoint:
-    """Operating point on a base with a frozen motion.
-
-    At its relative equilibrium, or with the coordinates and rates `q`, `qd` (n,) and the accelerations that follow.
+    """Operating point on a base with a frozen motion, in relative equilibrium or with q, qd (n,) and the accelerations
+    that follow.
     """
     at, moving, found, rests = placed(structure, base, q, qd)
     residual = OnBase(structure.equations)

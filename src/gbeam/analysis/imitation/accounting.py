@@ -29,15 +29,7 @@ Codes = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class History:
-    """Load of one environment along a rigid specimen over time.
-
-    Parameters
-    ----------
-    load : (t, 3)
-        In flight that of the root, which the machine gives to its control point; m/s².
-    root, tip : (t, 3)
-        At both ends, m/s².
-    """
+    """Load (t, 3) m/s² of one environment at root and tip of a rigid specimen; `load` is the root's in flight."""
 
     load: Floats
     root: Floats
@@ -70,13 +62,7 @@ def account_of(
     tolerance: float,
     tolerance_of: str,
 ) -> Accounting:
-    """Account for a flight on a machine, of whose axes the samples `during` the flight are at these times.
-
-    Raises
-    ------
-    InputError
-        If the tolerance is not positive, or of nothing that there is.
-    """
+    """Account for a flight on a machine, of whose axes the samples `during` the flight are at these times."""
     positive("tolerance", tolerance, "of the flight's load")
     choice("tolerance_of", tolerance_of, TOLERANCE_OF)
     if axes is None:
@@ -106,30 +92,8 @@ def account(
     episodes: tuple[tuple[float, float, str], ...] = (),
     shares: Mapping[str, Floats] | None = None,
 ) -> Accounting:
-    """Account for every part of a flight's load.
-
-    Parameters
-    ----------
-    time : (t,)
-        Of the flight, s.
-    flight, machine : History
-        At these times.
-    tolerance : float
-        Share of the flight's load.
-    tolerance_of : str
-        ``peak``: of its largest; ``instant``: of that at each time.
-    idle : float
-        Least load that the machine makes, m/s².
-    target : (t, 3), optional
-        Load that the machine is to make, m/s².
-    episodes : tuple of (start s, end s, reason)
-        Where that is not the flight's load.
-    shares : mapping of str to (t,), optional
-        Share of each of the machine's limits that is used over time, by name.
-
-    Returns
-    -------
-    Accounting
+    """Account for a flight's load over time (t,): what the machine does not give, why (its `episodes`, the limits'
+    `shares`), and by how much of the largest (`peak`) or of each `instant`'s load.
     """
     size, made = flight.size, machine.size
     instant = tolerance_of == "instant"

@@ -13,17 +13,8 @@ _NOTHING = 1e-9  # of the largest stress: a smaller cycle is rounding
 
 
 def fatigue(flight: Response, machine: Response) -> Fatigue | None:
-    """Rainflow cycles of the stress at the root in both runs, with the flight's material's exponent.
-
-    Parameters
-    ----------
-    flight, machine : Response
-        Each counts over its whole time, with its extremes between samples.
-
-    Returns
-    -------
-    Fatigue
-        None where a run has no stress.
+    """Rainflow cycles of the root's stress in both runs, with the flight's material's exponent; None where one has no
+    stress.
     """
     loads = flight.loads
     stresses = [None if each.loads is None else each.loads.root_fibre for each in (flight, machine)]

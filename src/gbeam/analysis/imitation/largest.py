@@ -23,9 +23,8 @@ def times_between(first: float, last: float) -> Floats:
 
 
 def points_of(length: float, bodies: Floats) -> dict[str, Floats]:
-    """Ends of the beam, m from the root, and the bodies (b, 3) off its axis, by name.
-
-    The size of the load is a convex function of the place, so that it is nowhere larger than at one of these.
+    """Ends of the beam, m from the root, and bodies (b, 3), by name: the load's size, convex in the place, is largest
+    at one.
     """
     ends = {"the root": np.zeros(3), "the tip": np.array([length, 0.0, 0.0])}
     off = [body for body in np.asarray(bodies) if np.any(body[1:] != 0) or not 0 <= body[0] <= length]

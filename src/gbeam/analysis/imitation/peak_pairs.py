@@ -13,20 +13,8 @@ from gbeam.results.result import Flags
 
 
 def peak_pairs(flight: Response, centrifuge: Response, during: slice) -> dict[str, PeakPair]:
-    """Largest sizes over the flight's times, each from its own response.
-
-    Parameters
-    ----------
-    flight, centrifuge : Response
-    during : slice
-        The centrifuge's samples in the flight's time.
-
-    Returns
-    -------
-    dict of str to PeakPair
-        Of the load anywhere on the specimen, ``largest_load``, on the machine over all of its run; of the vectors
-        ``tip``, ``root_force`` and ``root_moment``, and of the ``stress`` at any station; NaN where either response
-        does not have it.
+    """Largest sizes over the flight's times in each response, by name; ``largest_load`` on the machine is over all of
+    its run, and NaN stands where a response lacks one.
     """
     last = centrifuge.time[during][-1]
     one = _peaks(flight, flight.time <= last + 1e-12 * abs(last))

@@ -48,16 +48,7 @@ class _Carried:
 def verify(
     structure: Structure, flight: Flight, machines: Mapping[str, Centrifuge], settings: ResponseSettings
 ) -> tuple[Verification, ...]:
-    """Simulate flight and machines, and compare.
-
-    Parameters
-    ----------
-    structure : Structure
-    flight : Flight
-    machines : mapping of str to Centrifuge
-        Prepared for the settings' span, by the names of their places.
-    settings : ResponseSettings
-    """
+    """Simulate flight and machines, prepared for the settings' span and named by their places, and compare."""
     settings = replace(settings, estimate=False)  # a verification states none
     in_flight = simulate(structure, flight, settings)
     cutoff = CUTOFF * float(in_flight.frequencies[0]) / (2 * np.pi)

@@ -41,10 +41,8 @@ class Histories:
 
 
 class Answers:
-    """The structure's quasi-static answers and its first mode's, to loads that are uniform or linear along the beam.
-
-    The times at which the first centrifuge's target is held are left out for all, so that options are judged over the
-    same times: begin with the widest smoothing, which holds longest.
+    """Quasi-static answers and the first mode's, to uniform or linear loads, at times when the first centrifuge's
+    target is not held: begin with the widest smoothing, which holds longest.
     """
 
     def __init__(self, structure: Structure, flight: Flight, settings: ResponseSettings) -> None:

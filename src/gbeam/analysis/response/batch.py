@@ -32,19 +32,7 @@ SHORT = 100_000  # numbers of the displacements that are read at once: more of t
 
 @dataclass(frozen=True, eq=False)
 class _Case:
-    """A case whose plan waits for a run.
-
-    Parameters
-    ----------
-    index : int
-        Its place among the cases.
-    posed : Posed
-    plan : Plan
-    step : float
-        Of the run that the plan waits for, s.
-    run : gbeam.integrate.compiled.batch.Run
-        The same, to be integrated.
-    """
+    """A case by its index, whose plan waits for a run with a step, s."""
 
     index: int
     posed: Posed
@@ -174,9 +162,8 @@ def _responses(
 def _going_on(
     index: int, posed: Posed, common: Any, plan: Plan, run: Run | None = None, known: dict[str, Any] | None = None
 ) -> _Case | _Ended:
-    """A case with the run that its plan wants after another; where there is no more to wait for, one that has ended.
-
-    `known` is what :func:`response_of` need not compute if that other run is the one that counts.
+    """A case with the run that its plan wants next, or one that has ended; `known` is reused if the run before is what
+    counts.
     """
     from gbeam.integrate.compiled import batch
 

@@ -102,23 +102,8 @@ def begun(given: Initial | str) -> Initial:
 
 
 def initial_state(structure: Structure, base: Base | None, time: float, initial: Initial) -> tuple[Array, Array, bool]:
-    """Coordinates and rates (n,) at the start, and whether they are those of no equilibrium that is lost.
-
-    Parameters
-    ----------
-    structure : Structure
-    base : Base or None
-        At the start, (3,); None of a hub at rest that nothing pulls, on which the beam is straight.
-    time : float
-        s.
-    initial : Initial
-
-    Raises
-    ------
-    InputError
-        If the tip is to move along a direction without shapes.
-    ComputationError
-        If there is no relative equilibrium to start from, or no shape with that displacement.
+    """Coordinates and rates (n,) at the start, and whether they are those of no equilibrium that is lost; without a
+    base, that of a straight beam on a hub at rest.
     """
     q, stable = np.zeros(structure.size), True
     if initial.acceleration is not None:

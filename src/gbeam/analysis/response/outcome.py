@@ -35,13 +35,7 @@ def describe(
     time: Floats,
     q: Floats,
 ) -> tuple[str, str, tuple[str, ...]]:
-    """Outcome, message and warnings of a run.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        Every step computed; `base`, at times `time` (t,) s, and the beam's coordinates `q` (t, n) are at those kept.
-    """
+    """Outcome, message and warnings of a run; base, time (t,) and q (t, n) are at the samples that are kept."""
     end = trajectory.time[-1]
     if not (trajectory.stopped or trajectory.converged):
         return (

@@ -17,25 +17,8 @@ from gbeam.results.parts import Extremes, LoadPeaks, Loads, Peaks, VectorPeaks
 def displacement_peaks(
     structure: Structure, trajectories: Sequence[Trajectory], first: int, moved: Any, residual_from: float | None
 ) -> list[Peaks]:
-    """Peaks of the displacement: between two steps the model's at the coordinates' quintic Hermite polynomials.
-
-    Parameters
-    ----------
-    structure : Structure
-    trajectories : sequence of Trajectory
-        The steps whose peaks are meant, of one run or of several with the same times.
-    first : int
-        Index of the beam's first coordinate in a trajectory's.
-    moved : (b, t, s, 3)
-        Displacement of the stations at every step of each, m; where JAX traces it, the peaks are the tip's largest
-        samples.
-    residual_from : float or None
-        s.
-
-    Returns
-    -------
-    list of Peaks
-        Of each run; no digit depends on the others.
+    """Peaks of the displacement in each trajectory, from samples `moved` (b, t, s, 3) m and, between steps, the model
+    at quintic Hermite polynomials of q; where JAX traces it, the tip's largest samples.
     """
     time = trajectories[0].time
     start = 0 if residual_from is None else int(np.searchsorted(time, residual_from))
@@ -81,17 +64,8 @@ def _samples(time: Floats, tip: Any, start: int | None) -> Peaks:
 
 
 def load_peaks(loads: Loads, loads_at: Callable[[Indices], Loads | None], time: Floats, stride: int) -> LoadPeaks:
-    """Peaks of the loads: near a step, the polynomial of sixth degree through seven of them.
-
-    Parameters
-    ----------
-    loads : Loads
-        At every `stride`-th step.
-    loads_at : callable
-        The loads at chosen steps.
-    time : (t,)
-        Of every step computed, s.
-    stride : int
+    """Peaks of the loads, known at every `stride`-th step: near one, the polynomial of sixth degree through seven
+    steps.
     """
     s = loads.section_force.shape[1]
     table, steps = _table(loads), np.arange(0, len(time), stride)
@@ -127,9 +101,8 @@ def load_peaks(loads: Loads, loads_at: Callable[[Indices], Loads | None], time: 
 
 
 def vector_peaks(time: Floats, vectors: Floats) -> tuple[Floats, Floats]:
-    """Largest sizes of the components and the length of a vector (t, 3) over time (t,), between samples; their times.
-
-    Of samples alone, by the polynomial of sixth degree through seven of them; (4,) each.
+    """Largest sizes of components and length of a vector (t, 3), (4,), and their times, by polynomials through seven
+    samples.
     """
     sizes = _sizes(vectors[:, None])
     t, between = seven_point(time, vectors, near_maxima(time, sizes))
@@ -137,16 +110,7 @@ def vector_peaks(time: Floats, vectors: Floats) -> tuple[Floats, Floats]:
 
 
 def peaks_of_coordinates(trajectory: Trajectory, vectors: Floats, of: Callable[[Floats], Floats]) -> Floats:
-    """Largest sizes of the components and the length of a vector of the coordinates, between steps too, (4,).
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-    vectors : (t, 3)
-        At its times.
-    of : callable
-        Coordinates (..., n) -> the vector (..., 3); between steps they are quintic Hermite polynomials.
-    """
+    """Largest sizes (4,) of components and length of a vector of q, also at Hermite polynomials between steps."""
     time, sizes = trajectory.time, _sizes(vectors[:, None])
     t, q = quintic_hermite(time, trajectory.q, trajectory.qd, trajectory.qdd, near_maxima(time, sizes))
     value, _ = maxima(time, sizes, t, _sizes(of(q)[:, :, None]))
@@ -154,9 +118,8 @@ def peaks_of_coordinates(trajectory: Trajectory, vectors: Floats, of: Callable[[
 
 
 def _table(loads: Loads) -> Floats:
-    """What has peaks, (t, c): forces, moments, tension, compression, and the torque for the beam on a hub.
-
-    Stresses that are not known are zero.
+    """Loads with peaks, (t, c): forces, moments, tension, compression (zero if unknown), and the torque for the beam on
+    a hub.
     """
     torque = [] if loads.beam_torque is None else [loads.beam_torque[:, None]]
     vectors = (x.reshape(len(x), -1) for x in (loads.section_force, loads.section_moment))

@@ -21,17 +21,8 @@ EQUILIBRIUM = Initial()
 
 @dataclass(frozen=True)
 class Problem:
-    """What the integrator runs.
-
-    Parameters
-    ----------
-    equations : LinearEquations or NonlinearEquations
-    q, qd : (n,)
-        Initial coordinates and rates, of hub and beam where the hub is free.
-    first : int
-        Index of the beam's first coordinate in q.
-    stable : bool
-        Whether the relative equilibrium that it starts from is.
+    """Equations and initial state (n,) for the integrator, the beam's from index `first`; `stable` tells of its
+    equilibrium.
     """
 
     equations: LinearEquations | NonlinearEquations
@@ -42,15 +33,7 @@ class Problem:
 
 
 def problem_of(structure: Structure, motion: Motion, start: float, initial: Initial = EQUILIBRIUM) -> Problem:
-    """Pose the problem: it starts in relative equilibrium, without vibration, or as `initial` says.
-
-    Raises
-    ------
-    InputError
-        If the initial state moves the tip along a direction without shapes.
-    ComputationError
-        If there is no relative equilibrium to start from.
-    """
+    """Pose the problem: it starts in relative equilibrium, without vibration, or as `initial` says."""
     if motion.free:
         return _on_free_hub(structure, motion, start, initial)
 
@@ -87,10 +70,7 @@ def _on_free_hub(structure: Structure, hub: Any, start: float, initial: Initial)
 
 
 def start_of(structure: Structure, motion: Any, start: float, initial: Initial) -> tuple[Array, Array, bool]:
-    """The beam's coordinates and rates (n,) at the start, and whether they are those of no equilibrium that is lost.
-
-    Raises are those of :func:`problem_of`.
-    """
+    """The beam's coordinates and rates (n,) at the start, and whether they are those of no equilibrium that is lost."""
     if motion.free:
         pulled, o = motion.mount.gravity is not None or structure.history is not None, np.zeros(())
         return initial_state(structure, motion.mount.base(o, o, o) if pulled else None, start, initial)

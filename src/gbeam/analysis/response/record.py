@@ -52,10 +52,8 @@ def response_of(
     moved: Array | None = None,
     peaks: Peaks | None = None,
 ) -> Response:
-    """Sample spin-up, flight and spin-down on the coarse grid and describe them; peaks are of the flight's times.
-
-    Of a flight alone the stations' displacement at every step, `moved`, and its `peaks` may be known before, and where
-    every step is sampled, the `base`.
+    """Sample spin-up, flight and spin-down on the coarse grid and describe them, with what is known already of a flight
+    alone.
     """
     up, trajectory, down = runs
     every, flight = joined(up, trajectory, down, stride)

@@ -58,13 +58,7 @@ def study(case: Case, progress: Progress = None) -> Study:
 def study_of(
     case: Case, responses: Mapping[str, Response], failures: Mapping[str, Failure] = MappingProxyType({})
 ) -> Study:
-    """The study of responses that are computed: those of a centrifuge and its flight are compared.
-
-    Raises
-    ------
-    ComputationError
-        If there is none, only failures.
-    """
+    """The study of responses that are computed: those of a centrifuge and its flight are compared."""
     if not responses:
         first = next(iter(failures.values()))
         raise ComputationError(

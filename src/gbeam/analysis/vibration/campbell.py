@@ -203,9 +203,8 @@ def _crossings(
     track: int,
     order: int,
 ) -> list[tuple[Crossing, Complex, float]]:
-    """Speeds at which a followed mode meets an engine order: roots on the modes themselves.
-
-    With the mode there, and the slope of its circular frequency with the speed.
+    """Speeds at which a followed mode meets an engine order, with the mode and the slope of its circular frequency
+    there.
     """
     gap = frequency - order * rates / (2 * np.pi)
     found = []

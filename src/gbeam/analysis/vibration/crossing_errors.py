@@ -17,23 +17,8 @@ from gbeam.results.result import Complex
 def crossing_errors(
     crossing: Crossing, mode: Complex, slope: float, richer: Richer, point_at: Callable[[float], OperatingPoint]
 ) -> ErrorEstimate:
-    """Errors of a crossing's speed: where the mode of richer models meets the same multiple.
-
-    Parameters
-    ----------
-    crossing : Crossing
-    mode : (n,)
-        Coordinates of the beam.
-    slope : float
-        Of the mode's circular frequency with the speed.
-    richer : Richer
-    point_at : callable
-        Of the hub's rate: the operating point there.
-
-    Returns
-    -------
-    ErrorEstimate
-        Infinite where a richer model has no such crossing nearby.
+    """Errors of a crossing's speed, from where the mode (n,) of richer models meets the same multiple; infinite if
+    nowhere near.
     """
     own, order = crossing.speed, crossing.order
 

@@ -49,16 +49,7 @@ def doubtful(errors: FrequencyErrors) -> tuple[str, ...]:
 
 
 class ByTheory(NamedTuple):
-    """How wrong the theory of slender beams makes some frequencies, and those that it does not know.
-
-    Parameters
-    ----------
-    shares : (k,)
-    causes : dict of str to float
-        Of the mode that is most wrong.
-    unseen : tuple of float
-        Hz.
-    """
+    """Errors (k,) by the theory of slender beams, the causes of the largest, and frequencies unknown to it, Hz."""
 
     shares: Floats
     causes: dict[str, float]
@@ -66,15 +57,7 @@ class ByTheory(NamedTuple):
 
 
 class Richer:
-    """A structure's model with more shapes, the exact one, and the thick beam.
-
-    Parameters
-    ----------
-    structure : Structure
-        With a source.
-    base : Base
-        Where it turns fastest.
-    """
+    """A structure's model with more shapes, the exact one, and the thick beam, on the base where it turns fastest."""
 
     def __init__(self, structure: Structure, base: Base) -> None:
         more, (_, along_y, along_z) = enrichment(structure, base), structure.counts
@@ -86,17 +69,7 @@ class Richer:
     def errors(
         self, point: OperatingPoint, eigenvalue: Complex, coordinates: Complex, *, gyroscopic: bool = True
     ) -> FrequencyErrors:
-        """Errors of the frequencies of some modes about an operating point.
-
-        Parameters
-        ----------
-        point : OperatingPoint
-            Of the structure, in equilibrium.
-        eigenvalue : (k,) 1/s
-        coordinates : (k, n)
-            Of the beam.
-        gyroscopic : bool
-        """
+        """Errors of the frequencies of modes (k, n) with eigenvalues (k,) about an equilibrium."""
         own = np.abs(eigenvalue)
         same, exact = self.references(point, coordinates, gyroscopic=gyroscopic)
         by_theory = self.by_theory(point, coordinates, gyroscopic=gyroscopic)
@@ -108,9 +81,8 @@ class Richer:
     def references(
         self, point: OperatingPoint, coordinates: Complex, *, gyroscopic: bool = True
     ) -> tuple[Floats, Floats]:
-        """Circular frequencies of these modes by the same model with more shapes and by the exact one, (k,) rad/s each.
-
-        NaN where there is no equilibrium. The arguments are those of :meth:`errors`.
+        """Circular frequencies (k,) of modes by the model with more shapes and by the exact one; NaN without an
+        equilibrium.
         """
 
         def reference(richer: tuple[Structure, NDArray[np.int_]]) -> Floats:

@@ -31,21 +31,8 @@ def _point(structure: Structure, base: Base) -> OperatingPoint | None:
 def first_loss_along(
     path: Callable[[float], tuple[Structure, Base]], upper: float, quantity: str, unit: str
 ) -> Critical:
-    """Raise a quantity from zero until the relative equilibrium is lost.
-
-    Parameters
-    ----------
-    path : callable
-        Of the quantity that is raised: the structure, with its loads, and the base motion.
-    upper : float
-        End of the search.
-    quantity, unit : str
-        For the result.
-
-    Returns
-    -------
-    Critical
-        The first loss on a grid of 64 points, closed in to 1e-11 by Brent's method.
+    """Raise a quantity from zero until the relative equilibrium is lost: first on a grid of 64 points, then by Brent's
+    method.
     """
 
     @cache

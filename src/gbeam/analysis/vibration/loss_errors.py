@@ -34,16 +34,7 @@ Path = Callable[[float], tuple[Structure, Base]]
 
 
 def judged(found: Critical, path: Path, progress: Progress = None) -> Critical:
-    """A critical value with its estimated errors, and warnings where they are above one in a hundred.
-
-    Parameters
-    ----------
-    found : Critical
-    path : callable
-        Of the quantity that was raised: the structure, with its loads, and the base motion.
-    progress : callable, optional
-        Called with what is done and the share of it.
-    """
+    """A critical value with its estimated errors, and warnings where they are above one in a hundred."""
     structure, _ = path(0.0)
     if structure.source is None or found.value == 0:
         return found
@@ -78,9 +69,8 @@ def _lowest(slender: Structure, structure: Structure, base: Base) -> Floats:
 
 
 def _unseen(found: Critical, path: Path, progress: Progress) -> tuple[str, ...]:
-    """What to say where a beam that twists loses what a model without torsion keeps: a strip on edge buckles sideways.
-
-    Looked for at shares of the end of the search, each half of the one above.
+    """Warn where a beam that twists loses what a model without torsion keeps (a strip on edge), at halves of the
+    search's end.
     """
     shares = tuple(2.0**-k for k in range(HALVINGS, -1, -1))
     lost = _lost(theory_of(path(0.0)[0]).thick, path, found.searched_to, progress, shares)

@@ -12,19 +12,7 @@ _SAMPLES = 501
 
 
 def largest_rate(motion: Motion, name: str = "") -> float:
-    """Largest rate that a hub with a prescribed rate reaches, rad/s.
-
-    Parameters
-    ----------
-    motion : Hub
-    name : str
-        Of the motion, for messages.
-
-    Raises
-    ------
-    InputError
-        If the motion has no hub, or the hub is free.
-    """
+    """Largest rate that a hub with a prescribed rate reaches, rad/s."""
     hub = hub_of(motion, "a range of speeds", "ask `gbeam modes` for frequencies at a time", name)
     if hub.rate is None:
         raise InputError("speeds", "are not given, and the hub is driven by a torque", "give the largest speed")

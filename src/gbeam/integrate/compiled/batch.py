@@ -31,19 +31,8 @@ Histories = tuple[Array, Array, Array]  # q, q̇, q̈ of b runs at the start and
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """One of the runs.
-
-    Parameters
-    ----------
-    equations : LinearEquations or NonlinearEquations
-        Linear ones with their terms.
-    q, qd : (n,)
-        Initial state.
-    steps : Steps
-    scheme : Scheme
-    common : record, optional
-        What all runs that stand together share of a nonlinear residual, the same arrays: products with them are of one
-        matrix with all runs, in half the time.
+    """A run from q, qd (n,); `common` is what the nonlinear residuals of all runs share, multiplied for all of them at
+    once.
     """
 
     equations: LinearEquations | NonlinearEquations
@@ -79,9 +68,8 @@ class Run:
 
     @cached_property
     def inputs(self) -> Any:
-        """What drives linear equations, at the first instant, then at every stage of the steps, arrays (1 + t s, ...).
-
-        Where the last stage is no end of the step, also there.
+        """Inputs (1 + t s, ...) of linear equations: at the first instant, then at every stage, and at the end of a
+        step without one.
         """
         steps, offsets = self.steps, self.scheme.offsets
         at = [steps.times(offset) for offset in offsets] + ([] if self.scheme.ends else [steps.end])

@@ -19,20 +19,8 @@ _AT_ONCE = 20  # chunks whose inputs are computed at once
 
 @dataclass(frozen=True)
 class Chunk:
-    """Steps of one compiled call, and what drives the equations in them.
-
-    Parameters
-    ----------
-    steps : Steps
-        With the fillings of the groups.
-    last : (groups,)
-        Index of the last step of each group, −1 of a group of fillings.
-    tableau : Tableau
-        Of the groups.
-    inputs : arrays (groups, steps, s, ...)
-        At the stages.
-    at_ends : arrays (groups, steps, ...) or None
-        At the ends of the steps, where the last stage is not there.
+    """Steps of one compiled call in groups; `last` (groups,) is −1 where a group only fills, `inputs` (groups, steps,
+    s, ...).
     """
 
     steps: Steps
@@ -77,19 +65,8 @@ class Chunk:
 
 @dataclass(frozen=True)
 class Stretch:
-    """Many chunks of a run's steps, without what drives the equations in them: the same for every run with these steps.
-
-    Parameters
-    ----------
-    steps : Steps
-        Of all groups of all chunks, with their fillings.
-    shape : (groups, steps)
-    lasts : list of (groups,)
-        Of each chunk, as :class:`Chunk` has them.
-    tableau : Tableau
-        Of the groups.
-    times : (steps, stages)
-        At which inputs are needed, s; the end of the step is the last where the last stage is not there.
+    """Many chunks of a run's steps without inputs; `shape` is (groups, steps), `times` (steps, stages) s is where
+    inputs are needed.
     """
 
     steps: Steps
@@ -128,10 +105,7 @@ def chunks(drive: Drive, scheme: Scheme, of: Iterable[Stretch]) -> Iterator[Chun
 
 
 def _groups(steps: Steps, size: int, *, restart: bool) -> Iterator[tuple[Any, Any]]:
-    """Indices (groups, size) of the steps of each chunk, and the last (groups,) of each group that is not a filling.
-
-    Steps of a group are of one length. Where the scheme is to `restart`, a chunk ends wherever it starts anew.
-    """
+    """Indices (groups, size) of the steps of each chunk, of one length a group, and the last real group's (groups,)."""
     ends = np.append(np.flatnonzero(steps.anew[:-1]), len(steps) - 1)
     starts = [np.arange(a, b + 1, size) for a, b in zip(np.append(0, ends[:-1] + 1), ends, strict=True)]
     spans = [np.stack([first, np.full(len(first), end)]) for first, end in zip(starts, ends, strict=True)]

@@ -37,32 +37,8 @@ def steps(
     parts: Parts,
     ends: bool,
 ) -> tuple[Array, tuple[Array, ...]]:
-    """Steps of b runs from z (m, n, b).
-
-    Parameters
-    ----------
-    mass, damping : (n, n, b)
-        M with what steps add to it, and what they add to C: :mod:`gbeam.integrate.fitting`.
-    inverse : (n, n, b)
-        Of M, read where the last stage is no end of the step.
-    terms : LinearTerms
-        With the runs as last axis, (k, n, n, b) and (k, n, b); of C, K and F only those that are not zero.
-    unit : Tableau
-        Of a step of one second.
-    lengths : (t, b)
-        Of the steps, s.
-    features : (t, s, k, b)
-        At the stages, and at the end of the step where the last stage is none.
-    count : int
-        Steps to take, the first ones.
-    parts : Parts
-        Index of each term's feature.
-    ends : bool
-        Whether the last stage is the end of the step.
-
-    Returns
-    -------
-    z after them, and q, q̇, q̈ at their ends, (b, t, n) each
+    """Take the first `count` of t steps of b runs from z (m, n, b), matrices (n, n, b), features (t, s, k, b) at the
+    stages and, unless the last one `ends` the step, at its end; returns z, and q, q̇, q̈ (b, t, n).
     """
 
     def step(z: Array, h: Array, phi: Array) -> tuple[Array, tuple[Array, Array, Array]]:
@@ -93,10 +69,7 @@ def steps(
 
 
 def eliminated(rows: Array) -> Array:
-    """Solutions (n, b) of many small systems, matrices and right sides (n, n + 1, b), by elimination.
-
-    Without a choice of pivots: M and what a step adds to it is definite but for antisymmetric parts.
-    """
+    """Solve many small systems (n, n + 1, b), nearly definite, by elimination without pivots, (n, b)."""
     pivots = []
     while len(rows):
         pivots.append(rows[0, 1:] / rows[0, :1])

@@ -97,28 +97,9 @@ def steps(
     corrections: Any,
     count: Any,
 ) -> Any:
-    """Steps with a given number of corrections each.
-
-    Parameters
-    ----------
-    residual : callable record
-        (q, q̇, q̈, inputs) -> (n,).
-    tableau : Tableau
-        Of the groups.
-    inputs : arrays (groups, steps, s, ...)
-        At the stages; one Jacobian for each group.
-    at_ends : arrays (groups, steps, ...) or None
-        Inputs at the ends of the steps; None where these are the last stages.
-    last : (groups,)
-        Index of the last step of each group that the next goes on from; the rest are fillings. A scheme that carries
-        more than q and q̇ does not go on from a group with fillings.
-    corrections : int
-    count : int
-        Groups that are computed, the first ones; what is returned of the others is zero.
-
-    Returns
-    -------
-    Carry, and q, q̇, q̈ at the ends (groups · steps, n) with the relative error that each step's corrections left
+    """Take `count` groups of steps, inputs (groups, steps, s, ...), by as many Newton corrections each, one Jacobian a
+    group; returns the carry, q, q̇, q̈ (groups · steps, n) and each step's relative error; groups after `last` are
+    fillings.
     """
     stages, n = carry.x.shape
 
@@ -174,11 +155,8 @@ quick = jax.jit(steps)
 
 @jax.jit
 def safe(residual: Any, tableau: Tableau, carry: Carry, inputs: Any, at_ends: Any, inside: Any) -> Any:
-    """Steps by Newton's method with as many iterations as each needs.
-
-    Parameters and returns as for :func:`steps`, with (steps, ...) in place of (groups, steps, ...), flags of the steps
-    that are no fillings and, in place of the error left, whether the step has been solved. Derivatives are those of
-    the solutions, by the implicit function theorem.
+    """Take steps (steps, ...) by Newton's method to convergence, flagging those solved; derivatives are by the implicit
+    function theorem.
     """
     stages, n = carry.x.shape
 

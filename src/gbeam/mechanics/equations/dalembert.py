@@ -25,17 +25,7 @@ Components = tuple[Any, ...]  # three arrays, along x, y and z
 
 @record
 class Complete:
-    """The equations of a complete model.
-
-    Parameters
-    ----------
-    inertia : Weighed
-    elasticity : Elasticity
-    damping : (n, n)
-    stiffness : (n, n) or None
-        Of the beam and its springs, where the strains are linear in q and the energy is quadratic.
-    work : LoadWork or None
-    """
+    """The equations of a complete model; `stiffness` (n, n) is given where the energy is quadratic."""
 
     inertia: Weighed
     elasticity: Elasticity
@@ -62,14 +52,8 @@ class Complete:
         alpha_WB_B: Array,
         load_values: Array | None = None,
     ) -> Array:
-        """Residual on a base whose motion is given, (n,); zero where the equations hold.
-
-        Parameters
-        ----------
-        q, qd, qdd : (n,) coordinates and their rates
-        a_WO_B : (3,) acceleration of the root, or specific force a − g, base axes, m/s²
-        w_WB_B, alpha_WB_B : (3,) angular velocity and acceleration of the base, base axes, rad/s, rad/s²
-        load_values : (loads, 6), optional
+        """Residual (n,) on a base with given acceleration (or specific force), angular velocity and angular
+        acceleration (3,).
         """
         _, force, pull_back, _ = self.inertia_forces(q, qd, qdd, a_WO_B, w_WB_B, alpha_WB_B)
         (along,) = pull_back(force)
@@ -78,9 +62,8 @@ class Complete:
     def inertia_forces(
         self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array
     ) -> tuple[Components, Components, Any, Array]:
-        """The points, the inertia forces on them, their pull-back to q, and the resultant (3,) N.
-
-        Points and forces are three arrays (p,) of components: a last axis of three is slow in a compiled step.
+        """Points and inertia forces as three arrays (p,), which compile faster than (p, 3), their pull-back to q, and
+        the resultant (3,) N.
         """
         place = self.inertia.points
         r, pull_back = jax.vjp(place, q)
@@ -112,14 +95,7 @@ def _cross(w: Any, r: Any) -> Components:
 
 @record
 class CompleteHub:
-    """The equations of a free hub with a complete model on its rim, y = (θ, q).
-
-    Parameters
-    ----------
-    system : Complete
-    mount : gbeam.motion.Mount
-    ground : Ground
-    """
+    """The equations of a free hub with a complete model on its rim, y = (θ, q)."""
 
     system: Complete
     mount: Any
@@ -160,13 +136,8 @@ class CompleteHub:
 
 @jax.jit
 def paths(inertia: Any, field: Any, q: Any, qd: Any, qdd: Any) -> tuple[tuple[Any, Any, Any], tuple[Any, Any, Any]]:
-    """Places, velocities and accelerations of particles and of a field's points over times, (t, p, 3) each.
-
-    Parameters
-    ----------
-    inertia : Inertia
-    field : Field
-    q, qd, qdd : (t, n)
+    """Places, velocities and accelerations (t, p, 3) of particles and of a field's points over times, q, qd, qdd (t,
+    n).
     """
 
     def place(q: Any) -> tuple[Any, Any]:

@@ -18,13 +18,7 @@ Array = Any
 
 @record
 class Ground:
-    """What holds the hub: its inertia about its axis, and a spring and a damper to the ground.
-
-    Parameters
-    ----------
-    inertia : kg m²
-    stiffness, damping : N m/rad, N m s/rad
-    """
+    """What holds the hub: its inertia kg m², and a spring N m/rad and a damper N m s/rad to the ground."""
 
     inertia: Array
     stiffness: Array
@@ -37,15 +31,7 @@ class Ground:
 
 @record
 class Weight:
-    """Gravity on hub and beam: the first moment of mass about the hub's axis, S0 + S1 q + ½ q S2 q, base axes.
-
-    Parameters
-    ----------
-    gravity : (3,)
-        Acceleration of free fall at θ = 0, hub axes, m/s².
-    R_HB : (3, 3)
-    s0, s1, s2 : (3,), (3, n), (3, n, n)
-    """
+    """Gravity (3,) at θ = 0 on hub and beam: the first moment of mass about the axis, S0 + S1 q + ½ q S2 q, base."""
 
     gravity: Array
     R_HB: Array
@@ -68,28 +54,10 @@ class Weight:
 
 @record
 class FreeHub:
-    """Equations of a free hub and a beam whose places are a polynomial (2009 (24)–(34)).
-
-    With J(θ-inertia) = J0 + 2 F2·q − q K2 q and the coupling b = b0 + B q:
-
-        θ:  (J_h + J) θ̈ + 2 θ̇ (F2 − K2 q)·q̇ + b·q̈ + q̇·B q̇ = torque
-        q:  M q̈ + (C + θ̇ G) q̇ + (K + θ̇² K2) q − θ̇² F2 + θ̈ b = 0
-
-    Parameters
-    ----------
-    mass, damping, stiffness, gyroscopic, k2, b1 : (n, n)
-        b1 is B.
-    f2, b0 : (n,)
-    rigid : float
-        J0 of the straight beam, kg m².
-    ground : Ground
-    twist : (6,)
-        Velocity of the root and angular velocity at a rate of 1 rad/s, base axes.
-    weight : Weight or None
-    loads : LoadTerms or None
-    hub_force : bool
-        Whether the hub feels Q_θ, the terms of its row that are quadratic in the rates (2009 (32)); the printed SFOAM
-        drops them and then conserves nothing.
+    """Equations of a free hub and a beam whose places are a polynomial, 2009 (24)–(34): (J_h + J) θ̈ + 2 θ̇ (F2 − K2
+    q)·q̇ + b·q̈ + q̇·B q̇ = torque, with J = J0 + 2 F2·q − q K2 q and b = b0 + B q, and M q̈ + (C + θ̇ G) q̇ + (K + θ̇²
+    K2) q − θ̇² F2 + θ̈ b = 0; without `hub_force`, 2009 (32), the hub's row is that of SFOAM as printed, which
+    conserves nothing.
     """
 
     mass: Array
@@ -141,16 +109,7 @@ def _rows(xp: Any, vector: Array, *matrices: Array) -> Any:
 
 
 def free_hub(c: Coefficients, mount: Any, ground: Ground, *, hub_force: bool = True) -> FreeHub:
-    """Contract the coefficients of a linear model with a hub's axis and the root's place.
-
-    Parameters
-    ----------
-    c : Coefficients
-    mount : gbeam.motion.Mount
-    ground : Ground
-    hub_force : bool
-        See :class:`FreeHub`.
-    """
+    """Contract the coefficients of a linear model with a hub's axis and the root's place."""
     xp = namespace(c.mass, mount.radius, mount.R_HB)
     radius, R_HB = mount.radius, xp.asarray(mount.R_HB)
     root, along, e = radius * R_HB[0], radius * R_HB[1], R_HB[2]  # r_O, e × r_O, e

@@ -16,15 +16,8 @@ Array = Any
 
 @record
 class Inertia:
-    """The particles of a field: the beam's quadrature points and the attached bodies.
-
-    Parameters
-    ----------
-    field : Field
-        Sampled at the particles, one point each.
-    mass : (particles,) kg
-    offset : (particles, 3) m, or None
-        From the beam's axis, section axes; None where all particles lie on the axis.
+    """The particles of a field, quadrature points and bodies: masses (p,) kg and offsets (p, 3) m from the axis,
+    section axes.
     """
 
     field: Field
@@ -61,19 +54,8 @@ class Inertia:
 
 @record
 class Weighed:
-    """The same particles as D'Alembert's sum reads them in time steps: by points p(q), and what weighs these.
-
-    Where the particles' places are constant combinations r = C t(q) of nodal vectors, these are the points, and the
-    masses enter as CᵀmC and Cᵀm, found once; else the points are the particles.
-
-    Parameters
-    ----------
-    inertia : Inertia
-    pairs : (p, p) kg, or None
-        Σ m over the particles of the products of what two points bring to their places; None where they are the
-        particles themselves.
-    first : (p,) kg
-        Σ m of what each point brings.
+    """The particles as time steps read them: where their places are constant combinations C t(q) of points, the masses
+    enter as `pairs` CᵀmC (p, p) kg and `first` Cᵀm (p,) kg.
     """
 
     inertia: Inertia
@@ -111,15 +93,8 @@ def weighed(inertia: Inertia) -> Weighed:
 
 @record
 class Elasticity:
-    """The strain energy of a field, U = ½ ∫ EA ε² + EI_y κ_y² + EI_z κ_z² dx + ½ Σ k s² of the root's springs.
-
-    2009 (10); 2020 (8), corrected.
-
-    Parameters
-    ----------
-    field : Field
-    rigidity : Strains
-        EA N, EI_y and EI_z N m² times the quadrature weights, N m and N m³, (g,) each; the springs' stiffnesses.
+    """Strain energy U = ½ ∫ EA ε² + EI_y κ_y² + EI_z κ_z² dx + ½ Σ k s² (2009 (10); 2020 (8), corrected); rigidities
+    times weights (g,).
     """
 
     field: Field

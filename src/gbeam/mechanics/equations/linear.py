@@ -25,18 +25,8 @@ Array = Any
 
 @record
 class Geometric:
-    """Σ m H weighted with unit inertial loads: what second derivatives of the places add to the stiffness.
-
-    It is the geometric stiffness at the static stress of each load.
-
-    Parameters
-    ----------
-    a : (3, n, n)
-        Of an acceleration of 1 m/s² along each base axis: Σ m H·e.
-    al : (3, n, n)
-        Of an angular acceleration of 1 rad/s² about each: Σ m H·(e × r0).
-    ww : (3, 3, n, n)
-        Of each pair of angular velocities, symmetric in them: Σ m H·(e_i × (e_j × r0)), symmetrised.
+    """Geometric stiffness at the static stress of unit inertial loads: Σ m H weighted by an acceleration (3, n, n), an
+    angular acceleration (3, n, n) and pairs of angular velocities (3, 3, n, n).
     """
 
     a: Array
@@ -46,14 +36,8 @@ class Geometric:
 
 @record
 class LoadTerms:
-    """Generalised forces of unit components of loads to first order in q: constant + slope q.
-
-    Rows are the resultant force and moment about the root, base axes, then the forces on the coordinates.
-
-    Parameters
-    ----------
-    constant : (loads, 6, 6 + n)
-    slope : (loads, 6, 6 + n, n)
+    """Generalised forces of unit loads, constant (loads, 6, 6 + n) + slope (loads, 6, 6 + n, n) q: the resultant at the
+    root first.
     """
 
     constant: Array
@@ -67,19 +51,8 @@ class LoadTerms:
 
 @record
 class Coefficients:
-    """Constant coefficients of a linear model; 2020 (16), (20)–(22); 2009 (24)–(34).
-
-    Parameters
-    ----------
-    mass, damping, stiffness : (n, n)
-    gyroscopic : (3, n, n)
-    k_ww, k_al, k_a : (3, 3, n, n), (3, n, n), (3, n, n)
-        k_ww symmetric in its first two axes, as f_ww is.
-    f_ww, f_al, f_a : (3, 3, n), (3, n), (3, n)
-    rigid : (10,)
-        Of the straight structure: mass kg, first moment Σ m r0 (3) kg m, second moments Σ m r0 r0ᵀ xx, yy, zz, xy, yz,
-        zx kg m².
-    loads : LoadTerms or None
+    """Constant coefficients of a linear model (2020 (16), (20)–(22); 2009 (24)–(34)); `rigid` (10,) is of the straight
+    structure: mass, first moment, second moments xx, yy, zz, xy, yz, zx.
     """
 
     mass: Array
@@ -126,10 +99,7 @@ class Coefficients:
     def frozen(
         self, a_WO_B: Array, w_WB_B: Array, alpha_WB_B: Array, load_values: Array | None = None
     ) -> tuple[Array, Array]:
-        """C + G and K as :meth:`at` has them, by which an instant is stable or not.
-
-        The skew part of what the angular acceleration adds to K is left out: it stores and feeds no energy.
-        """
+        """C + G and K by which an instant is stable or not: without the skew part of α's, which feeds no energy."""
         xp = namespace(self.k_al, alpha_WB_B)
         velocity, stiffness, _ = self.at(a_WO_B, w_WB_B, alpha_WB_B, load_values)
         skew = (self.k_al - xp.swapaxes(self.k_al, 1, 2)) / 2
@@ -201,21 +171,8 @@ def coefficients(
     geometric: Geometric | None = None,
     loads: LoadTerms | None = None,
 ) -> Coefficients:
-    """Sum the coefficients of a linear model over its particles.
-
-    Parameters
-    ----------
-    mass : (k,)
-        Of the particles, kg.
-    places : Places
-        Of the particles; of the second derivatives nothing is read where `geometric` is given.
-    stiffness : (n, n)
-        Elastic.
-    damping : (n, n), optional
-        Zero by default.
-    geometric : Geometric, optional
-        In place of the second derivatives of the places.
-    loads : LoadTerms, optional
+    """Sum the coefficients of a linear model over particles (k,) kg; `geometric` replaces the places' second
+    derivatives.
     """
     xp = namespace(mass, places.r0, places.first, stiffness)
     r0, first = places.r0, places.first

@@ -17,12 +17,7 @@ Loads = Any  # components of the loads (loads, 6), or None
 
 @record
 class OnBase:
-    """On a base whose motion is given: y = q, inputs (Base, load components).
-
-    Parameters
-    ----------
-    equations : Coefficients or Complete
-    """
+    """On a base whose motion is given: y = q, inputs (Base, load components)."""
 
     equations: Any
 
@@ -53,13 +48,7 @@ class OnBase:
 
 @record
 class OnHub:
-    """On a free hub: y = (θ, q), inputs (torque, load components).
-
-    Parameters
-    ----------
-    equations : FreeHub or CompleteHub
-    mount : Mount
-    """
+    """On a free hub: y = (θ, q), inputs (torque, load components)."""
 
     equations: Any
     mount: Mount

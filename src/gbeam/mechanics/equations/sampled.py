@@ -25,13 +25,7 @@ TURN = 1e-3  # by which a coordinate moves in the imaginary time τ, as a share 
 
 
 def paths(place: Any, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
-    """Places, velocities and accelerations (t, p, 3) of points at coordinates (t, n) and their rates.
-
-    Parameters
-    ----------
-    place : callable
-        Of coordinates (..., n): the points' places (..., p, 3).
-    """
+    """Places, velocities and accelerations (t, p, 3) of points placed by a function of q; q, qd, qdd (t, n)."""
     r = np.asarray(place(q))
     fast = max(np.abs(qd).max(initial=0.0), np.sqrt(np.abs(qdd).max(initial=0.0)))
     if fast == 0:
@@ -134,10 +128,8 @@ def slopes(place: Any, q: Array) -> Array:
 
 
 def about(place: Any, q: Array, steps: Array) -> tuple[Array, Array, Array]:
-    """Points (p, 3) at q (n,) and their derivatives, of places that may depend on the coordinates in any way.
-
-    The real part of what a place is at a step i h has its second derivative along h: of two such steps, to fourth
-    order; those of pairs of coordinates are from steps along both.
+    """Points (p, 3) at q (n,) and their first and second derivatives by fourth-order complex steps (i h), of any
+    places.
     """
     n, (j, k) = len(q), np.tril_indices(len(q), -1)
     r = np.asarray(place(q))

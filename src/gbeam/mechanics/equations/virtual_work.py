@@ -20,15 +20,8 @@ Array = Any
 
 @record
 class LoadWork:
-    """Loads on a field, δW = Σ F·δr + M·δθ.
-
-    Parameters
-    ----------
-    field : Field
-        Sampled at the loaded points.
-    load : (p,) index of the load that acts there
-    weight : (p,) 1, or the quadrature weight of a load per length, m
-    follower : (p,) whether its axes are the section's
+    """Loads on a field, δW = Σ F·δr + M·δθ: at each point (p,) the load's index, its weight (1 or m) and whether it
+    follows.
     """
 
     field: Field
@@ -37,9 +30,8 @@ class LoadWork:
     follower: Array
 
     def generalised(self, q: Array, values: Array) -> Array:
-        """Resultant force N and moment N m at the root, base axes, then the forces on the coordinates, (6 + n,).
-
-        By JAX: the forces are pulled back along the places and rotations of the loaded points.
+        """Resultant force N and moment N m at the root, base axes, then the forces on the coordinates, (6 + n,), by
+        JAX.
         """
         import jax
         import jax.numpy as jnp
@@ -78,15 +70,8 @@ class LoadWork:
         return self.about(count, places, straight, turns.first, turns.second)
 
     def about(self, count: int, places: Places, rotation: Array, turn: Array, bend: Array) -> LoadTerms:
-        """The same about any coordinates.
-
-        Parameters
-        ----------
-        count : int
-        places : Places
-            Of the loaded points there: the places themselves, and their first and second derivatives.
-        rotation, turn, bend : (p, 3, 3), (p, 3, 3, n), (p, 3, 3, n, n)
-            Of the sections there, and their first and second derivatives.
+        """Load terms about any coordinates, from places, section rotations (p, 3, 3) and their first and second
+        derivatives there.
         """
         xp = namespace(places.first, rotation, self.weight)
         r, slope, second = places.r0, places.first, places.second
@@ -129,13 +114,7 @@ class LoadWork:
 
 @record
 class LoadHistory:
-    """The components of all loads over time; called as ``history(t)``.
-
-    Parameters
-    ----------
-    profiles : tuple of (force, moment)
-        Per load, vector profiles of time.
-    """
+    """The components of all loads over time, from a force and a moment profile each; called as ``history(t)``."""
 
     profiles: tuple[tuple[Any, Any], ...]
 

@@ -37,18 +37,8 @@ def _family(rule: Quadrature, nodal: Array, length: float, *, axial: bool) -> Fa
 
 
 class Space(NamedTuple):
-    """All displacements in one direction that nodal curvatures (strains, of a bar) and the free root can make.
-
-    Parameters
-    ----------
-    rule : Quadrature
-    length : beam length, m
-    axial : whether the direction is the beam's own
-    mass : (n, n)
-    stiffness : (n,)
-        Its diagonal: of the nodes, then of the root's springs.
-    sensitivity : callable
-        Displacement and slope (p, n) at points x (p,).
+    """All displacements in one direction that nodal curvatures (strains, of a bar) and the free root make; K (n,) is
+    diagonal.
     """
 
     rule: Quadrature
@@ -67,10 +57,7 @@ _HELD = (("translation_x", ""), ("translation_y", "rotation_z"), ("translation_z
 
 
 def space(beam: Beam, rule: Quadrature, along: int) -> Space:
-    """The space of displacements along x, y or z (0, 1, 2); the panels of the rule end at corners and bodies.
-
-    Rotation about y turns the slope down: the sign is a matter of the springs' coordinate, not of the shape.
-    """
+    """The space of displacements along x, y or z (0, 1, 2); the panels of the rule end at corners and bodies."""
     area, (axial, about_y, about_z) = beam.section.at(rule.node).area, beam.rigidities(rule.node)
     rigidity = (axial, about_z, about_y)[along]
     springs = beam.root.springs
@@ -96,17 +83,8 @@ def space(beam: Beam, rule: Quadrature, along: int) -> Space:
 
 
 def adapted_shapes(beam: Beam, rule: Quadrature, counts: tuple[int, int, int]) -> Families:
-    """Modes at rest of the beam, direction by direction; the root's motion is left to the springs' own coordinates.
-
-    Parameters
-    ----------
-    beam : Beam
-    rule : quadrature with panels that end at the section's corners and at the bodies
-    counts : numbers of axial shapes, bending shapes along y, bending shapes along z
-
-    Notes
-    -----
-    M κ = μ K κ is solved for the largest μ = 1/ω²: K is diagonal in nodal curvatures, M nearly singular.
+    """Modes at rest of the beam, direction by direction, from M κ = μ K κ with μ = 1/ω²: K is diagonal, M nearly
+    singular.
     """
 
     def family(along: int) -> Family:

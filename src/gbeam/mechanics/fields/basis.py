@@ -26,18 +26,7 @@ Families = tuple[Family, Family, Family]  # of the axial displacement, the one a
 
 
 def bar_shapes(x: Array, length: float, count: int) -> Shapes:
-    """Fixed-free bar shapes √2 sin((2i−1)πx/2L): ∫f² dx = L.
-
-    Parameters
-    ----------
-    x : (points,) positions from the root, m
-    length : beam length, m
-    count : number of shapes
-
-    Notes
-    -----
-    2009 section 3 leaves them open; 2020 (13a), corrected: its root covers the sine.
-    """
+    """Fixed-free bar shapes √2 sin((2i−1)πx/2L), ∫f² dx = L (2020 (13a), corrected: its root covers the sine)."""
     k = (2 * np.arange(1, count + 1) - 1) * np.pi / (2 * length)
     phase = np.outer(x, k)
     return Shapes(np.sqrt(2) * np.sin(phase), np.sqrt(2) * k * np.cos(phase), -np.sqrt(2) * k**2 * np.sin(phase))
@@ -57,16 +46,8 @@ def bending_roots(count: int) -> Array:
 
 
 def bending_shapes(x: Array, length: float, count: int) -> Shapes:
-    """Clamped-free bending shapes cosh βx − cos βx − σ(sinh βx − sin βx): ∫f² dx = L, |f(L)| = 2.
-
-    Written with decaying exponentials only, so that no difference of large numbers is taken: the textbook form is
-    wrong by 0.2 in mode 12. f = c/2 e^{β(x−L)} + (1+σ)/2 e^{−βx} − cos βx + σ sin βx with c = (1−σ) e^{λ}.
-
-    Parameters
-    ----------
-    x : (points,) positions from the root, m
-    length : beam length, m
-    count : number of shapes
+    """Clamped-free shapes cosh βx − cos βx − σ(sinh βx − sin βx), ∫f² dx = L, by decaying exponentials, which do not
+    cancel: c/2 e^{β(x−L)} + (1+σ)/2 e^{−βx} − cos βx + σ sin βx, c = (1−σ) e^{λ}.
     """
     lam = bending_roots(count)
     beta = lam / length
@@ -86,10 +67,7 @@ def bending_shapes(x: Array, length: float, count: int) -> Shapes:
 
 
 def legendre_shapes(x: Array, length: float, count: int) -> Shapes:
-    """Integrated Legendre shapes ∫₀ˣ P_k(2s/L − 1) ds/L, k = 0 … count−1: zero at the root.
-
-    Their slopes are Legendre polynomials over L: strains, or the curvatures of rotations.
-    """
+    """Integrated Legendre shapes ∫₀ˣ P_k(2s/L − 1) ds/L, k = 0 … count−1: zero at the root, slopes polynomials."""
     xi = 2 * np.asarray(x) / length - 1
     values, slopes, curvatures = np.zeros((3, len(xi), count))
     for k in range(count):

@@ -22,16 +22,8 @@ Spaces = tuple[Space, Space, Space]
 
 
 def axial_force(beam: Beam, rule: Quadrature, along: Array, spin: Array) -> Array:
-    """Axial force at the quadrature nodes, (g,) N, of that instant of many at which it is largest.
-
-    Parameters
-    ----------
-    beam : Beam
-    rule : Quadrature
-    along : (t,)
-        Acceleration of the root along the beam, m/s².
-    spin : (t,)
-        Square of the rate about the axes across the beam, 1/s².
+    """Axial force (g,) N at the nodes when largest, under root accelerations (t,) m/s² along and squared rates (t,)
+    across the beam.
     """
     line = beam.material.density * beam.section.at(rule.node).area
     until = rule.cumulative(rule.node)
@@ -46,20 +38,8 @@ def axial_force(beam: Beam, rule: Quadrature, along: Array, spin: Array) -> Arra
 def enriched_shapes(
     beam: Beam, spaces: Spaces, own: Families, force: Array | None = None
 ) -> tuple[Families, tuple[int, int, int]]:
-    """The given shapes first, then those that they lack, direction by direction.
-
-    Parameters
-    ----------
-    beam : Beam
-    spaces : spaces of the three directions
-        Their quadrature has panels that end at the section's corners, at the bodies and at the loads.
-    own : the given shapes
-    force : (g,), optional
-        Axial force at the nodes, N: where it stiffens or softens the beam, the answers under it are added.
-
-    Returns
-    -------
-    families, and how many shapes are new in each
+    """The given shapes and then those that they lack, also under an axial force (g,) N, and how many are new in each
+    direction.
     """
     least = APART**2 * max(_period(beam, of, along) for along, of in enumerate(spaces))
     made = [_enriched(beam, spaces[along], own[along], along, force, least) for along in range(3)]

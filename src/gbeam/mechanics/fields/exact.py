@@ -27,14 +27,9 @@ Array = Any
 
 @record
 class ExactField:
-    """The geometrically exact field r = ∫(1 + ε) R e₁ dσ, any rotation: R = exp[φ]× Rx(α).
-
-    ε and the rotation vector φ = (0, φ_y, φ_z) are sums of shapes. The twist α keeps the frame free of torsion
-    (κ_x = 0): the beam is stiff in torsion, which is out of scope. In one plane φ is the angle itself and has no limit;
-    out of plane the rotation vector has its pole where the tangent points straight back, |φ| = π. Angles at the points
-    are (points, n); `nodal`, (3, g, n), holds strain and angles at the quadrature nodes, `node_slopes`, (2, g, n), the
-    angles' slopes there: stacked, so that a program multiplies once. `plane`, (2,), is (1, 0) for bending along y only,
-    (0, 1) for bending along z.
+    """The geometrically exact field r = ∫(1 + ε) R e₁ dσ, R = exp[φ]× Rx(α), free of torsion: ε and φ = (0, φ_y, φ_z)
+    are sums of shapes, with a pole at |φ| = π out of plane; `angles` (points, n), `nodal` (3, g, n), `node_slopes` (2,
+    g, n), `plane` (2,).
     """
 
     angle_y: Array
@@ -158,20 +153,8 @@ def exact_field(
     counts: tuple[int, int, int],
     families: Families | None = None,
 ) -> ExactField:
-    """Build the geometrically exact field: axial slopes are its strains, bending slopes its rotations.
-
-    Parameters
-    ----------
-    length : beam length, m
-    rule : quadrature along the beam
-    x : (points,) positions where r is sampled, m; they start with the quadrature nodes
-    counts : numbers of strain shapes, and of rotation shapes for bending along y and along z
-    families : the shapes; polynomials unless given
-
-    Raises
-    ------
-    ValueError
-        If the points do not start with the quadrature nodes.
+    """Build the geometrically exact field at points (p,) m, the quadrature nodes first; axial slopes are strains,
+    bending slopes rotations.
     """
     strain, along_y, along_z = counts
     n, nodes = sum(counts), len(rule.node)

@@ -18,11 +18,8 @@ Array = Any
 
 @record
 class ProjectedField:
-    """The field (x + s − ½∫(v'² + w'²), v, w) of TLAM (without the integral), FOAM, SFOAM and CFOAM.
-
-    2009 (2), (3), (11); 2020 (7), (12). q are amplitudes in m of dimensionless shapes with ∫f² dx = L. The shapes s, v,
-    w and their slopes at the points are stacked, (3, points, n); so are those at the quadrature nodes: the slopes of v
-    and w and their curvatures, (2, g, n).
+    """The field (x + s − ½∫(v'² + w'²), v, w) of TLAM (without the integral), FOAM, SFOAM and CFOAM, 2009 (2), (3),
+    (11), 2020 (7), (12): shapes and slopes (3, points, n), nodal slopes and curvatures (2, g, n).
     """
 
     x: Array
@@ -50,9 +47,8 @@ class ProjectedField:
         raise TypeError("the positions of this field are no plain sums of nodal vectors")
 
     def rotation(self, q: Array, at: Any = slice(None)) -> Array:
-        """Rotations of the sections `at` some points at coordinates (..., n), (..., points, 3, 3), to second order.
-
-        The sections follow the tangent, whose slopes the axial strain lessens, in a frame free of torsion.
+        """Rotations (..., points, 3, 3) of sections to second order: they follow the tangent, whose slopes the strain
+        lessens.
         """
         xp = namespace(self.x, q)
         slope_s, slope_v, slope_w = at_nodes(self.slopes[:, at], q)
@@ -130,17 +126,7 @@ def projected_field(
     foreshortening: bool,
     families: Families | None = None,
 ) -> ProjectedField:
-    """Build the field of TLAM, FOAM, SFOAM and CFOAM.
-
-    Parameters
-    ----------
-    length : beam length, m
-    rule : quadrature along the beam
-    x : (points,) positions where r is sampled, m
-    counts : numbers of axial shapes, bending shapes along y, bending shapes along z
-    foreshortening : whether the transverse shapes shorten the beam (not in TLAM)
-    families : the shapes; clamped-free closed forms unless given
-    """
+    """Build the field of TLAM (without foreshortening), FOAM, SFOAM and CFOAM at points (p,) m."""
     n = sum(counts)
     starts = (0, counts[0], counts[0] + counts[1])
 

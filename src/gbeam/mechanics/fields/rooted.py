@@ -15,17 +15,8 @@ Array = Any
 
 @record
 class RootedField:
-    """Another field on a root that springs hold: moved by p and turned by R(φ) as a whole.
-
-    Its last coordinates are the stretches of the springs: components of p, m, and of the rotation vector φ, rad.
-
-    Parameters
-    ----------
-    inner : Field
-    x : (points,) positions of the points along the beam, m
-    move, turn : (3, springs) directions of p and φ
-    linear : bool
-        Whether the points move linearly with φ, as TLAM's do.
+    """A field on a root that springs hold: moved by p and turned by R(φ), whose components are the last coordinates, m
+    and rad.
     """
 
     inner: Field

@@ -14,9 +14,8 @@ Array = Any
 
 
 class Strains(NamedTuple):
-    """What stores energy: axial strain, curvature about y and about z, 1/m, at the quadrature nodes, (g,) each.
-
-    `root` is the stretch of the root's springs, m or rad, (springs,); empty for a clamped root.
+    """Axial strain and curvatures about y and z, 1/m, at the nodes (g,); `root` (springs,) is the stretch of the
+    springs, m or rad.
     """
 
     axial: Array
@@ -93,10 +92,8 @@ def sine_cosine(angle: Array) -> tuple[Array, Array]:
 
 @cache
 def _compiled() -> Any:
-    """The same for JAX, by polynomials: compiled, its own functions take one number after the other, 20 times as long.
-
-    XLA takes them for cheap, and would compute them anew wherever they are read. A product, of the two with the unit
-    matrix, it computes once; the derivatives read its result.
+    """Rotations' functions by polynomials for XLA, behind a product with the unit matrix, so that they are computed
+    once.
     """
     import jax
 

@@ -21,17 +21,8 @@ Array = Any
 
 @record
 class StrainedField:
-    """Points of the axis at positions `x` (p,), m.
-
-    Parameters
-    ----------
-    x : (p,) m
-    cumulative, node_cumulative : (p, g), (g, g)
-        Weights that integrate nodal values from the root to the points, and to the nodes, m.
-    strains : (6, g, n)
-        ε and κ at the nodes, by coordinate.
-    move, turn : (3, n)
-        Displacement and rotation of the root on its springs, by coordinate.
+    """Points x (p,) m of the axis by strains (6, g, n) ε and κ at the nodes, and the root's displacement and rotation
+    (3, n).
     """
 
     x: Array
@@ -76,14 +67,7 @@ class StrainedField:
         return Places(places.r0, places.first, self.weighted(even, arms)), Turns(turn, bend)
 
     def weighted(self, weight: Array, arm: Array) -> Array:
-        """Σ w H of the points plus Σ (∂²R/∂q²) a, (k, 3, n, n), for k sets of weights.
-
-        Parameters
-        ----------
-        weight : (k, points)
-        arm : (k, 3, points)
-            In axes of the sections.
-        """
+        """Σ w H of the points plus Σ (∂²R/∂q²) a, (k, 3, n, n), for weights (k, p) and section arms (k, 3, p)."""
         (*strain, twist, bend_y, bend_z), angle = self.strains, self.angles(self.node_cumulative)
         kappa, n = (twist, bend_y, bend_z), self.strains.shape[-1]
         at_nodes = weight @ self.cumulative

@@ -12,15 +12,8 @@ from gbeam.arrays.tree import record
 
 @record
 class Places:
-    """Places r = r0 + J q + ½ q H q of points, base axes.
-
-    Parameters
-    ----------
-    r0 : (p, 3) m
-    first : (p, 3, n)
-        J, per coordinate.
-    second : (p, 3, n, n) or None
-        H, symmetric in its last two axes; None where the places are linear.
+    """Places r = r0 + J q + ½ q H q of points, base axes: (p, 3) m, (p, 3, n), and (p, 3, n, n) or None where they are
+    linear.
     """
 
     r0: Any
@@ -78,13 +71,7 @@ def _outer(left: Any, right: Any) -> Any:
 
 @record
 class Turns:
-    """Rotation matrices R = 1 + R1 q + ½ q R2 q of sections, base axes.
-
-    Parameters
-    ----------
-    first : (p, 3, 3, n)
-    second : (p, 3, 3, n, n)
-    """
+    """Rotation matrices R = 1 + R1 q + ½ q R2 q of sections, base axes: (p, 3, 3, n), (p, 3, 3, n, n)."""
 
     first: Any
     second: Any

@@ -26,20 +26,8 @@ from gbeam.results.result import Floats
 
 @dataclass(frozen=True, eq=False)
 class Posed:
-    """A run at the flight's times, ready to be integrated with any step.
-
-    Parameters
-    ----------
-    structure : Structure
-    motion : Motion
-        Over these times.
-    settings : ResponseSettings
-    problem : Problem
-        Its state is that at the start.
-    coarse : float
-        Step of the results where it is automatic, s.
-    given : float or None
-        Step that the settings give, as it divides the duration, s.
+    """A run at the flight's times from a problem's state, ready to be integrated with any step; `coarse` and `given` in
+    s.
     """
 
     structure: Structure
@@ -79,10 +67,7 @@ class Posed:
         return Run(trajectory, step, self._readings)
 
     def stride(self, step: float) -> int:
-        """How many steps of a length make one of the results.
-
-        An automatic step divides the coarse one: the stride brings every motion of a study back to the same times.
-        """
+        """How many steps of a length make one of the results, whose times all motions of a study share."""
         return 1 if self.settings.step is not None else round(self.coarse / step)
 
     def too_far(self, y: Floats) -> int | None:
@@ -117,15 +102,7 @@ class Posed:
 
 
 def pose(structure: Structure, motion: Motion, settings: ResponseSettings) -> tuple[Posed, int, int]:
-    """Pose a run, from a machine's start if that comes before; and how many steps it takes before and after.
-
-    Raises
-    ------
-    InputError
-        If there are too many steps.
-    ComputationError
-        If there is no relative equilibrium to start from.
-    """
+    """Pose a run, from a machine's start if that comes before; and how many steps it takes before and after."""
     coarse = first_step(structure, motion, settings)
     given = None if settings.step is None else settings.duration / max(1, round(settings.duration / settings.step))
     kept = given or coarse
@@ -139,14 +116,7 @@ def pose(structure: Structure, motion: Motion, settings: ResponseSettings) -> tu
 
 
 def steps_within(structure: Structure, displacement: Floats) -> int | None:
-    """After how many steps a projected field moved by the beam's length, or particles without bound.
-
-    Parameters
-    ----------
-    structure : Structure
-    displacement : (t, s, 3)
-        Of its stations, m.
-    """
+    """Steps until stations (t, s, 3) of a projected field moved by the beam's length, or particles without bound."""
     if structure.kind == "exact":
         return None
     limit = BOUNDLESS if structure.field is None else structure.length

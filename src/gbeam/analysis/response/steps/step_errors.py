@@ -28,15 +28,8 @@ _SAMPLES = 2000  # times at most at which the loads of two runs are compared
 
 @dataclass(frozen=True)
 class Readings:
-    """What is read from a trajectory.
-
-    Parameters
-    ----------
-    tip, moment : callable
-        Coordinates (..., n) -> displacement of the tip, and root moment by the elastic forces, (..., 3).
-    loads : callable
-        Trajectory and a stride -> histories (t, ..., k) of the root's force and moment and of the sections' stress, or
-        none where there are no sections.
+    """Functions that read tip and root moment (..., 3) from coordinates, and histories (t, ..., k) of loads from a
+    trajectory.
     """
 
     tip: Callable[[Floats], Floats]
@@ -71,9 +64,8 @@ class Run:
 
 
 def difference(coarse: Floats, fine: Floats, ratio: int) -> float:
-    """Largest length of the difference of two histories of vectors (t, ..., c), over the largest length.
-
-    They begin together, and `ratio` steps of the fine one make one of the other.
+    """Largest length of the difference of histories (t, ..., c) from one start over the largest length; `ratio` fine
+    steps make a coarse one.
     """
     n = min(len(coarse), (len(fine) - 1) // ratio + 1)
     size = np.linalg.norm(fine, axis=-1).max()
@@ -82,9 +74,8 @@ def difference(coarse: Floats, fine: Floats, ratio: int) -> float:
 
 
 def observed_order(before: float, now: float, ratios: tuple[int, int], highest: float) -> float:
-    """Order p at which the differences of three runs shrink, whose steps are as 1, 1/r₁ and 1/(r₁ r₂).
-
-    With an error C hᵖ the first difference is (r₁ᵖ − 1)/(1 − r₂⁻ᵖ) times the second, which grows with p.
+    """Order p of three runs with steps 1, 1/r₁, 1/(r₁ r₂): their differences are as (r₁ᵖ − 1)/(1 − r₂⁻ᵖ) for errors C
+    hᵖ.
     """
     first, second = ratios
 
@@ -118,15 +109,7 @@ def share(runs: Sequence[Run], differences: Sequence[float], highest: float) -> 
 
 @dataclass(frozen=True)
 class Estimate:
-    """Estimated errors of the last of two or three runs, the coarsest first, of a scheme of some order.
-
-    Parameters
-    ----------
-    tip, peaks : float
-        Of the tip's history, and of the peaks of tip and root moment, the larger of both.
-    promised_tip, promised_peaks : float
-        The same, were the order the scheme's.
-    """
+    """Estimated errors of the last of two or three runs, observed, and as promised by the scheme's order."""
 
     tip: float
     peaks: float

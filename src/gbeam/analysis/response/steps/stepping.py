@@ -44,10 +44,8 @@ def scheme_of(settings: ResponseSettings) -> Scheme:
 
 
 def first_step(structure: Structure, motion: Motion, settings: ResponseSettings) -> float:
-    """Step of the results, s: an even number over the duration, at least 500 and 20 to the lowest period.
-
-    No step is longer than the shortest time between two corners of the motion or of the loads, so that no pulse between
-    them goes unseen.
+    """Step of the results, s: an even number over the duration, at least 500 and 20 to the lowest period, none longer
+    than the shortest time between corners of motion or loads.
     """
     largest = min(2 * math.pi / float(structure.rest[0][0]) / 20, settings.duration / 500)
     times = corners(structure, motion, largest) - settings.start
@@ -93,11 +91,8 @@ def check(step: float, order: int) -> Plan:
 
 
 def refine(coarse: float, order: int, settings: ResponseSettings) -> Plan:
-    """Divide the step, from twice the results', until the errors estimated from the runs are what they aim at.
-
-    The tip's history is to be within its aim, the peaks of the tip and of the root's moment within theirs. The
-    histories of the root's loads, in which high modes that a jump excites may be large, are to be within a third of the
-    tolerance, as far as LOADS_STEPS bring them there.
+    """Divide the step, from twice the results', until the errors estimated of the tip's history and of the peaks are
+    within their aims; histories of root loads only to a third of the tolerance and by LOADS_STEPS.
     """
 
     def refined(step: float) -> tuple[float, str]:
@@ -138,10 +133,8 @@ def _left(runs: list[Run], order: int, settings: ResponseSettings) -> tuple[floa
 
 
 def _check_needed(runs: list[Run], left: float) -> float | None:
-    """Step of a cheaper run that tells whether an error is what the order promises, s; None where that is known.
-
-    After a jump it is not: of modes that the coarse steps do not resolve the difference is what they have at all, less
-    than the order makes of it, and the peaks on a free hub were promised seven times too well.
+    """Step of a cheaper run, s, that tells whether an error is what the order promises, or None: unresolved modes after
+    a jump promise too well.
     """
     jump, new = ratio(*runs[-2:]), runs[-1]
     if left <= 1 and jump <= 4:

@@ -38,15 +38,7 @@ _SAME_TIME = 1e-9  # of the duration
 
 @dataclass(frozen=True)
 class Grid:
-    """The steps of a run, and which of them a response has.
-
-    Parameters
-    ----------
-    step : float
-        s.
-    stride : int
-        Every so many steps of the flight's times belong to the response.
-    """
+    """The step of a run, s, and how many steps of the flight's times make one of the response's."""
 
     step: float
     stride: int
@@ -61,17 +53,8 @@ class Grid:
 
 
 class Differentiated:
-    """A run by given steps, about which responses with other values of parameters are made.
-
-    Parameters
-    ----------
-    structure, motion, settings
-        As for :func:`gbeam.simulate`.
-    grid : Grid
-    name : str
-        Of the motion.
-    loads, axes : bool
-        Whether the responses have loads, and say what a machine's axes do: either takes as long as the rest.
+    """A run by given steps, about which responses with other values of parameters are made, with `loads` and `axes` if
+    wanted.
     """
 
     def __init__(
@@ -130,15 +113,7 @@ class Differentiated:
         return self._response(self.nominal, [None] * 3)
 
     def responses(self, pairs: Sequence[Pair], width: Floats) -> Iterator[tuple[Response, Response]]:
-        """Responses with less and with more of each parameter.
-
-        Parameters
-        ----------
-        pairs : sequence of Pair
-            One for each parameter.
-        width : (p,)
-            By how much the parameter differs between the two of a pair.
-        """
+        """Responses with less and with more of each parameter, which differ by its `width` (p,)."""
         each = 24 * self.nominal.problem.q.size * sum(len(part) + 1 for part in self.parts)
         some = max(1, _BYTES // each)
         for first in range(0, len(pairs), some):

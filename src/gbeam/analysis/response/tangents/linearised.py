@@ -38,17 +38,8 @@ Pair = tuple[Posed, Posed]  # of less and of more of a parameter
 def linearised(
     nominal: Posed, pairs: Sequence[Pair], width: Floats, within: tuple[Scheme, float] | None = None
 ) -> System:
-    """Return the equations linearised about states of the nominal problem.
-
-    Parameters
-    ----------
-    nominal : Posed
-    pairs : sequence of Pair
-        One for each parameter.
-    width : (p,)
-        By how much the parameter differs between the two of a pair.
-    within : tuple of Scheme and float, optional
-        Of steps of a length, s: the equations that these solve.
+    """Return the equations (those that fitted steps solve `within` a length) linearised about states of the nominal
+    problem, for pairs of parameters that differ by `width` (p,).
     """
     if isinstance(nominal.problem.equations, LinearEquations):
         return _linear(nominal, pairs, width, within)
