@@ -133,7 +133,7 @@ class Given:
                 "name": "hub"},
             ),
             "choice_of": ((self.centrifuge, (0.05,)), {"limited": False}),
-            "commands": ((self.centrifuge.over(0.0, 0.1), 0.01), {}),
+            "axis_commands": ((self.centrifuge.over(0.0, 0.1), 0.01), {}),
             "compare": (tuple(self.responses), {"tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5}}),
             "compare_models": ((self.case,), {"kinds": ("FOAM",), "progress": None}),
             "constant": ((1.0,), {}),
@@ -181,7 +181,7 @@ class Given:
                 (self.fast, ["flight.tip.z"], ["beam.section.width"]),
                 {"verb": "static", "motion": "flight", "at": 0.0, "overrides": (), "progress": None},
             ),
-            "shape": (
+            "shape_hub_command": (
                 (self.slew,),
                 {
                     "angle": 1.0, "rate": None, "duration": 4.0, "limit": 1e3, "robust": 0.0, "check": "",
@@ -405,7 +405,7 @@ def test_how_a_unit_is_refused(call: Callable[[], Any], words: str) -> None:
         (lambda g: gb.campbell(g.structure, g.hub, count=2.5), "count is 2.5; give a whole number"),
         (lambda g: gb.read_scenario(3), "path is 3; give a text or a path"),
         (lambda g: gb.compare(g.structure, g.structure), "flight is of type Structure; give a Response, which gbeam.s"),
-        (lambda g: gb.commands(g.centrifuge, sample=(1, 2)), "sample is (1, 2); give a number"),
+        (lambda g: gb.axis_commands(g.centrifuge, sample=(1, 2)), "sample is (1, 2); give a number"),
         (lambda g: gb.sweep(g.fast, {"beam.length": 0.2}, ["tip.z"]), "--over beam.length is 0.2; give a list of numb"),
         (lambda g: gb.sweep(g.fast, ["beam.length=1,2"], {"tip": 3}), "measure is {'tip': 3}; give a list of texts or"),
         (lambda g: gb.fit(g.fast, g.data, "beam.length"), "free is 'beam.length'; give a list of texts"),

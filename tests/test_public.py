@@ -30,6 +30,13 @@ def test_type_checkers_see_the_same_names_in_the_same_modules() -> None:
     assert SOURCE.with_name("py.typed").exists()
 
 
+@pytest.mark.parametrize("name", gbeam._FORMER)
+def test_former_names_warn_and_are_the_new_ones(name: str) -> None:
+    with pytest.warns(DeprecationWarning, match=f"gbeam.{name} is now gbeam.{gbeam._FORMER[name]}"):
+        assert getattr(gbeam, name) is getattr(gbeam, gbeam._FORMER[name])
+    assert name not in gbeam.__all__
+
+
 @pytest.mark.parametrize("name", gbeam.__all__)
 def test_every_name_is_documented(name: str) -> None:
     value = getattr(gbeam, name)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.analysis.imitation.place import place as place
     from gbeam.analysis.imitation.place_measures import Choice as Choice
     from gbeam.analysis.imitation.place_measures import choice_of as choice_of
-    from gbeam.analysis.imitation.plan import commands as commands
+    from gbeam.analysis.imitation.plan import axis_commands as axis_commands
     from gbeam.analysis.imitation.plan import plan as plan
     from gbeam.analysis.model_study import compare_models as compare_models
     from gbeam.analysis.response.batch import simulate_batch as simulate_batch
@@ -85,7 +85,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.studies.fit import fit as fit
     from gbeam.studies.optimise import optimise as optimise
     from gbeam.studies.sensitivity import sensitivity as sensitivity
-    from gbeam.studies.shape import shape as shape
+    from gbeam.studies.shape import shape_hub_command as shape_hub_command
     from gbeam.studies.sweep import sweep as sweep
 
 __version__ = "0.2.0"
@@ -127,12 +127,12 @@ _HOME = {
     "Sweep": "results.cases",
     "Sum": "motion.profiles.combine",
     "assemble": "mechanics.assembly",
+    "axis_commands": "analysis.imitation.plan",
     "balanced_truncation": "analysis.control.reduction",
     "buckling_acceleration": "analysis.vibration.stability",
     "build_target": "motion.centrifuge.target.build",
     "campbell": "analysis.vibration.campbell",
     "choice_of": "analysis.imitation.place_measures",
-    "commands": "analysis.imitation.plan",
     "compare": "analysis.imitation.comparison",
     "compare_models": "analysis.model_study",
     "constant": "motion.profiles.piecewise",
@@ -153,8 +153,8 @@ _HOME = {
     "read_scenario": "scenario.build",
     "rerun": "scenario.rerun",
     "sensitivity": "studies.sensitivity",
-    "shape": "studies.shape",
     "shape_command": "analysis.control.shaping",
+    "shape_hub_command": "studies.shape",
     "simulate": "analysis.response.simulation",
     "simulate_batch": "analysis.response.batch",
     "smoothed": "motion.profiles.profile",
@@ -168,10 +168,18 @@ _HOME = {
     "vector": "motion.profiles.combine",
 }
 
+# Former names, which warn until the next version.
+_FORMER = {"commands": "axis_commands", "shape": "shape_hub_command"}
+
 __all__ = sorted(_HOME)
 
 
 def __getattr__(name: str) -> object:
+    if name in _FORMER:
+        import warnings
+
+        warnings.warn(f"gbeam.{name} is now gbeam.{_FORMER[name]}", DeprecationWarning, stacklevel=2)
+        return globals().get(_FORMER[name]) or __getattr__(_FORMER[name])
     if name not in _HOME:
         raise AttributeError(f"module 'gbeam' has no attribute {name!r}")
     value = getattr(import_module(f"gbeam.{_HOME[name]}"), name)

@@ -51,13 +51,13 @@ def test_a_command_decides_how_long_its_scenario_lasts_where_that_says_nothing(s
     record = '{ file = "record.csv", time = "t", x = "0", y = "0", z = "z", unit = "g" }'
     flown = f'{SPECIMEN}{model("FOAM", 0, 2, 0)}{SLEW}[motion.flight]\nkind = "flight"\nrecord = {record}\n'
     slewing.write_text(flown, encoding="utf-8")
-    written = json.loads(scenario_with(gb.shape(slewing, duration=0.4), slewing))
+    written = json.loads(scenario_with(gb.shape_hub_command(slewing, duration=0.4), slewing))
     assert written["response"] == {"duration": pytest.approx(0.5), "residual_from": 0.4} and len(written["motion"]) == 1
 
 
 def test_other_goals_and_times(slewing: Path) -> None:
     case = gb.read_scenario(slewing)
-    angle = gb.shape(case, angle=0.5, duration=8.0)
+    angle = gb.shape_hub_command(case, angle=0.5, duration=8.0)
     assert not angle.to_rate and angle.goal == 0.5 and angle.duration == 8.0
     turned = gb.Hub(radius=0.5, rate=gb.SplineProfile(angle.duration, angle.coefficients)).angle(9.0)
     assert turned == pytest.approx(0.5, abs=1e-9)

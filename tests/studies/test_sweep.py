@@ -144,6 +144,30 @@ def test_a_case_that_fails_is_recorded_and_the_rest_goes_on(fast: Path) -> None:
     assert found.counts == {"done": 1, "failed": 1, "refused": 1}
 
 
+def test_a_measure_that_fails_fails_itself_only(fast: Path) -> None:
+    measures = {"inverse": _fussy, "length": _length}
+    found = gb.sweep(fast, {"motion.spin.control_point": ["100 mm", "200 mm"]}, measures)
+    assert found.outcome.tolist() == ["done", "done"] and "ZeroDivisionError" in found.message[1]
+    assert np.isnan(found.measures["inverse"]).tolist() == [False, True]
+    assert found.measures["length"] == pytest.approx([0.3, 0.3])
+
+
+def test_tip_root_moment_followed_and_accepted_are_measured_by_default(fast: Path) -> None:
+    fast.write_text(fast.read_text(encoding="utf-8") + '[motion.spin.accept]\nfollowed = "50 %"\n', encoding="utf-8")
+    found = gb.sweep(fast, ["motion.spin.arm=3.3 m"])
+    ends = ("tip.size.max_abs", "loads.root_moment.size.max_abs")
+    moved = [f"motions.{name}.{end}" for name in ("flight", "spin") for end in ends]
+    assert list(found.measures) == [*moved, *(f"comparisons.spin.verdict.{end}" for end in ("followed", "accepted"))]
+    assert [found.units[name] for name in found.measures] == ["m", "N m", "m", "N m", "", ""]
+    assert all(np.isfinite(each).all() for each in found.measures.values())
+    slopes = gb.sensitivity(fast, parameters=["beam.length"])
+    assert list(slopes.measures) == moved
+
+
+def _length(case: gb.Case) -> float:
+    return float(case.beam.length)
+
+
 def _fussy(case: gb.Case) -> float:
     return 1 / float(case.motions["spin"].control_point - 0.2)  # type: ignore[attr-defined]
 
@@ -183,7 +207,7 @@ def test_files_and_words(fast: Path, gbeam: Call) -> None:
     [
         (("--over", "motion.spin.amr=1:2:2", "--measure", "tip"), "did you mean 'arm'"),
         (("--over", "motion.spin.arm=1 kg:2 kg:2", "--measure", "tip"), "is a mass"),
-        (("--over", "motion.spin.arm=1:2:2"), "--measure is missing"),
+        (("--over", "motion.spin.arm=1:2:2", "--verb", "static"), "--measure is missing"),
         (("--measure", "tip"), "--over is missing"),
         ((*ARM, "--measure", "flight.tip.z.maxabs"), "did you mean 'flight.tip.z.max_abs'"),
         ((*ARM, "--measure", "tip.z.max_abs"), "could be any of 2 figures"),

@@ -54,7 +54,7 @@ def on_centrifuge(case: str, flight: gb.Flight, duration: float) -> Iterator[Row
         idle=1.4 * GRAVITY,
         smoothing=0.02,
     ).over(0.0, duration)
-    commands = gb.commands(machine, 1e-3)
+    commands = gb.axis_commands(machine, 1e-3)
     coarse, fine = (tip_of_cable(commands, 6, step) for step in (5e-4, 2.5e-4))
     source = "6 cubic ANCF cables, generalised-α, 0.5 and 0.25 ms"
     for kind in ("exact", "FOAM"):

@@ -33,16 +33,7 @@ LARGEST = 80 * 2**20  # bytes of a request: a record of 64 MiB, and what is arou
 
 
 class Door:
-    """Refuses foreign hosts and origins, requests without the session, and what is too large.
-
-    Parameters
-    ----------
-    app : ASGI application
-    port : int
-        That the server listens on.
-    token : str
-        In the address that is printed: whoever opens that gets the session's cookie.
-    """
+    """Refuses foreign hosts and origins, requests without the session's cookie or `token`, and what is too large."""
 
     def __init__(self, app: Any, port: int, token: str) -> None:
         self._app = app
@@ -156,12 +147,7 @@ def listening(port: int) -> Listening:
 
 
 class Connections:
-    """Closes connections that ask for nothing; where there are too many, the one that has been idle longest.
-
-    Parameters
-    ----------
-    app : ASGI application
-    """
+    """Closes connections of an ASGI app that ask for nothing; where there are too many, the longest idle one."""
 
     def __init__(self, app: Any) -> None:
         self._app, self._most = app, min(MOST, _descriptors() // 4)

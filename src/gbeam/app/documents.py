@@ -27,13 +27,7 @@ _MISSING = re.compile(r"(\w+) is missing")  # a message about a table, whose fie
 
 
 class Unfit(GbeamError):
-    """A scenario is wrong.
-
-    Parameters
-    ----------
-    problems : list of dict
-        As :func:`problems` has them.
-    """
+    """A scenario is wrong, by `problems` as :func:`problems` lists them."""
 
     def __init__(self, problems: list[dict[str, Any]]) -> None:
         self.problems = problems
@@ -41,16 +35,7 @@ class Unfit(GbeamError):
 
 
 def described(text: str, folder: Path, *, distributions: bool = True) -> dict[str, Any]:
-    """What a document holds: its form, what is wrong with it, and what it means where nothing is.
-
-    Parameters
-    ----------
-    text : str
-    folder : Path
-        Of the records that it may name.
-    distributions : bool
-        Whether its values may be distributions, which sweeps draw from.
-    """
+    """Return the form of a document, its problems, and where there are none its meaning."""
     made: dict[str, Any] = {"text": text, "form": [], "errors": [], "meaning": ""}
     try:
         data = parse(NAME, text)
@@ -66,13 +51,7 @@ def described(text: str, folder: Path, *, distributions: bool = True) -> dict[st
 
 
 def edited(text: str, path: str, value: str) -> str:
-    """Return the text with another value at a path, or without it where that is empty; comments and all else stay.
-
-    Raises
-    ------
-    InputError
-        If the schema has no value there, or the text cannot be changed there.
-    """
+    """Return the text with another value at a path, or without it where that is empty; comments and all else stay."""
     data, place = parse(NAME, text), _place(path)
     if not value.strip():
         return without_entry(text, place) if written_at(data, place) is not None else text
@@ -82,19 +61,7 @@ def edited(text: str, path: str, value: str) -> str:
 
 
 def added(text: str, path: str, choice: str) -> str:
-    """Return the text with a new table at a path, or with another kind of table than was there.
-
-    Parameters
-    ----------
-    text, path : str
-    choice : str
-        Which of the tables that may stand there; empty where there is but one.
-
-    Raises
-    ------
-    InputError
-        If the schema has no such table there, or the text cannot be changed there.
-    """
+    """Return the text with a new table at a path, or with another kind (`choice`) of table than was there."""
     data, place = parse(NAME, text), _place(path)
     try:
         table = new_table(place, data, choice)
@@ -104,13 +71,7 @@ def added(text: str, path: str, choice: str) -> str:
 
 
 def removed(text: str, path: str) -> str:
-    """Return the text without what is written at a path.
-
-    Raises
-    ------
-    InputError
-        If nothing is, or the text cannot be changed there.
-    """
+    """Return the text without what is written at a path."""
     return without_entry(text, _place(path))
 
 
@@ -169,13 +130,7 @@ def _shown(value: Any) -> str:
 
 
 def records(data: Any, folder: Path) -> list[Path]:
-    """The files that a scenario names, all of which must be records of the folder.
-
-    Raises
-    ------
-    InputError
-        If one is a path, or is not there.
-    """
+    """The files that a scenario names, all of which must be records of the folder."""
     found = []
     for path, value in _leaves(data):
         if path[-1] == "file":

@@ -25,26 +25,14 @@ SHORT = {errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, errno.ENOMEM, e
 
 
 def checked(name: str) -> str:
-    """Return the name of a file, if it is one.
-
-    Raises
-    ------
-    InputError
-        If it is a path, begins with a dot, or has characters that a name of a record needs not have.
-    """
+    """Return the name of a file, if it is one."""
     if not _NAME.fullmatch(name) or name.endswith((".", " ")):
         raise InputError("file", "has a name that is not taken", "use letters, digits, -, _ and a suffix")
     return name
 
 
 def regular(folder: Path, name: str) -> Path:
-    """Return the path of a file of a folder.
-
-    Raises
-    ------
-    InputError
-        If it is no regular file there: a link leads elsewhere.
-    """
+    """Return the path of a file of a folder."""
     file = folder / checked(name)
     if not _is_regular(file):
         raise InputError(name, "is not there", "drop the file on the page first")
@@ -79,13 +67,7 @@ def write(file: Path, content: bytes) -> None:
 
 
 def store(folder: Path, name: str, content: bytes) -> Path:
-    """Write a file into a folder.
-
-    Raises
-    ------
-    InputError
-        If its name is not taken, it is too large, or there are too many.
-    """
+    """Write a file into a folder."""
     file = folder / checked(name)
     if len(content) > LARGEST:
         raise InputError(name, f"has more than {LARGEST // 2**20} MiB", "cut or resample the record")
@@ -117,13 +99,7 @@ EXAMPLES = ("Flight and centrifuge", _FLOWN, "Hub")
 
 
 def example(name: str, records: Path) -> str:
-    """Return the text of an example; its record is put among those of a folder.
-
-    Raises
-    ------
-    InputError
-        If there is no such example, or no room for its record.
-    """
+    """Return the text of an example; its record is put among those of a folder."""
     if name in _TEMPLATES:
         return template(_TEMPLATES[name])
     if name != _FLOWN:

@@ -19,25 +19,12 @@ LONGEST = 1000  # characters of a value that the form shows; longer ones are edi
 
 
 def form(data: Any) -> list[Node]:
-    """Return the entries of the whole scenario.
+    """Return the entries of a parsed scenario: `path`, `key`, `help`, `required`, `written`, and by kind
 
-    Parameters
-    ----------
-    data : dict
-        A parsed scenario, sound or not.
-
-    Returns
-    -------
-    list of dict
-        Each with its `path`, `key`, `help`, and whether it is `required` and `written`. One of kind
-
-        - ``value`` has its text, its `default` and `example`, the SI `unit` of a bare number, and the `options` that it
-          is one of;
-        - ``table`` has the entries `inside`, and the `choice` among the `options` where it is one of several tables;
-        - ``list`` and ``named`` (tables by names that the user gives) have tables `inside`, and the `options` of a new
-          one.
-
-        A value that may be a table too has the `options` of that as `tables`.
+    - ``value``: its text, `default`, `example`, SI `unit` of a bare number, the `options` that it is one of, and as
+      `tables` those of a table that it may be too;
+    - ``table``: the entries `inside`, and the `choice` among the `options` where it is one of several tables;
+    - ``list`` and ``named`` (tables by names that the user gives): tables `inside`, and the `options` of a new one.
     """
     return _inside(_schema(), data if isinstance(data, dict) else {}, ())
 
@@ -56,13 +43,7 @@ def value_at(path: Path, data: Any, text: str) -> Any:
 
 
 def new_table(path: Path, data: Any, choice: str) -> dict[str, Any]:
-    """Return a table of a kind, with what one of another kind that stands there has in common with it.
-
-    Raises
-    ------
-    KeyError
-        If the schema has no such table there.
-    """
+    """Return a table of a kind, with the values that the one of another kind at its place shares with it."""
     table = {_tag(each)[1]: each for each in _tables(_schema_at(path, data))}[choice]
     before = written_at(data, path)
     kept = before if isinstance(before, dict) else {}

@@ -93,25 +93,7 @@ class Jobs:
     ) -> str:
         """Queue a verb on a scenario, with copies of its records; return its id.
 
-        Parameters
-        ----------
-        text, title : str
-            Of the scenario.
-        records : sequence of Path
-        verb : str
-        arguments : sequence of str
-            Of the verb.
-        case : str
-            Which case of which sweep it is; one that is there already is not run again.
-        changes : str
-            Of the scenario in that of the last run of its title, by which the two are told apart.
-
-        Raises
-        ------
-        InputError
-            If too many wait.
-        OSError
-            If it cannot be written; nothing is queued then.
+        The `case` of a sweep that is there already is not run again; `changes` tell it from the last run of its title.
         """
         now = datetime.now()  # in the order of their names they are run
         number = f"{now:%Y%m%d-%H%M%S}-{now.microsecond:05x}{secrets.randbelow(0x1000):03x}"
@@ -167,13 +149,7 @@ class Jobs:
         return found
 
     def state(self, number: str) -> dict[str, Any]:
-        """What is known of a run: its state, title, last line of progress, and the files that it has.
-
-        Raises
-        ------
-        InputError
-            If there is none.
-        """
+        """Return the state, title, last line of progress and files of a run."""
         place = self._place(number)
         known = _read(place / _STATE) | self._unsaved.get(number, {})
         if known["state"] == "queued":
@@ -183,13 +159,7 @@ class Jobs:
         return {"id": number, **known, "progress": progress, "files": [*_files(place)]}
 
     def file(self, number: str, name: str) -> Path:
-        """The path of a file of a run.
-
-        Raises
-        ------
-        InputError
-            If there is none of that name.
-        """
+        """The path of a file of a run."""
         found = _files(self._place(number))
         if name not in found:
             raise InputError("file", "is none of this run's", f"choose of {', '.join(found)}")

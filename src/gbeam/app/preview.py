@@ -64,18 +64,8 @@ _LONGEST = 3  # words of a unit in a name, m_s_2
 
 
 def suggested(columns: Iterable[tuple[str, str]]) -> dict[str, str]:
-    """Return what names and units of columns say of a record.
-
-    Parameters
-    ----------
-    columns : iterable of (str, str)
-        Name of each, and the unit that the file states, if any.
-
-    Returns
-    -------
-    dict
-        Keys of a scenario's record (time, time_unit, x, y, z, unit, p, q, r, rate_unit), where there is one answer.
-        Signs are not among them.
+    """Return the keys of a scenario's record that names and units of columns suggest, where there is one answer; no
+    signs.
     """
     found: dict[str, list[tuple[str, str]]] = defaultdict(list)  # columns and their units, by what they may hold
     for name, unit in columns:

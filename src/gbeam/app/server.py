@@ -221,22 +221,7 @@ def _once(complain: Callable[[str], None]) -> Callable[[asyncio.AbstractEventLoo
 
 
 def serve(folder: Path, port: int, announce: Callable[[str], None]) -> None:
-    """Serve the app on 127.0.0.1 until it is interrupted.
-
-    Parameters
-    ----------
-    folder : Path
-        Of records and runs.
-    port : int
-        0 for any that is free.
-    announce : callable
-        Called with the address to open, once it is there.
-
-    Raises
-    ------
-    InputError
-        If the port or the folder is another program's.
-    """
+    """Serve the app on 127.0.0.1 until it is interrupted; `announce` the address once it is there."""
     import uvicorn
 
     with alone(files.made(folder) / ".lock", "--folder", "open the address that it printed, or name another folder"):

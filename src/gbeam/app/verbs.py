@@ -27,23 +27,10 @@ _REPEATED = re.compile("any number of times|given twice")
 
 @dataclass(frozen=True)
 class Option:
-    """An option of a verb.
+    """An option of a verb, as the command line has it.
 
-    Parameters
-    ----------
-    name : str
-        As the command line has it.
-    help : str
-    example : str
-    choices : tuple of str
-        What it may be; empty for any text.
-    many : int
-        How often it may be given.
-    of : str
-        What it names: a ``motion``, a ``record`` that is kept, or, before "=", a value of the scenario that varies,
-        ``values``.
-    ticked : str
-        What the command line has where it is chosen, of an option that has no value to give.
+    `many` is how often it may be given; `of` what it names: a ``motion``, a ``record``, or before "=" one of the
+    scenario's ``values``; `ticked` what the command line has where it is chosen, of an option without a value.
     """
 
     name: str
@@ -103,21 +90,10 @@ def offered() -> dict[str, Any]:
 
 
 def arguments(verb: str, options: Sequence[str], data: Mapping[str, Any]) -> list[str]:
-    """Return a verb's arguments, each of which stands for itself alone.
+    """Return a verb's arguments from ``NAME=VALUE`` texts (NAME alone of what is ticked), each of which stands for
+    itself.
 
-    Parameters
-    ----------
-    verb : str
-    options : sequence of str
-        ``NAME=VALUE`` each, NAME alone of what is ticked.
-    data : mapping
-        The parsed scenario.
-
-    Raises
-    ------
-    InputError
-        If the verb is none of the page's, or an option none of its; if a sweep varies what is no value of the scenario,
-        or the name of a file, which would lead out of the folder.
+    A sweep may vary no file name, which would lead out of the folder.
     """
     known = verbs().get(verb)
     if known is None:

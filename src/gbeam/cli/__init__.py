@@ -13,19 +13,10 @@ from collections.abc import Sequence
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line.
+    """Run the command line on arguments, by default the process's, and return its exit status.
 
-    Parameters
-    ----------
-    argv : sequence of str, optional
-        The arguments after the program's name; by default the process's, which then ends at once on an interrupt or a
-        request to terminate.
-
-    Returns
-    -------
-    int
-        Exit status: 0 done, 1 the computation failed and said why, 2 the input is wrong and it said where, 3 a defect
-        of gbeam; of a process that a signal ends 130 (interrupted) or 143 (terminated).
+    0 done, 1 the computation failed and said why, 2 the input is wrong and it said where, 3 a defect of gbeam; a
+    process that a signal ends has 130 (interrupted) or 143 (terminated).
     """
     if argv is not None:
         return _status(list(argv))

@@ -30,13 +30,7 @@ class Input:
 
     @contextmanager
     def placing(self, **options: str) -> Iterator[None]:
-        """Give the InputErrors raised inside their place in the scenario file, or the option that they are about.
-
-        Parameters
-        ----------
-        **options
-            Option of the command line by the name of the argument that it sets.
-        """
+        """Give InputErrors their place in the scenario file, or the option that sets the argument they name."""
         try:
             yield
         except InputError as error:
@@ -47,13 +41,7 @@ class Input:
             raise placed(self.scenario, [error]) from None
 
     def motion(self, name: str | None, *, kind: str = "") -> tuple[str, Motion]:
-        """The motion of ``--motion``, and its name: without one the only one, or the only one of a kind.
-
-        Raises
-        ------
-        InputError
-            If there is no such motion, or more than one could be meant.
-        """
+        """Name and prepared motion of ``--motion``; without one the only one, or the only one of a kind."""
         chosen = motion_of(self.case.motions, name, kind)
         try:
             return chosen, prepared(self.case, chosen)
@@ -87,15 +75,7 @@ _MOVING = ("run", "place")  # verbs that need all motions
 
 
 def read(verb: str, file: Path, overrides: Sequence[str], out: Path | None = None) -> Input:
-    """Load and build the scenario of a verb, once its folder is known to be writable.
-
-    Raises
-    ------
-    InputError
-        If `out` cannot be written to.
-    ScenarioError
-        With everything that is wrong, each with its place.
-    """
+    """Load and build the scenario of a verb, once its folder is known to be writable."""
     if out is not None:
         refuse_unwritable(out)
     from gbeam.scenario import build, load, provenance  # not needed, nor imported, for help
@@ -116,13 +96,7 @@ def naming(option: str) -> Iterator[None]:
 
 
 def number(option: str, text: str, kind: str) -> float:
-    """Read an option with a unit.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read.
-    """
+    """Read an option with a unit."""
     from gbeam.scenario.values.units import UnitError, argument
 
     try:
@@ -132,13 +106,7 @@ def number(option: str, text: str, kind: str) -> float:
 
 
 def numbers(option: str, text: str, kind: str) -> list[float]:
-    """Read the quantities of one option, separated by commas.
-
-    Raises
-    ------
-    InputError
-        If one cannot be read or is negative.
-    """
+    """Read the quantities of one option, separated by commas."""
     values = [number(option, part.strip(), kind) for part in text.split(",")]
     if min(values) < 0:
         raise InputError(option, f"has {min(values):g}", "give none that is negative")

@@ -109,23 +109,7 @@ def show_found(
     written: Path | None = None,
     more: Callable[[Path], None] | None = None,
 ) -> None:
-    """Print what a study found, and write its result, plots, page and what a verb has `more` into a folder.
-
-    Parameters
-    ----------
-    answer : Fit, Optimum, Sensitivity or ShapedCommand
-    words : module
-        Its words and JSON, of :mod:`gbeam.report.studies`.
-    verb, stem : str
-        Which found it, and the names of its files.
-    folder : Path or None
-    json, report : bool
-        Whether to print JSON, and to write a page.
-    written : Path, optional
-        The scenario that has the values found.
-    more : callable, optional
-        Writes further files into a folder.
-    """
+    """Print a study's answer, and write it, its plots, its page and what a verb has `more` into a folder."""
 
     def make(hidden: Path) -> None:
         from gbeam.plots import figures, save

@@ -46,23 +46,7 @@ _INTERRUPTED = 130
 
 
 def run(tokens: list[str]) -> int:
-    """Run a verb and print what went wrong, if anything.
-
-    Parameters
-    ----------
-    tokens : list of str
-        The arguments after the program's name.
-
-    Returns
-    -------
-    int
-        Exit status.
-
-    Raises
-    ------
-    OSError
-        If a file or a stream cannot be read or written.
-    """
+    """Run a verb, print what went wrong, if anything, and return the exit status."""
     as_json = "--json" in tokens
     if len(tokens) > WORDS:
         return report_syntax(f"The command line has {len(tokens)} words, and {WORDS} are read at most.", as_json)

@@ -36,25 +36,10 @@ def refuse_unwritable(folder: Path) -> None:
 
 
 def publish(folder: Path, make: Callable[[Path], object]) -> list[Path]:
-    """Let `make` write files into a hidden folder, then move them into `folder`.
+    """Let `make` write files into a hidden folder, then move them into `folder`, and return them by name.
 
-    Parameters
-    ----------
-    folder : Path
-        Made if it does not exist; files of the same names are replaced, and plots that the same command made before
-        and does not make now are removed.
-    make : callable
-        Of the folder to write into.
-
-    Returns
-    -------
-    list of Path
-        The files, by name.
-
-    Raises
-    ------
-    ComputationError
-        If they cannot be written (``not written``); the message says where they are instead, if anywhere.
+    Plots that the same command made before and does not make now are removed. Files that cannot be written are a
+    ComputationError (``not written``), whose message says where they are instead, if anywhere.
     """
     try:
         return _published(folder, make)

@@ -25,16 +25,7 @@ DEFAULT_SAMPLES = 64
 
 @dataclass(frozen=True)
 class Cases:
-    """All cases, in the order of the result's arrays.
-
-    Parameters
-    ----------
-    grid, drawn : tuple of Variation
-        Each with its values.
-    samples : int
-        Zero where nothing is drawn.
-    sampler : str
-    """
+    """Cases in the order of the result's arrays: every combination of a grid, with every one of so many samples."""
 
     grid: tuple[Variation, ...]
     drawn: tuple[Variation, ...]
@@ -74,26 +65,9 @@ def read_cases(
     seed: int = 0,
     distributions: Mapping[str, Distribution] | None = None,
 ) -> Cases:
-    """Read what varies, and draw what is to be drawn.
+    """Read what varies, ``PATH=VALUES`` each, and draw samples of it and of distributions in the scenario, by path.
 
-    Parameters
-    ----------
-    over : sequence of str
-        ``PATH=VALUES`` each: see :func:`gbeam.studies.cases.read_variation`.
-    samples : int, optional
-        How many are drawn from the distributions; 64 by default.
-    sampler : str
-        sobol (scrambled), latin (hypercube) or random; saltelli for Sobol indices: of d distributions it makes
-        samples × (d + 2) cases.
-    seed : int
-        The same seed draws the same samples.
-    distributions : mapping of str to Distribution, optional
-        Those that stand in the scenario, by path: what `over` does not vary is drawn from them.
-
-    Raises
-    ------
-    InputError
-        If nothing varies, a path is given twice, or there is nothing to draw the samples from.
+    The sampler saltelli makes samples × (d + 2) cases of d distributions.
     """
     variations = [read_variation(text) for text in over]
     paths = [each.path for each in variations]
@@ -193,18 +167,9 @@ QUANTILES: Mapping[str, Callable[..., Any]] = {
 
 @dataclass(frozen=True)
 class Variation:
-    """What one ``PATH=VALUES`` says, before anything is drawn.
+    """One ``PATH=VALUES``: `texts` that replace the scenario's value, and `values` (n,), words or numbers in `unit`.
 
-    Parameters
-    ----------
-    path : str
-    texts : tuple of str
-        The values as they replace the scenario's, for a range or a list.
-    values : (n,) array
-        The same as numbers in `unit`, or as words.
-    unit : str
-    distribution : Distribution or None
-        What the values are drawn from; None for a range or a list.
+    Without values where they are yet to be drawn from a distribution.
     """
 
     path: str
@@ -236,16 +201,8 @@ class Variation:
 def read_variation(text: str) -> Variation:
     """Read ``PATH=VALUES``.
 
-    Parameters
-    ----------
-    text : str
-        VALUES is a range ``4:10:7`` (from, to, how many; ``4 g/s:10 g/s:7`` with units, ``log(1:100:5)`` in equal
-        ratios), a list ``4 g/s, 6 g/s`` or ``FOAM, TLAM``, or a distribution ``normal(70 GPa, 2 GPa)``.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read.
+    VALUES is a range ``4:10:7`` (from, to, how many; ``4 g/s:10 g/s:7``, ``log(1:100:5)`` in equal ratios), a list ``4
+    g/s, 6 g/s`` or ``FOAM, TLAM``, or a distribution ``normal(70 GPa, 2 GPa)``.
     """
     path, equals, values = text.partition("=")
     path = path.strip()

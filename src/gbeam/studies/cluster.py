@@ -44,16 +44,7 @@ def compute(version: str, question: Question, batch: Sequence[Task]) -> list[Row
 
 
 def on_scheduler(question: Question, batches: Iterable[Sequence[Task]], address: str) -> Iterator[list[Row]]:
-    """Compute the batches on the workers of a Dask scheduler.
-
-    Raises
-    ------
-    InputError
-        If Dask is not installed, there is no scheduler or no worker, or a worker has another version of gbeam or lacks
-        a module.
-    ComputationError
-        If the scheduler or all workers are lost.
-    """
+    """Compute the batches on the workers of a Dask scheduler."""
     with _connected(address) as client:
         yield from _Dispatch(client, address, question, iter(batches)).rows()
 

@@ -38,17 +38,9 @@ EXACT, DIFFERENCE = "exact", "difference"
 
 @dataclass(frozen=True)
 class Slopes:
-    """What was read from an answer, and its derivatives.
+    """Values (m,) read from an answer, and their derivatives, slopes (m, p) with errors (m, p), NaN of exact ones.
 
-    Parameters
-    ----------
-    values : (m,)
-    slopes, errors : (m, p)
-        Errors are those of differences; NaN where the derivative is exact.
-    methods : tuple of str
-        ``exact`` or ``difference``, of each parameter.
-    bends : (m, p)
-        By how much the changes on either side differ, over the step: of the order of the step where it is smooth.
+    `bends` (m, p) is by how much the changes on either side differ, over the step: of its order where all is smooth.
     """
 
     values: Floats
@@ -61,29 +53,8 @@ class Slopes:
 class Neighbourhood:
     """A case that is answered, and those with a little less and a little more of each value.
 
-    Parameters
-    ----------
-    question : Question
-        Whose verb answers.
-    parameters : sequence of PhysicalValue
-    values : sequence of float, optional
-        Of the parameters; the scenario's by default.
-    grids : mapping of str to Grid, optional
-        By motion, of the runs that are made, without an estimate of their errors; by default every motion is run, its
-        step chosen.
-    parts : mapping of str to bool, optional
-        ``loads`` and ``axes``: false where nothing is read of loads, or of a machine's axes and no comparison.
-    adapt : callable, optional
-        Changes every case before it is answered, such as its stations or its model.
-    progress : callable, optional
-        Called with what is being done and the fraction of it done.
-
-    Raises
-    ------
-    InputError
-        If steps are chosen by error control, or a value may not be a little more or less.
-    ComputationError
-        If a run is not done.
+    With `grids` motions are run by given steps, without estimates of errors; `parts` (``loads``, ``axes``) that are
+    false are not computed; `adapt` changes every case before it is answered.
     """
 
     def __init__(
@@ -115,14 +86,7 @@ class Neighbourhood:
             self.answer = question.facts(self.case)
 
     def slopes(self, read: Read, motions: Sequence[str] = ()) -> Slopes:
-        """Derivatives of what is read.
-
-        Parameters
-        ----------
-        read : callable
-        motions : sequence of str
-            Those whose responses it reads; the others are not differentiated.
-        """
+        """Derivatives of what is read from the answer; other motions than those named are not differentiated."""
         if self.question.verb == "run":
             return self._of_runs(read, motions or list(self.case.motions))
         values = read(self.case, self.answer)
@@ -139,13 +103,7 @@ class Neighbourhood:
         return _gathered(values, rows, [DIFFERENCE] * len(rows))
 
     def done(self, name: str) -> Response:
-        """The response in one environment.
-
-        Raises
-        ------
-        ComputationError
-            If it is not done.
-        """
+        """The response in one environment; ComputationError if it is not done."""
         failed = self.answer.failures.get(name) or self.answer.responses[name]
         if failed.outcome != "done":
             raise ComputationError(failed.outcome, f"motion.{name}: {failed.message}")

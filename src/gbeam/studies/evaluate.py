@@ -56,26 +56,10 @@ class Row:
 
 @dataclass(frozen=True)
 class Question:
-    """What is computed of every case.
+    """The computation of every case: a question at time `at`, s, and the figures that are taken from its answer.
 
-    Parameters
-    ----------
-    source : Source
-        The scenario, parsed once, with the changes that all cases share.
-    verb : str
-    motion : str or None
-    at : float or None
-        Time at which the motion is frozen, s; the start of the response by default.
-    keys : tuple of keys
-        Of the figures in the verb's JSON.
-    functions : tuple of callable
-        Of the case: further figures.
-    histories : tuple of History
-        Further figures, one for each of `times`.
-    times : (t,)
-        s.
-    together : bool
-        Whether cases that can be are integrated together.
+    Figures are `keys` of its facts, `functions` of the case, and `histories` at `times` (t,), s; cases that can be
+    integrated `together` are.
     """
 
     source: Source
@@ -116,13 +100,7 @@ class Question:
         return change(self.source, overrides)
 
     def case(self, overrides: Sequence[str]) -> Case:
-        """The objects of one case.
-
-        Raises
-        ------
-        ScenarioError
-            If the scenario does not allow these values.
-        """
+        """The objects of one case."""
         return build(self.scenario(overrides))
 
     def facts(self, case: Case) -> Facts:
@@ -141,12 +119,30 @@ class Question:
     def measured(self, number: int, case: Case, facts: Facts) -> Row:
         """The row of a case that is built, from what the verb answers to it."""
         try:
-            values = [value_at(facts, keys) for keys in self.keys] + [float(each(case)) for each in self.functions]
+            values = [value_at(facts, keys) for keys in self.keys]
+            own, problem = _measured(self.functions, case)
+            values += own
             for history in self.histories:
                 values += history.at(facts["study"], self.times).tolist()
         except Exception as error:
             return without_figures(number, self.width, error)
-        return Row(number, tuple(values), *ended(facts))
+        outcome, message = ended(facts)
+        return Row(number, tuple(values), outcome, message or problem)
+
+
+def _measured(functions: Sequence[Function], case: Case) -> tuple[list[float], str]:
+    """Values of measures, NaN of those that fail, and why these do; where all do, the case has failed."""
+    values, problems, last = [], [], Exception()
+    for k, function in enumerate(functions):
+        try:
+            values.append(float(function(case)))
+        except Exception as error:
+            values.append(math.nan)
+            problems.append(f"measure {k + 1}: {type(error).__name__}: {_line(error)}")
+            last = error
+    if problems and len(problems) == len(functions):
+        raise last
+    return values, "; ".join(problems)
 
 
 def _of_loads(keys: Keys) -> bool:
@@ -197,10 +193,9 @@ def may_share(verb: str, paths: Sequence[str]) -> bool:
 
 
 def settled(question: Question, case: Case, cases: int) -> Question:
-    """The question, its figures known, with whether a case, and so every one of a sweep of so many, stands with others.
+    """The question, its figures known, with whether a case, and so every one of so many, is integrated with others.
 
-    An automatic step takes several runs, whose programs a few cases do not repay; so do numbers of shapes that are
-    found case by case.
+    An automatic step takes several runs, whose programs a few cases do not repay; so do automatic numbers of shapes.
     """
     settings = reduced(case, question.needs).response
     enough = settings.step is not None or cases >= TOGETHER

@@ -14,6 +14,8 @@ from gbeam.errors import InputError
 from gbeam.results.declared import units_of
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.result import Floats
+from gbeam.scenario.schema import Centrifuge
+from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.values.paths import path_text
 from gbeam.scenario.values.suggest import advise, closest
 from gbeam.studies.answers import DECLARED, Facts
@@ -28,25 +30,7 @@ _MANY = 12  # figures that a message lists
 
 
 def find(facts: Facts, name: str) -> Keys:
-    """Find the figure that a measure means.
-
-    Parameters
-    ----------
-    facts : mapping
-        Of a case that is done.
-    name : str
-        The end of a path, such as ``tip.z.max_abs``; more of the path where several end so.
-
-    Returns
-    -------
-    tuple of str or int
-        The keys that lead to the figure.
-
-    Raises
-    ------
-    InputError
-        If no figure's path ends so, or several do.
-    """
+    """Return the keys of the figure whose path in the facts of a case ends in `name`, such as ``tip.z.max_abs``."""
     every = {path_text(keys): keys for keys, _ in _figures(facts)}
     wanted = f".{name}"
     fits = [path for path in every if f".{path}".endswith(wanted)]
@@ -61,6 +45,22 @@ def find(facts: Facts, name: str) -> Keys:
         shown = ", ".join(fits[:_MANY]) + (", …" if len(fits) > _MANY else "")
         raise InputError(OPTION, f"{name!r} could be any of {len(fits)} figures", f"name one of {shown}")
     return every[name if name in fits else fits[0]]
+
+
+def usual(scenario: Scenario, verb: str) -> tuple[str, ...]:
+    """Figures of ``run`` that are meant where none is named: of every motion the largest of tip and root moment."""
+    if verb != "run":
+        return ()
+    ends = ("tip.size.max_abs", "loads.root_moment.size.max_abs")
+    return tuple(f"motions.{name}.{end}" for name in scenario.motion for end in ends)
+
+
+def judged(scenario: Scenario, verb: str) -> tuple[str, ...]:
+    """Further ones, of every centrifuge: the share of the flight that is followed, and whether limits accept it."""
+    machines = {name: each for name, each in scenario.motion.items() if isinstance(each, Centrifuge) and each.tracks}
+    limited = [name for name, each in machines.items() if each.limits_of_acceptance]
+    figures = [f"comparisons.{name}.verdict.followed" for name in machines]
+    return tuple(figures + [f"comparisons.{name}.verdict.accepted" for name in limited]) if verb == "run" else ()
 
 
 def value_at(facts: Facts, keys: Keys) -> float:
@@ -289,13 +289,7 @@ class History:
 
 
 def read_history(text: str, motions: Collection[str]) -> History:
-    """Read ``flight.tip.z``; the motion may be left out where there is one.
-
-    Raises
-    ------
-    InputError
-        If it is none.
-    """
+    """Read ``flight.tip.z``; the motion may be left out where there is one."""
     *before, quantity, axis = ["", "", *text.split(".")]
     motion = ".".join(part for part in before if part)
     if axis not in ("x", "y", "z") or quantity not in UNITS:

@@ -296,13 +296,7 @@ def search(model: Fitted, start: Floats, limits: Floats) -> Solution:
 
 
 def tell_apart(jacobian: Floats, parameters: Sequence[PhysicalValue]) -> float:
-    """Condition of weighted derivatives (m, p), each parameter's of unit length.
-
-    Raises
-    ------
-    ComputationError
-        If the data do not depend on a parameter, or cannot tell some apart.
-    """
+    """Condition of weighted derivatives (m, p), each parameter's of unit length."""
     lengths = np.linalg.norm(jacobian, axis=0)
     names = [each.path for each in parameters]
     least = max(_ALIKE * lengths.max(), _IDLE)

@@ -34,15 +34,7 @@ _ANOTHER = "name another folder"
 
 
 class Journal:
-    """Cases as they are done.
-
-    Parameters
-    ----------
-    folder : Path
-        Made when the first case is written.
-    sweep : mapping
-        What the sweep is: equal for the same sweep, told apart by its keys where it is another.
-    """
+    """The store, in a folder, of a sweep's cases as they are done; a mapping tells it from other sweeps."""
 
     def __init__(self, folder: Path, sweep: Mapping[str, Any]) -> None:
         self.folder, self._file = folder, folder / NAME
@@ -59,13 +51,7 @@ class Journal:
         return not first or len({row["case"] for row in rows if row}) >= first["cases"]
 
     def read(self) -> list[Row]:
-        """The cases done; none where there is no store.
-
-        Raises
-        ------
-        InputError
-            If it is another sweep's, or cannot be read.
-        """
+        """Return the cases done; none where there is no store."""
         first, rows = self._known()
         if not first:
             return []
@@ -89,15 +75,7 @@ class Journal:
 
     @contextmanager
     def writing(self, *, resume: bool) -> Iterator[None]:
-        """Hold the store for writing; what another process holds is refused.
-
-        Raises
-        ------
-        InputError
-            If another process writes to it, or it holds what would be lost.
-        ComputationError
-            If it cannot be written.
-        """
+        """Hold the store for writing; what another process holds is refused."""
         with ExitStack() as held:
             try:
                 self.folder.mkdir(parents=True, exist_ok=True)
@@ -110,13 +88,7 @@ class Journal:
             yield
 
     def add(self, rows: Iterable[Row]) -> None:
-        """Write some cases.
-
-        Raises
-        ------
-        ComputationError
-            If they cannot be written, or the store was removed.
-        """
+        """Write some cases."""
         assert self._out is not None
         text = b""
         for row in rows:
@@ -236,13 +208,7 @@ def identity(question: Question, cases: Cases, measures: Sequence[str], historie
 def opened(
     store: str | os.PathLike[str] | None, resume: bool, sweep: Mapping[str, Any]
 ) -> tuple[Journal | None, list[Row]]:
-    """The store of a sweep, and the cases done in it.
-
-    Raises
-    ------
-    InputError
-        If there is nothing to resume, or something that would be lost.
-    """
+    """The store of a sweep, and the cases done in it."""
     if store is None:
         if resume:
             raise InputError("--resume", "stands without a store", "name the folder with --out")

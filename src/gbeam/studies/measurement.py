@@ -44,23 +44,8 @@ _MICROSTRAIN = {"µm/m": 1e-6, "um/m": 1e-6, "microstrain": 1e-6}
 
 @dataclass(frozen=True)
 class Measured:
-    """One column of the data.
-
-    Parameters
-    ----------
-    name : str
-        As in the file, without its unit.
-    motion : str
-        Whose response it is of.
-    quantity : str
-        Such as ``tip.z``.
-    values : (t,)
-        SI.
-    unit : str
-    at : float
-        Of a strain gauge from the root, m.
-    face : str
-        On which it is, such as ``-z``; empty where the quantity is no strain.
+    """A column of the data: `values` (t,), SI, of a quantity such as ``tip.z`` of a motion; of a strain at `at`, m, on
+    `face`.
     """
 
     name: str
@@ -74,16 +59,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Measurement:
-    """What was measured.
-
-    Parameters
-    ----------
-    file : str
-    at : (t,)
-        Times, s, or numbers of the modes, from 1.
-    modal : bool
-    columns : tuple of Measured
-    """
+    """Columns measured at times, s, or of modes by their numbers from 1: `at` (t,)."""
 
     file: str
     at: Floats
@@ -147,22 +123,10 @@ class Measurement:
 def read_measurement(path: str | os.PathLike[str], case: Case, motion: str | None = None) -> Measurement:
     """Read measured histories (a column ``time``) or modes (a column ``mode``) from a text file.
 
-    Parameters
-    ----------
-    path : path
-        Columns ``time`` and any of ``tip.z``, ``root_moment.y``, ``root_force.z``, ``hub.angle``, ``hub.rate`` and
-        ``strain.z@10 mm`` (on the face towards +z; ``strain.-z@...`` towards −z), with a unit in brackets, ``tip.z
-        [mm]``, or SI, where several motions could be meant after its name, ``flight.tip.z``; or ``mode``, ``frequency``
-        and ``damping_ratio``.
-    case : Case
-        Whose motions they are.
-    motion : str, optional
-        Of columns that do not name one.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read or a column means nothing.
+    Histories are ``tip.z``, ``root_moment.y``, ``root_force.z``, ``hub.angle``, ``hub.rate`` and ``strain.z@10 mm`` (on
+    the face towards +z; ``strain.-z@...`` towards −z), with a unit in brackets, ``tip.z [mm]``, or SI, and where
+    several motions could be meant after a name, ``flight.tip.z``; columns of modes are ``frequency`` and
+    ``damping_ratio``.
     """
     try:
         return _read(os.fspath(path), case, motion)

@@ -35,19 +35,7 @@ LENGTH = "beam.length"
 
 @dataclass(frozen=True)
 class PhysicalValue:
-    """A number in a scenario.
-
-    Parameters
-    ----------
-    path : str
-        Its key, such as ``beam.material.youngs_modulus``.
-    value : float
-        SI.
-    kind : str
-        Of quantity, a key of ``KINDS``.
-    followers : tuple of str
-        Positions at the tip, which move with the beam's length.
-    """
+    """A number in a scenario, SI, by its path; `followers` are positions at the tip, which move with its length."""
 
     path: str
     value: float
@@ -71,13 +59,7 @@ class PhysicalValue:
 
 
 def physical_values(scenario: Scenario, names: Sequence[str] = ()) -> list[PhysicalValue]:
-    """The values of those names; without names every one that is not zero.
-
-    Raises
-    ------
-    InputError
-        If a name is no physical value of the scenario.
-    """
+    """Return the values of those names; without names every one that is not zero."""
     every = quantities(scenario)
     if not names:
         usual = [
@@ -125,13 +107,7 @@ def named(base: Scenario, names: Sequence[str], option: str) -> list[PhysicalVal
 
 
 def bounds_of(each: PhysicalValue, given: Bounds, option: str) -> tuple[float, float]:
-    """Bounds of a value: those given, or a tenth to ten times the scenario's value.
-
-    Raises
-    ------
-    InputError
-        If they do not hold the scenario's value, with which a search begins.
-    """
+    """Return the bounds given for a value, or a tenth to ten times it; they hold it, as a search begins there."""
     if each.path in given:
         low, high = (_quantity(each, end) for end in given[each.path])
         if not low < high:
@@ -150,23 +126,7 @@ def bounds_of(each: PhysicalValue, given: Bounds, option: str) -> tuple[float, f
 def with_values(
     paths: Sequence[str], values: Sequence[float], scenario: str | os.PathLike[str], folder: str | os.PathLike[str]
 ) -> str:
-    """The scenario's text with other values, each in its own unit; all else stays, comments too.
-
-    Parameters
-    ----------
-    paths : sequence of str
-    values : sequence of float
-        SI.
-    scenario : path
-        Without overrides.
-    folder : path
-        In which the text is to be saved.
-
-    Raises
-    ------
-    InputError
-        If the text is written in a way that cannot be changed, or names records that lie in another folder.
-    """
+    """Return a scenario's text with other values (SI), each in its own unit, to be saved in a folder; comments stay."""
     base = load(scenario)
     assert base.source is not None  # it was read from a file
     recorded = any(getattr(motion, "record", None) is not None for motion in base.motion.values())
@@ -191,13 +151,7 @@ _WIDE = 10.0  # times: bounds further apart are searched in equal ratios
 
 
 def starting_points(own: Floats, limits: Floats, count: int) -> list[Floats]:
-    """The scenario's values (p,), and further ones spread evenly between bounds (p, 2), by a Sobol sequence.
-
-    Raises
-    ------
-    InputError
-        If there is less than one, or there are very many.
-    """
+    """The scenario's values (p,), and further ones spread evenly between bounds (p, 2), by a Sobol sequence."""
     if count < 1:
         raise InputError("--starts", f"is {count}", "give one or more")
     refuse_more("--starts", "searches", count, MAX_STARTS, 1e5, "give fewer")

@@ -24,7 +24,7 @@ from gbeam.scenario.values.paths import path_text
 from gbeam.studies.answers import Facts, study_facts
 from gbeam.studies.derivatives import Neighbourhood, Slopes
 from gbeam.studies.evaluate import Question
-from gbeam.studies.figures import Keys, find, own_keys, unit_at, value_at
+from gbeam.studies.figures import Keys, find, own_keys, unit_at, usual, value_at
 from gbeam.studies.parameters import PhysicalValue, physical_values
 
 OPTION = "--of"
@@ -37,7 +37,7 @@ _NOT_PHYSICAL = re.compile(r"(^|\.)(steps|step|errors|error_estimate|accepted|pa
 @typed
 def sensitivity(
     scenario: str | os.PathLike[str] | Case,
-    of: Sequence[str],
+    of: Sequence[str] = (),
     parameters: Sequence[str] = (),
     *,
     verb: str = "run",
@@ -57,7 +57,8 @@ def sensitivity(
     scenario : path or Case
         The scenario's file, or what :func:`gbeam.read_scenario` makes of it.
     of : sequence of str
-        Figures of the verb's JSON by the end of their path, such as ``tip.z.max_abs`` or ``verdict.tip``.
+        Figures of the verb's JSON by the end of their path, such as ``tip.z.max_abs`` or ``verdict.tip``; of run
+        by default the largest of tip and root moment in every motion.
     parameters : sequence of str
         Paths of values, such as ``beam.length``; by default every physical value that is not zero, but for lists over
         positions and times and a machine's limits. What sits at the tip moves with the beam's length.
@@ -85,6 +86,7 @@ def sensitivity(
     """
     base = scenario_of(scenario, overrides)
     assert base.source is not None  # it was read from a file
+    of = of or usual(base, verb)
     if not of:
         raise InputError(OPTION, "is missing", 'name figures: --of "tip.z.max_abs, verdict.tip"')
     question = Question(base.source, verb, motion, at)
@@ -143,13 +145,7 @@ def _kinks(slopes: Slopes, values: Sequence[float], units: Sequence[str]) -> Fla
 
 
 def figure(facts: Facts, name: str, option: str = OPTION) -> Keys:
-    """Keys of a figure that has a derivative.
-
-    Raises
-    ------
-    InputError
-        If there is no such figure, or it is a count, a flag or an estimate of an error.
-    """
+    """Keys of a figure that has a derivative."""
     try:
         keys = find(facts, name)
     except InputError as error:

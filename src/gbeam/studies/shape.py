@@ -31,7 +31,7 @@ _AFTER = 1.25  # times the command: how long a scenario of it lasts at least
 
 
 @typed
-def shape(
+def shape_hub_command(
     scenario: str | os.PathLike[str] | Case,
     *,
     angle: float | None = None,
@@ -140,15 +140,7 @@ def _goal(hub: Hub, name: str) -> tuple[float | None, float | None]:
 def scenario_with(
     command: ShapedCommand, scenario: str | os.PathLike[str] | Case, overrides: Sequence[str] = ()
 ) -> str:
-    """A scenario, as JSON, in which a table of the shaped command drives the hub; it lasts beyond it.
-
-    Parameters
-    ----------
-    command : ShapedCommand
-        Of :func:`shape`.
-    scenario, overrides
-        As it was called.
-    """
+    """Return a scenario, as JSON, in which a table of the shaped command drives the hub; it lasts beyond it."""
     base = scenario_of(scenario, overrides)
     assert base.source is not None  # it was read from a file
     data: dict[str, Any] = json.loads(json.dumps(base.source.data))

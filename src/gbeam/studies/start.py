@@ -50,22 +50,8 @@ NO_HISTORIES = OverTime()
 
 @dataclass(frozen=True)
 class Start:
-    """What the first cases show of the others.
-
-    Parameters
-    ----------
-    question : Question
-        With the keys of its figures.
-    units : tuple of str
-        Of the figures.
-    truths : tuple of bool
-        Which of them are true or false.
-    example : Scenario
-        Of a case that is possible.
-    rows : tuple of Row
-        Of the cases computed.
-    seconds : float
-        That a case takes.
+    """The first cases' rows, their figures' units and kinds, an example that is possible, and seconds that a case
+    takes.
     """
 
     question: Question
@@ -85,26 +71,7 @@ class Start:
 def start(
     question: Question, cases: Cases, missing: Sequence[int], names: Sequence[str], histories: OverTime = NO_HISTORIES
 ) -> Start:
-    """Compute first cases until one is possible.
-
-    Parameters
-    ----------
-    question : Question
-        With its functions, if functions of the case are its measures; without keys.
-    cases : Cases
-    missing : sequence of int
-        Cases not yet computed, one at least.
-    names : sequence of str
-        Of the measures.
-    histories : OverTime
-
-    Raises
-    ------
-    InputError
-        If a measure names no figure, or several.
-    GbeamError
-        What the first case raised, where none of 20 all over the sweep is possible.
-    """
+    """Compute first cases until one is possible; the first's error where none of 20 all over the sweep is."""
     reason: GbeamError | None = None
     rows: list[Row] = []
     figures = len(names) + len(histories.names) * histories.count

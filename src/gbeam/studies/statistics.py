@@ -29,21 +29,11 @@ LEAST = 8  # base samples from which indices are estimated
 
 
 def statistics(values: Floats, *, truth: bool = False) -> Statistics:
-    """Estimate what a figure's distribution is.
+    """Estimate the distribution of independent draws (..., n); NaN, of cases that came to nothing, are left out.
 
-    Parameters
-    ----------
-    values : (..., n)
-        Of independent draws along the last axis; those that are not finite, of cases that came to nothing, are left
-        out.
-    truth : bool
-        Whether the figure is 0 or 1: then the probability of 1.
-
-    Notes
-    -----
     The mean's bounds are Student's; the standard deviation's come from the fourth moment; a quantile's are order
-    statistics, of a binomial number, and NaN where there are too few draws for one; a probability's are
-    Clopper and Pearson's.
+    statistics, of a binomial number, and NaN where there are too few draws; a probability's, of a `truth` that is 0 or
+    1, are Clopper and Pearson's.
     """
     names = (PROBABILITY,) if truth else (MEAN, SPREAD, *QUANTILES)
     found = np.full((*values.shape[:-1], len(names), len(BOUNDS)), math.nan)
@@ -98,18 +88,8 @@ def _moments_and_quantiles(draws: Floats) -> Floats:
 
 
 def indices(values: Floats, parameters: Sequence[str], seed: int) -> Indices:
-    """Sobol indices of a figure: which share of its variance each parameter makes.
+    """Sobol indices of values (..., (d + 2) n) in the order of the sampler saltelli: A, B, and A with each column of B.
 
-    Parameters
-    ----------
-    values : (..., (d + 2) n)
-        In the order of the sampler saltelli: A, B, and A with each column of B in turn.
-    parameters : sequence of d str
-    seed : int
-        Of the bootstrap.
-
-    Notes
-    -----
     The estimators of Saltelli (2010) and, for the total, of Jansen (1999); bounds of normal shape, by a bootstrap's
     standard error. Base samples one of whose cases came to nothing are left out; below 8 of them, or where nothing
     varies, NaN. They need not be a power of 2, as those of ``scipy.stats.sobol_indices`` must.

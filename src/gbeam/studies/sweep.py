@@ -27,8 +27,7 @@ from gbeam.scenario.values.paths import parse_path
 from gbeam.studies.cases import Cases, read_cases
 from gbeam.studies.cluster import on_scheduler
 from gbeam.studies.evaluate import Function, Question, Row, Task, may_share, width
-from gbeam.studies.figures import OPTION as HISTORY
-from gbeam.studies.figures import TIMES
+from gbeam.studies.figures import HISTORY, TIMES, judged, usual
 from gbeam.studies.journal import Journal, identity, opened
 from gbeam.studies.start import NO_HISTORIES, OverTime, Start, go_on, start
 from gbeam.studies.statistics import indices, statistics
@@ -74,7 +73,8 @@ def sweep(
         list) or ``"beam.damping_ratio=uniform(0.5 %, 2 %)"`` (normal, lognormal, uniform or triangular).
     measure : sequence of str, or mapping of str to callable
         Figures of the verb's JSON by the end of their path, such as ``tip.z.max_abs`` or ``verdict.tip``; or functions
-        of a :class:`gbeam.Case` that return a number, by name.
+        of a :class:`gbeam.Case` that return a number, by name. Of run by default the largest of tip and root moment,
+        the share of the flight that a centrifuge follows, and whether it is accepted.
     histories : sequence of str
         Histories over time as further measures, ``flight.tip.z``: of tip, root_force or root_moment along x, y or z.
         Where samples are drawn, their quantiles at every time are the bands that the response stays in.
@@ -130,6 +130,8 @@ def sweep(
         verb, samples = verb or table.verb, table.samples if samples is None else samples
         sampler, seed = sampler or table.sampler, table.seed if seed is None else seed
     verb = verb or "run"
+    if not (measure or histories):
+        measure = (*usual(base, verb), *judged(base, verb))
     names = tuple(measure)
     if not (names or histories):
         raise InputError("--measure", "is missing", 'name figures: --measure "tip.z.max_abs, verdict.tip"')
@@ -243,21 +245,7 @@ def _collected(
 
 
 def assembled(title: str, cases: Cases, names: Sequence[str], begun: Start, rows: Iterable[Row], seed: int) -> Sweep:
-    """Return the result of a sweep.
-
-    Parameters
-    ----------
-    title : str
-    cases : Cases
-    names : sequence of str
-        Of the measures, in the order of a row's values.
-    begun : Start
-        With a scenario whose schema knows the SI units of what varies.
-    rows : iterable of Row
-        In any order; the cases without one are pending.
-    seed : int
-        Of what is drawn, and of the bootstrap of Sobol indices.
-    """
+    """Return the result of rows in any order; the cases without one are pending."""
     question = begun.question
     values = np.full((question.width, len(cases)), math.nan)
     outcome = np.full(len(cases), "pending", dtype=object)

@@ -62,19 +62,7 @@ class _Worker:
 
 
 class Workers:
-    """Processes of this machine, each with a batch of its own: one that dies takes no other's along.
-
-    Parameters
-    ----------
-    count : int
-    functions : sequence of callable
-        Measures, which the processes have to load.
-
-    Raises
-    ------
-    InputError
-        If they cannot.
-    """
+    """Processes of this machine, each with a batch of its own: one that dies takes no other's along."""
 
     def __init__(self, count: int, functions: Sequence[Function]) -> None:
         try:
@@ -100,13 +88,7 @@ class Workers:
     def rows(self, question: Question, batches: Iterable[Sequence[Task]]) -> Iterator[list[Row]]:
         """Compute the batches.
 
-        A batch whose process dies is divided until one case is left, which is recorded as failed if its process dies
-        once more.
-
-        Raises
-        ------
-        InputError
-            If no process can be started.
+        A batch whose process dies is divided until one case is left, which has failed if its process dies once more.
         """
         left, again, suspects = iter(batches), deque[Sequence[Task]](), set[int]()
         while True:

@@ -101,7 +101,7 @@ def plan(
 
 
 @typed
-def commands(motion: Centrifuge, sample: float) -> Commands:
+def axis_commands(motion: Centrifuge, sample: float) -> Commands:
     """Return the axis motions at a controller's sample time, from their closed forms and not by interpolation.
 
     Parameters

@@ -92,7 +92,7 @@ def plan(
         for name, each in plans.items():
             own = tables[name].commands
             time = every or (own.sample if own else SAMPLE)
-            write_commands(each, analysis.commands(machines[name], time), hidden)
+            write_commands(each, analysis.axis_commands(machines[name], time), hidden)
             if figures_wanted():
                 from gbeam.plots import figures, save
 

@@ -32,7 +32,11 @@ def sweep(
     ] = (),
     measure: Annotated[
         tuple[str, ...],
-        option("--measure", 'Figures of the verb by the end of their path in its JSON, "tip.size.max_abs".'),
+        option(
+            "--measure",
+            'Figures of the verb by the end of their path in its JSON, "tip.size.max_abs"; of run by default the '
+            "largest of tip and root moment, the share of the flight that is followed, and whether it is accepted.",
+        ),
     ] = (),
     history: Annotated[
         tuple[str, ...],
@@ -134,7 +138,11 @@ def sensitivity(
     *,
     of: Annotated[
         tuple[str, ...],
-        option("--of", 'Figures of the verb by the end of their path in its JSON, "tip.z.max_abs, verdict.tip".'),
+        option(
+            "--of",
+            'Figures of the verb by the end of their path in its JSON, "tip.z.max_abs, verdict.tip"; of run by default '
+            "the largest of tip and root moment in every motion.",
+        ),
     ] = (),
     by: Annotated[
         tuple[str, ...],

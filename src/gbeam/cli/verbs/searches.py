@@ -190,7 +190,7 @@ def shape(
         refuse_unwritable(folder)
 
     from gbeam.studies.shape import hub_of, scenario_with
-    from gbeam.studies.shape import shape as compute
+    from gbeam.studies.shape import shape_hub_command as compute
 
     def given(option: str, text: str | None, kind: str) -> float | None:
         return None if text is None else number(option, text, kind)
