@@ -34,7 +34,7 @@ from exudyn_choices import PROBLEMS, Choice, Problem
 
 import gbeam as gb
 from gbeam.analysis.response.batch import TOGETHER
-from gbeam.integrate.compiled import lanes
+from gbeam.integrate import lanes
 
 spec = importlib.util.spec_from_file_location("comparison", os.path.join(HERE, "exudyn.py"))
 assert spec is not None and spec.loader is not None

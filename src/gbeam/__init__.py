@@ -13,28 +13,28 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
-    from gbeam.analysis.control.gauges import surface_gauges as surface_gauges
+    from gbeam.analysis.case import Case as Case
+    from gbeam.analysis.case import describe as describe
     from gbeam.analysis.control.linearization import linearize as linearize
+    from gbeam.analysis.control.linearization import surface_gauges as surface_gauges
     from gbeam.analysis.control.nonlinear import nonlinear_system as nonlinear_system
     from gbeam.analysis.control.reduction import balanced_truncation as balanced_truncation
     from gbeam.analysis.control.reduction import modal_truncation as modal_truncation
     from gbeam.analysis.control.shaping import shape_command as shape_command
+    from gbeam.analysis.environments import study as study
     from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium as solve_equilibrium
     from gbeam.analysis.equilibrium.static import static as static
-    from gbeam.analysis.imitation.choice import Choice as Choice
-    from gbeam.analysis.imitation.choice import choice_of as choice_of
     from gbeam.analysis.imitation.comparison import compare as compare
     from gbeam.analysis.imitation.place import place as place
+    from gbeam.analysis.imitation.place_measures import Choice as Choice
+    from gbeam.analysis.imitation.place_measures import choice_of as choice_of
     from gbeam.analysis.imitation.plan import axis_commands as axis_commands
     from gbeam.analysis.imitation.plan import plan as plan
+    from gbeam.analysis.model_study import compare_models as compare_models
     from gbeam.analysis.response.batch import simulate_batch as simulate_batch
-    from gbeam.analysis.response.initial import Initial as Initial
+    from gbeam.analysis.response.problem import Initial as Initial
     from gbeam.analysis.response.settings import ResponseSettings as ResponseSettings
     from gbeam.analysis.response.simulation import simulate as simulate
-    from gbeam.analysis.study.case import Case as Case
-    from gbeam.analysis.study.describe import describe as describe
-    from gbeam.analysis.study.model_study import compare_models as compare_models
-    from gbeam.analysis.study.study import study as study
     from gbeam.analysis.vibration.campbell import campbell as campbell
     from gbeam.analysis.vibration.modal import modes as modes
     from gbeam.analysis.vibration.stability import buckling_acceleration as buckling_acceleration
@@ -76,12 +76,12 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.results.study import Study as Study
     from gbeam.scenario.build import read_scenario as read_scenario
     from gbeam.scenario.rerun import rerun as rerun
+    from gbeam.structure.attachments import Load as Load
+    from gbeam.structure.attachments import PointMass as PointMass
+    from gbeam.structure.attachments import Root as Root
     from gbeam.structure.beam import Beam as Beam
-    from gbeam.structure.bodies import PointMass as PointMass
-    from gbeam.structure.loads import Load as Load
     from gbeam.structure.material import Material as Material
     from gbeam.structure.section import Section as Section
-    from gbeam.structure.support import Root as Root
     from gbeam.studies.fit import fit as fit
     from gbeam.studies.optimise import optimise as optimise
     from gbeam.studies.sensitivity import sensitivity as sensitivity
@@ -94,9 +94,9 @@ __version__ = "0.2.0"
 _HOME = {
     "AxisLimit": "motion.centrifuge.machine.limits",
     "Beam": "structure.beam",
-    "Case": "analysis.study.case",
+    "Case": "analysis.case",
     "Centrifuge": "motion.centrifuge.centrifuge",
-    "Choice": "analysis.imitation.choice",
+    "Choice": "analysis.imitation.place_measures",
     "Comparison": "results.imitation.comparison",
     "ComputationError": "errors",
     "Fit": "results.searches",
@@ -104,17 +104,17 @@ _HOME = {
     "Gauge": "results.state_space",
     "GbeamError": "errors",
     "Hub": "motion.bases.hub",
-    "Initial": "analysis.response.initial",
+    "Initial": "analysis.response.problem",
     "InputError": "errors",
-    "Load": "structure.loads",
+    "Load": "structure.attachments",
     "MachineLimits": "motion.centrifuge.machine.limits",
     "Material": "structure.material",
     "Model": "mechanics.models",
     "Optimum": "results.searches",
-    "PointMass": "structure.bodies",
+    "PointMass": "structure.attachments",
     "Response": "results.response",
     "ResponseSettings": "analysis.response.settings",
-    "Root": "structure.support",
+    "Root": "structure.attachments",
     "Section": "structure.section",
     "Sensitivity": "results.cases",
     "ShapedCommand": "results.searches",
@@ -132,14 +132,14 @@ _HOME = {
     "buckling_acceleration": "analysis.vibration.stability",
     "build_target": "motion.centrifuge.target.build",
     "campbell": "analysis.vibration.campbell",
-    "choice_of": "analysis.imitation.choice",
+    "choice_of": "analysis.imitation.place_measures",
     "compare": "analysis.imitation.comparison",
-    "compare_models": "analysis.study.model_study",
+    "compare_models": "analysis.model_study",
     "constant": "motion.profiles.piecewise",
     "critical_load": "analysis.vibration.stability",
     "critical_speed": "analysis.vibration.stability",
     "critical_speed_map": "analysis.vibration.stability",
-    "describe": "analysis.study.describe",
+    "describe": "analysis.case",
     "fit": "studies.fit",
     "linearize": "analysis.control.linearization",
     "machines": "motion.centrifuge.machine.examples",
@@ -160,8 +160,8 @@ _HOME = {
     "smoothed": "motion.profiles.profile",
     "solve_equilibrium": "analysis.equilibrium.equilibrium",
     "static": "analysis.equilibrium.static",
-    "study": "analysis.study.study",
-    "surface_gauges": "analysis.control.gauges",
+    "study": "analysis.environments",
+    "surface_gauges": "analysis.control.linearization",
     "sweep": "studies.sweep",
     "tabulated": "motion.profiles.piecewise",
     "trapezoid": "motion.profiles.piecewise",

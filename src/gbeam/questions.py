@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from gbeam.errors import InputError
 
 if TYPE_CHECKING:
-    from gbeam.analysis.study.case import Case
+    from gbeam.analysis.case import Case
     from gbeam.mechanics.structure import Structure
     from gbeam.motion.protocol import Motion
     from gbeam.results.equilibrium import Critical, Deflection
@@ -145,7 +145,7 @@ def _time(case: Case, at: float | None) -> float:
 @question("run", "Compute the response in every environment of a scenario, and compare them.", motion=None)
 def run(case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()) -> Study:
     """Responses in all motions."""
-    from gbeam.analysis.study.study import study
+    from gbeam.analysis.environments import study
 
     return study(reduced(case, needs))
 
@@ -198,7 +198,7 @@ def critical_speed(
     progress: Callable[[str, float], None] | None = None,
 ) -> Critical:
     """The rate of a hub, factor of the loads or acceleration of the root up to `upper` at which beams buckle."""
-    from gbeam.analysis.equilibrium.point import held_base
+    from gbeam.analysis.equilibrium.operating_point import held_base
     from gbeam.analysis.vibration import stability
 
     name, time = motion_of(case.motions, motion, HUB), _time(case, at)
@@ -231,8 +231,8 @@ def plan(
 @question("place", "Find where to put the specimen on the centrifuge.", motion=CENTRIFUGE, differentiable=False)
 def place(case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()) -> Placement:
     """The best placement, without the check by simulation, which costs more: ``run`` at the placement is that."""
-    from gbeam.analysis.imitation.choice import choice_of
     from gbeam.analysis.imitation.place import place
+    from gbeam.analysis.imitation.place_measures import choice_of
 
     name, current = machine_of(case, motion)
     choice, names = choice_of(current), (case.tracks[name], name)

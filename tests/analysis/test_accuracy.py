@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.analysis.accuracy.correction import RESOLVED, OfSamples, Vibration, operator
-from gbeam.analysis.accuracy.reference import Sampled, complete_residual
+from gbeam.analysis.accuracy.correction import RESOLVED, OfSamples, Sampled, Vibration, complete_residual, operator
 from gbeam.analysis.accuracy.response_errors import Parts, Quantities, lacking
 from gbeam.mechanics.equations import sampled
 from gbeam.mechanics.equations.hub import free_hub, ground_of

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from gbeam import Flight, Hub, Initial, InputError, Response, Structure, modes, simulate, static
-from gbeam.analysis.response.initial import initial_state
+from gbeam.analysis.response.problem import initial_state
 
 from ..calling import Answer, gbeam
 from ..scenarios import FAST

@@ -22,7 +22,7 @@ from gbeam import (
     solve_equilibrium,
     static,
 )
-from gbeam.analysis.equilibrium.point import on_base
+from gbeam.analysis.equilibrium.operating_point import on_base
 from gbeam.analysis.equilibrium.static import deflection_at
 from gbeam.motion import Base
 

@@ -17,8 +17,8 @@ from numpy.polynomial import legendre
 from gbeam import Flight, Hub, Response, Sine, SmoothStep, Structure, simulate, smoothed, tabulated, trapezoid
 from gbeam.analysis.response.problem import problem_of
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.steps.step_errors import Readings, Run, observed_order
-from gbeam.analysis.response.steps.stepping import answered, refine
+from gbeam.analysis.response.step_errors import Readings, Run, observed_order
+from gbeam.analysis.response.stepping import answered, refine
 from gbeam.integrate import Trajectory
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.results.response import BaseMotion

@@ -10,9 +10,7 @@ from gbeam import Beam, Gauge, InputError, Model, Root, assemble
 from gbeam.analysis.control.linearization import linearize
 from gbeam.analysis.control.nonlinear import nonlinear_system
 from gbeam.analysis.control.reduction import balanced_truncation, modal_truncation
-from gbeam.analysis.equilibrium.hub_point import on_hub
-from gbeam.analysis.equilibrium.operating_point import operating_point
-from gbeam.analysis.equilibrium.point import evaluated_at, linear_matrices, on_base
+from gbeam.analysis.equilibrium.operating_point import evaluated_at, linear_matrices, on_base, on_hub, operating_point
 from gbeam.analysis.vibration.modal import modes
 from gbeam.motion import Base, Hub, constant
 from gbeam.report.steady.state_space import text, to_json

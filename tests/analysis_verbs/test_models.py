@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from gbeam import Hub, ResponseSettings, SmoothStep, simulate
-from gbeam.analysis.study.model_study import SHAPES_FINE, shape_tail
+from gbeam.analysis.model_study import SHAPES_FINE, shape_tail
 from gbeam.cli import main
 
 from ..scenarios import APPENDAGE, SLEW, model, response

@@ -215,7 +215,7 @@ def test_no_result_leaves_no_files(fast: Path, gbeam: Call, monkeypatch: pytest.
     def fail(*_: object) -> None:
         raise ComputationError("not converged", "motion.flight: no relative equilibrium; use exact")
 
-    monkeypatch.setattr("gbeam.analysis.study.study.study", fail)
+    monkeypatch.setattr("gbeam.analysis.environments.study", fail)
     answer = gbeam("run", fast, "--json", "--out", "there")
     assert answer.status == 1 and not Path("there").exists()
     assert answer.json["outcome"] == "not converged"
@@ -231,7 +231,7 @@ def test_what_one_motion_lacks_the_others_keep(
             raise ComputationError("not converged", "no relative equilibrium; use exact")
         return simulation.simulate(*args, name=name, **how)
 
-    monkeypatch.setattr("gbeam.analysis.study.study.simulate", fail)
+    monkeypatch.setattr("gbeam.analysis.environments.simulate", fail)
     answer = gbeam("run", fast, "--json", "--out", "half")
     assert answer.status == 1
     assert answer.err == "gbeam: motion.spin not converged: no relative equilibrium; use exact\n"
@@ -249,7 +249,7 @@ def test_interrupted_quietly(fast: Path, gbeam: Call, monkeypatch: pytest.Monkey
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("gbeam.analysis.study.study.study", interrupt)
+    monkeypatch.setattr("gbeam.analysis.environments.study", interrupt)
     answer = gbeam("run", fast)
     assert (answer.status, answer.out, answer.err) == (130, "", "")
 

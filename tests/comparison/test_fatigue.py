@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from gbeam import Flight, Response, Sine, compare, simulate
-from gbeam.analysis.imitation.fatigue import fatigue, stress_cycles
+from gbeam.analysis.imitation.comparison import fatigue, stress_cycles
 
 from ..analysis.helpers import strip
 

@@ -17,7 +17,7 @@ import pytest
 from scipy.integrate._ivp import dop853_coefficients as dop853
 
 from gbeam import Structure
-from gbeam.integrate.compiled.newton import accelerations
+from gbeam.integrate.newton import accelerations
 from gbeam.mechanics.equations.inertia import weighed
 from gbeam.mechanics.equations.residuals import OnHub
 from gbeam.motion import Base

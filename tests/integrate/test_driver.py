@@ -10,7 +10,7 @@ import pytest
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.integrate import LinearEquations, NonlinearEquations, gauss, integrate, newmark
-from gbeam.integrate.compiled.chunks import CHUNK
+from gbeam.integrate.chunks import CHUNK
 from gbeam.integrate.driver import _LINEAR_CHUNK as LINEAR_CHUNK
 
 from .systems import OSCILLATOR, VARYING, Bead, Pushed, driven, one, undriven

@@ -26,7 +26,7 @@ from gbeam import (
     solve_equilibrium,
     static,
 )
-from gbeam.mechanics.influence import influence
+from gbeam.analysis.response.record import influence
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.motion import Base
 from gbeam.results.parts import Loads

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 from gbeam import InputError
-from gbeam.analysis.imitation.choice import Choice
 from gbeam.analysis.imitation.place import place
+from gbeam.analysis.imitation.place_measures import Choice
 from gbeam.cli import main
 from gbeam.cli.verbs.machine import parse
 from gbeam.motion import AxisLimit, MachineLimits

@@ -9,7 +9,7 @@ from exact_beams import AREA, DENSITY, INERTIA, LENGTH, MODULUS, truncated_wedge
 from gbeam import Beam, InputError, Material, Model, PointMass, Section, assemble
 from gbeam.mechanics.fields.adapted import adapted_shapes
 from gbeam.mechanics.fields.basis import quadrature
-from gbeam.structure.support import Root
+from gbeam.structure.attachments import Root
 
 BOX, METAL = Section.general(AREA, INERTIA, INERTIA), Material(DENSITY, MODULUS)
 CLOSE = 1e-7  # relative; what is asked for is 1e-4

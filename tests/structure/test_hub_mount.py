@@ -24,7 +24,7 @@ from gbeam import (
     study,
 )
 from gbeam.mechanics.equations.residuals import OnHub
-from gbeam.structure.loads import Load
+from gbeam.structure.attachments import Load
 
 from ..differences import rate
 from ..lagrange import energy_of, hub_kinetic

@@ -26,7 +26,7 @@ from gbeam import (
     vector,
 )
 from gbeam.motion import Base
-from gbeam.structure.loads import Load
+from gbeam.structure.attachments import Load
 from validation.published.specimens import PLANAR
 from validation.published.tables import ELASTICA
 

@@ -9,8 +9,7 @@ from scipy.optimize import brentq
 
 from gbeam import Beam, InputError, Material, Model, PointMass, Section, assemble, solve_equilibrium
 from gbeam.motion import Base
-from gbeam.structure.loads import Load
-from gbeam.structure.support import Root
+from gbeam.structure.attachments import Load, Root
 
 BOX, METAL = Section.general(AREA, INERTIA, INERTIA), Material(DENSITY, MODULUS)
 STILL = Base(*np.zeros((3, 3)))

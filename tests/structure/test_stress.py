@@ -10,7 +10,7 @@ import pytest
 
 from gbeam import Flight, Section, assemble, compare, simulate, static
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.structure.stress import extreme_stresses, worst_fibre
+from gbeam.structure.section import extreme_stresses, worst_fibre
 
 from ..calling import Answer, gbeam
 from ..scenarios import FAST, response

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import gbeam as gb
-from gbeam.analysis.control.gauges import surface_gauge
+from gbeam.analysis.control.linearization import surface_gauge
 from gbeam.studies.measurement import read_measurement
 
 from .strategies import EXACT, beams, few, first_frequency, numbers, theorem, vectors

@@ -41,7 +41,7 @@ def described(text: str, folder: Path, *, distributions: bool = True) -> dict[st
         data = parse(NAME, text)
         made["form"] = form(data)
         records(data, folder)
-        from gbeam.analysis.study.describe import describe
+        from gbeam.analysis.case import describe
         from gbeam.report.description import text as in_words
 
         made["meaning"] = in_words(describe(build(loads(text, NAME, folder=folder, distributions=distributions))))

@@ -15,7 +15,7 @@ from gbeam.errors import InputError
 from gbeam.questions import motion_of, prepared
 
 if TYPE_CHECKING:
-    from gbeam.analysis.study.case import Case
+    from gbeam.analysis.case import Case
     from gbeam.motion.protocol import Motion
     from gbeam.results.provenance import Provenance
     from gbeam.scenario import Scenario

@@ -6,10 +6,9 @@ a Jacobian per chunk, checked afterwards.
 """
 
 from gbeam.integrate.driver import integrate
-from gbeam.integrate.equations import LinearEquations, NonlinearEquations
+from gbeam.integrate.equations import LinearEquations, NonlinearEquations, Trajectory
 from gbeam.integrate.schemes import Scheme, gauss, generalized_alpha, hht, newmark
 from gbeam.integrate.steps import Corners
-from gbeam.integrate.trajectory import Trajectory
 
 __all__ = [
     "Corners",

@@ -9,11 +9,10 @@ import numpy as np
 
 from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.integrate import linear
-from gbeam.integrate.equations import LinearEquations, NonlinearEquations
+from gbeam.integrate.equations import LinearEquations, NonlinearEquations, Trajectory
 from gbeam.integrate.fitting import added
 from gbeam.integrate.schemes import Scheme
 from gbeam.integrate.steps import Corners, Floats, Steps, fitted
-from gbeam.integrate.trajectory import Trajectory
 
 _LINEAR_CHUNK = 500  # steps whose maps are found at once: as many as stay in a cache
 Piece = tuple[Any, ...]  # q, q̇, q̈ (k, n), and which of the steps were solved (k,)
@@ -86,8 +85,8 @@ def _linear(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: 
 def _nonlinear(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:
     import jax
 
-    from gbeam.integrate.compiled import newton
-    from gbeam.integrate.compiled.chunks import chunks, stretches
+    from gbeam.integrate import newton
+    from gbeam.integrate.chunks import chunks, stretches
 
     drive, residual = equations.drive, equations.residual
     qdd = newton.accelerations(residual, q[None], qd[None], drive(steps.first[:1]))
@@ -135,7 +134,7 @@ def _traced(equations: NonlinearEquations, scheme: Scheme, carry: Any, steps: St
     import jax
     import jax.numpy as jnp
 
-    from gbeam.integrate.compiled import newton
+    from gbeam.integrate import newton
 
     times = np.stack([steps.times(offset) for offset in scheme.offsets], axis=1)
     inputs = jax.tree.map(lambda leaf: leaf.reshape(*times.shape, *leaf.shape[1:]), equations.drive(times.ravel()))

@@ -1,4 +1,4 @@
-"""Equations of motion as an integrator sees them: linear with matrices over time, or a residual."""
+"""Equations of motion as an integrator sees them, linear or a residual, and the coordinates over time that it gives."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gbeam.arrays.tree import record
 
 Array = Any
+Floats = NDArray[np.float64]
 Drive = Callable[[Array], Any]  # times (t,) -> what drives the equations there, arrays with that leading axis
 
 
@@ -54,3 +56,20 @@ class NonlinearEquations:
 
     residual: Any
     drive: Drive
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """Coordinates (t, n) over time (t,), as far as the integration got before it failed or was stopped."""
+
+    time: Floats
+    q: Any
+    qd: Any
+    qdd: Any
+    converged: bool = True
+    stopped: bool = False
+
+    @property
+    def whole(self) -> bool:
+        """Whether it came to its end."""
+        return self.converged and not self.stopped

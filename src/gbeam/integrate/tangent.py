@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.integrate.equations import Trajectory
 from gbeam.integrate.schemes import Scheme, Tableau
 from gbeam.integrate.steps import Steps
-from gbeam.integrate.trajectory import Trajectory
 
 Floats = NDArray[np.float64]
 # Times, q and q̇ (k, n) there -> M, C, K (k, n, n) and −∂r/∂p (k, n, p).

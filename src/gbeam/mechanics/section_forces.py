@@ -23,7 +23,7 @@ from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
-from gbeam.structure.stress import extreme_stresses, worst_fibre
+from gbeam.structure.section import extreme_stresses, worst_fibre
 
 Array = Any
 _BLOCK = 256  # times handled together: what stays in a cache, and one compiled shape for complete models

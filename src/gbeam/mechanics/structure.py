@@ -263,7 +263,7 @@ class Structure:
         assert self.inertia is not None and self.elasticity is not None
         if not self.compiled:
             return self._expanded(q)
-        from gbeam.mechanics.equations.expansion import elastic_about, loads_about, places_about
+        from gbeam.mechanics.equations.compiled import elastic_about, loads_about, places_about
 
         xp = namespace(c.mass, q)
         places = Places(*(xp.asarray(x) for x in places_about(self.inertia, q)))

@@ -15,13 +15,13 @@ from gbeam.scenario.origin import provenance
 from gbeam.scenario.placing import Collector, placed
 
 if TYPE_CHECKING:
+    from gbeam.analysis.case import Case
     from gbeam.analysis.response.settings import ResponseSettings
-    from gbeam.analysis.study.case import Case
     from gbeam.mechanics.models import Model
     from gbeam.motion import Centrifuge, Motion
     from gbeam.results.description import RecordSummary
+    from gbeam.structure.attachments import Load
     from gbeam.structure.beam import Beam
-    from gbeam.structure.loads import Load
 
 
 @typed
@@ -67,7 +67,7 @@ def build(scenario: schema.Scenario, *, ahead: bool = False) -> Case:
     ScenarioError
         With every InputError of the objects, each at its place in the file.
     """
-    from gbeam.analysis.study.case import Case
+    from gbeam.analysis.case import Case
     from gbeam.scenario.build_motion import centrifuges, flights_and_hubs
 
     parts = Collector()
@@ -183,11 +183,10 @@ def _acceptance(parts: Collector, scenario: schema.Environments) -> dict[str, di
 
 
 def _beam(parts: Collector, table: schema.Beam) -> Beam | None:
+    from gbeam.structure.attachments import PointMass, Root
     from gbeam.structure.beam import Beam
-    from gbeam.structure.bodies import PointMass
     from gbeam.structure.material import Material
     from gbeam.structure.section import Section
-    from gbeam.structure.support import Root
 
     dimensions = table.section.model_dump(exclude={"shape", "stations"}, exclude_none=True)
     section = parts.attempt("beam.section", Section.of, table.section.shape, table.section.stations, **dimensions)
@@ -206,7 +205,7 @@ def _beam(parts: Collector, table: schema.Beam) -> Beam | None:
 
 def _load(parts: Collector, where: str, table: schema.Load) -> Load | None:
     from gbeam.scenario.build_motion import components
-    from gbeam.structure.loads import Load
+    from gbeam.structure.attachments import Load
 
     vectors = {"force": table.force, "distributed": table.distributed, "moment": table.moment}
     built = {
@@ -229,7 +228,7 @@ def _model(parts: Collector, table: schema.Model) -> Model | None:
 def _response(parts: Collector, table: schema.Response, motions: Mapping[str, Motion]) -> ResponseSettings | None:
     """Settings; without a duration the time that the records among the motions cover."""
     from gbeam import integrate
-    from gbeam.analysis.response.initial import Initial
+    from gbeam.analysis.response.problem import Initial
     from gbeam.analysis.response.settings import ResponseSettings
     from gbeam.motion import Flight
 

@@ -56,7 +56,7 @@ def rerun(path: str | os.PathLike[str]) -> Reproduction:
     ComputationError
         If there is no answer any more.
     """
-    from gbeam.analysis.study.study import study
+    from gbeam.analysis.environments import study
     from gbeam.io.stored import read_stored, stored
 
     before = read_stored(path)

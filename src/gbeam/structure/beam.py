@@ -15,11 +15,12 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.guards.plausibility import possible
-from gbeam.structure.bodies import PointMass
-from gbeam.structure.loads import Load
-from gbeam.structure.material import Material
+from gbeam.structure.attachments import Load, PointMass, Root
+from gbeam.structure.material import ASSUMED_RATIO, Material
 from gbeam.structure.section import Section
-from gbeam.structure.support import Root
+from gbeam.structure.shapes import ASSUMED_SHEAR
+
+NO_TWIST = "no twist (section.torsion_constant is not given)"
 
 
 @typed
@@ -102,3 +103,16 @@ class Beam(Value):
         section, modulus = self.section.at(x), self.material.youngs_modulus
         flat = 1 / (1 - self.material.ratio**2) if self.section.plate else 1.0
         return modulus * section.area, modulus * section.inertia_y * flat, modulus * section.inertia_z
+
+
+def assumptions(beam: Beam) -> tuple[str, ...]:
+    """What the stated error of the beam theory assumes where the beam does not say it: ``Poisson's ratio 0.3``."""
+    words = []
+    if beam.material.poissons_ratio is None:
+        words.append(f"Poisson's ratio {ASSUMED_RATIO:g}")
+    if beam.section.shape == "general":
+        if not {"shear_coefficient_y", "shear_coefficient_z"} <= beam.section.dimensions.keys():
+            words.append(f"shear coefficients of {ASSUMED_SHEAR:g}")
+        if np.isnan(beam.section.torsion_constant(np.zeros(1))).any():
+            words.append(NO_TWIST)
+    return tuple(words)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from gbeam.questions import QUESTIONS, Needs, motion_of
 
 if TYPE_CHECKING:
-    from gbeam.analysis.study.case import Case
+    from gbeam.analysis.case import Case
     from gbeam.results.imitation.plan import MachinePlan
     from gbeam.results.study import Study
 

@@ -1,6 +1,6 @@
 """Derivatives of whatever is read from an answer, with respect to physical values of the scenario.
 
-Of responses over time they come from the derivative of the run (`gbeam.analysis.response.tangents.differentiated`).
+Of responses over time they come from the derivative of the run (`gbeam.analysis.response.differentiated`).
 Where a jump moves with the value, whose steps that stand still miss, and of the other verbs' answers, which are cheap
 and smooth, they come from central differences of fourth order, with how far these differ from those of second order.
 """
@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.analysis.case import Case
+from gbeam.analysis.environments import study, study_of
+from gbeam.analysis.response.differentiated import Differentiated, Grid, Variant
 from gbeam.analysis.response.simulation import simulate
-from gbeam.analysis.response.tangents.differentiated import Differentiated, Grid, Variant
-from gbeam.analysis.study.case import Case
-from gbeam.analysis.study.study import study, study_of
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion

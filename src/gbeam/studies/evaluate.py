@@ -14,9 +14,9 @@ from itertools import groupby, islice
 
 import numpy as np
 
+from gbeam.analysis.case import Case
+from gbeam.analysis.environments import study_of
 from gbeam.analysis.response.batch import TOGETHER, simulate_batch
-from gbeam.analysis.study.case import Case
-from gbeam.analysis.study.study import study_of
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.mechanics.structure import Structure
 from gbeam.questions import QUESTIONS, Needs, reduced

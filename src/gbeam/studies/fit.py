@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.response.tangents.differentiated import Grid
-from gbeam.analysis.study.case import Case
+from gbeam.analysis.case import Case
+from gbeam.analysis.response.differentiated import Grid
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.models import Model

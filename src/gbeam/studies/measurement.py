@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.control.gauges import surface_gauge
-from gbeam.analysis.study.case import Case
+from gbeam.analysis.case import Case
+from gbeam.analysis.control.linearization import surface_gauge
 from gbeam.errors import InputError
 from gbeam.io.tables.table import Table
 from gbeam.motion.bases.records.text import read_text
@@ -22,7 +22,7 @@ from gbeam.results.study import Study
 from gbeam.scenario.values.kinds import KINDS
 from gbeam.scenario.values.suggest import advise
 from gbeam.scenario.values.units import UnitError, argument
-from gbeam.structure.stress import fibre_strain
+from gbeam.structure.section import fibre_strain
 
 OPTION = "--data"
 _TIME = ("time", "time_s", "t")

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.study.case import Case
+from gbeam.analysis.case import Case
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.progress import Progress

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.analysis.case import Case
 from gbeam.analysis.control.commands import driven
 from gbeam.analysis.control.shaping import profile_of, shape_command
-from gbeam.analysis.study.case import Case
-from gbeam.analysis.study.model_study import counterpart
+from gbeam.analysis.model_study import counterpart
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.models import KINDS

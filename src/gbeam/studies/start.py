@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gbeam.analysis.study.case import Case
+from gbeam.analysis.case import Case
 from gbeam.errors import GbeamError, InputError
 from gbeam.scenario.build import build
 from gbeam.scenario.schema.scenario import Scenario

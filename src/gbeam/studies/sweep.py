@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.study.case import Case
+from gbeam.analysis.case import Case
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import HISTORY_BYTES, WORKERS, refuse_more

@@ -12,8 +12,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.accuracy.correction import Correction, Vibration, operator, responses, structure_on_hub
-from gbeam.analysis.accuracy.reference import Sampled, hub_torque
+from gbeam.analysis.accuracy.correction import (
+    Correction,
+    Sampled,
+    Vibration,
+    hub_torque,
+    operator,
+    responses,
+    structure_on_hub,
+)
 from gbeam.analysis.accuracy.response_errors import Begin, Quantities, Solution, at_rest, lifted, quantities, settled
 from gbeam.errors import ComputationError
 from gbeam.mechanics.structure import Structure
@@ -21,7 +28,7 @@ from gbeam.mechanics.theory import Theory, theory_of
 from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 from gbeam.results.result import Floats
-from gbeam.structure.assumed import assumptions
+from gbeam.structure.beam import assumptions
 
 NAMED, NONE = 0.02, 1e-9  # of the largest cause, and of the energy: a smaller one is not named
 WORDS = {"shear": "shear", "rotary": "rotary inertia", "twist": "twist", "plate": "plate action"}

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
-from gbeam.analysis.accuracy.beam_theory import described, largest, response_theory
+from gbeam.analysis.accuracy.beam_theory import Lacking, described, largest, response_theory
 from gbeam.analysis.accuracy.correction import RESOLVED
-from gbeam.analysis.accuracy.doubts import of_bodies
 from gbeam.analysis.accuracy.response_errors import Begin, Quantities, Rings, Solution, lacking
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
@@ -16,10 +16,43 @@ from gbeam.results.errors import ErrorEstimate, Errors
 from gbeam.results.parts import Loads
 from gbeam.results.result import Floats
 
+LIMIT = 0.01  # an error of a steady state above is warned of
+BEYOND = "no model here goes beyond it"
+
+
+def percent(share: float) -> str:
+    """A share in percent: ``1.3 %``, ``110 %``."""
+    return f"{100 * share:{'.0f' if share > 0.1 else '.2g'}} %"
+
+
+def cause_and_cure(shapes: float, model: float, beam_theory: float, theory: str) -> tuple[str, str]:
+    """The largest of the errors from too few shapes, of the model and of the beam theory, and what helps."""
+    if beam_theory > max(shapes, model):
+        return f"the theory of slender beams ({theory})", BEYOND
+    if not shapes >= model:
+        return "the model", 'check with model.kind = "exact"'
+    return "too few shapes", "raise model.modes or leave them out"
+
+
+def of_bodies(structure: Structure, lacking: Lacking, tip: float, limit: float) -> Iterator[str]:
+    """Warn of bodies, off the axis that the tip lies on, that are elsewhere by more than a share of its displacement,
+    m.
+    """
+    assert structure.source is not None
+    for i, (body, moved) in enumerate(zip(structure.source.beam.masses, lacking.bodies, strict=False)):
+        arm = float((body.offset[1] ** 2 + body.offset[2] ** 2) ** 0.5)
+        if arm and moved > limit * tip and lacking.causes.get("twist", 0.0) > 0:
+            share = f"{percent(moved / tip)} of the tip's displacement"
+            yield (
+                f"beam.masses[{i}] lies {1e3 * arm:.4g} mm off the axis: the beam twists under it, and it moves by an "
+                f"estimated {1e3 * moved:.3g} mm more or less than computed, {share}; no model here has torsion"
+            )
+
+
 FEWEST, PER_PERIOD = 500, 6  # samples looked at, in all and in a period of the lowest mode
 MOST = 20_000  # samples where fast modes may ring
 LARGEST = 2.0  # times (v/L)²: error of a second-order model, up to what a beam that points inward on a hub has
-BEYOND = "the solution is too far from the exact model's for an estimate; it is the bound 2 (v/L)² of its class"
+TOO_FAR = "the solution is too far from the exact model's for an estimate; it is the bound 2 (v/L)² of its class"
 UNKNOWN = "shapes and model are not judged: the structure was not made of a beam"
 
 
@@ -91,4 +124,4 @@ def _missed(rings: Rings, sizes: dict[str, float], errors: Errors, fastest: floa
 
 def _bounded(structure: Structure, size: float, step: float) -> Errors:
     model = LARGEST * (size / structure.length) ** 2
-    return Errors(ErrorEstimate(step, math.nan, model, total=step + model), note=BEYOND)
+    return Errors(ErrorEstimate(step, math.nan, model, total=step + model), note=TOO_FAR)

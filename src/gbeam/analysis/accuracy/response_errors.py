@@ -10,8 +10,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.analysis.accuracy.correction import Operator, State, Vibration, operator, responses
-from gbeam.analysis.accuracy.reference import Sampled, complete_residual, linear_residual
+from gbeam.analysis.accuracy.correction import (
+    Operator,
+    Sampled,
+    State,
+    Vibration,
+    complete_residual,
+    linear_residual,
+    operator,
+    responses,
+)
 from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import Enrichment, enrichment
 from gbeam.mechanics.section_forces import sections
@@ -19,7 +27,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 from gbeam.results.result import Floats
-from gbeam.structure.stress import extreme_stresses
+from gbeam.structure.section import extreme_stresses
 
 IntArray = NDArray[np.int_]
 Begin = Callable[[Structure], tuple[Floats, Floats]]

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gbeam.analysis.equilibrium.hub_point import on_hub
-from gbeam.analysis.equilibrium.operating_point import operating_point
-from gbeam.analysis.equilibrium.point import OperatingPoint, linear_matrices, on_base, steady_base
+from gbeam.analysis.equilibrium.operating_point import (
+    OperatingPoint,
+    linear_matrices,
+    on_base,
+    on_hub,
+    operating_point,
+    steady_base,
+)
 from gbeam.analysis.vibration.errors import doubtful, pole_errors
 from gbeam.analysis.vibration.modal import modes_at
 from gbeam.analysis.vibration.stability import hub_of
@@ -29,7 +35,44 @@ from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.complex_step import complex_step
 from gbeam.results.state_space import ACCURATE, Gauge, Signal, StateSpace
-from gbeam.structure.stress import fibre_strain
+from gbeam.structure.beam import Beam
+from gbeam.structure.section import fibre_strain
+
+
+@typed
+def surface_gauges(beam: Beam, stations: Iterable[float]) -> list[Gauge]:
+    """Two gauges at each station, on the extreme fibres towards +z and +y.
+
+    Parameters
+    ----------
+    beam : Beam
+    stations : iterable of float
+        From the root, m.
+
+    Raises
+    ------
+    InputError
+        If a station is off the beam, or the extreme fibres of its section are not known.
+    """
+    gauges: list[Gauge] = []
+    for i, at in enumerate(stations):
+        try:
+            gauges += [surface_gauge(beam, at, face) for face in ("z", "y")]
+        except InputError as error:
+            raise error.within(f"stations[{i}]") from None
+    return gauges
+
+
+def surface_gauge(beam: Beam, at: float, face: str) -> Gauge:
+    """Return the gauge `at` m from the root on the extreme fibre towards a face, ``z``, ``-z``, ``y`` or ``-y``."""
+    if not 0 <= at <= beam.length:
+        raise InputError("", f"is {at:g} m, off the beam", f"give 0 to {beam.length:g} m")
+    sign, axis = -1.0 if face.startswith("-") else 1.0, face[-1]
+    fibre = sign * float(getattr(beam.section.at(at), f"extreme_fibre_{axis}"))
+    if not math.isfinite(fibre):
+        raise InputError("", "needs the extreme fibres", "add extreme_fibre_y and extreme_fibre_z to beam.section")
+    return Gauge(at, **{axis: fibre})
+
 
 Array = Any
 BASE_RATES = tuple(Signal(f"base_rate_{i}", "rad/s") for i in "xyz")
@@ -69,7 +112,7 @@ class Outputs:
         """Values (p,) at one vector (y, ẏ, ÿ, u), and the derivatives with respect to it."""
         if self.structure.linear:
             return self.stacked(z), complex_step(self.stacked, z)
-        from gbeam.analysis.control.compiled import output_matrices
+        from gbeam.mechanics.equations.compiled import output_matrices
 
         values, derivatives = output_matrices(self, z)
         return np.asarray(values), np.asarray(derivatives)

@@ -14,8 +14,7 @@ from gbeam.analysis.control.linearization import (
     output_signals,
     outputs_of,
 )
-from gbeam.analysis.equilibrium.hub_point import on_hub
-from gbeam.analysis.equilibrium.point import REST, on_base
+from gbeam.analysis.equilibrium.operating_point import REST, on_base, on_hub
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
@@ -42,7 +41,7 @@ def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[G
         If python-control is not installed.
     """
     control = import_control()
-    from gbeam.analysis.control.compiled import rates
+    from gbeam.mechanics.equations.compiled import rates
 
     straight = np.zeros(structure.size)
     if motion.free:

@@ -12,9 +12,9 @@ from dataclasses import replace
 import numpy as np
 
 from gbeam.analysis.control.commands import Commands, Vibration, check_goal, driven, usual
+from gbeam.analysis.response.differentiated import Differentiated, Grid
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
-from gbeam.analysis.response.tangents.differentiated import Differentiated, Grid
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure

@@ -62,7 +62,7 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
         return equilibrium_about(structure, base)[0]
     import jax.numpy as jnp
 
-    from gbeam.analysis.equilibrium.compiled import resting
+    from gbeam.mechanics.equations.compiled import resting
 
     if structure.linear:
         return Equilibrium(jnp.linalg.solve(*structure.coefficients.at(*frozen)[1:]), True)

@@ -1,16 +1,256 @@
-"""Operating points of a motion frozen at a time."""
+"""Operating points: the states about which outputs and equations are linearised, on a given base or a free hub."""
 
 from __future__ import annotations
 
-from typing import Any
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
 
-from gbeam.analysis.equilibrium.hub_point import settled_hub
-from gbeam.analysis.equilibrium.point import OperatingPoint, held_base, on_base
-from gbeam.errors import InputError
+import numpy as np
+
+from gbeam.analysis.equilibrium.equilibrium import equilibrium_about, expanded
+from gbeam.errors import ComputationError, InputError
+from gbeam.mechanics.equations.linear import Coefficients
+from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.structure import Structure
+from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
+from gbeam.numerics.complex_step import complex_step
+from gbeam.results.response import BaseMotion
 
 Array = Any
+REST = Base(*np.zeros((3, 3)))
+
+
+class Linear(NamedTuple):
+    """M δÿ + C δẏ + K δy = B δu; C holds damping and gyroscopic coupling. (n, n), (n, n), (n, n), (n, inputs)."""
+
+    mass: Array
+    velocity: Array
+    stiffness: Array
+    inputs: Array
+
+
+@dataclass(frozen=True, eq=False)
+class OperatingPoint:
+    """A state (y, ẏ, ÿ; u) at which a residual vanishes, and the base's motion there; `found` are coefficients already
+    known.
+    """
+
+    structure: Structure
+    residual: OnBase | OnHub
+    y: Array
+    yd: Array
+    ydd: Array
+    u: Array
+    base: Base
+    found: Coefficients | None = None
+
+    @cached_property
+    def about(self) -> Coefficients:
+        """Coefficients of small departures from the beam's coordinates."""
+        return expanded(self.structure, self.q)[0] if self.found is None else self.found
+
+    @property
+    def first(self) -> int:
+        """Index of the beam's first coordinate in y."""
+        return self.residual.first
+
+    @property
+    def q(self) -> Array:
+        """Coordinates of the beam, (n,)."""
+        return self.y[self.first :]
+
+    @property
+    def frozen(self) -> BaseMotion:
+        """The base's motion as a record."""
+        return frozen(self.base)
+
+
+def frozen(base: Base) -> BaseMotion:
+    """Base motion as a record of the results."""
+    return BaseMotion(*(np.asarray(x) for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
+
+
+def evaluated_at(
+    structure: Structure, residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array
+) -> tuple[Array, Array]:
+    """The residual (n,) and its derivatives with respect to (y, ẏ, ÿ, u), (n, 3n + inputs)."""
+    if structure.linear:
+        return residual(y, yd, ydd, residual.unpack(u)), stepped(residual, y, yd, ydd, u)
+    from gbeam.mechanics.equations.compiled import evaluated
+
+    value, slope = evaluated(residual, np.concatenate([y, yd, ydd]), u)
+    return np.asarray(value), np.asarray(slope)
+
+
+def stepped(residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
+    """Derivatives of a linear model's residual, by a complex step."""
+    n = len(y)
+
+    def stacked(x: Array) -> Array:
+        return residual(x[:n], x[n : 2 * n], x[2 * n : 3 * n], residual.unpack(x[3 * n :]))
+
+    return complex_step(stacked, np.concatenate([y, yd, ydd, u]))
+
+
+def linear_matrices(point: OperatingPoint) -> Linear:
+    """Derivatives of the residual at an operating point."""
+    structure, residual, n = point.structure, point.residual, len(point.y)
+    if not structure.linear and (point.yd[point.first :].any() or point.ydd[point.first :].any()):
+        # The beam moves: how its places bend further matters.
+        return _split(evaluated_at(structure, residual, point.y, point.yd, point.ydd, point.u)[1], n)
+    # A complete model's small departures from where it rests are a linear model about that place.
+    c, q = point.about, point.q if structure.linear else np.zeros(structure.size)
+    if isinstance(residual, OnBase):
+        base, loads = residual.unpack(point.u)
+        velocity, stiffness, _ = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
+        inputs = c.input_matrix(q, point.yd, base.w_WB_B, loaded=loads is not None)
+        return Linear(c.mass, velocity, stiffness, inputs)
+    about = residual if structure.linear else OnHub(residual.equations.about(c), residual.mount)
+    y = np.concatenate([point.y[: point.first], q])
+    return _split(stepped(about, y, point.yd, point.ydd, point.u), n)
+
+
+def _split(d: Array, n: int) -> Linear:
+    return Linear(d[:, 2 * n : 3 * n], d[:, n : 2 * n], d[:, :n], -d[:, 3 * n :])
+
+
+def frozen_base(motion: Motion, time: float) -> Base:
+    """Base motion at one time, arrays (3,)."""
+    base = motion.base(np.array([time]))
+    return Base(*(np.asarray(x)[0] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
+
+
+def steady_base(hub: Any, rate: float) -> Base:
+    """Base motion of a hub that turns at a constant rate, rad/s, at angle zero."""
+    return hub.mount.base(np.zeros(()), np.asarray(float(rate)), np.zeros(()))
+
+
+def held_base(motion: Motion | None, time: float) -> Base:
+    """Base motion at one time; that of a free hub held at rest, at angle zero; at rest where there is no motion."""
+    if motion is None:
+        return REST
+    return steady_base(motion, 0.0) if motion.free else frozen_base(motion, time)
+
+
+def placed(
+    structure: Structure, base: Base, q: Array | None, qd: Array | None
+) -> tuple[Array, Array, Coefficients | None, bool]:
+    """Coordinates and rates, by default of the relative equilibrium with its coefficients, and whether they are."""
+    found = None
+    if q is None:
+        (at, _), found = equilibrium_about(structure, base)
+    else:
+        at = np.asarray(q, dtype=float)
+    moving = 0 * at if qd is None else np.asarray(qd, dtype=float)
+    return at, moving, found, q is None and qd is None
+
+
+def beam_acceleration(
+    structure: Structure, residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array
+) -> Array:
+    """q̈ that the beam's equations ask for, the hub's acceleration being given, (n,)."""
+    n, i = len(y), residual.first
+    still = np.where(np.arange(n) < i, ydd, 0.0)
+    value, slope = evaluated_at(structure, residual, y, yd, still, u)
+    return np.linalg.solve(slope[i:, 2 * n + i : 3 * n], -value[i:])
+
+
+def on_base(structure: Structure, base: Base, q: Array | None = None, qd: Array | None = None) -> OperatingPoint:
+    """Operating point on a base with a frozen motion, in relative equilibrium or with q, qd (n,) and the accelerations
+    that follow.
+    """
+    at, moving, found, rests = placed(structure, base, q, qd)
+    residual = OnBase(structure.equations)
+    u, still = residual.pack(base, structure.load_values), np.zeros_like(at)
+    qdd = still if rests else beam_acceleration(structure, residual, at, moving, still, u)
+    return OperatingPoint(structure, residual, at, moving, qdd, u, base, found)
+
+
+def _about_rest(point: OperatingPoint) -> tuple[OnHub, Array]:
+    """A linear residual about a point, and its y there; where nothing moves the hub's row is the complete one's."""
+    residual, y = point.residual, point.y
+    assert isinstance(residual, OnHub)
+    if point.structure.linear:
+        return residual, y
+    return OnHub(residual.equations.about(point.about), residual.mount), np.append(y[0], np.zeros(len(y) - 1))
+
+
+def needed_torque(point: OperatingPoint) -> float:
+    """Torque on a free hub that its state needs, the beam at rest relative to the hub, N m."""
+    residual, y = _about_rest(point)
+    return float(residual(y, point.yd, point.ydd, (0.0, residual.unpack(point.u)[1]))[0])
+
+
+def angular_momentum(point: OperatingPoint) -> float:
+    """Angular momentum that hub and beam have, the beam at rest relative to the hub, N m s."""
+    residual, y = _about_rest(point)
+    return float(residual.equations.momentum(y, point.yd))
+
+
+def on_hub(
+    structure: Structure,
+    hub: Any,
+    rate: float,
+    acceleration: float = 0.0,
+    q: Array | None = None,
+    angle: float = 0.0,
+    qd: Array | None = None,
+) -> OperatingPoint:
+    """Operating point on a free hub at a rate, rad/s, and acceleration, rad/s², with the torque that they need."""
+    base = hub.mount.base(*(np.asarray(float(x)) for x in (angle, rate, acceleration)))
+    at, moving, found, rests = placed(structure, base, q, qd)
+    residual = OnHub(structure.on_free_hub(hub), hub.mount)
+    y, yd, ydd = (np.append(x, beam) for x, beam in ((angle, at), (rate, moving), (acceleration, 0 * at)))
+    u = residual.pack(0.0, structure.load_values)
+    if rests:
+        u[0] = needed_torque(OperatingPoint(structure, residual, y, yd, ydd, u, base, found))
+    else:
+        ydd[1:] = beam_acceleration(structure, residual, y, yd, ydd, u)
+        u[0] = evaluated_at(structure, residual, y, yd, ydd, u)[0][0]
+    return OperatingPoint(structure, residual, y, yd, ydd, u, base, found)
+
+
+def settled_hub(structure: Structure, hub: Any, time: float, q: Array | None, qd: Array | None) -> OperatingPoint:
+    """The point at which a free hub turns steadily at a time, s; see :func:`operating_point`."""
+    torque, spring = float(hub.torque(time)), float(hub.stiffness)
+    momentum = _momentum_of_the_torque(structure, hub, time, q)
+    rate = acceleration = angle = 0.0
+    for _ in range(60):
+        point = on_hub(structure, hub, rate, acceleration, q, angle)
+        needed, has = needed_torque(point), angular_momentum(point)
+        if spring > 0:
+            turn = (torque - needed) / spring
+            if abs(turn) <= 1e-12 * (1 + abs(angle)):
+                return on_hub(structure, hub, rate, acceleration, q, angle, qd)
+            angle += turn
+            continue
+        # The beam's own inertia hardly depends on its shape: the rigid hub's step converges fast.
+        inertia = angular_momentum(on_hub(structure, hub, 1.0, 0.0, point.q))
+        step = (momentum - has) / inertia, (torque - needed) / inertia
+        rate, acceleration = rate + step[0], acceleration + step[1]
+        if abs(step[0]) <= 1e-12 * (1 + abs(rate)) and abs(step[1]) <= 1e-12 * (1 + abs(acceleration)):
+            return on_hub(structure, hub, rate, acceleration, q, qd=qd)
+    raise ComputationError(
+        "not converged", f"no steady turning of the hub under {torque:.4g} N m at t = {time:.4g} s was found"
+    )
+
+
+def _momentum_of_the_torque(structure: Structure, hub: Any, time: float, q: Array | None) -> float:
+    """Angular momentum that torque and damper have left since time zero, N m s."""
+    if time <= 0:
+        return 0.0
+    unit = on_hub(structure, hub, 1.0, q=np.zeros(structure.size) if q is None else q)
+    decay = float(hub.damping) / angular_momentum(unit)
+    breaks = [float(b) for b in np.asarray(hub.torque.breaks) if 0 < b < time]
+    import scipy.integrate  # only a free hub under a torque needs it
+
+    momentum, _ = scipy.integrate.quad(
+        lambda t: float(hub.torque(t)) * math.exp(-decay * (time - t)), 0, time, points=breaks or None, limit=200
+    )
+    return float(momentum)
 
 
 def operating_point(

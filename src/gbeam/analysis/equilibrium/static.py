@@ -2,23 +2,117 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from gbeam.analysis.equilibrium.equilibrium import keeps
-from gbeam.analysis.equilibrium.errors import static_errors
-from gbeam.analysis.equilibrium.operating_point import operating_point
-from gbeam.analysis.equilibrium.point import OperatingPoint, on_base
-from gbeam.errors import InputError
+from gbeam.analysis.accuracy.beam_theory import described, static_theory
+from gbeam.analysis.accuracy.correction import Sampled
+from gbeam.analysis.accuracy.estimate import LIMIT, UNKNOWN, cause_and_cure, of_bodies, percent
+from gbeam.analysis.accuracy.response_errors import IntArray, Quantities, driven, quantities
+from gbeam.analysis.equilibrium.equilibrium import keeps, solve_equilibrium
+from gbeam.analysis.equilibrium.operating_point import OperatingPoint, on_base, operating_point
+from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
+from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.theory import theory_of
 from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 from gbeam.results.equilibrium import Deflection
+from gbeam.results.errors import ErrorEstimate, Errors
+from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
+from gbeam.results.result import Floats
+
+NOTHING = 1e-6  # of the other load, over a length of the beam: a force or moment that is less is none
+LOST = "shapes and model are not judged: the exact model with more shapes comes to no equilibrium there"
+
+
+def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | None) -> tuple[Errors, tuple[str, ...]]:
+    """Estimated errors of an equilibrium, as fractions of displacement (s, 3), root load and stress, and warnings."""
+    structure = point.structure
+    if structure.source is None or loads is None:
+        return Errors(note=UNKNOWN), ()
+    own = Quantities(displacement[-1:], loads.force[:, 0], loads.moment[:, 0], loads.stress.max(axis=1))
+    more = enrichment(structure, point.base)
+    which = driven(more, lambda rich, index: _lifted(rich, index, point))
+    exact = _solved(more.model("exact", directions=which)[0], point)
+    if exact is None:
+        return Errors(note=LOST), (LOST,)
+    same = exact if structure.kind == "exact" else _solved(more.model(structure.kind, directions=which)[0], point)
+    length = structure.length
+    lacking = static_theory(structure, lambda rich: _lifted(rich, np.arange(structure.size), point))
+
+    def fractions(name: str, least: float) -> ErrorEstimate:
+        def apart(a: Quantities | None, b: Quantities | None) -> float:
+            if a is None or b is None:
+                return math.nan
+            away = float(np.linalg.norm(getattr(a, name) - getattr(b, name)))
+            return away / size if size > least else 0.0
+
+        size = max(float(np.linalg.norm(getattr(each, name))) for each in (own, exact))
+        away = ErrorEstimate(0.0, apart(own, same), apart(same, exact), total=apart(own, exact))
+        theory = lacking.sizes[name]
+        return away.with_theory(theory / size if theory and size > least else 0.0)
+
+    force, moment = (float(np.linalg.norm(each)) for each in (exact.force, exact.moment))
+    worst = max(
+        fractions("force", NOTHING * moment / length),
+        fractions("moment", NOTHING * force * length),
+        key=lambda each: each.total,
+    )
+    theory = described(structure, lacking.causes)
+    errors = Errors(fractions("tip", NOTHING**2 * length), worst, fractions("stress", 0.0), theory=theory)
+    bodies = of_bodies(structure, lacking, float(np.linalg.norm(own.tip)), LIMIT)
+    return errors, (*_doubtful(errors), *bodies, *_sideways(point))
+
+
+def _sideways(point: OperatingPoint) -> tuple[str, ...]:
+    """What to say of an equilibrium that a beam with torsion would not keep: a strip on edge buckles sideways."""
+    at = point.base, point.residual.unpack(point.u)[1]
+    if not keeps(point.about, *at) or keeps(theory_of(point.structure).thick.coefficients, *at):
+        return ()
+    return ("a beam that twists would not stay there, but buckle sideways: no model here has torsion",)
+
+
+def _doubtful(errors: Errors) -> tuple[str, ...]:
+    """What to say of an equilibrium that is wrong by more than one in a hundred."""
+    quantities = {"tip's displacement": errors.displacement, "root's loads": errors.loads}
+    above = {name: each for name, each in quantities.items() if each.total > LIMIT}
+    if not above:
+        return ()
+    worst = max(above.values(), key=lambda each: each.total)
+    cause, cure = cause_and_cure(worst.shapes, worst.model, worst.beam_theory, errors.theory)
+    sizes = " and ".join(f"the {name} by {percent(each.total)}" for name, each in above.items())
+    return (f"estimated to be wrong: {sizes}, mostly from {cause}; {cure}",)
+
+
+def _lifted(rich: Structure, index: IntArray, point: OperatingPoint) -> Sampled:
+    """An equilibrium in the coordinates of a structure with more shapes, its own at `index`."""
+    q = np.zeros(rich.size)
+    q[index] = point.q
+    return _resting(q, point)
+
+
+def _resting(q: Floats, point: OperatingPoint) -> Sampled:
+    base, loads, still = point.base, point.structure.load_values, np.zeros((1, len(q)))
+    at = Base(*(np.asarray(x)[None] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
+    return Sampled(np.zeros(1), at, q[None], still, still, loads=None if loads is None else np.asarray(loads)[None])
+
+
+def _solved(rich: Structure, point: OperatingPoint) -> Quantities | None:
+    """What a structure with more shapes has at its own equilibrium; None where there is none."""
+    rich = replace(rich, load_values=point.structure.load_values)
+    try:
+        q = solve_equilibrium(rich, point.base).q
+    except (ComputationError, np.linalg.LinAlgError):
+        return None
+    return quantities(rich, _resting(np.asarray(q), point))
 
 
 @typed

@@ -7,21 +7,111 @@ from collections.abc import Mapping
 import numpy as np
 
 from gbeam.analysis.imitation.accounting import History, account_of
-from gbeam.analysis.imitation.fatigue import fatigue
-from gbeam.analysis.imitation.peak_pairs import peak_pairs
+from gbeam.analysis.imitation.largest import largest_load, largest_pair, points_of
+from gbeam.analysis.response.peaks import vector_peaks
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.motion.bases.base import gradient
 from gbeam.numerics.filters.low_pass import low_pass
 from gbeam.numerics.filters.oscillators import largest_riding_acceleration
 from gbeam.numerics.interpolation import interpolated
-from gbeam.results.imitation.accounting import TOLERANCE
+from gbeam.numerics.peaks import maxima, near_maxima, seven_point, turning_points
+from gbeam.results.imitation.accounting import TOLERANCE, PeakPair
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.criteria import Limit, checked_limits
-from gbeam.results.imitation.measures import Mismatch, RootHistory, RootLoads, Shock, Sizes, Statistics
+from gbeam.results.imitation.measures import (
+    Fatigue,
+    Mismatch,
+    RootHistory,
+    RootLoads,
+    Shock,
+    Sizes,
+    Statistics,
+    StressCycles,
+)
 from gbeam.results.parts import Influence
 from gbeam.results.response import Response
 from gbeam.results.result import Flags, Floats
+
+_NOTHING = 1e-9  # of the largest stress: a smaller cycle is rounding
+
+
+def fatigue(flight: Response, machine: Response) -> Fatigue | None:
+    """Rainflow cycles of the root's stress in both runs, with the flight's material's exponent; None where one has no
+    stress.
+    """
+    loads = flight.loads
+    stresses = [None if each.loads is None else each.loads.root_fibre for each in (flight, machine)]
+    if loads is None or any(stress is None or not np.isfinite(stress).all() for stress in stresses):
+        return None
+    cycles = (
+        stress_cycles(response.time, stress)
+        for response, stress in zip((flight, machine), stresses, strict=True)
+        if stress is not None
+    )
+    return Fatigue(loads.fatigue_exponent, *cycles)
+
+
+def stress_cycles(time: Floats, stress: Floats) -> StressCycles:
+    """Rainflow cycles of a stress over time (t,), s, Pa, with its extremes between samples."""
+    import rainflow
+
+    rows = [row[:3] for row in rainflow.extract_cycles(turning_points(time, stress).tolist())]
+    cycles = np.array(rows, dtype=float).reshape(-1, 3)
+    cycles = cycles[cycles[:, 0] > _NOTHING * np.abs(stress).max()]
+    return StressCycles(*cycles[np.argsort(-cycles[:, 0], kind="stable")].T)
+
+
+def peak_pairs(flight: Response, centrifuge: Response, during: slice) -> dict[str, PeakPair]:
+    """Largest sizes over the flight's times in each response, by name; ``largest_load`` on the machine is over all of
+    its run, and NaN stands where a response lacks one.
+    """
+    last = centrifuge.time[during][-1]
+    one = _peaks(flight, flight.time <= last + 1e-12 * abs(last))
+    two = _peaks(centrifuge, during)
+    points = points_of(float(centrifuge.stations[-1]), centrifuge.bodies)
+    loads = (largest_load(each.time, each.base, points) for each in (flight, centrifuge))
+    pairs = {name: PeakPair(one[name][0], two[name][0], one[name][1], two[name][1]) for name in one}
+    return {"largest_load": largest_pair(*loads)} | pairs
+
+
+def _peaks(response: Response, part: slice | Flags) -> dict[str, tuple[float, float]]:
+    """Largest sizes between steps and their times, where they lie in some of a response's time."""
+    time, of = response.time[part], response.peaks
+    known = {"tip": (of.max_size, of.time_of_max_size)}
+    samples = {"tip": lambda: vector_peaks(time, response.tip[part])}
+    if response.loads is not None:
+        loads = response.loads
+        stress = np.concatenate([loads.stress_tension[part], -loads.stress_compression[part]], axis=1)
+        samples |= {
+            "root_force": lambda: vector_peaks(time, loads.section_force[part, 0]),
+            "root_moment": lambda: vector_peaks(time, loads.section_moment[part, 0]),
+            "stress": lambda: maxima(time, stress, *seven_point(time, stress, near_maxima(time, stress))),
+        }
+        if not np.isfinite(stress).all():
+            del samples["stress"]
+    if of.loads is not None:
+        worst = int(np.argmax(of.loads.stress.value))
+        extremes = {
+            "root_force": (of.loads.force.size, 0),
+            "root_moment": (of.loads.moment.size, 0),
+            "stress": (of.loads.stress, worst),
+        }
+        known |= {name: (float(e.value[k]), float(e.time[k])) for name, (e, k) in extremes.items()}
+
+    def peak(name: str) -> tuple[float, float]:
+        value, when = known.get(name, (np.nan, np.nan))
+        if np.isfinite(value) and time[0] <= when <= time[-1]:
+            return value, when
+        if name not in samples:
+            return np.nan, np.nan
+        # The response's own largest lies elsewhere, where the two cover different times.
+        values, times = samples[name]()
+        most = int(np.argmax(values))
+        return float(values[most]), float(times[most])
+
+    return {name: peak(name) for name in ("tip", "root_force", "root_moment", "stress")}
+
 
 CUTOFF = 0.5  # of the lowest natural frequency: trend below, elastic vibration above
 QUALITY = 10.0  # of the oscillators of the shock response spectrum

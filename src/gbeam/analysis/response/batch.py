@@ -9,16 +9,16 @@ from typing import Any, TypeVar, Unpack
 import numpy as np
 
 from gbeam.analysis.response.peaks import displacement_peaks
+from gbeam.analysis.response.posed import Posed, pose, steps_within
 from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.settings import ResponseSettings, Settings
 from gbeam.analysis.response.simulation import settings_of, simulate
-from gbeam.analysis.response.steps.posed import Posed, pose, steps_within
-from gbeam.analysis.response.steps.step_errors import Run
-from gbeam.analysis.response.steps.stepping import Plan, scheme_of
+from gbeam.analysis.response.step_errors import Run
+from gbeam.analysis.response.stepping import Plan, scheme_of
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.integrate.trajectory import Trajectory
+from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.results.errors import StepErrors
@@ -165,14 +165,14 @@ def _going_on(
     """A case with the run that its plan wants next, or one that has ended; `known` is reused if the run before is what
     counts.
     """
-    from gbeam.integrate.compiled import batch
+    from gbeam.integrate import side_by_side
 
     scheme = scheme_of(posed.settings)
     q, qd = (np.asarray(x) for x in (posed.problem.q, posed.problem.qd))
     try:
         while True:
             step, _ = next(plan) if run is None else plan.send(run)
-            wanted = batch.Run(posed.problem.equations, q, qd, posed.steps(step), scheme, common)
+            wanted = side_by_side.Run(posed.problem.equations, q, qd, posed.steps(step), scheme, common)
             case = _Case(index, posed, plan, step, wanted)
             if case.shape is not None:
                 return case
@@ -183,7 +183,7 @@ def _going_on(
 
 
 def _together(queue: list[_Case], together: int) -> Iterator[_Case | tuple[int, Response]]:
-    from gbeam.integrate.compiled.batch import integrate_together
+    from gbeam.integrate.side_by_side import integrate_together
 
     # Filled with its last case: one program serves every number of them, and no digit depends on it.
     filling = [queue[-1].run] * (together - len(queue))

@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
-from gbeam.analysis.accuracy.doubts import BEYOND, percent
+from gbeam.analysis.accuracy.estimate import BEYOND, percent
 from gbeam.analysis.equilibrium.definiteness import Loss, worst_loss
 from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.guards.limits import BOUNDLESS
-from gbeam.integrate.trajectory import Trajectory
+from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.fields.exact import ExactField
 from gbeam.mechanics.fields.rooted import RootedField
 from gbeam.mechanics.structure import Structure

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import is_jax, namespace
-from gbeam.integrate.trajectory import Trajectory
+from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.numerics.peaks import FEWEST, Floats, Indices, maxima, near_maxima, quintic_hermite, seven_point
 from gbeam.results.parts import Extremes, LoadPeaks, Loads, Peaks, VectorPeaks

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.response.initial import Initial, initial_state
+from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
 from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.tree import Value
+from gbeam.errors import ComputationError, InputError
+from gbeam.guards.arguments import typed
+from gbeam.guards.checks import choice, finite
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations
 from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.structure import Structure
@@ -16,6 +21,147 @@ from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 
 Array = Any
+STATES = ("equilibrium", "undeformed")
+_ITERATIONS = 60
+
+
+@typed
+@dataclass(frozen=True, eq=False)
+class Initial(Value):
+    """The state of the beam, relative to its base, in which a response begins; a machine's with its spin-up.
+
+    What is given of the displacement takes the place of the equilibrium; what is not given of the velocity is zero.
+
+    Parameters
+    ----------
+    state : str
+        ``equilibrium``: at rest in the relative equilibrium with the base's motion and the loads then; ``undeformed``:
+        straight and at rest.
+    acceleration : (3,), optional
+        Released from the static deflection under this acceleration of the root, or specific force, base axes, m/s²,
+        and under the loads then.
+    tip_displacement : mapping of str to float, optional
+        By ``y`` and ``z``: released from the shape of least strain energy with this displacement of the tip, m, which
+        is that of a static force at the tip.
+    tip_velocity : mapping of str to float, optional
+        By ``y`` and ``z``: velocity of the tip relative to the base, m/s, the beam moving in the same shape.
+
+    Raises
+    ------
+    InputError
+        If a value is impossible, or two displacements are given.
+    """
+
+    state: str = "equilibrium"
+    acceleration: Sequence[float] | None = None
+    tip_displacement: Mapping[str, float] | None = None
+    tip_velocity: Mapping[str, float] | None = None
+
+    def __post_init__(self) -> None:
+        choice("state", self.state, STATES)
+        displaced = [name for name in ("acceleration", "tip_displacement") if getattr(self, name) is not None]
+        if displaced and self.state != "equilibrium":
+            raise InputError(displaced[0], f'is given beside state = "{self.state}"', "keep one of them")
+        if len(displaced) > 1:
+            raise InputError(displaced[1], f"is given beside {displaced[0]}", "keep one of them")
+        if self.acceleration is not None:
+            if np.shape(self.acceleration) != (3,) or not np.isfinite(np.asarray(self.acceleration, dtype=float)).all():
+                fix = "give three finite components, x, y and z"
+                raise InputError("acceleration", f"is {self.acceleration!r}", fix)
+            object.__setattr__(self, "acceleration", tuple(float(each) for each in self.acceleration))
+        for name in ("tip_displacement", "tip_velocity"):
+            for axis, value in (getattr(self, name) or {}).items():
+                choice(name, axis, "yz")
+                finite(f"{name}.{axis}", value)
+
+    @property
+    def settled(self) -> bool:
+        """Whether it is the relative equilibrium at rest."""
+        return self == Initial()
+
+    def __str__(self) -> str:
+        if self.state == "undeformed":
+            words = "undeformed"
+        elif self.acceleration is not None:
+            words = f"in the static deflection under ({', '.join(f'{a:.4g}' for a in self.acceleration)}) m/s²"
+        elif self.tip_displacement:
+            words = f"with its tip displaced by {_components(self.tip_displacement, 1e3, 'mm')}, as by a force there"
+        else:
+            words = "in relative equilibrium"
+        speed = f"its tip moving at {_components(self.tip_velocity, 1.0, 'm/s')}" if self.tip_velocity else "at rest"
+        return f"begins {words}, {speed}"
+
+
+def _components(given: Mapping[str, float], size: float, unit: str) -> str:
+    return ", ".join(f"{axis} {size * value:.4g} {unit}" for axis, value in given.items())
+
+
+def begun(given: Initial | str) -> Initial:
+    """An initial state, or that of a name; InputError if it is neither."""
+    if isinstance(given, Initial):
+        return given
+    choice("initial", given, STATES)
+    return Initial(given)
+
+
+def initial_state(structure: Structure, base: Base | None, time: float, initial: Initial) -> tuple[Array, Array, bool]:
+    """Coordinates and rates (n,) at the start, and whether they are those of no equilibrium that is lost; without a
+    base, that of a straight beam on a hub at rest.
+    """
+    q, stable = np.zeros(structure.size), True
+    if initial.acceleration is not None:
+        q, stable = solve_equilibrium(structure, Base(np.asarray(initial.acceleration), *np.zeros((2, 3))), time)
+    elif initial.tip_displacement:
+        q = _displaced(structure, initial.tip_displacement)
+    elif initial.state == "equilibrium" and base is not None:
+        q, stable = solve_equilibrium(structure, base, time)
+    return q, _moving(structure, q, initial.tip_velocity or {}), stable
+
+
+def _axes(structure: Structure, place: str, given: Mapping[str, float]) -> tuple[tuple[int, ...], Array]:
+    """The axes along which the tip moves, and the values given of them (k,)."""
+    axes = tuple("xyz".index(axis) for axis in given)
+    for axis in set(axes) & set(structure.axes_without_shapes):
+        where, fix = f"response.initial.{place}.{'xyz'[axis]}", f"give model.modes.{'xyz'[axis]} = 1 or more"
+        raise InputError(where, "is along a direction without shapes", fix)
+    return axes, np.asarray([*given.values()], dtype=float)
+
+
+def _displaced(structure: Structure, given: Mapping[str, float]) -> Array:
+    """Coordinates of least strain energy at which the tip has a displacement: Lagrange's multipliers, by Newton."""
+    axes, wanted = _axes(structure, "tip_displacement", given)
+    if structure.traced:
+        from gbeam.mechanics.equations.compiled import displaced
+
+        return displaced(structure, axes, wanted)
+    q = np.zeros(structure.size)
+    for _ in range(_ITERATIONS):
+        coefficients, elastic = structure.about(q)
+        left = wanted - structure.tip(q)[..., axes]
+        change = _constrained(coefficients.stiffness, -elastic, structure.station_slopes(q)[-1, axes], left)
+        q = q + change
+        if np.abs(change).max() <= 1e-12 * np.abs(q).max():
+            return q
+    wanted_words = _components(given, 1e3, "mm")
+    raise ComputationError("not converged", f"no shape of the beam has its tip displaced by {wanted_words}; give less")
+
+
+def _moving(structure: Structure, q: Array, given: Mapping[str, float]) -> Array:
+    """Rates at which the tip has a velocity, in the shape of least strain energy."""
+    if not given:
+        return 0.0 * q
+    axes, wanted = _axes(structure, "tip_velocity", given)
+    slopes = structure.station_slopes(q)[-1, axes]
+    return _constrained(structure.coefficients.stiffness, 0.0 * q, slopes, wanted)
+
+
+def _constrained(stiffness: Array, force: Array, slopes: Array, value: Array) -> Array:
+    """x of K x = f + Jᵀ λ with J x = v."""
+    solve = namespace(stiffness, force, slopes).linalg.solve
+    own, shapes = solve(stiffness, force), solve(stiffness, slopes.T)
+    return own + shapes @ solve(slopes @ shapes, value - slopes @ own)
+
+
 EQUILIBRIUM = Initial()
 
 

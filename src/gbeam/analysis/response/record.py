@@ -12,28 +12,103 @@ import numpy as np
 from gbeam.analysis.accuracy.estimate import response_errors
 from gbeam.analysis.accuracy.response_errors import Solution
 from gbeam.analysis.response.outcome import describe, effort, inaccuracies
-from gbeam.analysis.response.outline import outline_of
 from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
 from gbeam.analysis.response.problem import Problem, start_of
 from gbeam.analysis.response.settings import NOT_ESTIMATED, ResponseSettings
-from gbeam.analysis.response.steps.trajectories import joined
+from gbeam.analysis.response.stepping import joined
 from gbeam.arrays.namespace import is_jax
-from gbeam.integrate.trajectory import Trajectory
-from gbeam.mechanics.influence import influence
+from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
-from gbeam.motion import Centrifuge, Flight
+from gbeam.motion import Centrifuge
 from gbeam.motion.bases.base import Base
+from gbeam.motion.bases.flight import Flight
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
+from gbeam.numerics.attitude import attitude
 from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
 from gbeam.results.machine import AxesResult
-from gbeam.results.parts import Loads, Peaks
+from gbeam.results.parts import Influence, Loads, Outline, Peaks
 from gbeam.results.response import BaseMotion, HubResult, Response
 from gbeam.results.result import Floats
 
+POINTS = 16  # along the beam, at most
+TIMES = 1500
+
+
+def outline_of(structure: Structure, motion: Motion, time: Floats, q: Floats) -> Outline | None:
+    """Return the outline of a response at times `time` (t,) s with coordinates `q` (t, n); None without a beam."""
+    if structure.field is None or structure.source is None:
+        return None
+    beam = structure.source.beam
+    places = np.asarray(structure.field.places().r0)[:, 0]
+    x, index = np.unique(np.round(places / beam.length, 9), return_index=True)
+    spread = np.unique(np.linspace(0, len(x) - 1, POINTS - 1).round().astype(int))
+    chosen = index[spread]
+    some = np.unique(np.linspace(0, len(time) - 1, TIMES).round().astype(int))
+    rest = places[chosen]
+    moved = np.asarray(structure.field.sampled(chosen).position(q[some]))
+    moved = moved - np.asarray(structure.field.places().r0)[chosen]
+    # The field has no point at the root: the nodes next to it lie within a hundredth of the length.
+    root = moved[:, 0] - (moved[:, 1] - moved[:, 0]) * (rest[0] / (rest[1] - rest[0]))
+    if not structure.source.beam.root.springs:
+        root = np.zeros_like(root)
+    points = np.concatenate([[0.0], rest])
+    section = beam.section.at(points)
+    width, thickness = section.extents()
+    return Outline(
+        points=points,
+        width=width,
+        thickness=thickness,
+        round=section.round,
+        bodies=np.array([(body.at, body.mass) for body in beam.masses], dtype=float).reshape(-1, 2),
+        time=time[some],
+        displacement=np.concatenate([root[:, None], moved], axis=1),
+        **_carrier(motion),
+        attitude=_attitude(motion, time, some),
+    )
+
+
+def _attitude(motion: Any, time: Floats, some: Any) -> Floats | None:
+    """Of a flight whose rates are given: integrated over all times, at some of them."""
+    if not isinstance(motion, Flight) or motion.rates is None:
+        return None
+    return attitude(time, np.asarray(motion.base(time).w_WB_B))[some]
+
+
+def _carrier(motion: Any) -> dict[str, Any]:
+    if motion.kind == "centrifuge":
+        return {"arm": float(motion.geometry.arm)}
+    if motion.kind == "hub":
+        return {"radius": float(motion.mount.radius), "R_HB": np.asarray(motion.mount.R_HB)}
+    return {"arm": math.nan}
+
+
 Array = Any
+
+
+def influence(structure: Structure) -> Influence:
+    """Static answers of the straight beam to uniform, angular (a_y = α_z x, a_z = −α_y x) and centripetal (−ω² x)
+    accelerations.
+    """
+    c = structure.coefficients
+    linear = np.stack([-c.f_ww[2, 2], c.f_al[2], -c.f_al[1]])
+    per_q = structure.station_places.first[-1]
+
+    def tip(load: Array) -> Array:
+        return np.diagonal(per_q @ np.linalg.solve(c.stiffness, load.T))
+
+    total, first, second = float(c.rigid[0]), float(c.rigid[1]), float(c.rigid[4])
+    across = np.array([0.0, 1.0, 1.0])
+    return Influence(
+        tip_uniform=tip(c.f_a),
+        tip_linear=tip(linear),
+        force_uniform=np.full(3, -total),
+        force_linear=np.full(3, -first),
+        moment_uniform=-first * across,
+        moment_linear=-second * across,
+    )
 
 
 def response_of(

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TypedDict
 
-from gbeam.analysis.response.initial import Initial, begun
+from gbeam.analysis.response.problem import Initial, begun
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed

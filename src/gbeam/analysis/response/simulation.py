@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any, Unpack
 
+from gbeam.analysis.response.posed import pose
 from gbeam.analysis.response.problem import problem_of
 from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.settings import ResponseSettings, Settings
-from gbeam.analysis.response.steps.posed import pose
-from gbeam.analysis.response.steps.stepping import answered
-from gbeam.analysis.response.steps.trajectories import going_on, integrated, ramp, split, steps_beyond
+from gbeam.analysis.response.stepping import answered, going_on, integrated, ramp, split, steps_beyond
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.beam_theory import described, mode_causes
-from gbeam.analysis.accuracy.doubts import LIMIT, cause_and_cure, percent
+from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, percent
 from gbeam.analysis.equilibrium.equilibrium import equilibrium_about
-from gbeam.analysis.equilibrium.point import Linear, OperatingPoint, stepped
+from gbeam.analysis.equilibrium.operating_point import Linear, OperatingPoint, stepped
 from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.equations.hub import free_hub

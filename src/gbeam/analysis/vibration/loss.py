@@ -1,22 +1,32 @@
-"""Where a relative equilibrium is lost as a quantity is raised from zero."""
+"""Where a relative equilibrium is lost as a load grows, and how wrong that is."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 
-from gbeam.analysis.equilibrium.point import OperatingPoint, linear_matrices, on_base
+from gbeam.analysis.accuracy.beam_theory import described, mode_causes
+from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, percent
+from gbeam.analysis.equilibrium.operating_point import OperatingPoint, linear_matrices, on_base
+from gbeam.analysis.vibration.errors import resting
 from gbeam.analysis.vibration.modal import directions, modes_at
 from gbeam.errors import ComputationError
+from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.theory import theory_of
 from gbeam.motion.bases.base import Base
 from gbeam.numerics.solvers.eigen import symmetric_modes
 from gbeam.numerics.solvers.oscillations import stability_margin
 from gbeam.numerics.solvers.roots import brent
+from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Critical
+from gbeam.results.errors import ErrorEstimate
+from gbeam.results.result import Floats
 
 SCAN = 64  # points at which a loss is looked for before its root is closed in on
 
@@ -67,3 +77,98 @@ def first_loss_along(
         direction = directions(structure, point, lowest)[0]
     along = f" along {direction}" if direction else ""
     return answer(root, kind, direction, f"{structure.kind}: {kind}{along} at {root:.6g} {unit}")
+
+
+# Shares of the critical value at which richer models are looked at, from below.
+SHARES = 0.25, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.995, 1.005, 1.02, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0
+HALVINGS = 16
+CLOSE = 1e-6  # of the critical value: how closely a root is found
+
+Path = Callable[[float], tuple[Structure, Base]]
+
+
+def judged(found: Critical, path: Path, progress: Progress = None) -> Critical:
+    """A critical value with its estimated errors, and warnings where they are above one in a hundred."""
+    structure, _ = path(0.0)
+    if structure.source is None or found.value == 0:
+        return found
+    if found.value is None:
+        return replace(found, warnings=found.warnings + _unseen(found, path, progress))
+    at, (_, along_y, along_z) = found.value, structure.counts
+    more, directions = enrichment(structure, path(at)[1]), (True, along_y > 0, along_z > 0)
+
+    def lost(kind: str) -> float:
+        return _lost(more.model(kind, directions=directions)[0], path, at, progress)
+
+    theory = theory_of(structure)
+    plate = theory.plate(np.zeros((1, theory.thick.size)))
+    slender, *thick = (_lost(each, path, at, progress) for each in (theory.slender, *theory.variants(plate)))
+    exact = lost("exact")
+    same = exact if structure.kind == "exact" else lost(structure.kind)
+    shapes = abs(at / same - 1)
+    model, total = (math.inf, math.inf) if math.isinf(exact) else (abs(same / exact - 1), abs(at / exact - 1))
+    beam_theory = max(_apart(at if math.isinf(slender) else slender, each) for each in thick)
+    errors = ErrorEstimate(0.0, shapes, model, total=total).with_theory(0.0 if math.isinf(model) else beam_theory)
+    lowest = _lowest(theory.slender, *path(at))[:, : theory.own]
+    causes = mode_causes(theory, path(at)[1], path(at)[0].load_values, lowest, np.zeros(1), plate)
+    doubts = doubtful_loss(found.quantity, found.model, errors, described(structure, causes))
+    return replace(found, errors=errors, warnings=found.warnings + doubts)
+
+
+def _lowest(slender: Structure, structure: Structure, base: Base) -> Floats:
+    """Shape (1, n) along which a slender beam has the least stiffness."""
+    motion = base.a_WO_B, base.w_WB_B, base.alpha_WB_B
+    stiffness = slender.coefficients.at(*motion, structure.load_values)[1]
+    return symmetric_modes((stiffness + stiffness.T) / 2, slender.coefficients.mass)[1][:, :1].T
+
+
+def _unseen(found: Critical, path: Path, progress: Progress) -> tuple[str, ...]:
+    """Warn where a beam that twists loses what a model without torsion keeps (a strip on edge), at halves of the
+    search's end.
+    """
+    shares = tuple(2.0**-k for k in range(HALVINGS, -1, -1))
+    lost = _lost(theory_of(path(0.0)[0]).thick, path, found.searched_to, progress, shares)
+    if math.isinf(lost):
+        return ()
+    return (
+        f"with shear and twist, which no model here has, the equilibrium is lost at an estimated {lost:.4g} "
+        f"{found.unit}",
+    )
+
+
+def _apart(value: float, reference: float) -> float:
+    """Relative difference of two values, the second of which may not be reached."""
+    return math.inf if math.isinf(reference) else abs(value / reference - 1)
+
+
+def _lost(rich: Structure, path: Path, near: float, progress: Progress, shares: Sequence[float] = SHARES) -> float:
+    """Value at which a richer model loses its equilibrium; infinity where it keeps it to the last of the shares."""
+
+    @cache
+    def margin(value: float) -> float:
+        structure, base = path(value)
+        try:
+            return stability_margin(*resting(replace(rich, load_values=structure.load_values), base)[:3])
+        except (ComputationError, np.linalg.LinAlgError):
+            return -1.0
+
+    low = 0.0
+    for i, share in enumerate(shares):
+        tell(progress, f"errors of the critical value, by {rich.kind} with more shapes", i / len(shares))
+        if margin(share * near) < 0:
+            return brent(margin, low, share * near, xtol=CLOSE * near)
+        low = share * near
+    return math.inf
+
+
+def doubtful_loss(quantity: str, model: str, errors: ErrorEstimate, theory: str = "") -> tuple[str, ...]:
+    """What to say of a critical value with errors above one in a hundred, or that the exact model does not have."""
+    if math.isinf(errors.total):
+        return (
+            f"the critical {quantity} is {model}'s own: the exact model keeps its equilibrium to {SHARES[-1]:g} times "
+            "that at least",
+        )
+    if not errors.total > LIMIT:
+        return ()
+    cause, cure = cause_and_cure(errors.shapes, errors.model, errors.beam_theory, theory)
+    return (f"the critical {quantity} is wrong by an estimated {percent(errors.total)}: {cause}; {cure}",)

@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.equilibrium.operating_point import operating_point
-from gbeam.analysis.equilibrium.point import Linear, OperatingPoint, linear_matrices
+from gbeam.analysis.equilibrium.operating_point import Linear, OperatingPoint, linear_matrices, operating_point
 from gbeam.analysis.vibration.errors import Richer, doubtful
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.equations.sampled import slopes

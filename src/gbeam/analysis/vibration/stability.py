@@ -14,9 +14,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from gbeam.analysis.equilibrium.point import REST, steady_base
-from gbeam.analysis.vibration.loss import first_loss_along
-from gbeam.analysis.vibration.loss_errors import Path, doubtful_loss, judged
+from gbeam.analysis.equilibrium.operating_point import REST, steady_base
+from gbeam.analysis.vibration.loss import Path, doubtful_loss, first_loss_along, judged
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
@@ -30,8 +29,8 @@ from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Critical, CriticalMap, MapErrors
 from gbeam.results.errors import PARTS, ErrorEstimate
+from gbeam.structure.attachments import PointMass
 from gbeam.structure.beam import Beam
-from gbeam.structure.bodies import PointMass
 
 SEARCH_FACTOR = 10.0  # of the lowest natural frequency: how far a search goes by default
 INSTEAD = "ask `gbeam modes` for its frequencies at a time, or `gbeam static` for its shape"

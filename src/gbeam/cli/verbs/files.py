@@ -27,7 +27,7 @@ def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = No
     """
     given = read("check", scenario, overrides, out)
 
-    from gbeam.analysis.study.describe import describe
+    from gbeam.analysis.case import describe
     from gbeam.report import description as report
 
     with given.placing():

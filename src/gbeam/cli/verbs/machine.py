@@ -153,7 +153,7 @@ def place(
     name, current = machine_of(given.case, motion)
 
     from gbeam.analysis.imitation import place as analysis
-    from gbeam.analysis.imitation.choice import choice_of
+    from gbeam.analysis.imitation.place_measures import choice_of
     from gbeam.report.machine import placement as words
 
     analysis.check_weights(weights, "--measure")

@@ -53,7 +53,7 @@ def run(
         # A second of imports, beside the computation, which leaves a core idle.
         Thread(target=_import_leaves, daemon=True).start()
 
-    from gbeam.analysis.study.study import study
+    from gbeam.analysis.environments import study
 
     with Watch() as watch, given.placing():
         answer = study(given.case, watch)
@@ -109,7 +109,7 @@ def models(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = N
     """
     given = read("models", scenario, overrides, out)
 
-    from gbeam.analysis.study.model_study import compare_models
+    from gbeam.analysis.model_study import compare_models
     from gbeam.report.study import models as report
 
     with Watch() as watch, given.placing():

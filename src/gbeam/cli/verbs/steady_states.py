@@ -263,8 +263,7 @@ def linearize(
         if both:
             raise InputError(option, f"stands beside {beside}", "give one of them")
 
-    from gbeam.analysis.control.gauges import surface_gauges
-    from gbeam.analysis.control.linearization import linearize
+    from gbeam.analysis.control.linearization import linearize, surface_gauges
     from gbeam.report.steady import state_space as report
 
     with naming("--strain-at"):

@@ -16,14 +16,12 @@ from typing import Any
 import jax
 import numpy as np
 
-import gbeam.arrays.jax_setup  # noqa: F401
-from gbeam.integrate.compiled import lanes, newton
-from gbeam.integrate.compiled.chunks import chunks, stretches
-from gbeam.integrate.equations import LinearEquations, LinearTerms, NonlinearEquations
+from gbeam.integrate import lanes, newton
+from gbeam.integrate.chunks import chunks, stretches
+from gbeam.integrate.equations import LinearEquations, LinearTerms, NonlinearEquations, Trajectory
 from gbeam.integrate.fitting import added
 from gbeam.integrate.schemes import Scheme
 from gbeam.integrate.steps import Steps
-from gbeam.integrate.trajectory import Trajectory
 
 Array = Any
 Histories = tuple[Array, Array, Array]  # q, q̇, q̈ of b runs at the start and the ends of the steps, (b, t + 1, n) each

@@ -12,7 +12,6 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 
-import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.arrays.namespace import namespace
 from gbeam.integrate.equations import LinearTerms
 from gbeam.integrate.schemes import Scheme, Tableau, powers_of_step

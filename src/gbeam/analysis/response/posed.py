@@ -12,12 +12,11 @@ import numpy as np
 from gbeam.analysis.response.problem import Problem, problem_of
 from gbeam.analysis.response.record import moving
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.steps.step_errors import Readings, Run
-from gbeam.analysis.response.steps.stepping import Plan, corners, first_step, planned, scheme_of
-from gbeam.analysis.response.steps.trajectories import integrated, steps_beyond
+from gbeam.analysis.response.step_errors import Readings, Run
+from gbeam.analysis.response.stepping import Plan, corners, first_step, integrated, planned, scheme_of, steps_beyond
 from gbeam.guards.limits import BOUNDLESS, HISTORY_BYTES, STEPS, refuse_more
+from gbeam.integrate.equations import Trajectory
 from gbeam.integrate.steps import Corners, Steps, fitted
-from gbeam.integrate.trajectory import Trajectory
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion

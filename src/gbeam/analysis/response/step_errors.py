@@ -17,7 +17,7 @@ from itertools import pairwise
 import numpy as np
 
 from gbeam.analysis.response.peaks import peaks_of_coordinates
-from gbeam.integrate.trajectory import Trajectory
+from gbeam.integrate.equations import Trajectory
 from gbeam.results.errors import StepErrors
 from gbeam.results.result import Floats
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from gbeam.analysis.response.settings import ResponseSettings
@@ -13,9 +14,13 @@ from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.assembly import assemble
+from gbeam.mechanics.fields.basis import quadrature
 from gbeam.mechanics.models import Model
+from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
+from gbeam.motion import Flight
 from gbeam.motion.protocol import Motion
+from gbeam.results.description import Description
 from gbeam.results.provenance import Provenance
 from gbeam.structure.beam import Beam
 
@@ -85,3 +90,55 @@ class Case(Value):
             return assemble(self.beam, self.model, self.stations if stations is None else stations)
         except InputError as error:
             raise error.within("response" if error.where.startswith("stations") else "beam") from None
+
+
+MODES = 6  # natural frequencies at most
+
+
+@typed
+def describe(case: Case) -> Description:
+    """Describe a case: the beam's mass, its frequencies at rest, motions, records, and the response's settings.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`gbeam.read_scenario`, or made by hand.
+
+    Returns
+    -------
+    Description
+
+    Raises
+    ------
+    InputError
+        If the beam does not fit its model, with its place in the scenario.
+    """
+    structure, beam, settings = case.assemble(), case.beam, case.response
+    span = settings.start, settings.start + settings.duration
+    doubts = [input_warnings(structure, motion, name=name, span=span) for name, motion in case.motions.items()]
+    frequencies, modes = structure.rest
+    # Which group of coordinates moves most says along which axis a mode bends.
+    groups = np.repeat(("axial", "y", "z"), structure.counts)
+    rule = quadrature(beam.length, 4, beam.section.stations)
+    return Description(
+        title=case.title,
+        length=beam.length,
+        mass=beam.material.density * float(np.sum(beam.section.at(rule.node).area * rule.weight)),
+        bodies=tuple((body.at, body.mass) for body in beam.masses),
+        model=case.model.kind,
+        counts=case.model.counts,
+        frequency=np.asarray(frequencies)[:MODES] / (2 * np.pi),
+        direction=tuple(str(groups[i]) for i in np.abs(modes[: len(groups)]).argmax(axis=0)[:MODES]),
+        motions={name: motion.kind for name, motion in case.motions.items()},
+        tracks=dict(case.tracks),
+        records={
+            name: motion.record
+            for name, motion in case.motions.items()
+            if isinstance(motion, Flight) and motion.record is not None
+        },
+        start=settings.start,
+        duration=settings.duration,
+        step=settings.step,
+        integrator=settings.integrator,
+        warnings=tuple(dict.fromkeys(warning for each in doubts for warning in (*each, *settings.warnings))),
+    )

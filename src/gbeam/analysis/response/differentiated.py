@@ -13,16 +13,15 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.analysis.response.linearised import Pair, Posed, linearised
 from gbeam.analysis.response.problem import problem_of
 from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.steps.stepping import corners, first_step, scheme_of
-from gbeam.analysis.response.steps.trajectories import steps_beyond
-from gbeam.analysis.response.tangents.linearised import Pair, Posed, linearised
+from gbeam.analysis.response.stepping import corners, first_step, scheme_of, steps_beyond
 from gbeam.integrate.driver import through
+from gbeam.integrate.equations import Trajectory
 from gbeam.integrate.steps import Corners, Steps, fitted
 from gbeam.integrate.tangent import tangent
-from gbeam.integrate.trajectory import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion

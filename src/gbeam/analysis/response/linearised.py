@@ -1,8 +1,8 @@
 """The equations of motion linearised about a run, with their derivatives with respect to parameters.
 
-A parameter enters by pairs of problems, a little less and a little more of it. Of a linear model the coefficients' and
-the motions' differences are multiplied out once for all parameters; of a nonlinear one the residual is evaluated at
-the run's states for either of a pair, and its Jacobians are JAX's.
+A parameter enters by pairs of problems, a little less and a little more of it. The residual of a linear model is one
+product, of terms that know the motion and of coefficients that know the beam, either of which is differentiated with
+the other held; that of a nonlinear model is evaluated for either of a pair at the run's states, with JAX's Jacobians.
 """
 
 from __future__ import annotations
@@ -18,9 +18,46 @@ from gbeam.integrate.equations import LinearEquations
 from gbeam.integrate.fitting import added
 from gbeam.integrate.schemes import Scheme
 from gbeam.integrate.tangent import System
-from gbeam.mechanics.equations.terms import coefficient_matrix, terms
+from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.structure import Structure
+from gbeam.motion.bases.base import Base
 from gbeam.results.result import Floats
+
+Array = Any
+_I, _J = np.triu_indices(3)  # pairs of angular velocities, each once
+
+
+def terms(q: Array, qd: Array, qdd: Array, base: Base, loads: Array | None) -> Array:
+    """Terms (t, f) of r = terms @ coefficients, at q (t, n), base motions (t, 3) and load components (t, loads, 6).
+
+    r = M q̈ + (C + ω·G) q̇ + (K + ωω:K_ww + α·K_al + a·K_a − loads) q − F
+    """
+    w = base.w_WB_B
+    inputs = [w[:, _I] * w[:, _J], base.alpha_WB_B, base.a_WO_B]
+    if loads is not None:
+        inputs.append(loads.reshape(len(q), -1))
+    u = np.concatenate(inputs, axis=1)
+    return np.concatenate([qdd, qd, _outer(w, qd), q, _outer(u, q), u], axis=1)
+
+
+def coefficient_matrix(c: Coefficients, *, loaded: bool) -> Array:
+    """Coefficients (f, n) in the order of the terms."""
+    twice = np.where(_I == _J, 1.0, 2.0)
+    k = [twice[:, None, None] * c.k_ww[_I, _J], c.k_al, c.k_a]
+    f = [twice[:, None] * c.f_ww[_I, _J], c.f_al, c.f_a]
+    if loaded:
+        assert c.loads is not None
+        slope, constant = c.loads.slope[:, :, 6:], c.loads.constant[:, :, 6:]
+        k.append(-slope.reshape(-1, *slope.shape[2:]))
+        f.append(constant.reshape(-1, constant.shape[2]))
+    own = [c.mass[None], c.damping[None], c.gyroscopic, c.stiffness[None], *k]
+    rows = [np.swapaxes(each, 1, 2).reshape(-1, c.size) for each in own]
+    return np.concatenate([*rows, *(-each for each in f)])
+
+
+def _outer(u: Array, q: Array) -> Array:
+    """Products u_i q_j, (t, i j)."""
+    return (u[:, :, None] * q[:, None, :]).reshape(len(q), -1)
 
 
 @dataclass(frozen=True)
@@ -89,7 +126,7 @@ def _equations(posed: Posed) -> Any:
 
 
 def _nonlinear(nominal: Posed, pairs: Sequence[Pair], width: Floats) -> System:
-    from gbeam.analysis.response.tangents import compiled
+    from gbeam.mechanics.equations import compiled
 
     equations: Any = nominal.problem.equations
 

@@ -1,1 +1,0 @@
-"""How a response changes with what it is computed from."""

@@ -1,1 +1,0 @@
-"""A whole scenario: every environment, and every model of it."""

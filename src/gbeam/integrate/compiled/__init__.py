@@ -1,1 +1,0 @@
-"""Steps that JAX compiles: of nonlinear equations, and of many runs at once."""
