@@ -12,11 +12,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
-from gbeam.plots.drawing.files import DPI, save, signature
-from gbeam.plots.drawing.lines import BINS, COLUMNS, components, line
-from gbeam.plots.drawing.stretches import shade, stretches
-from gbeam.plots.drawing.style import ENVELOPE, STYLE, limits, panels, styled
-from gbeam.plots.drawing.units import unit_for
+from gbeam.plots.figures import DPI, save, signature
+from gbeam.plots.lines import BINS, COLUMNS, components, line, shade, stretches
+from gbeam.plots.style import ENVELOPE, STYLE, limits, panels, styled
+from gbeam.plots.units import unit_for
 
 
 def _panel() -> Axes:

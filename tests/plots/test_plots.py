@@ -27,7 +27,7 @@ from gbeam.plots import (
     plot_tracking,
     write_plots,
 )
-from gbeam.plots.drawing.lines import FLIGHT
+from gbeam.plots.lines import FLIGHT
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.measures import Mismatch, RootHistory, RootLoads, Shock

@@ -7,7 +7,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from gbeam.plots import save
-from gbeam.plots.drawing.style import panels, styled
+from gbeam.plots.style import panels, styled
 
 
 @styled

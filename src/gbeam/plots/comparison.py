@@ -9,10 +9,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
-from gbeam.plots.drawing.lines import FLIGHT, line, machine
-from gbeam.plots.drawing.stretches import shade, stretches
-from gbeam.plots.drawing.style import heading, moving, panels, scale_to, show_zero, styled, subtitle
-from gbeam.plots.drawing.units import unit_for
+from gbeam.plots.lines import FLIGHT, line, machine, shade, stretches
+from gbeam.plots.style import heading, moving, panels, scale_to, show_zero, styled, subtitle
+from gbeam.plots.units import unit_for
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.measures import Shock
 from gbeam.results.result import Floats

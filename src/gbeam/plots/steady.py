@@ -9,9 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from gbeam.plots.drawing.lines import FLIGHT, machine
-from gbeam.plots.drawing.style import REFERENCE, colour, heading, judged, moving, named, panels, show_zero, styled
-from gbeam.plots.drawing.units import Unit, not_drawn, unit_for
+from gbeam.plots.lines import FLIGHT, machine
+from gbeam.plots.style import REFERENCE, colour, heading, judged, moving, named, panels, show_zero, styled
+from gbeam.plots.units import Unit, not_drawn, unit_for
 from gbeam.results.equilibrium import CriticalMap, Deflection
 from gbeam.results.modal import Campbell, Modes, near_multiples
 from gbeam.results.result import Floats

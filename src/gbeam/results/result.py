@@ -91,7 +91,7 @@ class Result(Value):
 
     def _repr_html_(self) -> str:
         """The verdict and a small table, in notebooks."""
-        from gbeam.report.page.brief import html_of
+        from gbeam.report.page.document import html_of
 
         return html_of(self)
 

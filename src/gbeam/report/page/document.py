@@ -1,4 +1,4 @@
-"""A page of HTML from the facts of a result and the variables of its file: nothing in it comes from a network."""
+"""Documents: the whole page of a result, and the short one that notebooks show."""
 
 from __future__ import annotations
 
@@ -7,33 +7,41 @@ import hashlib
 import json
 import tomllib
 from collections.abc import Callable, Mapping
+from html import escape
 from importlib.resources import files
 from typing import Any
 
 from gbeam.errors import InputError
 from gbeam.guards.json_files import parse_json
 from gbeam.printable import json_printable
-from gbeam.report.page.bodies import cases, machine, rest, steady, studies, study
-from gbeam.report.page.parts import badge, escaped, folded, heading, listed, paragraph, table, verbatim
+from gbeam.report.facts import facts_text
+from gbeam.report.page.bodies import cases, machine, searches, steady, study
+from gbeam.report.page.bodies.steady import crossings_table, modes_table, tracks_table
+from gbeam.report.page.parts import Value, badge, escaped, folded, heading, listed, paragraph, table, verbatim
 from gbeam.report.page.series import Numbers, Plots
 from gbeam.report.words import as_json
+from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.modal import Campbell, Modes
+from gbeam.results.response import Response
+from gbeam.results.result import Result
+from gbeam.results.study import Study
 
 Body = Callable[[Mapping[str, Any], Mapping[str, Any], Numbers, Plots, dict[str, Any]], str]
 # By verb: keys that its facts have, keys that each of their motions has, and what makes the page's inside.
 KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...], Body]] = {
     "run": (("motions", "comparisons"), (), study.body),
-    "static": (("motions",), ("displacement", "tip", "stable"), rest.static_body),
+    "static": (("motions",), ("displacement", "tip", "stable"), steady.static_body),
     "plan": (("motions",), ("limits", "tracks"), machine.plan_body),
     "modes": (("modes", "instabilities"), (), steady.modes_body),
     "campbell": (("tracks", "crossings"), (), steady.campbell_body),
-    "critical-speed": (("quantity", "searched_to", "reason"), (), rest.critical_body),
-    "critical-speed --masses": (("mass", "position", "critical_speed"), (), rest.critical_map_body),
+    "critical-speed": (("quantity", "searched_to", "reason"), (), steady.critical_body),
+    "critical-speed --masses": (("mass", "position", "critical_speed"), (), steady.critical_map_body),
     "place": (("fraction_of_length", "options"), (), cases.placement_body),
     "sweep": (("parameters", "measures"), (), cases.sweep_body),
-    "fit": (("covariance", "columns"), (), studies.fit_body),
-    "optimize": (("minimise", "subject_to"), (), studies.optimum_body),
-    "sensitivity": (("measures", "run_error"), (), studies.sensitivity_body),
-    "shape": (("commands", "coefficients"), (), studies.shaping_body),
+    "fit": (("covariance", "columns"), (), searches.fit_body),
+    "optimize": (("minimise", "subject_to"), (), searches.optimum_body),
+    "sensitivity": (("measures", "run_error"), (), searches.sensitivity_body),
+    "shape": (("commands", "coefficients"), (), searches.shaping_body),
 }
 
 
@@ -169,3 +177,44 @@ def _page(title: str, state: str, subject: str, body: str, header: Mapping[str, 
 
 def _hash(text: str) -> str:
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
+
+
+def html_of(result: Result) -> str:
+    """Return a few lines of HTML for any result; in words where its kind has no table."""
+    match result:
+        case Study() | Response():
+            inside = _of_run(result)
+        case Comparison():
+            inside = _of_comparison(result)
+        case Modes():
+            inside = modes_table(_known(result))
+        case Campbell():
+            inside = tracks_table(_known(result)) + crossings_table(_known(result))
+        case _:
+            return f"<pre>{escape(repr(result))}</pre>"
+    return f"<div>{inside}{listed(result.warnings) if not isinstance(result, Study) else ''}</div>"
+
+
+def _of_run(result: Study | Response) -> str:
+    known = _known(result)
+    title = known["title"] or (result.name if isinstance(result, Response) else "")
+    parts = [heading(title, 3) if title else "", f"<p>{badge(known['state'])}</p>"]
+    parts += [paragraph(each["verdict"]) for each in known["comparisons"]]
+    parts += [paragraph(f"{name}: {each['message']}") for name, each in known["motions"].items() if each["message"]]
+    done = {name: each for name, each in known["motions"].items() if "tip" in each}
+    warnings = listed(study.warnings(known)) if isinstance(result, Study) else ""
+    return "".join([*parts, study.tips_table(done), study.loads_table(done), warnings])
+
+
+def _of_comparison(result: Comparison) -> str:
+    head = ("", result.flight, result.centrifuge, "error")
+    rows: list[list[Value]] = [
+        [name.replace("_", " "), pair.flight, pair.machine, f"{100 * (pair.ratio - 1):+.2g} %"]
+        for name, pair in result.peaks.items()
+    ]
+    return paragraph(result.verdict) + table(head, rows, "Largest over the whole flight, SI")
+
+
+def _known(result: Result) -> dict[str, Any]:
+    """The facts of a result as a file has them, with null for what is not finite."""
+    return dict(json.loads(facts_text(result)))

@@ -1,4 +1,4 @@
-"""The machine's part of a page, and the page of a plan."""
+"""The inside of pages of a machine: the verdict, its axes, what they use of their limits."""
 
 from __future__ import annotations
 
@@ -6,13 +6,101 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.report.machine.tracking import followed
 from gbeam.report.page import curves
-from gbeam.report.page.bodies.verdict import verdict
-from gbeam.report.page.parts import Cell, Value, folded, heading, listed, paragraph, plot_places, raised, table
+from gbeam.report.page.parts import Cell, Value, folded, heading, known, listed, paragraph, plot_places, raised, table
 from gbeam.report.page.series import Numbers, Plots
+from gbeam.results.imitation.criteria import RULES
+from gbeam.results.imitation.verdict import change, percent
 
 Facts = Mapping[str, Any]
+
+_QUANTITIES = {
+    "largest_load": ("load anywhere on the specimen, g", 1 / STANDARD_GRAVITY),
+    "tip": ("tip displacement, mm", 1e3),
+    "root_force": ("root force, N", 1.0),
+    "root_moment": ("root moment, N m", 1.0),
+    "stress": ("stress, MPa", 1e-6),
+}
+
+
+def verdict(judged: Facts, names: tuple[str, str]) -> str:
+    """The verdict on an imitation; `names` are those of flight and machine."""
+    tables = _criteria(judged), _peaks(judged, names), _load_peaks(judged), _not_followed(judged)
+    shown = paragraph(judged["verdict"], "verdict") + f'<div class="gbeam-tables">{"".join(tables)}</div>'
+    return shown + folded("In words", listed(judged["lines"]))
+
+
+def _criteria(judged: Facts) -> str:
+    def row(each: Facts) -> list[Value]:
+        rule, limit, passed = RULES[each["name"]], each["limit"], each["passed"]
+        written = rule.limit_written(tuple(limit) if isinstance(limit, list) else limit).removeprefix("limit ")
+        cell = Cell("kept" if passed else "not kept", "good" if passed else "bad")
+        return [each["name"].replace("_", " "), rule.written(known(each["value"])), each["where"], written, cell]
+
+    rows = [row(each) for each in judged["criteria"]]
+    rows += [[name.replace("_", " "), "–", "", "–", "needs the response: gbeam run"] for name in judged["not_judged"]]
+    return table(("limit on", "value", "", "limit", ""), rows, "Accepted if every limit is kept", words=(0, 2, 4))
+
+
+def _peaks(judged: Facts, names: tuple[str, str]) -> str:
+    """Largest sizes over the whole flight, and of the load over all of the machine's run."""
+    rows: list[list[Value]] = []
+    for key, pair in judged["peaks"].items():
+        label, scale = _QUANTITIES[key]
+        flight, machine, ratio = (known(pair[name]) for name in ("flight", "machine", "ratio"))
+        if math.isfinite(flight):
+            where = pair.get("place_machine", "").removeprefix("the ")
+            times = pair["time_flight"], pair["time_machine"]
+            rows.append([label, scale * flight, scale * machine, _change(ratio), *times, where])
+    head = ["largest", *names, "change", "in flight at, s", "on the machine at, s", ""]
+    if not any(row[-1] for row in rows):
+        head, rows = head[:-1], [row[:-1] for row in rows]
+    return table(head, rows, "Largest over the whole flight; loads over the machine's whole run", words=(0, 6))
+
+
+def _load_peaks(judged: Facts) -> str:
+    def row(peak: Facts) -> list[Value]:
+        failed = peak["reason"]
+        return [
+            peak["time"],
+            peak["load"] / STANDARD_GRAVITY,
+            peak["time_machine"],
+            peak["reproduced"] / STANDARD_GRAVITY,
+            _change(peak["ratio"]),
+            _percent(peak["error"]),
+            _percent(peak["instant_error"]),
+            Cell(f"not reproduced: {failed}", "bad") if failed else "",
+        ]
+
+    head = ("at, s", "flight, g", "at, s", "machine, g", "change", "as a vector", "at the same instant", "")
+    rows = map(row, judged["accounting"]["peaks"])
+    return table(head, rows, "Peaks of the load at the control point", words=(7,))
+
+
+def _not_followed(judged: Facts) -> str:
+    accounting = judged["accounting"]
+    rows = [
+        [f"{each['start']:.3f}", f"{each['end']:.3f}", each["flight_peak"] / STANDARD_GRAVITY, each["reason"]]
+        for each in accounting["not_followed"]
+    ]
+    of = "load at the time" if accounting["tolerance_of"] == "instant" else "largest load"
+    within = f"within {percent(accounting['tolerance'])} of the {of}"
+    head = ("from, s", "to, s", "flight up to, g", "why")
+    followed = known(accounting["followed_share"])
+    shares = f"{_percent(1 - followed)} of the flight's time ({_percent(followed)} is followed, {within})"
+    shown = table(head, rows, f"Not followed: {shares}", words=(3,))
+    return shown if len(rows) <= 12 else folded(f"{len(rows)} stretches that are not followed", shown)
+
+
+def _change(ratio: float | None) -> str:
+    return change(known(ratio)) if math.isfinite(known(ratio)) else "–"
+
+
+def _percent(value: float | None) -> str:
+    share = known(value)
+    return percent(share if abs(share) > 5e-5 else 0.0) if math.isfinite(share) else "–"
 
 
 def plan_body(facts: Facts, variables: Mapping[str, Any], _: Numbers, plots: Plots, header: dict[str, Any]) -> str:

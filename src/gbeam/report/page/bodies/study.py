@@ -8,8 +8,7 @@ from typing import Any
 
 from gbeam.report import words
 from gbeam.report.page import curves
-from gbeam.report.page.bodies.machine import machine_section
-from gbeam.report.page.bodies.verdict import verdict
+from gbeam.report.page.bodies.machine import machine_section, verdict
 from gbeam.report.page.parts import folded, heading, known, listed, paragraph, plot_places, table
 from gbeam.report.page.scene import scene
 from gbeam.report.page.series import Numbers, Plots

@@ -1,1 +1,0 @@
-"""What all figures share: style and layout, lines and envelopes, units that suit a size, shading, limits, files."""
