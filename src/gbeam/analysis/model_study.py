@@ -1,4 +1,4 @@
-"""The same scenario by every model that can answer it, compared with the exact one (2009 section 4)."""
+"""One scenario by every model that can answer it, compared with the exact one (2009 section 4)."""
 
 from __future__ import annotations
 

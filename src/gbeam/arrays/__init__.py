@@ -1,1 +1,1 @@
-"""What arrays are here: NumPy's, or JAX's where something is traced; records of them; JAX's settings."""
+"""Arrays: NumPy's, or JAX's where something is traced; records of them; JAX's settings."""

@@ -1,4 +1,4 @@
-"""Which array library the values at hand belong to: NumPy, or JAX where one of them is traced or lives there."""
+"""The array library of the values at hand: NumPy, or JAX where one of them is traced or lives there."""
 
 from __future__ import annotations
 

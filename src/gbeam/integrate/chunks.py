@@ -31,12 +31,12 @@ class Chunk:
 
     @cached_property
     def inside(self) -> Any:
-        """Which steps are no fillings."""
+        """Flags of the steps that are no fillings."""
         return (np.arange(len(self.steps) // len(self.last)) <= self.last[:, None]).ravel()
 
     @cached_property
     def kept(self) -> Any:
-        """Which of them belong to the result."""
+        """Flags of the steps that belong to the result."""
         return self.inside & self.steps.kept
 
     @property
@@ -50,11 +50,11 @@ class Chunk:
         return self.steps[np.flatnonzero(self.inside)[-1]]
 
     def given(self, carry: Any) -> tuple[Any, Any, Any, Any, Any]:
-        """What :func:`newton.steps` takes of it."""
+        """Arguments of :func:`newton.steps`."""
         return self.tableau, carry, self.inputs, self.at_ends, self.last
 
     def one_by_one(self, scheme: Scheme, carry: Any) -> tuple[Any, Any, Any, Any]:
-        """What :func:`newton.safe` takes."""
+        """Arguments of :func:`newton.safe`."""
         import jax
 
         flat = [

@@ -48,7 +48,7 @@ def through(
     stop: Callable[[Floats], int | None] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Trajectory:
-    """The same by steps that are given; the result has the ends of those that are kept."""
+    """Integrate by given steps; the result has the ends of those that are kept."""
     run = _linear if isinstance(equations, LinearEquations) else _nonlinear
     time = np.append(steps.begin[:1], steps.end[steps.kept])
     pieces: list[tuple[Any, ...]] = []

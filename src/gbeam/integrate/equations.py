@@ -26,12 +26,12 @@ class LinearTerms:
 
     @property
     def each(self) -> tuple[Array, Array, Array]:
-        """Those of C, of K and of F."""
+        """Terms of C, of K and of F."""
         return self.velocity, self.stiffness, self.force
 
     @property
     def nonzero(self) -> tuple[Array, Array, Array]:
-        """Which of them are not zero, (k,) each."""
+        """Flags of the terms of C, K and F that are not zero, (k,) each."""
         c, k, f = (np.any(np.reshape(part, (len(part), -1)), axis=1) for part in self.each)
         return c, k, f
 

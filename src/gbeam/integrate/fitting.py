@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 
 
 def added(equations: LinearEquations, scheme: Scheme, step: float) -> tuple[Floats, Floats]:
-    """What steps of a length (s) add to M and C, (n, n) each; nothing of a scheme that does not fit."""
+    """Matrices (n, n) that steps of a length (s) add to M and C; zero of a scheme that does not fit."""
     if scheme.exponent is None or equations.rest is None:
         nothing = np.zeros(np.shape(equations.mass))
         return nothing, nothing

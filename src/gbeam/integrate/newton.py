@@ -26,7 +26,7 @@ _TOLERANCE, _ROUNDING, _ITERATIONS = 1e-9, 1e3, 25  # Newton's method proper
 
 
 class Carry(NamedTuple):
-    """What goes from step to step: z (m, n); the stages' accelerations of the last two steps, (s, n) each."""
+    """State between steps: z (m, n); the stages' accelerations of the last two steps, (s, n) each."""
 
     z: Array
     x: Array

@@ -42,7 +42,7 @@ class Run:
 
     @cached_property
     def shape(self) -> Hashable | None:
-        """What runs have in common that are integrated together; None of one that has to be integrated alone."""
+        """Key of runs that can be integrated together; None of one that has to be integrated alone."""
         steps = self.steps
         if isinstance(self.equations, NonlinearEquations):
             leaves, form = self.residual
@@ -60,7 +60,7 @@ class Run:
 
     @cached_property
     def terms(self) -> LinearTerms | None:
-        """Those of linear equations that have them."""
+        """Terms of linear equations that have them."""
         terms = getattr(self.equations, "terms", None)
         return None if terms is None else terms()
 
@@ -75,7 +75,7 @@ class Run:
 
     @property
     def at_times(self) -> Any:
-        """What drives them at the result's times; None where that is not known, for it jumps at the first."""
+        """Inputs at the result's times; None where these are not known, for they jump at the first."""
         if self.steps.first[0] != self.steps.begin[0]:
             return None
         kept = np.append(True, self.steps.kept)
@@ -83,13 +83,13 @@ class Run:
 
     @cached_property
     def features(self) -> Array:
-        """What linear equations depend on of that, (1 + t s, k)."""
+        """Features of the inputs of linear equations, (1 + t s, k)."""
         assert isinstance(self.equations, LinearEquations) and self.equations.features is not None
         return self.equations.features(self.inputs)
 
     @cached_property
     def parts(self) -> lanes.Parts:
-        """Of C, K and F: which features have a term that is not zero, and are not zero all the time."""
+        """Indices for C, K and F of features with a term that is not zero, and that are not zero all the time."""
         assert self.terms is not None
         driven = np.any(self.features, axis=0)
         c, k, f = (tuple(np.flatnonzero(driven & some).tolist()) for some in self.terms.nonzero)

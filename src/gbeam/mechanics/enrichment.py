@@ -1,4 +1,4 @@
-"""The same beam with more shapes: what a model's own shapes leave out."""
+"""A beam with more shapes: those that a model's own leave out."""
 
 from __future__ import annotations
 

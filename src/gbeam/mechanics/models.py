@@ -81,7 +81,7 @@ class Model:
         return cls(kind, axial if row.axial else 0, across, across, shapes or own, automatic=True)
 
     def richer(self) -> Model | None:
-        """The same with two more shapes across the beam, and one more along it; None where that is too many."""
+        """Add two shapes across the beam, and one along it; None where that is too many."""
         if max(self.y, self.z) + 2 > MOST:
             return None
         y, z = (n + 2 if n else 0 for n in (self.y, self.z))

@@ -1,4 +1,4 @@
-"""What to doubt of an answer before it is computed: implausible values, and directions that the model leaves out."""
+"""Doubts about an answer before it is computed: implausible values, and directions that the model leaves out."""
 
 from __future__ import annotations
 

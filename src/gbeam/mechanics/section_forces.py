@@ -125,7 +125,7 @@ def _of_polynomial(structure: Structure, count: int, q: Array, qd: Array, qdd: A
 
 
 def _of_field(structure: Structure, count: int, q: Array, qd: Array, qdd: Array) -> tuple[Any, ...]:
-    """The same of a complete field, by JAX; by NumPy where nothing moves."""
+    """Motions of a complete field's points, by JAX; by NumPy where nothing moves."""
     if not is_jax(q) and not np.any(qd) and not np.any(qdd):
         return _of_samples(structure, count, q, qd, qdd)
     from gbeam.mechanics.equations.dalembert import paths as compiled_paths
@@ -144,7 +144,7 @@ def _of_field(structure: Structure, count: int, q: Array, qd: Array, qdd: Array)
 
 
 def _of_samples(structure: Structure, count: int, q: Array, qd: Array, qdd: Array) -> tuple[Any, ...]:
-    """The same by NumPy."""
+    """Motions of a complete field's points by NumPy."""
     assert structure.field is not None and structure.inertia is not None
     stations = structure.field.sampled(slice(-count, None))
     particles, points = (paths(place, q, qd, qdd) for place in (structure.inertia.positions, stations.position))

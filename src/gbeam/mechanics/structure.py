@@ -1,4 +1,4 @@
-"""What every analysis reads: a structure in its coordinates, with its equations, its places and its sections."""
+"""The structure that every analysis reads: in its coordinates, with its equations, its places and its sections."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Sections:
 
 @dataclass(frozen=True, eq=False)
 class Source(Value):
-    """What a structure was made of: its beam, and which shapes its model has."""
+    """The beam that a structure was made of, and which shapes its model has."""
 
     beam: Beam
     shapes: str
@@ -276,7 +276,7 @@ class Structure:
         return coefficients(self.mass, places, stiffness, damping=c.damping, loads=loads), elastic
 
     def _expanded(self, q: Array) -> tuple[Coefficients, Array]:
-        """The same of a complete model by NumPy."""
+        """Expand a complete model by NumPy."""
         assert self.inertia is not None and self.elasticity is not None
         c = self.coefficients
         elastic, stiffness = sampled.elastic_about(self.elasticity, q, c.stiffness)

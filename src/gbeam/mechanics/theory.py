@@ -1,4 +1,4 @@
-"""The same beam by a fuller theory, as linear models: Timoshenko's shear and rotary inertia, Saint-Venant's twist.
+"""A beam by a fuller theory, as linear models: Timoshenko's shear and rotary inertia, Saint-Venant's twist.
 
 No model here has them. These two, the slender beam and the thick one on the same shapes, say what that leaves out.
 """
@@ -105,8 +105,8 @@ def theory_of(structure: Structure) -> Theory:
 
 
 class _Parts:
-    """What a beam's energies are made of at nodes, bodies, loads and stations: strains by nodal values, family by
-    family, and springs.
+    """Parts of a beam's energies at nodes, bodies, loads and stations: strains by nodal values, family by family, and
+    springs.
     """
 
     def __init__(self, structure: Structure, beam: Beam, rule: Quadrature) -> None:

@@ -1,1 +1,1 @@
-"""What is flexible: material, section, beam, bodies on the beam, springs at its root, loads. Plain checked data, SI."""
+"""Flexible things: material, section, beam, bodies on the beam, springs at its root, loads. Plain checked data, SI."""

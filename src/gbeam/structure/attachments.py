@@ -1,4 +1,4 @@
-"""What a beam carries and what carries it: bodies, loads, and a root that springs hold."""
+"""Attachments of a beam: bodies and loads on it, and a root that springs hold."""
 
 from __future__ import annotations
 

@@ -106,7 +106,7 @@ class Beam(Value):
 
 
 def assumptions(beam: Beam) -> tuple[str, ...]:
-    """What the stated error of the beam theory assumes where the beam does not say it: ``Poisson's ratio 0.3``."""
+    """Assumptions of the beam theory's stated error where the beam does not say: ``Poisson's ratio 0.3``."""
     words = []
     if beam.material.poissons_ratio is None:
         words.append(f"Poisson's ratio {ASSUMED_RATIO:g}")

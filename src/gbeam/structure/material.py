@@ -1,4 +1,4 @@
-"""What a beam is made of."""
+"""Materials of a beam."""
 
 from __future__ import annotations
 

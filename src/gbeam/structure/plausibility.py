@@ -1,4 +1,4 @@
-"""What is implausible in a beam, or impossible: its values one by one, and one against the other."""
+"""Implausible and impossible beams: their values one by one, and one against the other."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""How far a result is from the truth: what the complete equations with more shapes say at the solution."""
+"""Errors of results: what the complete equations with more shapes say at the solution."""

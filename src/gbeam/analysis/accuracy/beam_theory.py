@@ -1,4 +1,4 @@
-"""How wrong the theory of slender beams is: by shear, rotary inertia, twist and plate action, which no model here has.
+"""Errors of the theory of slender beams: by shear, rotary inertia, twist and plate action, which no model here has.
 
 The solution is put into the linear equations of the thick beam; what they leave of it beyond those of the slender one
 is answered by the thick beam, without plate action and with it: the larger counts.
@@ -48,7 +48,7 @@ UNKNOWN = Lacking(dict.fromkeys(Quantities._fields, math.nan), {}, np.zeros(0))
 
 
 class _Gap(NamedTuple):
-    """What the thick beam's equations leave of a solution: as a beam, and as a plate; (t, first + n) each."""
+    """Residuals (t, first + n) of a solution in the thick beam's equations: as a beam, and as a plate."""
 
     beam: Floats
     plate: Floats

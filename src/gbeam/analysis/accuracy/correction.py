@@ -40,7 +40,7 @@ class Sampled:
     loads: Floats | None = None
 
     def moved(self, d: Floats, dd: Floats, ddd: Floats) -> Sampled:
-        """The same with corrections (t, first + n) and their rates; of a hub's angle in the first column."""
+        """Add corrections (t, first + n) and their rates, of a hub's angle in the first column."""
         hub, base = self.hub, self.base
         if hub is not None:
             hub = hub + np.stack([x[:, 0] for x in (d, dd, ddd)], axis=1)
@@ -159,7 +159,7 @@ class OfSamples(NamedTuple):
 
 
 class Correction(NamedTuple):
-    """What a solution lacks, and its first two derivatives in time, (t, n) each."""
+    """Correction of a solution, and its first two derivatives in time, (t, n) each."""
 
     value: Floats
     rate: Floats

@@ -53,7 +53,7 @@ class Parts(NamedTuple):
 
 
 class Rings(NamedTuple):
-    """How far modes that the samples do not resolve may ring unseen, (k,) each: rad/s, m, N, N m."""
+    """Bounds (k,) of the ringing of modes that the samples do not resolve: rad/s, m, N, N m."""
 
     rate: Floats
     tip: Floats
@@ -122,7 +122,7 @@ def lacking(
 
 
 def _rings(exact: Structure, rate: Floats, amplitude: Floats) -> Rings:
-    """What modes with amplitudes (first + n, k) do at the tip and, by the elastic forces, at the root."""
+    """Ringing of modes with amplitudes (first + n, k) at the tip and, by the elastic forces, at the root."""
     c, q = exact.coefficients, amplitude[-exact.size :]
     inertia = np.linalg.solve(c.mass, c.stiffness @ q)
     at = exact.displacement(q.T)[:, -1], (c.f_a @ inertia).T, (c.f_al @ inertia).T

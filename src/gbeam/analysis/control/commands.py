@@ -132,7 +132,7 @@ class Vibration:
         return Vibration(values[some][order], 2 * size[some][order])
 
     def rows(self, time: Floats, drive: Floats, ratio: float = 1.0) -> Complex:
-        """What drives (t, ...) leave in each mode, m, (k, ...), where all frequencies are `ratio` times as high."""
+        """Vibration left in each mode, m, (k, ...), by drives (t, ...), with frequencies `ratio` times as high."""
         left = np.exp(-ratio * np.outer(self.eigenvalue, time))
         weight = self.gain * np.exp(ratio * self.eigenvalue.real * time[-1])
         flat = drive.reshape(len(time), -1)
@@ -173,7 +173,7 @@ def _kernel(rows: Floats) -> Floats:
 
 
 def check_goal(angle: float | None, rate: float | None, duration: float) -> Goal:
-    """What is to be done; InputError unless there is one angle or rate."""
+    """Return the goal; InputError unless there is one angle or rate."""
     if (angle is None) == (rate is None):
         raise InputError(
             "angle", "and rate are both given or both missing", "give the angle to turn, or the rate to reach"

@@ -104,7 +104,7 @@ class Outputs:
         return xp.concatenate([self.structure.displacement(q)[-1], a[0, -1], -moment[0, 0], strain, hub])
 
     def stacked(self, z: Array) -> Array:
-        """The same of one vector (y, ẏ, ÿ, u)."""
+        """Outputs of one vector (y, ẏ, ÿ, u)."""
         n = self.structure.size + self.residual.first
         return self(z[:n], z[n : 2 * n], z[2 * n : 3 * n], z[3 * n :])
 
@@ -136,7 +136,7 @@ def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
 
 
 def _acceleration(motion: Any) -> str:
-    """What accelerations are where a motion goes: with gravity they are what accelerometers measure."""
+    """Name of accelerations where a motion goes: with gravity they are what accelerometers measure."""
     weighs = motion.kind == "centrifuge" and float(motion.gravity) > 0
     weighs = weighs or (motion.kind == "hub" and motion.mount.gravity is not None)
     return "specific_force" if weighs else "acceleration"
@@ -166,7 +166,7 @@ def output_signals(gauges: Sequence[Gauge], motion: Motion) -> tuple[Signal, ...
 
 
 def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gauge]) -> Outputs:
-    """What is measured at an operating point."""
+    """Build the outputs at an operating point."""
     for i, gauge in enumerate(gauges):
         if not 0 <= gauge.at <= structure.length:
             fix = f"give 0 to {structure.length:g} m"

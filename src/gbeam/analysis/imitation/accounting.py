@@ -1,4 +1,4 @@
-"""What a machine makes of every part of a flight's load: its peaks, its stretches, and what comes on top."""
+"""A flight's load, part by part, as a machine makes it: its peaks, its stretches, and what comes on top."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class History:
 
     @property
     def size(self) -> Floats:
-        """Of the load, (t,) m/s²."""
+        """Size of the load, (t,) m/s²."""
         return np.asarray(np.linalg.norm(self.load, axis=1))
 
     def spread(self, i: int) -> tuple[float, float]:
@@ -191,7 +191,7 @@ def _peak(
     reason: str,
     shares: Mapping[str, Floats],
 ) -> LoadPeak:
-    """What the machine makes of the flight's peak at sample `top`, which has the samples of `basin`."""
+    """Judge the flight's peak at sample `top`, with the samples of `basin`, on the machine."""
     size, made = flight.size[basin], machine.size[basin]
     own = top - basin.start
     (near,) = (run for run in true_runs(size >= _DIP * size[own]) if run.start <= own < run.stop)

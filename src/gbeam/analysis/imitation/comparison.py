@@ -283,7 +283,9 @@ def _mismatch(covered: Flags, centrifuge: Response, gradient: Floats) -> Mismatc
 
 
 def _best_control_points(influence: Influence) -> tuple[float, float]:
-    """Where a field g (x − x_c) across the beam leaves the root without moment, or the tip where it is; both ends."""
+    """Control points at which a field g (x − x_c) across the beam leaves the root without moment, or the tip at rest;
+    both ends.
+    """
     uniform = np.concatenate([influence.moment_uniform[1:], influence.tip_uniform[1:]])
     linear = np.concatenate([influence.moment_linear[1:], influence.tip_linear[1:]])
     felt = uniform != 0  # a model may have no shapes along y

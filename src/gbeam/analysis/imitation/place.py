@@ -1,4 +1,4 @@
-"""Where to put the specimen: the control point, mounting and smoothing that change its response least.
+"""The place of the specimen: the control point, mounting and smoothing that change its response least.
 
 About the control point C the centrifuge adds Δa(x, t) = g(t)(x − x_c) to the load of the flight (2020 (4)), and the
 axis motions, so g, do not depend on where C lies in the specimen. Each measure of the response to Δa is then the size
@@ -101,7 +101,7 @@ def verify(
 
 
 def _largest(vectors: Floats) -> float:
-    """Of the parts across the beam."""
+    """Largest of the parts across the beam."""
     return float(np.linalg.norm(vectors[:, 1:], axis=1).max(initial=0.0))
 
 

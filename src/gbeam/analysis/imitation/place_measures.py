@@ -115,7 +115,7 @@ class Histories:
 
     @property
     def error(self) -> float:
-        """The same of the load's error at C alone, which no control point changes."""
+        """Measure of the load's error at C alone, which no control point changes."""
         return self._largest(self.at_control_point)
 
     def _largest(self, values: Floats) -> float:

@@ -42,7 +42,7 @@ class _Case:
 
     @property
     def shape(self) -> Hashable | None:
-        """What cases have in common that stand together; None of one that is to be integrated alone."""
+        """Key of cases that can be integrated together; None of one that is to be integrated alone."""
         if 3 * self.run.q.size * len(self.run.steps) * TOGETHER > LONGEST:
             return None
         return None if self.run.shape is None else (self.posed.motion.kind, self.posed.structure.linear, self.run.shape)
@@ -195,7 +195,7 @@ def _together(queue: list[_Case], together: int) -> Iterator[_Case | tuple[int, 
 
 
 def _read(queue: list[_Case], trajectories: list[Trajectory | None]) -> Iterator[_Case | tuple[int, Response]]:
-    """What becomes of cases by the trajectories that they waited for."""
+    """Read the trajectories that cases waited for, and let the cases go on or end."""
     ended = []
     for case, trajectory, moved in zip(queue, trajectories, _displaced(queue, trajectories), strict=True):
         posed, known = case.posed, None

@@ -44,7 +44,7 @@ class Grid:
 
     @staticmethod
     def of(structure: Structure, motion: Motion, settings: ResponseSettings, done: Response) -> Grid:
-        """That of a run that is done."""
+        """The grid of a run that is done."""
         if settings.step is not None:
             return Grid(done.step, 1)
         prepared = motion.over(settings.start, settings.start + settings.duration)

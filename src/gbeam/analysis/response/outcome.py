@@ -1,4 +1,4 @@
-"""How a run ended, and what to beware of in its result, in words."""
+"""The outcome of a run and warnings of its result, in words."""
 
 from __future__ import annotations
 
@@ -99,13 +99,13 @@ def describe(
 
 
 def _lost(structure: Structure, loss: Loss) -> str:
-    """Where a run's stability is lost, in words."""
+    """Say where a run's stability is lost."""
     what = "equilibrium is not stable" if loss.flutter else "stiffness is not positive definite"
     return f"{structure.kind}'s {what} from t = {loss.start:.4g} s, where {' and '.join(loss.causes)}"
 
 
 def inaccuracies(structure: Structure, errors: Errors, settings: ResponseSettings) -> tuple[str, ...]:
-    """What to say where the estimated errors are above the tolerance, or where there are none: causes and cures."""
+    """Warn of estimated errors above the tolerance, or of none: causes and cures."""
     if not settings.estimate:
         return ()
     if math.isnan(errors.displacement.step):
@@ -144,7 +144,7 @@ def _cure_of_step(settings: ResponseSettings) -> str:
 
 
 def effort(settings: ResponseSettings, steps: int, finer: int) -> tuple[str, ...]:
-    """What to say of an automatic step so many times finer than the results': which integrator needs fewer."""
+    """Advise, of an automatic step so many times finer than the results', an integrator that needs fewer."""
     if settings.step is not None or settings.integrator == "gauss" or finer < MANY:
         return ()
     return (
@@ -155,7 +155,7 @@ def effort(settings: ResponseSettings, steps: int, finer: int) -> tuple[str, ...
 
 
 def _yielding(structure: Structure, peaks: Peaks) -> list[str]:
-    """What to say where the stress exceeds the yield strength."""
+    """Warn where the stress exceeds the yield strength."""
     strength = None if structure.sections is None else structure.sections.yield_strength
     if strength is None or peaks.loads is None:
         return []

@@ -49,7 +49,7 @@ class Posed:
         return Corners.of(times, self.problem.equations.drive, start, end)
 
     def plan(self) -> Plan:
-        """Which runs the settings need."""
+        """Plan the runs that the settings need."""
         return planned(self.settings, self.coarse, self.given)
 
     def steps(self, step: float) -> Steps:
@@ -66,7 +66,7 @@ class Posed:
         return Run(trajectory, step, self._readings)
 
     def stride(self, step: float) -> int:
-        """How many steps of a length make one of the results, whose times all motions of a study share."""
+        """Number of steps of a length in one of the results, whose times all motions of a study share."""
         return 1 if self.settings.step is not None else round(self.coarse / step)
 
     def too_far(self, y: Floats) -> int | None:

@@ -1,4 +1,4 @@
-"""What is integrated: the equations of a model in one environment, and the state they start from."""
+"""The problem to integrate: the equations of a model in one environment, and the state they start from."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a run leaves: its response, with what is read from the trajectory and how well that is known."""
+"""The response that a run leaves, with what is read from the trajectory and how well that is known."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def outline_of(structure: Structure, motion: Motion, time: Floats, q: Floats) ->
 
 
 def _attitude(motion: Any, time: Floats, some: Any) -> Floats | None:
-    """Of a flight whose rates are given: integrated over all times, at some of them."""
+    """Attitude of a flight whose rates are given: integrated over all times, at some of them."""
     if not isinstance(motion, Flight) or motion.rates is None:
         return None
     return attitude(time, np.asarray(motion.base(time).w_WB_B))[some]

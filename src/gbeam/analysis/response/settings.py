@@ -1,4 +1,4 @@
-"""How a response over time is computed."""
+"""Settings of a response over time."""
 
 from __future__ import annotations
 

@@ -94,7 +94,7 @@ def observed_order(before: float, now: float, ratios: tuple[int, int], highest: 
 
 
 def ratio(coarse: Run, fine: Run) -> int:
-    """How many steps of one run make one of the other."""
+    """Number of steps of one run in one of the other."""
     return round(coarse.step / fine.step)
 
 

@@ -1,4 +1,4 @@
-"""Which scheme, and which step: divided until the error estimated from runs of several is within the tolerance."""
+"""The scheme and the step: divided until the error estimated from runs of several is within the tolerance."""
 
 from __future__ import annotations
 
@@ -134,7 +134,7 @@ def _finer(far: float, order: int) -> int:
 
 
 def _left(runs: list[Run], order: int, settings: ResponseSettings) -> tuple[float, float]:
-    """How many times its aim the error of tip or peaks is, by the order observed and by the scheme's own."""
+    """Error of tip or peaks over its aim, by the order observed and by the scheme's own."""
     found, tip, peaks = Estimate.of(runs, order), settings.aim, settings.aim_of_peaks
     return max(found.tip / tip, found.peaks / peaks), max(found.promised_tip / tip, found.promised_peaks / peaks)
 
@@ -156,7 +156,7 @@ _HISTORIES = "q", "qd", "qdd"
 
 
 def steps_beyond(motion: Motion, settings: ResponseSettings, step: float) -> tuple[int, int]:
-    """How many steps of the results a machine's spin-up and spin-down take."""
+    """Number of steps of the results in a machine's spin-up and spin-down."""
     beyond = motion.beyond(settings.start, settings.start + settings.duration)
     if is_traced(*beyond):
         fix = 'give spin_up and spin_down, or start = "idle"'

@@ -237,7 +237,7 @@ def crossing_errors(
     own, order = crossing.speed, crossing.order
 
     def gaps(rate: float) -> tuple[float, float]:
-        """Of the same model with more shapes, and of the exact one, rad/s."""
+        """Gaps of the same model with more shapes, and of the exact one, rad/s."""
         same, exact = richer.references(point_at(rate), mode[None])
         return float(same[0]) - order * rate, float(exact[0]) - order * rate
 
@@ -269,7 +269,7 @@ def _apart(value: float, reference: float) -> float:
 
 
 def doubtful_crossings(crossings: Sequence[Crossing], theory: str) -> tuple[str, ...]:
-    """What to say where speeds of crossings are wrong by more than one in a hundred."""
+    """Warn of speeds of crossings that are wrong by more than one in a hundred."""
     above = [each for each in crossings if each.errors.total > LIMIT]
     if not above:
         return ()

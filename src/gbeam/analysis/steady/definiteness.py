@@ -47,11 +47,11 @@ class Drive(NamedTuple):
     loads: Array | None = None
 
     def at(self, times: Any) -> Drive:
-        """Those of some times, or of one."""
+        """Base and loads at some times, or at one."""
         return Drive(*(None if each is None else each[times] for each in self))
 
     def between(self, before: int, after: int, share: float) -> Drive:
-        """What it is a share of the way from one time to another."""
+        """Interpolate a share of the way from one time to another."""
         ends = zip(self.at(before), self.at(after), strict=True)
         return Drive(*(None if a is None else a + share * (b - a) for a, b in ends))
 
@@ -69,7 +69,7 @@ def worst_loss(structure: Structure, time: Array, base: BaseMotion, q: Array) ->
         return about.mass, *about.frozen(*drive.at(i))
 
     def loss(part: Array) -> Loss | None:
-        """That of a stretch, at some of its times."""
+        """Loss over a stretch, at some of its times."""
         some = part[:: -(-len(part) // _MOST)]
         until = np.append(some[1:], min(part[-1] + 1, len(time) - 1))
         rate = np.array([growth_rate(*matrices(i)) for i in some])
@@ -128,7 +128,7 @@ def lowest_over_time(c: Coefficients, drive: Drive) -> Array:
 
 
 def _causes(structure: Structure, drive: Drive, matrices: tuple[Array, Array, Array]) -> tuple[str, ...]:
-    """What of the drive takes stiffness from the motion that grows fastest, or feeds it, in words."""
+    """Name what of the drive takes stiffness from the motion that grows fastest, or feeds it."""
     c, (a, w, alpha, loads) = structure.coefficients, drive
     value, modes = eigenvalues(*matrices)
     mode = modes[:, value.real.argmax()]

@@ -31,7 +31,7 @@ SHOWN = 3  # frequencies that no model has, named at once
 
 
 def doubtful(errors: FrequencyErrors) -> tuple[str, ...]:
-    """What to say where frequencies are wrong by more than one in a hundred, or where some are left out."""
+    """Warn of frequencies that are wrong by more than one in a hundred, and of those that are left out."""
     said = []
     above = np.flatnonzero(errors.total > LIMIT)
     if above.size:
@@ -95,7 +95,7 @@ class Richer:
         return exact if self.same is self.exact else reference(self.same), exact
 
     def by_theory(self, point: OperatingPoint, coordinates: Complex, *, gyroscopic: bool = True) -> ByTheory:
-        """How wrong the theory of slender beams makes these modes' frequencies. The arguments are as above."""
+        """Errors of these modes' frequencies by the theory of slender beams; arguments as above."""
         theory, first, k = self.theory, point.first, len(coordinates)
         plate = theory.plate(np.asarray(np.pad(point.q, (0, theory.thick.size - len(point.q))))[None])
         try:

@@ -1,4 +1,4 @@
-"""Where a relative equilibrium is lost as a load grows, and how wrong that is."""
+"""Loss of a relative equilibrium as a load grows, and the error of where that is."""
 
 from __future__ import annotations
 
@@ -162,7 +162,7 @@ def _lost(rich: Structure, path: Path, near: float, progress: Progress, shares: 
 
 
 def doubtful_loss(quantity: str, model: str, errors: ErrorEstimate, theory: str = "") -> tuple[str, ...]:
-    """What to say of a critical value with errors above one in a hundred, or that the exact model does not have."""
+    """Warn of a critical value with errors above one in a hundred, or that the exact model does not have."""
     if math.isinf(errors.total):
         return (
             f"the critical {quantity} is {model}'s own: the exact model keeps its equilibrium to {SHARES[-1]:g} times "

@@ -20,7 +20,7 @@ from gbeam.results.result import Complex, Floats
 
 
 def _sensitivity(structure: Structure, q: Any) -> tuple[Floats, Floats]:
-    """How the particles move with q, (k, 3, n), and how the stations do, (s, 3, n)."""
+    """Derivatives of the particles' places with respect to q, (k, 3, n), and of the stations', (s, 3, n)."""
     if structure.linear:
         return structure.places.slopes(q), structure.station_slopes(q)
     assert structure.inertia is not None
@@ -132,7 +132,7 @@ def modes(
 
 
 def _drawn(structure: Structure) -> dict[str, Any]:
-    """What a picture of the shapes needs of the beam."""
+    """The beam as a picture of the shapes needs it."""
     if structure.source is None or structure.traced:
         return {}
     section = structure.source.beam.section.at(structure.stations)

@@ -1,4 +1,4 @@
-"""Where the relative equilibrium is lost: critical hub rates, divergence of a beam pointing inward, buckling.
+"""Loss of the relative equilibrium: critical hub rates, divergence of a beam pointing inward, buckling.
 
 About a relative equilibrium on a steadily turning base the energy that counts is the amended potential, whose second
 derivative is K. While K is positive definite the equilibrium is stable, with any damping inside the beam too; once it

@@ -73,7 +73,7 @@ def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | No
 
 
 def _sideways(point: OperatingPoint) -> tuple[str, ...]:
-    """What to say of an equilibrium that a beam with torsion would not keep: a strip on edge buckles sideways."""
+    """Warn of an equilibrium that a beam with torsion would not keep: a strip on edge buckles sideways."""
     at = point.base, point.residual.unpack(point.u)[1]
     if not keeps(point.about, *at) or keeps(theory_of(point.structure).thick.coefficients, *at):
         return ()
@@ -81,7 +81,7 @@ def _sideways(point: OperatingPoint) -> tuple[str, ...]:
 
 
 def _doubtful(errors: Errors) -> tuple[str, ...]:
-    """What to say of an equilibrium that is wrong by more than one in a hundred."""
+    """Warn of an equilibrium that is wrong by more than one in a hundred."""
     quantities = {"tip's displacement": errors.displacement, "root's loads": errors.loads}
     above = {name: each for name, each in quantities.items() if each.total > LIMIT}
     if not above:
@@ -106,7 +106,7 @@ def _resting(q: Floats, point: OperatingPoint) -> Sampled:
 
 
 def _solved(rich: Structure, point: OperatingPoint) -> Quantities | None:
-    """What a structure with more shapes has at its own equilibrium; None where there is none."""
+    """Quantities of a structure with more shapes at its own equilibrium; None where there is none."""
     rich = replace(rich, load_values=point.structure.load_values)
     try:
         q = solve_equilibrium(rich, point.base).q

@@ -120,7 +120,7 @@ class CompleteHub:
         return jnp.concatenate([turning[None], beam])
 
     def about(self, c: Coefficients) -> FreeHub:
-        """The same hub with a linear model on its rim."""
+        """Put a linear model on the hub's rim."""
         return free_hub(c, self.mount, self.ground)
 
     def momentum(self, y: Array, yd: Array) -> Array:

@@ -18,7 +18,7 @@ Array = Any
 
 @record
 class Ground:
-    """What holds the hub: its inertia kg m², and a spring N m/rad and a damper N m s/rad to the ground."""
+    """Inertia of the hub about its axis, kg m², and spring N m/rad and damper N m s/rad between it and the ground."""
 
     inertia: Array
     stiffness: Array

@@ -1,4 +1,4 @@
-"""What moves and what stretches: the particles of a displacement field, and its strain energy."""
+"""Inertia and elasticity: the particles of a displacement field, and its strain energy."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class Weighed:
 
 
 def weighed(inertia: Inertia) -> Weighed:
-    """What the particles weigh at the points of their field."""
+    """Weigh the particles at the points of their field."""
     field, mass = inertia.field, inertia.mass
     if inertia.offset is not None or not field.cumulates:
         return Weighed(inertia, None, mass)

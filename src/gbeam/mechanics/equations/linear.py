@@ -107,7 +107,7 @@ class Coefficients:
 
     @property
     def terms(self) -> LinearTerms:
-        """What :meth:`at` sums over :meth:`features`."""
+        """Terms that :meth:`at` sums over :meth:`features`."""
         xp, n = namespace(self.mass), self.size
         flat = {name: xp.reshape(getattr(self, name), (9, *getattr(self, name).shape[2:])) for name in ("k_ww", "f_ww")}
         stiffness = [self.stiffness[None], xp.zeros((3, n, n)), flat["k_ww"], self.k_al, self.k_a]
@@ -144,7 +144,7 @@ class Coefficients:
         return self.mass @ qdd + velocity @ qd + stiffness @ q - force
 
     def input_matrix(self, q: Array, qd: Array, w_WB_B: Array, *, loaded: bool = False) -> Array:
-        """What a unit of each input adds to the forces, (n, 9 + 6 loads): a_O, ω, α, and the loads' components."""
+        """Forces of a unit of each input, a_O, ω, α and the loads' components, (n, 9 + 6 loads)."""
         xp = namespace(self.mass, q, w_WB_B)
         acceleration = self.f_a - self.k_a @ q
         rate = 2 * xp.einsum("i,ijn->jn", w_WB_B, self.f_ww - self.k_ww @ q) - self.gyroscopic @ qd
@@ -158,7 +158,7 @@ class Coefficients:
         return 0.5 * q @ self.stiffness @ q
 
     def damped(self, damping: Array) -> Coefficients:
-        """The same coefficients with another damping matrix."""
+        """Replace the damping matrix."""
         return replace(self, damping=damping)
 
 

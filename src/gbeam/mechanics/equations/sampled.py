@@ -79,7 +79,7 @@ def elastic_forces(elasticity: Elasticity, q: Array, stiffness: Array) -> Array:
 
 
 def _bent(field: ExactField, rigidity: Strains, q: Array) -> Array:
-    """The same of an exact field in three dimensions: through the twist, which is an integral."""
+    """Elastic forces of an exact field in three dimensions: through the twist, which is an integral."""
     shapes = [*field.nodal[1:], *field.node_slopes]
     values = [q @ each.T for each in shapes]
     bend_y, bend_z, rate = field.bending(*values)
@@ -144,7 +144,7 @@ def about(place: Any, q: Array, steps: Array) -> tuple[Array, Array, Array]:
 
 
 def _axis_about(field: ExactField, q: Array) -> tuple[Array, Array, Array]:
-    """The same of an exact field's points: a tangent depends on its own strain and angles, three numbers."""
+    """Expand an exact field's points: a tangent depends on its own strain and angles, three numbers."""
     values, unit, n = field.nodal @ q, np.eye(3)[..., None], len(q)
 
     def slopes(values: Array) -> Array:  # (..., 3, g) -> (..., 3, g, 3)

@@ -98,7 +98,7 @@ class ExactField:
         return sinc * slope_y + along * y, sinc * slope_z + along * z, versine * (y * slope_z - z * slope_y)
 
     def sampled(self, at: Any) -> ExactField:
-        """The same field at some of the points."""
+        """The field at some of the points."""
         return replace(self, angle_y=self.angle_y[at], angle_z=self.angle_z[at], cumulative=self.cumulative[at])
 
     @property

@@ -64,7 +64,7 @@ class ProjectedField:
         return Strains(q @ self.node_slope_s.T, -bend_w, bend_v)
 
     def sampled(self, at: Any) -> ProjectedField:
-        """The same field at some of the points."""
+        """The field at some of the points."""
         return replace(
             self,
             x=self.x[at],

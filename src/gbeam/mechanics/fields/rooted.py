@@ -59,7 +59,7 @@ class RootedField:
         return self.inner.strains(beam)._replace(root=root)
 
     def sampled(self, at: Any) -> RootedField:
-        """The same field at some of the points."""
+        """The field at some of the points."""
         return replace(self, inner=self.inner.sampled(at), x=self.x[at])
 
     @property

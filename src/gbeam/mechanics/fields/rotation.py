@@ -45,7 +45,7 @@ class Field(Protocol):
         ...
 
     def sampled(self, at: Any) -> Field:
-        """The same field at some of the points."""
+        """The field at some of the points."""
         ...
 
     @property
