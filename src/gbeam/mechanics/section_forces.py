@@ -18,6 +18,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.mechanics.equations.sampled import paths
+from gbeam.mechanics.fields.rotation import cross, skew
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
@@ -159,22 +160,14 @@ def absolute_accelerations(xp: Any, base: Base, r: Array, rd: Array, rdd: Array)
     w, alpha, along = base.w_WB_B, base.alpha_WB_B, base.a_WO_B[:, None, :]
     if xp is np and not (w.any() or alpha.any()):
         return along + rdd
-    spin = _matrix(xp, w)
-    both = xp.swapaxes(xp.concatenate([_matrix(xp, alpha) + spin @ spin, 2 * spin], axis=-1), -1, -2)
+    spin = skew(xp, w)
+    both = xp.swapaxes(xp.concatenate([skew(xp, alpha) + spin @ spin, 2 * spin], axis=-1), -1, -2)
     return along + xp.concatenate([r, rd], axis=-1) @ both + rdd
-
-
-def _matrix(xp: Any, w: Array) -> Array:
-    """[w]× of vectors (t, 3), (t, 3, 3)."""
-    x, y, z = w[..., 0], w[..., 1], w[..., 2]
-    o = xp.zeros_like(x)
-    return xp.stack([xp.stack([o, -z, y], -1), xp.stack([z, o, -x], -1), xp.stack([-y, x, o], -1)], -2)
 
 
 def _cross(xp: Any, left: Array, right: Array) -> Array:
     """left × right, (..., 3)."""
-    (a, b, c), (x, y, z) = (xp.moveaxis(each, -1, 0) for each in (left, right))
-    return xp.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=-1)
+    return xp.stack(cross(*(xp.moveaxis(each, -1, 0) for each in (left, right))), axis=-1)
 
 
 def about_the_hub(loads: Loads, motion: Motion | None, alpha_WB_B: Array) -> Loads:

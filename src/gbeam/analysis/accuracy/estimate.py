@@ -34,6 +34,19 @@ def cause_and_cure(shapes: float, model: float, beam_theory: float, theory: str)
     return "too few shapes", "raise model.modes or leave them out"
 
 
+def wrong_by(what: str, size: str, errors: ErrorEstimate, theory: str) -> str:
+    """Say by how much a quantity of a steady state is wrong, mostly from what, and what helps."""
+    cause, cure = cause_and_cure(errors.shapes, errors.model, errors.beam_theory, theory)
+    return f"{what} is wrong by an estimated {size}: {cause}; {cure}"
+
+
+def apart(value: float, reference: float) -> float:
+    """Relative difference of two values, either of which may not be reached."""
+    if math.isinf(reference):
+        return 0.0 if value == reference else math.inf
+    return math.inf if math.isinf(value) else abs(value / reference - 1)
+
+
 def of_bodies(structure: Structure, lacking: Lacking, tip: float, limit: float) -> Iterator[str]:
     """Warn of bodies, off the axis that the tip lies on, that are elsewhere by more than a share of its displacement,
     m.

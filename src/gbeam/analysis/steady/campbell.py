@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, percent
+from gbeam.analysis.accuracy.estimate import LIMIT, apart, percent, wrong_by
 from gbeam.analysis.steady.frequency_errors import Richer, doubtful
 from gbeam.analysis.steady.modal import modes_at
 from gbeam.analysis.steady.operating_point import OperatingPoint, linear_matrices, on_base, on_hub, steady_base
@@ -257,15 +257,9 @@ def crossing_errors(
 
     exact = root(1)
     same = exact if richer.same is richer.exact else root(0)
-    away = ErrorEstimate(0.0, _apart(own, same), _apart(same, exact), total=_apart(own, exact))
+    away = ErrorEstimate(0.0, apart(own, same), apart(same, exact), total=apart(own, exact))
     share = float(richer.by_theory(point_at(own), mode[None]).shares[0])
     return away.with_theory(share * order / abs(slope - order))
-
-
-def _apart(value: float, reference: float) -> float:
-    if math.isinf(reference):
-        return 0.0 if value == reference else math.inf
-    return math.inf if math.isinf(value) else abs(value / reference - 1)
 
 
 def doubtful_crossings(crossings: Sequence[Crossing], theory: str) -> tuple[str, ...]:
@@ -281,9 +275,8 @@ def doubtful_crossings(crossings: Sequence[Crossing], theory: str) -> tuple[str,
         return (
             f"the speed at which {where} is {'not' if len(above) == 1 else 'in part not'} one of the exact model's",
         )
-    cause, cure = cause_and_cure(worst.errors.shapes, worst.errors.model, worst.errors.beam_theory, theory)
     size = percent(worst.errors.total) + (" at most" if len(above) > 1 else "")
-    return (f"the speed at which {where} is wrong by an estimated {size}: {cause}; {cure}",)
+    return (wrong_by(f"the speed at which {where}", size, worst.errors, theory),)
 
 
 _SAMPLES = 501

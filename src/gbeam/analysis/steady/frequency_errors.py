@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.beam_theory import described, mode_causes
-from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, percent
+from gbeam.analysis.accuracy.estimate import LIMIT, percent, wrong_by
 from gbeam.analysis.steady.equilibrium import equilibrium_about
 from gbeam.analysis.steady.operating_point import Linear, OperatingPoint, stepped
 from gbeam.errors import ComputationError
@@ -23,7 +23,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
 from gbeam.motion.bases.base import Base
 from gbeam.numerics.solvers.oscillations import ZERO, eigenvalues, mac, matched
-from gbeam.results.errors import FrequencyErrors
+from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
 from gbeam.results.result import Complex, Floats
 
 BENT = 0.01  # of its kinetic energy: a mode of twist with less bending is excited by nothing that bends the beam
@@ -37,10 +37,9 @@ def doubtful(errors: FrequencyErrors) -> tuple[str, ...]:
     if above.size:
         worst = int(above[errors.total[above].argmax()])
         which = f"mode {above[0] + 1}" if len(above) == 1 else f"{len(above)} modes, from mode {above[0] + 1} on,"
-        shapes, model, theory = (float(each[worst]) for each in (errors.shapes, errors.model, errors.beam_theory))
-        cause, cure = cause_and_cure(shapes, model, theory, errors.theory)
-        size = percent(errors.total[worst]) + " at most" * (len(above) > 1)
-        said.append(f"the frequency of {which} is wrong by an estimated {size}: {cause}; {cure}")
+        parts = ErrorEstimate(**{part: float(getattr(errors, part)[worst]) for part in PARTS})
+        size = percent(parts.total) + " at most" * (len(above) > 1)
+        said.append(wrong_by(f"the frequency of {which}", size, parts, errors.theory))
     if errors.unseen:
         named = ", ".join(f"{each:.4g}" for each in errors.unseen[:SHOWN])
         more = f" and {len(errors.unseen) - SHOWN} more" if len(errors.unseen) > SHOWN else ""

@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import described, mode_causes
-from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, percent
+from gbeam.analysis.accuracy.estimate import LIMIT, apart, percent, wrong_by
 from gbeam.analysis.steady.frequency_errors import resting
 from gbeam.analysis.steady.modal import directions, modes_at
 from gbeam.analysis.steady.operating_point import OperatingPoint, linear_matrices, on_base
@@ -107,7 +107,7 @@ def judged(found: Critical, path: Path, progress: Progress = None) -> Critical:
     same = exact if structure.kind == "exact" else lost(structure.kind)
     shapes = abs(at / same - 1)
     model, total = (math.inf, math.inf) if math.isinf(exact) else (abs(same / exact - 1), abs(at / exact - 1))
-    beam_theory = max(_apart(at if math.isinf(slender) else slender, each) for each in thick)
+    beam_theory = max(apart(at if math.isinf(slender) else slender, each) for each in thick)
     errors = ErrorEstimate(0.0, shapes, model, total=total).with_theory(0.0 if math.isinf(model) else beam_theory)
     lowest = _lowest(theory.slender, *path(at))[:, : theory.own]
     causes = mode_causes(theory, path(at)[1], path(at)[0].load_values, lowest, np.zeros(1), plate)
@@ -134,11 +134,6 @@ def _unseen(found: Critical, path: Path, progress: Progress) -> tuple[str, ...]:
         f"with shear and twist, which no model here has, the equilibrium is lost at an estimated {lost:.4g} "
         f"{found.unit}",
     )
-
-
-def _apart(value: float, reference: float) -> float:
-    """Relative difference of two values, the second of which may not be reached."""
-    return math.inf if math.isinf(reference) else abs(value / reference - 1)
 
 
 def _lost(rich: Structure, path: Path, near: float, progress: Progress, shares: Sequence[float] = SHARES) -> float:
@@ -170,5 +165,4 @@ def doubtful_loss(quantity: str, model: str, errors: ErrorEstimate, theory: str 
         )
     if not errors.total > LIMIT:
         return ()
-    cause, cure = cause_and_cure(errors.shapes, errors.model, errors.beam_theory, theory)
-    return (f"the critical {quantity} is wrong by an estimated {percent(errors.total)}: {cause}; {cure}",)
+    return (wrong_by(f"the critical {quantity}", percent(errors.total), errors, theory),)

@@ -18,6 +18,7 @@ from gbeam.mechanics.equations.hub import FreeHub, Ground, free_hub
 from gbeam.mechanics.equations.inertia import Elasticity, Weighed
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.equations.virtual_work import LoadWork
+from gbeam.mechanics.fields.rotation import cross
 
 Array = Any
 Components = tuple[Any, ...]  # three arrays, along x, y and z
@@ -72,8 +73,8 @@ class Complete:
             return jax.jvp(place, (q,), (qd,))[1]
 
         rd, rdd = jax.jvp(moving, (q, qd), (qd, qdd))
-        turning = tuple(turned + 2 * v for turned, v in zip(_cross(w, r), rd, strict=True))
-        relative = tuple(map(sum, zip(_cross(alpha, r), _cross(w, turning), rdd, strict=True)))
+        turning = tuple(turned + 2 * v for turned, v in zip(cross(w, r), rd, strict=True))
+        relative = tuple(map(sum, zip(cross(alpha, r), cross(w, turning), rdd, strict=True)))
         return r, self.inertia.forces(relative, a), pull_back, self.inertia.total(relative, a)
 
     def inside(self, q: Array, qd: Array) -> Array:
@@ -86,11 +87,6 @@ class Complete:
         if self.work is None or load_values is None:
             return jnp.zeros(6 + self.size)
         return self.work.generalised(q, load_values)
-
-
-def _cross(w: Any, r: Any) -> Components:
-    """w × r of two vectors or many, by components."""
-    return w[1] * r[2] - w[2] * r[1], w[2] * r[0] - w[0] * r[2], w[0] * r[1] - w[1] * r[0]
 
 
 @record
@@ -111,7 +107,7 @@ class CompleteHub:
         (beam,) = pull_back(force)
         beam = beam + self.system.inside(q, qd)
         # Of the forces about the axis: about the root, and of their resultant there, e × r_O being along y of the hub.
-        about = sum(e * jnp.sum(moment) for e, moment in zip(axis, _cross(r, force), strict=True))
+        about = sum(e * jnp.sum(moment) for e, moment in zip(axis, cross(r, force), strict=True))
         about = about + self.mount.radius * onward @ resultant
         turning = self.ground.torque(y[0], yd[0], ydd[0]) + about - torque
         if self.system.work is not None and load_values is not None:

@@ -79,10 +79,20 @@ def rotation_matrix(angle: Array) -> Array:
     """Rotation matrices (..., 3, 3) of rotation vectors (..., 3)."""
     xp = namespace(angle)
     sinc, versine, _ = exponential_of(xp.sum(angle**2, axis=-1))
-    x, y, z = angle[..., 0], angle[..., 1], angle[..., 2]
+    across = skew(xp, angle)
+    return xp.eye(3) + sinc[..., None, None] * across + versine[..., None, None] * (across @ across)
+
+
+def skew(xp: Any, w: Array) -> Array:
+    """[w]× of vectors (..., 3), (..., 3, 3)."""
+    x, y, z = w[..., 0], w[..., 1], w[..., 2]
     o = xp.zeros_like(x)
-    skew = xp.stack([xp.stack([o, -z, y], -1), xp.stack([z, o, -x], -1), xp.stack([-y, x, o], -1)], -2)
-    return xp.eye(3) + sinc[..., None, None] * skew + versine[..., None, None] * (skew @ skew)
+    return xp.stack([xp.stack([o, -z, y], -1), xp.stack([z, o, -x], -1), xp.stack([-y, x, o], -1)], -2)
+
+
+def cross(w: Any, r: Any) -> tuple[Array, Array, Array]:
+    """w × r of two vectors or many, by components."""
+    return w[1] * r[2] - w[2] * r[1], w[2] * r[0] - w[0] * r[2], w[0] * r[1] - w[1] * r[0]
 
 
 def sine_cosine(angle: Array) -> tuple[Array, Array]:
