@@ -19,7 +19,7 @@ from jax.tree_util import Partial
 
 from gbeam import Beam, Hub, Material, Model, PointMass, Section, assemble, constant
 from gbeam.analysis.control.linearization import linearize
-from gbeam.analysis.vibration.modal import modes
+from gbeam.analysis.steady.modal import modes
 from gbeam.integrate import NonlinearEquations, integrate, newmark
 
 ANGLE = 1.0  # rad

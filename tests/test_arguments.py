@@ -430,7 +430,7 @@ def test_what_looks_like_a_number_is_one(given: Given) -> None:
 
 
 def test_a_mistake_inside_is_not_blamed_on_an_argument(given: Given, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("gbeam.analysis.equilibrium.static.operating_point", None)
+    monkeypatch.setattr("gbeam.analysis.steady.static.operating_point", None)
     with pytest.raises(TypeError, match="NoneType"):
         gb.static(given.structure, given.still, time=0.0)
 

@@ -22,8 +22,6 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.analysis.control.reduction import modal_truncation as modal_truncation
     from gbeam.analysis.control.shaping import shape_command as shape_command
     from gbeam.analysis.environments import study as study
-    from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium as solve_equilibrium
-    from gbeam.analysis.equilibrium.static import static as static
     from gbeam.analysis.imitation.comparison import compare as compare
     from gbeam.analysis.imitation.place import place as place
     from gbeam.analysis.imitation.place_measures import Choice as Choice
@@ -35,12 +33,14 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.analysis.response.problem import Initial as Initial
     from gbeam.analysis.response.settings import ResponseSettings as ResponseSettings
     from gbeam.analysis.response.simulation import simulate as simulate
-    from gbeam.analysis.vibration.campbell import campbell as campbell
-    from gbeam.analysis.vibration.modal import modes as modes
-    from gbeam.analysis.vibration.stability import buckling_acceleration as buckling_acceleration
-    from gbeam.analysis.vibration.stability import critical_load as critical_load
-    from gbeam.analysis.vibration.stability import critical_speed as critical_speed
-    from gbeam.analysis.vibration.stability import critical_speed_map as critical_speed_map
+    from gbeam.analysis.steady.campbell import campbell as campbell
+    from gbeam.analysis.steady.equilibrium import solve_equilibrium as solve_equilibrium
+    from gbeam.analysis.steady.modal import modes as modes
+    from gbeam.analysis.steady.stability import buckling_acceleration as buckling_acceleration
+    from gbeam.analysis.steady.stability import critical_load as critical_load
+    from gbeam.analysis.steady.stability import critical_speed as critical_speed
+    from gbeam.analysis.steady.stability import critical_speed_map as critical_speed_map
+    from gbeam.analysis.steady.static import static as static
     from gbeam.errors import ComputationError as ComputationError
     from gbeam.errors import GbeamError as GbeamError
     from gbeam.errors import InputError as InputError
@@ -129,22 +129,22 @@ _HOME = {
     "assemble": "mechanics.assembly",
     "axis_commands": "analysis.imitation.plan",
     "balanced_truncation": "analysis.control.reduction",
-    "buckling_acceleration": "analysis.vibration.stability",
+    "buckling_acceleration": "analysis.steady.stability",
     "build_target": "motion.centrifuge.target.build",
-    "campbell": "analysis.vibration.campbell",
+    "campbell": "analysis.steady.campbell",
     "choice_of": "analysis.imitation.place_measures",
     "compare": "analysis.imitation.comparison",
     "compare_models": "analysis.model_study",
     "constant": "motion.profiles.piecewise",
-    "critical_load": "analysis.vibration.stability",
-    "critical_speed": "analysis.vibration.stability",
-    "critical_speed_map": "analysis.vibration.stability",
+    "critical_load": "analysis.steady.stability",
+    "critical_speed": "analysis.steady.stability",
+    "critical_speed_map": "analysis.steady.stability",
     "describe": "analysis.case",
     "fit": "studies.fit",
     "linearize": "analysis.control.linearization",
     "machines": "motion.centrifuge.machine.examples",
     "modal_truncation": "analysis.control.reduction",
-    "modes": "analysis.vibration.modal",
+    "modes": "analysis.steady.modal",
     "nonlinear_system": "analysis.control.nonlinear",
     "optimise": "studies.optimise",
     "place": "analysis.imitation.place",
@@ -158,8 +158,8 @@ _HOME = {
     "simulate": "analysis.response.simulation",
     "simulate_batch": "analysis.response.batch",
     "smoothed": "motion.profiles.profile",
-    "solve_equilibrium": "analysis.equilibrium.equilibrium",
-    "static": "analysis.equilibrium.static",
+    "solve_equilibrium": "analysis.steady.equilibrium",
+    "static": "analysis.steady.static",
     "study": "analysis.environments",
     "surface_gauges": "analysis.control.linearization",
     "sweep": "studies.sweep",

@@ -155,7 +155,7 @@ def static(
     case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
 ) -> tuple[Deflection, ...]:
     """Deflections at rest in all motions, or one."""
-    from gbeam.analysis.equilibrium.static import static
+    from gbeam.analysis.steady.static import static
 
     structure, time = _structure(case, needs), _time(case, at)
     names = list(case.motions) if motion is None else [motion_of(case.motions, motion)]
@@ -176,7 +176,7 @@ def modes(
     gyroscopic: Annotated[bool, "Keep Coriolis coupling."] = True,
 ) -> Modes:
     """Small vibrations about the equilibrium."""
-    from gbeam.analysis.vibration import modal
+    from gbeam.analysis.steady import modal
 
     name, time = motion_of(case.motions, motion), _time(case, at)
     return modal.modes(_structure(case, needs), prepared(case, name), time, gyroscopic=gyroscopic, name=name)
@@ -198,8 +198,8 @@ def critical_speed(
     progress: Callable[[str, float], None] | None = None,
 ) -> Critical:
     """The rate of a hub, factor of the loads or acceleration of the root up to `upper` at which beams buckle."""
-    from gbeam.analysis.equilibrium.operating_point import held_base
-    from gbeam.analysis.vibration import stability
+    from gbeam.analysis.steady import stability
+    from gbeam.analysis.steady.operating_point import held_base
 
     name, time = motion_of(case.motions, motion, HUB), _time(case, at)
     base, structure = prepared(case, name), _structure(case, needs).at_time(time)
@@ -257,7 +257,7 @@ def campbell(
     orders: int = 4,
 ) -> Campbell:
     """Frequencies from one rate of a hub to another, rad/s, and crossings with multiples of the rate."""
-    from gbeam.analysis.vibration import campbell
+    from gbeam.analysis.steady import campbell
 
     name = motion_of(case.motions, motion, HUB)
     structure, multiples = case.assemble(), range(1, orders + 1)

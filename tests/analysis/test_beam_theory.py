@@ -14,8 +14,8 @@ from scipy.interpolate import BSpline
 from scipy.optimize import brentq
 
 import gbeam as gb
-from gbeam.analysis.equilibrium.operating_point import REST
-from gbeam.analysis.vibration.loss import _lost
+from gbeam.analysis.steady.loss import _lost
+from gbeam.analysis.steady.operating_point import REST
 from gbeam.mechanics.theory import theory_of
 
 from ..frame import Frame, cantilever

@@ -24,8 +24,8 @@ from gbeam import (
     simulate,
     vector,
 )
-from gbeam.analysis.equilibrium.definiteness import Drive, lowest_over_time, worst_loss
-from gbeam.analysis.vibration.stability import critical_load
+from gbeam.analysis.steady.definiteness import Drive, lowest_over_time, worst_loss
+from gbeam.analysis.steady.stability import critical_load
 from gbeam.motion import constant
 from gbeam.results.response import BaseMotion
 

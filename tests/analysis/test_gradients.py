@@ -29,7 +29,7 @@ from gbeam import (
     simulate,
     trapezoid,
 )
-from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
+from gbeam.analysis.steady.equilibrium import solve_equilibrium
 from gbeam.arrays.namespace import namespace
 from gbeam.motion import Base
 

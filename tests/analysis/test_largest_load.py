@@ -9,7 +9,7 @@ import pytest
 
 from gbeam import Beam, Comparison, InputError, PointMass, Response, assemble, compare, constant, simulate
 from gbeam import Flight as InFlight
-from gbeam.analysis.imitation.largest import largest_load, points_of
+from gbeam.analysis.imitation.accounting import largest_load, points_of
 from gbeam.results.response import BaseMotion
 
 from .helpers import ALUMINIUM, LENGTH, SECTION, made

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gbeam.analysis.equilibrium.static import static
 from gbeam.analysis.imitation.comparison import compare
 from gbeam.analysis.response.simulation import simulate
+from gbeam.analysis.steady.static import static
 from gbeam.errors import InputError
 from gbeam.motion import STANDARD_GRAVITY, Centrifuge, Flight, tabulated
 

@@ -22,8 +22,8 @@ from gbeam import (
     solve_equilibrium,
     static,
 )
-from gbeam.analysis.equilibrium.operating_point import on_base
-from gbeam.analysis.equilibrium.static import deflection_at
+from gbeam.analysis.steady.operating_point import on_base
+from gbeam.analysis.steady.static import deflection_at
 from gbeam.motion import Base
 
 from .helpers import EA, EI, LENGTH, LINE, strip

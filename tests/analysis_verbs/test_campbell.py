@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from gbeam import InputError, Model, assemble
-from gbeam.analysis.vibration.campbell import campbell
-from gbeam.analysis.vibration.modal import modes
-from gbeam.analysis.vibration.stability import critical_speed_map
+from gbeam.analysis.steady.campbell import campbell
+from gbeam.analysis.steady.modal import modes
+from gbeam.analysis.steady.stability import critical_speed_map
 from gbeam.motion import Flight, Hub, constant
 from gbeam.results.declared import json_of
 

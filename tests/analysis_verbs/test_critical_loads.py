@@ -24,8 +24,8 @@ from gbeam import (
     simulate,
     static,
 )
-from gbeam.analysis.vibration.modal import modes
-from gbeam.analysis.vibration.stability import buckling_acceleration, critical_speed
+from gbeam.analysis.steady.modal import modes
+from gbeam.analysis.steady.stability import buckling_acceleration, critical_speed
 from gbeam.motion import Flight, Hub, SmoothStep, constant, vector
 
 from .beams import slender

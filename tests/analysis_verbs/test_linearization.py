@@ -10,8 +10,8 @@ from gbeam import Beam, Gauge, InputError, Model, Root, assemble
 from gbeam.analysis.control.linearization import linearize
 from gbeam.analysis.control.nonlinear import nonlinear_system
 from gbeam.analysis.control.reduction import balanced_truncation, modal_truncation
-from gbeam.analysis.equilibrium.operating_point import evaluated_at, linear_matrices, on_base, on_hub, operating_point
-from gbeam.analysis.vibration.modal import modes
+from gbeam.analysis.steady.modal import modes
+from gbeam.analysis.steady.operating_point import evaluated_at, linear_matrices, on_base, on_hub, operating_point
 from gbeam.motion import Base, Hub, constant
 from gbeam.report.steady.state_space import text, to_json
 from gbeam.results.state_space import Signal, StateSpace

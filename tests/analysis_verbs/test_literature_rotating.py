@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from gbeam import Model, PointMass, assemble
-from gbeam.analysis.vibration.modal import modes
-from gbeam.analysis.vibration.stability import critical_speed
+from gbeam.analysis.steady.modal import modes
+from gbeam.analysis.steady.stability import critical_speed
 from gbeam.motion import Hub, constant
 from validation.published.tables import TIP_MASS_FLAP, UNIFORM_FLAP
 

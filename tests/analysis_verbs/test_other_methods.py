@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from gbeam import Beam, Material, Model, PointMass, Section, assemble
-from gbeam.analysis.equilibrium.static import static
-from gbeam.analysis.vibration.modal import modes
-from gbeam.analysis.vibration.stability import buckling_acceleration, critical_speed
+from gbeam.analysis.steady.modal import modes
+from gbeam.analysis.steady.stability import buckling_acceleration, critical_speed
+from gbeam.analysis.steady.static import static
 from gbeam.motion import Hub, constant
 from validation.codes.hermite_beam import HermiteBeam
 

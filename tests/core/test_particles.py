@@ -22,7 +22,7 @@ from gbeam import (
     simulate,
     static,
 )
-from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
+from gbeam.analysis.steady.equilibrium import solve_equilibrium
 from gbeam.mechanics.equations.linear import Geometric
 from gbeam.motion import Base, constant
 

@@ -26,7 +26,7 @@ from gbeam import (
     critical_speed,
     simulate,
 )
-from gbeam.arrays.derivatives import with_slope
+from gbeam.arrays.jax_setup import with_slope
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.equations.residuals import OnHub
 from validation.published.hubbeam2009 import HUB_INERTIA, HUB_RADIUS, LENGTH, Paper

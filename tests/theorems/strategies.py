@@ -13,8 +13,8 @@ from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
 
 from gbeam import Beam, Material, PointMass, Root, Section, Structure
-from gbeam.analysis.equilibrium.operating_point import operating_point
-from gbeam.analysis.vibration.modal import modes_at
+from gbeam.analysis.steady.modal import modes_at
+from gbeam.analysis.steady.operating_point import operating_point
 from gbeam.motion.protocol import Motion
 
 # A counterexample is as random as any example: it is not made smaller, which takes minutes.

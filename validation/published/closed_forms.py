@@ -33,7 +33,7 @@ from gbeam import (
     static,
     trapezoid,
 )
-from gbeam.analysis.vibration.stability import buckling_acceleration
+from gbeam.analysis.steady.stability import buckling_acceleration
 from validation.published import zhang2020
 from validation.published.specimens import strip, strip_beam, unit_beam
 from validation.table import Row

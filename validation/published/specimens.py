@@ -29,7 +29,7 @@ from gbeam import (
     assemble,
     simulate,
 )
-from gbeam.analysis.equilibrium.operating_point import linear_matrices, on_base
+from gbeam.analysis.steady.operating_point import linear_matrices, on_base
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.motion import Base
 from validation.published import hubbeam2009, zhang2020

@@ -1,4 +1,4 @@
-"""JAX as gbeam needs it: double precision, compiled programs kept on disk, gbeam's records known as pytrees.
+"""JAX as gbeam needs it: double precision, programs kept on disk, records as pytrees, values with their slopes.
 
 Import this module before the first use of JAX; every module that needs JAX does.
 """
@@ -46,3 +46,22 @@ def _register(cls: type) -> None:
 
 
 register_all(_register)
+
+
+def with_slope(function: Callable[[Any], Any]) -> Callable[[Any], tuple[Any, Any]]:
+    """A function's values and their derivatives with respect to its vector: traced, and compiled, once for both."""
+
+    def twice(x: Any) -> tuple[Any, Any]:
+        values = function(x)
+        return values, values
+
+    def both(x: Any) -> tuple[Any, Any]:
+        slope, values = jax.jacfwd(twice, has_aux=True)(x)
+        return values, slope
+
+    return both
+
+
+def linear_root(function: Callable[[Any], Any], right: Any) -> Any:
+    """x of g(x) = y of a linear function g: what :func:`jax.lax.custom_root` differentiates a solution by."""
+    return jax.numpy.linalg.solve(jax.jacfwd(function)(right), right)

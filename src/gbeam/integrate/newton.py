@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 
-from gbeam.arrays.derivatives import linear_root, with_slope
+from gbeam.arrays.jax_setup import linear_root, with_slope
 from gbeam.integrate.schemes import Tableau
 
 Array = Any

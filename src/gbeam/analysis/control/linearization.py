@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gbeam.analysis.equilibrium.operating_point import (
+from gbeam.analysis.steady.frequency_errors import doubtful, pole_errors
+from gbeam.analysis.steady.modal import modes_at
+from gbeam.analysis.steady.operating_point import (
     OperatingPoint,
     linear_matrices,
     on_base,
@@ -18,9 +20,7 @@ from gbeam.analysis.equilibrium.operating_point import (
     operating_point,
     steady_base,
 )
-from gbeam.analysis.vibration.errors import doubtful, pole_errors
-from gbeam.analysis.vibration.modal import modes_at
-from gbeam.analysis.vibration.stability import hub_of
+from gbeam.analysis.steady.stability import hub_of
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.errors import InputError

@@ -14,7 +14,7 @@ from gbeam.analysis.control.linearization import (
     output_signals,
     outputs_of,
 )
-from gbeam.analysis.equilibrium.operating_point import REST, on_base, on_hub
+from gbeam.analysis.steady.operating_point import REST, on_base, on_hub
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion

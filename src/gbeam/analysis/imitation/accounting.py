@@ -4,22 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.guards.checks import choice, positive
+from gbeam.motion.centrifuge.machine.kinematics import moved
 from gbeam.numerics.intervals import true_runs
 from gbeam.numerics.prominence import separate_peaks
-from gbeam.results.imitation.accounting import TOLERANCE_OF, Accounting, LoadPeak, NotFollowed, Preload
+from gbeam.results.imitation.accounting import TOLERANCE_OF, Accounting, LoadPeak, NotFollowed, PeakPair, Preload
 from gbeam.results.machine import AxesResult
 from gbeam.results.result import Flags, Floats
 
 _DIP = 0.9  # of the lower of two maxima: a load that falls further between them makes them two peaks
 _SLACK = 1e-9  # of idle: a load held at it is not above it
 _BOUND, _BEYOND = 0.99, 1.001  # shares of a limit between which it is what hinders the axis
-_MOST = 2  # limits named
+_NAMED = 2  # limits named
 _NEAR = 0.25  # s: so far from a stretch a limit may be used up because of it
 _CORNER, _BELOW = "corner", "below idle"
 _NAMES = (_CORNER, _BELOW, "gimbals", "left out")
@@ -177,7 +178,7 @@ def _named(reason: str, shares: Mapping[str, Floats], around: slice) -> str:
         for name, share in shares.items()
         if _BOUND <= share[around].max() <= _BEYOND
     }
-    return ", ".join(sorted(used, key=lambda name: -used[name])[:_MOST]) or _CORNER
+    return ", ".join(sorted(used, key=lambda name: -used[name])[:_NAMED]) or _CORNER
 
 
 def _peak(
@@ -217,3 +218,37 @@ def _preloads(edges: Floats, time: Floats, size: Floats, made: Floats, most: Flo
         i = run.start + int(np.argmax((made - most)[run]))
         ends = float(edges[run.start]), float(edges[run.stop])
         yield Preload(*ends, float(time[i]), float(made[i]), float(size[i]))
+
+
+_GRID, _MOST = 2e-3, 50_000  # s between times at which a load is looked at; most of them
+_ALIKE = 1e-9  # of the load: points that differ by less feel the same
+
+Largest = tuple[float, float, str]  # m/s², s, place; empty where every point feels the same
+
+
+def times_between(first: float, last: float) -> Floats:
+    """Times at which a motion is looked at where no response gives them, s."""
+    return np.linspace(first, last, min(int(np.ceil((last - first) / _GRID)), _MOST) + 1)
+
+
+def points_of(length: float, bodies: Floats) -> dict[str, Floats]:
+    """Ends of the beam, m from the root, and bodies (b, 3), by name: the load's size, convex in the place, is largest
+    at one.
+    """
+    ends = {"the root": np.zeros(3), "the tip": np.array([length, 0.0, 0.0])}
+    off = [body for body in np.asarray(bodies) if np.any(body[1:] != 0) or not 0 <= body[0] <= length]
+    return ends | {f"the body at {1e3 * body[0]:.4g} mm": body for body in off}
+
+
+def largest_load(time: Floats, base: Any, points: Mapping[str, Floats], origin: float = 0.0) -> Largest:
+    """Largest size of a base's load over time (t,) at points from the root, the base's point being at `origin`, m."""
+    away = np.array([-origin, 0.0, 0.0])
+    loads = np.array([np.linalg.norm(moved(base, place + away).a_WO_B, axis=-1) for place in points.values()])
+    place, i = np.unravel_index(int(np.argmax(loads)), loads.shape)
+    alike = np.ptp(loads[:, i]) <= _ALIKE * loads[place, i]
+    return float(loads[place, i]), float(time[i]), "" if alike else list(points)[place]
+
+
+def largest_pair(flight: Largest, machine: Largest) -> PeakPair:
+    """Pair the largest loads of both."""
+    return PeakPair(flight[0], machine[0], flight[1], machine[1], flight[2], machine[2])

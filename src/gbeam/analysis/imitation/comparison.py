@@ -6,8 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from gbeam.analysis.imitation.accounting import History, account_of
-from gbeam.analysis.imitation.largest import largest_load, largest_pair, points_of
+from gbeam.analysis.imitation.accounting import History, account_of, largest_load, largest_pair, points_of
 from gbeam.analysis.response.peaks import vector_peaks
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed

@@ -14,8 +14,8 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from gbeam.analysis.imitation.accounting import largest_load, largest_pair, points_of, times_between
 from gbeam.analysis.imitation.comparison import CUTOFF, compare
-from gbeam.analysis.imitation.largest import largest_load, largest_pair, points_of, times_between
 from gbeam.analysis.imitation.place_measures import Answers, Choice, Histories
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate

@@ -6,8 +6,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from gbeam.analysis.imitation.accounting import History, account_of
-from gbeam.analysis.imitation.largest import largest_load, largest_pair, points_of, times_between
+from gbeam.analysis.imitation.accounting import (
+    History,
+    account_of,
+    largest_load,
+    largest_pair,
+    points_of,
+    times_between,
+)
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.motion import Centrifuge

@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 from gbeam.analysis.accuracy.estimate import BEYOND, percent
-from gbeam.analysis.equilibrium.definiteness import Loss, worst_loss
 from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.steady.definiteness import Loss, worst_loss
 from gbeam.guards.limits import BOUNDLESS
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.fields.exact import ExactField

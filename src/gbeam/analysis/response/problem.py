@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.equilibrium.equilibrium import solve_equilibrium
+from gbeam.analysis.steady.equilibrium import solve_equilibrium
 from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.arrays.tree import Value
 from gbeam.errors import ComputationError, InputError

@@ -203,7 +203,7 @@ def critical_map(
     if max(places) > length:
         raise InputError("--positions", f"has {max(places):g} m, off the beam", f"give 0 to {length:g} m")
 
-    from gbeam.analysis.vibration.stability import critical_speed_map
+    from gbeam.analysis.steady.stability import critical_speed_map
     from gbeam.report.steady import critical as words
     from gbeam.results.declared import json_of
 

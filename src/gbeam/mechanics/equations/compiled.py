@@ -14,7 +14,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from gbeam.arrays.derivatives import linear_root, with_slope
+from gbeam.arrays.jax_setup import linear_root, with_slope
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.motion.bases.base import Base
 

@@ -12,8 +12,8 @@ from gbeam.analysis.accuracy.beam_theory import described, static_theory
 from gbeam.analysis.accuracy.correction import Sampled
 from gbeam.analysis.accuracy.estimate import LIMIT, UNKNOWN, cause_and_cure, of_bodies, percent
 from gbeam.analysis.accuracy.response_errors import IntArray, Quantities, driven, quantities
-from gbeam.analysis.equilibrium.equilibrium import keeps, solve_equilibrium
-from gbeam.analysis.equilibrium.operating_point import OperatingPoint, on_base, operating_point
+from gbeam.analysis.steady.equilibrium import keeps, solve_equilibrium
+from gbeam.analysis.steady.operating_point import OperatingPoint, on_base, operating_point
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.enrichment import enrichment

@@ -11,9 +11,9 @@ import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import described, mode_causes
 from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, percent
-from gbeam.analysis.equilibrium.operating_point import OperatingPoint, linear_matrices, on_base
-from gbeam.analysis.vibration.errors import resting
-from gbeam.analysis.vibration.modal import directions, modes_at
+from gbeam.analysis.steady.frequency_errors import resting
+from gbeam.analysis.steady.modal import directions, modes_at
+from gbeam.analysis.steady.operating_point import OperatingPoint, linear_matrices, on_base
 from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.plausibility import input_warnings

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.beam_theory import described, mode_causes
 from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, percent
-from gbeam.analysis.equilibrium.equilibrium import equilibrium_about
-from gbeam.analysis.equilibrium.operating_point import Linear, OperatingPoint, stepped
+from gbeam.analysis.steady.equilibrium import equilibrium_about
+from gbeam.analysis.steady.operating_point import Linear, OperatingPoint, stepped
 from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.equations.hub import free_hub

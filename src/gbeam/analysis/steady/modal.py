@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.equilibrium.operating_point import Linear, OperatingPoint, linear_matrices, operating_point
-from gbeam.analysis.vibration.errors import Richer, doubtful
+from gbeam.analysis.steady.frequency_errors import Richer, doubtful
+from gbeam.analysis.steady.operating_point import Linear, OperatingPoint, linear_matrices, operating_point
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.equations.sampled import slopes
 from gbeam.mechanics.plausibility import input_warnings

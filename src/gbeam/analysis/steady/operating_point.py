@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.equilibrium.equilibrium import equilibrium_about, expanded
+from gbeam.analysis.steady.equilibrium import equilibrium_about, expanded
 from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.equations.residuals import OnBase, OnHub

@@ -14,8 +14,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from gbeam.analysis.equilibrium.operating_point import REST, steady_base
-from gbeam.analysis.vibration.loss import Path, doubtful_loss, first_loss_along, judged
+from gbeam.analysis.steady.loss import Path, doubtful_loss, first_loss_along, judged
+from gbeam.analysis.steady.operating_point import REST, steady_base
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive

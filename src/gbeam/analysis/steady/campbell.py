@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numpy as np
 
 from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, percent
-from gbeam.analysis.equilibrium.operating_point import OperatingPoint, linear_matrices, on_base, on_hub, steady_base
-from gbeam.analysis.vibration.errors import Richer, doubtful
-from gbeam.analysis.vibration.modal import modes_at
-from gbeam.analysis.vibration.stability import critical_speed, hub_of
+from gbeam.analysis.steady.frequency_errors import Richer, doubtful
+from gbeam.analysis.steady.modal import modes_at
+from gbeam.analysis.steady.operating_point import OperatingPoint, linear_matrices, on_base, on_hub, steady_base
+from gbeam.analysis.steady.stability import critical_speed, hub_of
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings

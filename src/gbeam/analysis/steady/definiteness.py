@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.equilibrium.equilibrium import expanded
+from gbeam.analysis.steady.equilibrium import expanded
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.structure import Structure
 from gbeam.numerics.solvers.eigen import symmetric

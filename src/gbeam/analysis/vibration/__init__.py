@@ -1,1 +1,0 @@
-"""Small vibrations about an equilibrium: modes, Campbell diagrams, loss of stability."""
