@@ -34,25 +34,7 @@ _OUT_OF_MEMORY = 77  # exit status
 def confined(
     reader: Callable[..., Any], path: str | os.PathLike[str], *arguments: Any, refuse: Callable[[str], InputError]
 ) -> Any:
-    """Call ``reader(path, *arguments)`` in a process of its own, and return what it returns.
-
-    Parameters
-    ----------
-    reader : callable
-        Of a module, by its name there; returns what JSON has, and arrays of numbers or text.
-    path : path
-    *arguments
-        As JSON has them.
-    refuse : callable
-        Returns the error of a file whose problem is that it ends, blocks or fills the process.
-
-    Raises
-    ------
-    InputError
-        That the reader raises, or that `refuse` returns.
-    ComputationError
-        If the process does not start, or its answer has no room.
-    """
+    """Call ``reader(path, *arguments)`` in a process of its own, and return what it returns."""
     size = os.stat(path).st_size
     memory, seconds = READER_BYTES + 3 * size, READER_SECONDS + size // READER_RATE
     function = [reader.__module__, reader.__qualname__]

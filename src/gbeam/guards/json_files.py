@@ -11,13 +11,7 @@ from gbeam.guards.limits import NESTING, TEXT_BYTES, refuse_large_file
 
 
 def read_json(file: Path, fix: str) -> dict[str, Any]:
-    """Return the object that a file holds.
-
-    Raises
-    ------
-    InputError
-        If there is none; `fix` is what would be right.
-    """
+    """Return the object that a file holds."""
     try:
         refuse_large_file("", file, TEXT_BYTES, fix)
         value = parse_json(file.read_text(encoding="utf-8"))
@@ -33,13 +27,7 @@ def read_json(file: Path, fix: str) -> dict[str, Any]:
 
 
 def parse_json(text: str) -> Any:
-    """Return what a text holds.
-
-    Raises
-    ------
-    ValueError
-        If it is no JSON, or has more lists and objects in one another than any result.
-    """
+    """Return what a text holds."""
     try:
         value = json.loads(text)
     except RecursionError:

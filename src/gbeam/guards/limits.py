@@ -50,21 +50,7 @@ READER_RATE = 2**24
 
 
 def refuse_more(where: str, what: str, count: float, most: int, each: float, fix: str) -> None:
-    """Raise InputError if `count` is more than `most`, with the memory that it would take.
-
-    Parameters
-    ----------
-    where : str
-        Place of the quantity that decides.
-    what : str
-        What is counted: ``samples``.
-    count, most : number
-        How many there would be, and may be.
-    each : float
-        Bytes that one takes.
-    fix : str
-        What would be right.
-    """
+    """Raise InputError if `count` is more than `most`, with the memory that it would take."""
     if not count <= most:
         raise InputError(where, f"makes {count:.4g} {what}, which would take {in_bytes(count * each)}", fix)
 

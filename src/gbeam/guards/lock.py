@@ -18,20 +18,7 @@ _BEYOND = 2**30  # where Windows locks a byte: a locked one can't be read
 
 @contextmanager
 def alone(file: Path, where: str, fix: str) -> Iterator[None]:
-    """Hold a lock file, whose folder exists, and say in it which process does.
-
-    Parameters
-    ----------
-    file : Path
-        It stays: who removed it would let two in.
-    where, fix : str
-        Place and remedy of the message.
-
-    Raises
-    ------
-    InputError
-        If another process holds it, or it cannot be written.
-    """
+    """Hold a lock file, whose folder exists, and say in it which process does."""
     try:
         handle = os.open(file, os.O_RDWR | os.O_CREAT, 0o600)
     except OSError as error:

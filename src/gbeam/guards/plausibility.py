@@ -60,17 +60,7 @@ RANGES = {
 
 
 def implausible(where: str, kind: str, value: Any) -> tuple[str, ...]:
-    """A warning, or none.
-
-    Parameters
-    ----------
-    where : str
-        Path of the value in the scenario's words.
-    kind : str
-        A key of ``RANGES``.
-    value : float
-        In the range's unit; what JAX traces has no size to judge.
-    """
+    """A warning, or none."""
     given = RANGES[kind]
     if is_jax(value) or given.low <= abs(value) <= given.high:
         return ()

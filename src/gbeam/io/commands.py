@@ -29,24 +29,7 @@ FRAME = (
 
 
 def write_commands(plan: MachinePlan, commands: Commands, folder: Path) -> list[Path]:
-    """Write the commands of one machine as CSV and MAT.
-
-    Parameters
-    ----------
-    plan : MachinePlan
-        Which machine it is; a plan that exceeds limits or holds its target says so in the files.
-    commands : Commands
-    folder : Path
-        Which exists.
-
-    Returns
-    -------
-    list of Path
-        ``commands_NAME.csv``, whose first lines begin with # and the first without names the columns, and
-        ``commands_NAME.mat``: time (t, 1); angle, rate, acceleration (t, 3), columns for axes 1, 2, 3; sample, arm,
-        control_point, gravity; title, mounting; limits, of each quantity for the axes, infinite where none is given;
-        conventions.
-    """
+    """Write the commands of one machine as CSV and MAT."""
     lines_above = header(plan, commands)
     csv, mat = folder / f"commands_{plan.name}.csv", folder / f"commands_{plan.name}.mat"
     table = np.column_stack([commands.time, commands.angle, commands.rate, commands.acceleration])

@@ -25,20 +25,7 @@ _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable.{:10d}"  # 
 
 
 def write_groups(groups: Mapping[str, Group], path: str | os.PathLike[str]) -> None:
-    """Write groups to a file, whole or not at all.
-
-    Parameters
-    ----------
-    groups : mapping of str to Group
-        By path: ``""`` is the root, ``motions/flight`` a group in a group.
-    path : path
-        Replaced if it exists.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written.
-    """
+    """Write groups to a file, whole or not at all."""
     write_whole(path, image(groups))
 
 
@@ -78,13 +65,7 @@ def image(groups: Mapping[str, Group]) -> bytes:
 
 
 def contents(path: str) -> dict[str, Any]:
-    """Return the variables of a file by path, and the attributes of variables and groups, undecoded.
-
-    Raises
-    ------
-    InputError
-        If it is no netCDF-4 file.
-    """
+    """Return the variables of a file by path, and the attributes of variables and groups, undecoded."""
     try:
         with h5py.File(path) as file:
             return contents_of(file)

@@ -58,20 +58,7 @@ _GROUPS: dict[type, Callable[[Any], Group]] = {
 
 
 def save(result: Any, path: str | os.PathLike[str], facts: str = "") -> None:
-    """Write any result to a netCDF file, whole or not at all; of histories so many samples as the result says.
-
-    Parameters
-    ----------
-    result : Result
-    path : path
-    facts : str
-        Its figures as JSON, from which `gbeam report` makes a page; none where it has no report.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written.
-    """
+    """Write any result to a netCDF file, whole or not at all; of histories so many samples as the result says."""
     groups = groups_of(result, every=False)
     if facts:
         root = groups[""]
@@ -81,14 +68,7 @@ def save(result: Any, path: str | os.PathLike[str], facts: str = "") -> None:
 
 
 def groups_of(result: Result, *, every: bool = True) -> dict[str, Group]:
-    """What a result holds, by path: the root says what it is and where it comes from.
-
-    Parameters
-    ----------
-    result : Result
-    every : bool
-        Every sample of its histories; else those that a file keeps.
-    """
+    """What a result holds, by path: the root says what it is and where it comes from."""
     groups = _study(result, every=every) if isinstance(result, Study) else {"": _group(result, every=every)}
     origin = result.provenance or Provenance()
     root = groups[""]

@@ -47,15 +47,7 @@ def provenance_variables(provenance: Provenance) -> dict[str, Variable]:
 
 
 def provenance_of(variables: Mapping[str, Any], attrs: Mapping[str, Mapping[str, Any]]) -> Provenance:
-    """The provenance that a file holds.
-
-    Parameters
-    ----------
-    variables : mapping of str to array
-        Of the root.
-    attrs : mapping of str to mapping
-        Of these variables by their names, and of the root as ``""``.
-    """
+    """The provenance that a file holds."""
     root = attrs[""]
     dependencies = dict(line.split(" ", 1) for line in str(root.get("dependencies", "")).splitlines())
     versions = [str(root.get(name, "")) for name in ("gbeam_version", "python_version", "platform")]

@@ -50,13 +50,7 @@ def stored(result: Result) -> Stored:
 
 
 def read_stored(path: str | os.PathLike[str]) -> Stored:
-    """Read a file, in a process of its own.
-
-    Raises
-    ------
-    InputError
-        If there is none, or it is no netCDF-4 file.
-    """
+    """Read a file, in a process of its own."""
 
     def refuse(problem: str) -> InputError:
         return InputError(str(path), problem, "give a result.nc written by gbeam run")

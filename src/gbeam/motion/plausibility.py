@@ -17,19 +17,7 @@ SAMPLES = 501
 
 
 def implausible_motion(motion: Motion, where: str, span: tuple[float, float], base: Any = None) -> tuple[str, ...]:
-    """Warnings of what is implausible in a motion; none where JAX traces it.
-
-    Parameters
-    ----------
-    motion : Motion
-        Of a machine only the arm is looked at: what it does follows from the flight, and takes a plan to know.
-    where : str
-        Path of the motion in the scenario.
-    span : tuple of float
-        First and last time, s.
-    base : Base or BaseMotion, optional
-        What the motion is at the times that matter, (t, 3), where it is known.
-    """
+    """Warnings of what is implausible in a motion; none where JAX traces it."""
     return () if holds_jax(motion) else tuple(implausible_values(motion, where, span, base))
 
 

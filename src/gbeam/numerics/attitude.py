@@ -11,16 +11,7 @@ Floats = NDArray[np.float64]
 def attitude(time: Floats, w_WB_B: Floats) -> Floats:
     """Return the attitude that body rates lead to, from that at the first time on.
 
-    Parameters
-    ----------
-    time : (t,) s
-    w_WB_B : (t, 3)
-        Angular velocity in body axes, rad/s; over an interval the mean of its ends.
-
-    Returns
-    -------
-    (t, 4)
-        Unit quaternions w, x, y, z of the rotation from the axes at each time to those at the first.
+    `time` (t,) s, `w_WB_B` (t, 3); returns (t, 4).
     """
     turn = 0.5 * (w_WB_B[1:] + w_WB_B[:-1]) * np.diff(time)[:, None]
     half = 0.5 * np.linalg.norm(turn, axis=1, keepdims=True)

@@ -11,12 +11,7 @@ Floats = NDArray[np.float64]
 def interpolated(time: Floats, own: Floats, values: Floats) -> Floats:
     """Values (t, ...) known at the times `own`, at `time`: on straight lines, and constant beyond the ends.
 
-    Parameters
-    ----------
-    time : (u,)
-    own : (t,)
-        Ascending; where they begin with `time`, the values are taken as they are.
-    values : (t, ...)
+    `time` (u,), `own` (t,).
     """
     if len(own) >= len(time) and np.array_equal(own[: len(time)], time):
         return values[: len(time)]

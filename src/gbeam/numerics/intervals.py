@@ -9,9 +9,7 @@ from numpy.typing import NDArray
 def true_runs(flags: NDArray[np.bool_]) -> list[slice]:
     """Runs of true flags, ascending, each as a slice.
 
-    Parameters
-    ----------
-    flags : array of bool, shape (n,)
+    `flags` (n,).
     """
     edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
     return [slice(int(start), int(stop)) for start, stop in edges.reshape(-1, 2)]
@@ -20,14 +18,7 @@ def true_runs(flags: NDArray[np.bool_]) -> list[slice]:
 def joined(runs: list[slice], time: NDArray[np.float64], gap: float) -> list[slice]:
     """Runs of samples with those nearer than `gap` to one another made one.
 
-    Parameters
-    ----------
-    runs : list of slice
-        From :func:`true_runs`.
-    time : array, shape (n,)
-        Of the samples, s.
-    gap : float
-        Between the last sample of a run and the first of the next, s.
+    `time` (n,) s.
     """
     merged: list[slice] = []
     for run in runs:

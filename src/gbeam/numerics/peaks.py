@@ -36,18 +36,7 @@ _QUINTIC = np.stack(
 def near_maxima(time: Floats, values: Floats) -> Indices:
     """Samples next to which a largest value may lie: local maxima whose parabola's vertex comes near the highest.
 
-    Parameters
-    ----------
-    time : (t,)
-        Strictly increasing.
-    values : (t, k) or (b, t, k)
-        Samples of the histories, or of those of several runs; larger is what counts.
-
-    Returns
-    -------
-    (u,)
-        Indices, ascending, neither of the first nor of the last sample of a run; none of less than three. Those of
-        several runs count on from run to run, as if one stood after the other.
+    `time` (t,), `values` (t, k); returns (u,).
     """
     count = len(time)
     if count < 3:
@@ -78,20 +67,7 @@ def maxima(
 ) -> tuple[Floats, Floats]:
     """Largest value of each history, and its time, between samples where it lies there.
 
-    Parameters
-    ----------
-    time : (t,)
-    values : (t, k) or (b, t, k)
-        Samples of the histories, or of those of several runs.
-    t, between : (u, p), (u, p, k)
-        Times about chosen samples, and the histories there.
-    at : (u,), optional
-        The chosen samples of several runs, as :func:`near_maxima` has them.
-
-    Returns
-    -------
-    value, time : (k,) or (b, k)
-        Never less than the largest sample.
+    `time` (t,), `values` (t, k), `t`, `between` (u, p), `at` (u,); returns `value`, `time` (k,).
     """
     first, columns = values.argmax(axis=-2), np.arange(values.shape[-1])
     largest, when = np.take_along_axis(values, first[..., None, :], axis=-2)[..., 0, :], time[first]
@@ -127,20 +103,7 @@ def turning_points(time: Floats, values: Floats) -> Floats:
 def quintic_hermite(time: Floats, q: Floats, qd: Floats, qdd: Floats, at: Indices) -> tuple[Floats, Floats]:
     """Histories in the two steps about samples, from their values and first and second derivatives.
 
-    Parameters
-    ----------
-    time : (t,)
-    q, qd, qdd : (t, n) or (b, t, n)
-        Of one run, or of several.
-    at : (u,)
-        Indices of samples as :func:`near_maxima` has them, neither the first nor the last of a run.
-
-    Returns
-    -------
-    time : (u, p)
-    q : (u, p, n)
-        On each step the polynomial of fifth degree that has both ends' values and derivatives; its error is of sixth
-        order in the step where these are exact.
+    `time` (t,), `q`, `qd`, `qdd` (t, n), `at` (u,); returns `time` (u, p), `q` (u, p, n).
     """
     history, within = np.stack([q, qd, qdd], axis=-2).reshape(-1, 3, q.shape[-1]), at % len(time)
 
@@ -156,19 +119,7 @@ def quintic_hermite(time: Floats, q: Floats, qd: Floats, qdd: Floats, at: Indice
 def seven_point(time: Floats, values: Floats, at: Indices) -> tuple[Floats, Floats]:
     """Histories in the two steps about samples, from their values alone.
 
-    Parameters
-    ----------
-    time : (t,)
-    values : (t, c)
-    at : (u,)
-        Indices of samples, neither the first nor the last.
-
-    Returns
-    -------
-    time : (u, p), values : (u, p, c)
-        None of the samples where there are fewer than seven.
-        The polynomial of sixth degree through the seven nearest samples. Where it and that of fourth degree differ, as
-        at a jump or a corner, which no polynomial follows, the sample itself.
+    `time` (t,), `values` (t, c), `at` (u,); returns `time` (u, p).
     """
     if len(time) < FEWEST:
         at = at[:0]

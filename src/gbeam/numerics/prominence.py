@@ -13,20 +13,7 @@ from gbeam.numerics.intervals import true_runs
 def separate_peaks(values: NDArray[np.float64], floor: float, dip: float) -> list[tuple[int, slice]]:
     """Local maxima above a floor, those that no dip separates being one.
 
-    Parameters
-    ----------
-    values : array, shape (n,)
-        Not negative.
-    floor : float
-        What does not exceed it belongs to no peak, and separates peaks.
-    dip : float
-        Between two maxima above the floor, a value below this share of the lower one separates them.
-
-    Returns
-    -------
-    list of (int, slice)
-        Of each peak, ascending, its index (the first of a plateau's) and the samples nearer to it than to its
-        neighbours: from the lowest before it to the lowest after it, above the floor throughout.
+    `values` (n,); returns (int, slice).
     """
     found: list[tuple[int, slice]] = []
     for run in true_runs(values > floor):

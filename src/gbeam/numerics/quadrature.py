@@ -11,10 +11,7 @@ Floats = NDArray[np.float64]
 def cumulative(time: Floats, value: Floats, slope: Floats) -> Floats:
     """Integral from the first time to each, by the trapezium rule with its end correction: of fourth order.
 
-    Parameters
-    ----------
-    time, value, slope : arrays, shape (n,)
-        Ascending times, s, the integrand and its time derivative at them.
+    `time`, `value`, `slope` (n,).
     """
     step = np.diff(time)
     pieces = step * (value[1:] + value[:-1]) / 2 - step**2 * np.diff(slope) / 12

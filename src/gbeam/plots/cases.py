@@ -20,22 +20,7 @@ FAMILY = 6  # lines that can be told apart; more are a heat map
 
 @styled
 def plot_sweep(sweep: Sweep, measure: str = "", title: str = "") -> Figure:
-    """Plot one measure of a sweep over its parameters.
-
-    Parameters
-    ----------
-    sweep : Sweep
-        Of one or two dimensions.
-    measure : str
-        The first by default.
-    title : str
-        First line; the scenario's by default.
-
-    Raises
-    ------
-    InputError
-        If there is no such measure, or more than two dimensions.
-    """
+    """Plot one measure of a sweep over its parameters."""
     name = measure or next(iter(sweep.measures))
     if name not in sweep.measures:
         raise InputError("measure", f"is {name!r}", f"choose {', '.join(sweep.measures)}")
@@ -132,16 +117,7 @@ _POINTS = 3  # of a grid that are drawn as bands of their own
 
 @styled
 def plot_history(sweep: Sweep, name: str, title: str = "") -> Figure:
-    """Plot a history of all cases: the median and the band of nine tenths, or one line per case of a grid.
-
-    Parameters
-    ----------
-    sweep : Sweep
-    name : str
-        Of the history.
-    title : str
-        First line; the scenario's by default.
-    """
+    """Plot a history of all cases: the median and the band of nine tenths, or one line per case of a grid."""
     values = sweep.histories[name]
     power, label = scaled_label(name, sweep.units[name], values)
     figure, (panel,) = panels(heading(title or sweep.title, f"{name} over time", []), 1, heights=[2.0])
@@ -166,16 +142,7 @@ def plot_history(sweep: Sweep, name: str, title: str = "") -> Figure:
 
 @styled
 def plot_indices(sweep: Sweep, name: str, title: str = "") -> Figure:
-    """Plot the Sobol indices of a measure, at the first point of the grid, the largest on top.
-
-    Parameters
-    ----------
-    sweep : Sweep
-    name : str
-        Of the measure.
-    title : str
-        First line; the scenario's by default.
-    """
+    """Plot the Sobol indices of a measure, at the first point of the grid, the largest on top."""
     indices = sweep.indices[name]
     at = (0,) * (indices.values.ndim - 3)
     values = np.nan_to_num(indices.values[at])
@@ -197,16 +164,7 @@ def plot_indices(sweep: Sweep, name: str, title: str = "") -> Figure:
 
 @styled
 def plot_probability(sweep: Sweep, name: str, title: str = "") -> Figure:
-    """Plot a probability with its bounds over the one parameter of the grid.
-
-    Parameters
-    ----------
-    sweep : Sweep
-    name : str
-        Of the measure.
-    title : str
-        First line; the scenario's by default.
-    """
+    """Plot a probability with its bounds over the one parameter of the grid."""
     (parameter,) = _grid(sweep)
     middle, low, high = sweep.statistics[name][PROBABILITY].T
     figure, (panel,) = panels(heading(title or sweep.title, f"{name}: probability", []), 1, heights=[2.0])

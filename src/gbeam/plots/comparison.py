@@ -32,24 +32,7 @@ class _Part(NamedTuple):
 
 @styled
 def plot_comparison(comparison: Comparison, title: str = "", axis: int | None = None) -> Figure:
-    """Plot those parts of a comparison over time that it has, of one axis.
-
-    Parameters
-    ----------
-    comparison : Comparison
-    title : str
-        Of the scenario.
-    axis : int, optional
-        0, 1, 2 for x, y, z; the one along which the tip moves most by default.
-
-    Returns
-    -------
-    Figure
-        Force and moment that the root's section carries, with the signs of :func:`plot_loads`; the difference of the
-        tip's trends, beside what the mismatch implies if it acts slowly; the tip's elastic vibration; the mismatch at
-        both ends of the beam. Where it has none of these, the difference of the tip's displacement. The times that are
-        not followed are shaded.
-    """
+    """Plot those parts of a comparison over time that it has, of one axis."""
     axis = comparison.main_axis if axis is None else axis
     shown = [*_root(comparison, axis), *_tip(comparison, axis), *_mismatch(comparison, axis)]
     if not shown:
@@ -118,16 +101,7 @@ def _mismatch(comparison: Comparison, axis: int) -> Iterator[_Part]:
 
 @styled
 def plot_shock(comparison: Comparison, shock: Shock, title: str = "") -> Figure:
-    """Plot the shock response spectra of the tip's acceleration, along the axes in which the tip moves.
-
-    Parameters
-    ----------
-    comparison : Comparison
-    shock : Shock
-        Its spectra.
-    title : str
-        Of the scenario.
-    """
+    """Plot the shock response spectra of the tip's acceleration, along the axes in which the tip moves."""
     shown = moved(comparison)
     about = f"shock response of the tip's acceleration, Q = {shock.quality:g}"
     figure, drawn = panels(heading(title, about, ()), len(shown), heights=[1.6] * len(shown))

@@ -47,13 +47,7 @@ class Panels(tuple[Axes, ...]):
 
 
 def plot(result: Any, what: str = "", title: str = "") -> Panels:
-    """Draw one figure of a result, the first that it has or the one of that name, and return its axes.
-
-    Raises
-    ------
-    InputError
-        If it has no such figure.
-    """
+    """Draw one figure of a result, the first that it has or the one of that name, and return its axes."""
     every = figures(result, title)
     if what and what not in every:
         raise InputError("what", f"is {what!r}, which this result does not have", f"choose from {', '.join(every)}")
@@ -61,15 +55,7 @@ def plot(result: Any, what: str = "", title: str = "") -> Panels:
 
 
 def figures(result: Any, title: str = "") -> dict[str, Draw]:
-    """Return what draws each figure of a result, by name.
-
-    Parameters
-    ----------
-    result : Response, Study, Comparison, Modes, Campbell, Deflection, CriticalMap, MachinePlan, Sweep, Fit,
-        Optimum or Sensitivity
-    title : str
-        First line above each; a study has its own.
-    """
+    """Return what draws each figure of a result, by name."""
     match result:
         case Study():
             return _of_study(result, title or result.title)
@@ -161,24 +147,7 @@ def _of_study(study: Study, title: str) -> dict[str, Draw]:
 
 
 def write_plots(study: Study, folder: Path, source: str = "") -> list[Path]:
-    """Write all plots of a study.
-
-    Parameters
-    ----------
-    study : Study
-    folder : Path
-        Which exists.
-    source : str
-        What they are signed with (:func:`save`).
-
-    Returns
-    -------
-    list of Path
-        The files: ``tip``, and per environment ``base_NAME``, ``loads_NAME``, for centrifuges ``tracking_NAME`` and
-        ``axes_rate_NAME``, ``axes_acceleration_NAME``, ``axes_jerk_NAME``, for hubs ``hub_NAME``; per comparison
-        ``comparison_NAME`` along the axis in which the tip moves most, ``comparison_y_NAME`` and so on along others in
-        which it moves, and ``shock_NAME``, NAME being the centrifuge's.
-    """
+    """Write all plots of a study."""
     files: list[Path] = []
     with style():
         for name, draw in figures(study).items():
@@ -195,18 +164,7 @@ _ELEMENT = re.compile(rb"<dc:source>([^<]*)</dc:source>")  # of SVG
 
 
 def save(figure: Figure, folder: Path, name: str, source: str = "") -> list[Path]:
-    """Write a figure as PNG (150 dpi) and SVG; return the files.
-
-    Parameters
-    ----------
-    figure : Figure
-    folder : Path
-        Which exists.
-    name : str
-        Of the files.
-    source : str
-        What made it, such as ``gbeam run``: the files carry it with their name, and :func:`signature` reads it.
-    """
+    """Write a figure as PNG (150 dpi) and SVG; return the files."""
     compression = {"pil_kwargs": {"compress_level": _LEVEL}}
     files: dict[Path, dict[str, Any]] = {folder / f"{name}.png": compression, folder / f"{name}.svg": {}}
     with style():  # some settings are read only when a figure is drawn

@@ -35,13 +35,7 @@ def machine(index: int) -> dict[str, Any]:
 def line(panel: Axes, x: Floats, y: Floats, **options: Any) -> None:
     """Draw a line: an envelope where it oscillates about once in the width of a line or faster, else what shows of it.
 
-    Parameters
-    ----------
-    panel : Axes
-    x, y : (n,)
-        `x` ascending.
-    **options
-        Of matplotlib's `plot`.
+    `x`, `y` (n,).
     """
     bins = _Bins(x, y) if len(x) >= 4 * BINS else None
     runs = [] if bins is None else true_runs(bins.fast)
@@ -142,14 +136,7 @@ _SPAN = 1e-6  # s: shorter is rounding
 def stretches(axes: AxesResult | None, time: Floats, accounting: Accounting | None = None) -> list[Stretch]:
     """Return the spin-up, what is not followed and why, and the spin-down, in order of time.
 
-    Parameters
-    ----------
-    axes : AxesResult or None
-        Of a machine; None for what has none.
-    time : (t,) s
-        Drawn.
-    accounting : Accounting, optional
-        Of the comparison with the flight, whose stretches are measured; else those of the machine's target.
+    `time` (t,) s.
     """
     if axes is None and accounting is None:
         return []
@@ -163,15 +150,7 @@ def stretches(axes: AxesResult | None, time: Floats, accounting: Accounting | No
 
 
 def shade(panels: Sequence[Axes], marked: Iterable[Stretch], *, label: bool = True) -> None:
-    """Shade stretches of time in all panels, and name their reasons in the legend of the first.
-
-    Parameters
-    ----------
-    panels : sequence of Axes
-    marked : iterable of (start s, end s, reason)
-    label : bool
-        Whether they are named.
-    """
+    """Shade stretches of time in all panels, and name their reasons in the legend of the first."""
     by_reason: dict[str, list[Stretch]] = {}
     for each in marked:
         by_reason.setdefault(_short(each[2]), []).append(each)

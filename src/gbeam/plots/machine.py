@@ -33,23 +33,7 @@ _UNITS = {"rate": "rad/s", "acceleration": "rad/s²", "jerk": "rad/s³"}
 
 @styled
 def plot_axes(response: PlotHeading, axes: AxesResult, quantity: str, title: str = "") -> Figure:
-    """Plot one quantity of a centrifuge's axes, a panel for each axis, with its limits.
-
-    Parameters
-    ----------
-    response : Response or MachinePlan
-    axes : AxesResult
-        Of the response.
-    quantity : str
-        rate, acceleration or jerk.
-    title : str
-        Of the scenario.
-
-    Returns
-    -------
-    Figure
-        A limit far above what is used is named and not drawn. The times that are not followed are shaded.
-    """
+    """Plot one quantity of a centrifuge's axes, a panel for each axis, with its limits."""
     history: Floats | None = getattr(axes, quantity)
     if history is None:
         raise ValueError(f"this result has no {quantity}")
@@ -96,23 +80,7 @@ def _plain(value: float) -> str:
 
 @styled
 def plot_tracking(response: PlotHeading, axes: AxesResult, title: str = "", flight: Response | None = None) -> Figure:
-    """Plot the load that a centrifuge makes at the control point beside the one that it should make.
-
-    Parameters
-    ----------
-    response : Response or MachinePlan
-    axes : AxesResult
-        Of the response.
-    title : str
-        Of the scenario.
-    flight : Response, optional
-        Whose load is imitated; drawn too.
-
-    Returns
-    -------
-    Figure
-        Size of the load with idle, its components, and the size of the tracking error; what is not followed shaded.
-    """
+    """Plot the load that a centrifuge makes at the control point beside the one that it should make."""
     subject = "load at the control point: flight's, the target and the machine's"
     shown = moving(axes.actual, axes.reference)
     count = len(shown) + 2
@@ -149,19 +117,7 @@ def plot_tracking(response: PlotHeading, axes: AxesResult, title: str = "", flig
 
 @styled
 def plot_base(response: Response, title: str = "") -> Figure:
-    """Plot the motion of the root.
-
-    Parameters
-    ----------
-    response : Response
-    title : str
-        Of the scenario.
-
-    Returns
-    -------
-    Figure
-        Acceleration, and where the base turns its angular velocity and acceleration; what is not followed shaded.
-    """
+    """Plot the motion of the root."""
     base = response.base
     unit = unit_for("acceleration", base.a_WO_B)
     shown: list[tuple[Floats, str]] = [(unit.factor * base.a_WO_B, f"acceleration\nof the root, {unit.name}")]
@@ -181,21 +137,7 @@ def plot_base(response: Response, title: str = "") -> Figure:
 
 @styled
 def plot_hub(response: Response, hub: HubResult, title: str = "") -> Figure:
-    """Plot the turning of a hub about z.
-
-    Parameters
-    ----------
-    response : Response
-    hub : HubResult
-        Of the response.
-    title : str
-        Of the scenario.
-
-    Returns
-    -------
-    Figure
-        Angle, rate, and the torque of the drive where the rate is not prescribed.
-    """
+    """Plot the turning of a hub about z."""
     shown: list[tuple[Floats, str]] = [(hub.angle, "angle, rad"), (hub.rate, "rate, rad/s")]
     if hub.drive_torque is not None:
         unit = unit_for("moment", hub.drive_torque)

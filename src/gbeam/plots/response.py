@@ -33,18 +33,7 @@ from gbeam.results.study import Study
 
 @styled
 def plot_tip(study: Study) -> Figure:
-    """Plot the tip's displacement along every axis in which it moves.
-
-    Parameters
-    ----------
-    study : Study
-
-    Returns
-    -------
-    Figure
-        Per axis all environments overlaid, and for each comparison centrifuge less flight; the times that are not
-        followed shaded. An axis along which the tip moves by less than a hundredth of the most is named only.
-    """
+    """Plot the tip's displacement along every axis in which it moves."""
     responses, compared = study.responses, study.comparisons
     sizes = [each.peaks.max_abs for each in responses.values()]
     shown = sorted(moving(*sizes), key=lambda axis: -max(each[axis] for each in sizes))
@@ -125,16 +114,7 @@ MOMENTS = ("torque", "bending M_y", "bending M_z")
 
 @styled
 def plot_loads_along(deflection: Deflection, loads: Loads, title: str = "") -> Figure:
-    """Plot along the beam at rest the sections' force and moment and, where known, the largest and smallest stress.
-
-    Parameters
-    ----------
-    deflection : Deflection
-    loads : Loads
-        Of the deflection, at stations along the beam.
-    title : str
-        Of the scenario.
-    """
+    """Plot along the beam at rest the sections' force and moment and, where known, the largest and smallest stress."""
     subject = f"internal loads at rest, {deflection.model}, t = {deflection.time:.4g} s"
     at, known = unit_for("length", loads.stations), bool(np.isfinite(loads.stress).all())
     errors = {"loads": deflection.errors.loads.total, "stress": deflection.errors.stress.total if known else math.nan}
@@ -147,22 +127,7 @@ def plot_loads_along(deflection: Deflection, loads: Loads, title: str = "") -> F
 
 @styled
 def plot_loads(response: Response, loads: Loads, title: str = "") -> Figure:
-    """Plot over time what the root's section carries, the extreme stresses along the beam, and a hub's torque.
-
-    Parameters
-    ----------
-    response : Response
-    loads : Loads
-        Of the response.
-    title : str
-        Of the scenario.
-
-    Returns
-    -------
-    Figure
-        Force and moment are those of the section, with the signs of :func:`plot_loads_along` and
-        :func:`plot_comparison`; the times that are not followed are shaded.
-    """
+    """Plot over time what the root's section carries, the extreme stresses along the beam, and a hub's torque."""
     torque, known = loads.beam_torque, bool(np.isfinite(loads.stress).all())
     subject = named(response.name, "loads in the root's section, and stress anywhere along the beam")
     errors = {"loads": response.errors.loads.total, "stress": response.errors.stress.total if known else math.nan}

@@ -19,14 +19,7 @@ _BAND = 2.0  # sigma
 
 @styled
 def plot_fit(fit: Fit, title: str = "") -> Figure:
-    """Plot every column of the data and its residual.
-
-    Parameters
-    ----------
-    fit : Fit
-    title : str
-        First line; the scenario's by default.
-    """
+    """Plot every column of the data and its residual."""
     found = ", ".join(
         f"{path.rpartition('.')[2]} {value:.4g} {unit}".rstrip()
         for path, value, unit in zip(fit.parameters, fit.values, fit.units, strict=True)
@@ -76,14 +69,7 @@ def _modes(panel: Axes, fit: Fit, column: FittedColumn) -> None:
 
 @styled
 def plot_optimum(optimum: Optimum, title: str = "") -> Figure:
-    """Plot the figure over the tries that were better than those before, and where the values lie between their bounds.
-
-    Parameters
-    ----------
-    optimum : Optimum
-    title : str
-        First line; the scenario's by default.
-    """
+    """Plot the figure over the improving tries, and where the values lie between their bounds."""
     o = optimum
     found = ", ".join(
         f"{path.replace('motion.', '', 1)} {value:.4g} {unit}".rstrip()
@@ -113,21 +99,7 @@ _HEIGHT = 0.13  # of a panel's usual height, for a bar
 
 @styled
 def plot_sensitivity(sensitivity: Sensitivity, measure: str = "", title: str = "") -> Figure:
-    """Plot how one measure changes with each parameter.
-
-    Parameters
-    ----------
-    sensitivity : Sensitivity
-    measure : str
-        The first by default.
-    title : str
-        First line; the scenario's by default.
-
-    Raises
-    ------
-    InputError
-        If there is no such measure.
-    """
+    """Plot how one measure changes with each parameter."""
     s, name = sensitivity, measure or sensitivity.measures[0]
     if name not in s.measures:
         raise InputError("measure", f"is {name!r}", f"choose {', '.join(s.measures)}")
@@ -159,14 +131,7 @@ def _named(s: Sensitivity, j: int) -> str:
 
 @styled
 def plot_shaping(command: ShapedCommand, title: str = "") -> Figure:
-    """Plot a shaped command, a ZVD-shaped one and a smooth step.
-
-    Parameters
-    ----------
-    command : ShapedCommand
-    title : str
-        First line.
-    """
+    """Plot a shaped command, a ZVD-shaped one and a smooth step."""
     c = command
     figure, (top, below) = panels(heading(title, _subject(c), []), 2, heights=[1.0, 1.3])
     axis = int(abs(c.runs[-1].tip).max(axis=0).argmax())
@@ -183,14 +148,7 @@ def plot_shaping(command: ShapedCommand, title: str = "") -> Figure:
 
 @styled
 def plot_robustness(command: ShapedCommand, title: str = "") -> Figure:
-    """Plot what each command leaves in the design's modes, were all their frequencies others.
-
-    Parameters
-    ----------
-    command : ShapedCommand
-    title : str
-        First line.
-    """
+    """Plot what each command leaves in the design's modes, were all their frequencies others."""
     c = command
     figure, (panel,) = panels(heading(title, _subject(c), []), 1, heights=[1.6])
     for k, run in enumerate(c.runs):

@@ -30,15 +30,7 @@ def _position(panel: Axes, *stations: Floats, label: str = "position from the ro
 
 @styled
 def plot_static(deflections: Sequence[Deflection], title: str = "") -> Figure:
-    """Plot where the beam rests, one panel for each direction in which it moves.
-
-    Parameters
-    ----------
-    deflections : sequence of Deflection
-        With stations along the beam.
-    title : str
-        Of the scenario.
-    """
+    """Plot where the beam rests, one panel for each direction in which it moves."""
     moved = [each.displacement for each in deflections]
     axes = moving(*moved)
     subject = f"displacement at rest relative to the base, {deflections[0].model}, t = {deflections[0].time:.4g} s"
@@ -63,20 +55,7 @@ def plot_static(deflections: Sequence[Deflection], title: str = "") -> Figure:
 
 @styled
 def plot_modes(modes: Modes, title: str = "") -> Figure:
-    """Plot the lowest modes, each in the direction in which it moves most.
-
-    Parameters
-    ----------
-    modes : Modes
-        With stations along the beam.
-    title : str
-        Of the scenario.
-
-    Returns
-    -------
-    Figure
-        Real and, where Coriolis coupling turns the phase, imaginary part (dotted).
-    """
+    """Plot the lowest modes, each in the direction in which it moves most."""
     subject = named(modes.motion, f"modes about the equilibrium at {modes.time:.4g} s, {modes.model}")
     subject = judged(subject, {"": math.nan if modes.errors is None else modes.errors.largest})
     figure, (panel,) = panels(heading(title, subject, []), 1, heights=[2.0])
@@ -94,23 +73,7 @@ def plot_modes(modes: Modes, title: str = "") -> Figure:
 
 @styled
 def plot_campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = RATE) -> Figure:
-    """Plot a Campbell diagram.
-
-    Parameters
-    ----------
-    diagram : Campbell
-    title : str
-        Of the scenario.
-    unit : (float, str)
-        Of the speed: in it a rad/s is so much, and its name.
-
-    Returns
-    -------
-    Figure
-        One line per mode, dashed where it moves the beam along z, dotted along x; grey lines are multiples of the
-        speed (1P, 2P ...), circles the crossings, a vertical line the critical speed. Modes far above all multiples
-        are left out.
-    """
+    """Plot a Campbell diagram."""
     shown = near_multiples(diagram.frequency.T, diagram.speed, diagram.orders)
     left = len(diagram.direction) - len(shown)
     subject = named(diagram.motion, f"frequencies about the equilibrium, {diagram.model}")
@@ -148,14 +111,7 @@ def plot_campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = 
 
 @styled
 def plot_critical_map(critical: CriticalMap, title: str = "") -> Figure:
-    """Plot a map of critical speeds, one line per mass (2009 Fig. 9 shows the stiffness at one speed instead).
-
-    Parameters
-    ----------
-    critical : CriticalMap
-    title : str
-        Of the scenario.
-    """
+    """Plot a map of critical speeds, one line per mass (2009 Fig. 9 shows the stiffness at one speed instead)."""
     subject = named(critical.motion, f"critical hub rate with one more mass, {critical.model}")
     figure, (panel,) = panels(heading(title, subject, []), 1, heights=[2.0])
     at = _position(panel, critical.position, label="position of the mass from the root")

@@ -150,15 +150,7 @@ def colour(index: int) -> str:
 
 
 def panels(title: str, count: int, *, heights: Iterable[float] | None = None) -> tuple[Figure, list[Axes]]:
-    """Return a figure with panels one above the other on a common time axis.
-
-    Parameters
-    ----------
-    title : str
-    count : int
-    heights : iterable of float, optional
-        Relative to the usual height.
-    """
+    """Return a figure with panels one above the other on a common time axis."""
     ratios = [1.0] * count if heights is None else list(heights)
     figure = Shown(figsize=(WIDTH, PANEL * sum(ratios)))
     FigureCanvasAgg(figure)
@@ -262,18 +254,7 @@ def moving(*values: Floats) -> list[int]:
 
 
 def limits(panel: Axes, allowed: float, values: Floats, label: str = "limit") -> bool:
-    """Draw a limit on the size of some values as lines, on the sides to which they go; False where it is far beyond.
-
-    Parameters
-    ----------
-    panel : Axes
-    allowed : float
-        In the panel's unit; infinite or NaN where there is no limit.
-    values : array
-        In the panel's unit.
-    label : str
-        Of the lines in the legend.
-    """
+    """Draw a limit on the size of some values as lines, on the sides to which they go; False where it is far beyond."""
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
     used = max(-low, high)
     if not allowed <= NEAR * used:

@@ -33,15 +33,7 @@ _READABLE = (0.01, 1e4)  # beyond it a power of ten goes to the axis
 
 
 def unit_for(kind: str, *values: Floats) -> Unit:
-    """Return the unit in which the largest of some values reads well.
-
-    Parameters
-    ----------
-    kind : str
-        length, force, moment, stress or acceleration.
-    *values : array
-        SI; what is not finite counts for nothing.
-    """
+    """Return the unit in which the largest of some values reads well."""
     units = _UNITS[kind]
     size = max((largest(each) for each in values), default=0.0)
     if size == 0:

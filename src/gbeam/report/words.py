@@ -94,13 +94,7 @@ def tidy(values: Iterable[float], size: float) -> list[float]:
 def stress_words(stations: Any, tension: Any, compression: Any, yield_strength: float | None) -> str:
     """The extreme normal stresses along the beam, where the larger is, and the margin on yield where that is known.
 
-    Parameters
-    ----------
-    stations : (s,) m
-    tension, compression : (s,)
-        Largest and smallest stress over each section, Pa.
-    yield_strength : float or None
-        Pa.
+    `stations` (s,) m, `tension`, `compression` (s,) Pa.
     """
     sizes = [max(high, -low) for high, low in zip(tension, compression, strict=True)]
     stress = float(max(sizes))

@@ -49,24 +49,7 @@ def read_scenario(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -
 
 
 def build(scenario: schema.Scenario, *, ahead: bool = False) -> Case:
-    """Make the objects of a scenario.
-
-    Parameters
-    ----------
-    scenario : Scenario
-    ahead : bool
-        Whether to plan the axis motions of centrifuges now, so that what a plan may refuse has its place in the file;
-        or, which spares a second, where they are needed.
-
-    Returns
-    -------
-    Case
-
-    Raises
-    ------
-    ScenarioError
-        With every InputError of the objects, each at its place in the file.
-    """
+    """Make the objects of a scenario."""
     from gbeam.analysis.case import Case
     from gbeam.scenario.build_motion import centrifuges, flights_and_hubs
 
@@ -99,21 +82,7 @@ def build(scenario: schema.Scenario, *, ahead: bool = False) -> Case:
 def scenario_of(
     given: str | os.PathLike[str] | Case, overrides: Iterable[str] = (), *, distributions: bool = False
 ) -> schema.Scenario:
-    """The scenario of a file, or that which a case was read from, validated with changes.
-
-    Parameters
-    ----------
-    given : path or Case
-    overrides, distributions
-        As for :func:`gbeam.scenario.load.load`.
-
-    Raises
-    ------
-    InputError
-        If a case was made, or changed, by hand: other cases of it have no text to be read from.
-    ScenarioError
-        As :func:`gbeam.scenario.load.load` does.
-    """
+    """The scenario of a file, or that which a case was read from, validated with changes."""
     if isinstance(given, (str, os.PathLike)):
         return load(given, overrides, distributions=distributions)
     if given.scenario is None or given.scenario.source is None:
@@ -123,22 +92,7 @@ def scenario_of(
 
 
 def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
-    """Make the centrifuges of a scenario, which need no beam.
-
-    Parameters
-    ----------
-    scenario : Environments
-
-    Returns
-    -------
-    dict of str to Centrifuge
-        By name; empty if the scenario has none.
-
-    Raises
-    ------
-    ScenarioError
-        With every InputError of the objects, each at its place in the file.
-    """
+    """Make the centrifuges of a scenario, which need no beam."""
     from gbeam.motion import Centrifuge
     from gbeam.scenario.build_motion import centrifuges, flights_and_hubs
 
@@ -155,13 +109,7 @@ def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
 
 
 def build_specimen(scenario: schema.Environments) -> Beam | None:
-    """Make the beam of a scenario alone; None where it has none.
-
-    Raises
-    ------
-    ScenarioError
-        With every InputError of its parts, each at its place in the file.
-    """
+    """Make the beam of a scenario alone; None where it has none."""
     if not isinstance(scenario, schema.Scenario):
         return None
     parts = Collector()

@@ -14,14 +14,7 @@ from gbeam.scenario.schema.record import Record
 
 
 def flights_and_hubs(parts: Collector, scenario: schema.Environments) -> dict[str, motion.Motion]:
-    """Build the motions that need no other, by name.
-
-    Parameters
-    ----------
-    parts : Collector
-        Takes the errors; a motion that has one is left out.
-    scenario : Environments
-    """
+    """Build the motions that need no other, by name."""
     built: dict[str, motion.Motion | None] = {}
     for name, table in scenario.motion.items():
         where = f"motion.{name}"
@@ -45,20 +38,7 @@ def centrifuges(
     *,
     ahead: bool,
 ) -> dict[str, motion.Motion]:
-    """Build the motions that track a flight, by name.
-
-    Parameters
-    ----------
-    parts : Collector
-        Takes the errors; a motion that has one is left out, and so is one whose flight is missing.
-    scenario : Environments
-    others : dict of str to motion
-        From :func:`flights_and_hubs`.
-    span : tuple of float
-        First and last time, s.
-    ahead : bool
-        Whether to plan the axis motions now, which takes a second, or where they are needed.
-    """
+    """Build the motions that track a flight, by name."""
     built: dict[str, motion.Motion] = {}
     for name, table in scenario.motion.items():
         if not isinstance(table, schema.Centrifuge):
@@ -135,16 +115,7 @@ def _hub(parts: Collector, where: str, table: schema.Hub) -> motion.Motion | Non
 
 
 def components(parts: Collector, where: str, table: Any) -> Profile | None:
-    """Build the vector profile of a table with x, y and z, each a profile, a constant quantity or left out.
-
-    Parameters
-    ----------
-    parts : Collector
-        Takes the errors.
-    where : str
-        Place of the table in the scenario.
-    table : table of the schema
-    """
+    """Build the vector profile of a table with x, y and z, each a profile, a constant quantity or left out."""
     given = {axis: getattr(table, axis) for axis in "xyz" if getattr(table, axis) is not None}
     built = {axis: _profile(parts, f"{where}.{axis}", profile) for axis, profile in given.items()}
     return None if None in built.values() else motion.vector(**built)

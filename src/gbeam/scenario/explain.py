@@ -31,15 +31,7 @@ _NOT_A = {
 
 
 def explain(source: Source, error: ErrorDetails) -> Diagnostic:
-    """Translate one error of pydantic.
-
-    Parameters
-    ----------
-    source : Source
-        What was validated.
-    error : ErrorDetails
-        From ``ValidationError.errors()``.
-    """
+    """Translate one error of pydantic."""
     path = _path(error["loc"], source)
     message, hint, mark, path = _words(source, error, path)
     return source.diagnostic(path, _filled(source, path, message), _filled(source, path, hint), mark)

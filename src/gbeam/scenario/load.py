@@ -24,27 +24,7 @@ T = TypeVar("T", bound=Environments)
 
 
 def load(path: str | os.PathLike[str], overrides: Iterable[str] = (), *, distributions: bool = False) -> Scenario:
-    """Read and validate a scenario file.
-
-    Parameters
-    ----------
-    path : path
-        TOML, or JSON if its text begins with a brace. File names in it are relative to its folder.
-    overrides : iterable of str
-        Changes such as ``beam.length=250 mm`` or ``beam.masses[0].mass=0.2 kg``, made before validation.
-    distributions : bool
-        Whether values may be distributions. The scenario then has their centres, and its source has them.
-
-    Returns
-    -------
-    Scenario
-        Frozen, SI floats.
-
-    Raises
-    ------
-    ScenarioError
-        With everything that is wrong, each with its place.
-    """
+    """Read and validate a scenario file."""
     file = Path(path)
     return loads(read_text(file), os.fspath(path), overrides, folder=file.parent, distributions=distributions)
 
@@ -57,63 +37,18 @@ def loads(
     folder: str | os.PathLike[str] = ".",
     distributions: bool = False,
 ) -> Scenario:
-    """Validate the text of a scenario.
-
-    Parameters
-    ----------
-    text : str
-        TOML, or JSON if it begins with a brace.
-    name : str
-        What messages call it.
-    overrides : iterable of str
-        As for :func:`load`.
-    folder : path
-        That relative file names in the scenario start from.
-    distributions : bool
-        As for :func:`load`.
-
-    Returns
-    -------
-    Scenario
-
-    Raises
-    ------
-    ScenarioError
-        With everything that is wrong, each with its place.
-    """
+    """Validate the text of a scenario."""
     return _validated(Scenario, _source(text, name, overrides, folder, distributions=distributions))
 
 
 def change(source: Source, overrides: Iterable[str]) -> Scenario:
-    """Validate a scenario that is parsed already, with more changes: what differs between the cases of a sweep.
-
-    Parameters
-    ----------
-    source : Source
-        Of a scenario that was read.
-    overrides : iterable of str
-        As for :func:`load`, after those in the source.
-
-    Raises
-    ------
-    ScenarioError
-        With everything that is wrong, each with its place.
-    """
+    """Validate a scenario that is parsed already, with more changes: what differs between the cases of a sweep."""
     data, done = override(source.data, source.name, overrides)
     return _validated(Scenario, replace(source, data=data, overrides=source.overrides + done))
 
 
 def load_environments(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Environments:
-    """Read a scenario file that may lack the beam, for questions about the machine alone.
-
-    Parameters, errors
-        As for :func:`load`.
-
-    Returns
-    -------
-    Environments
-        A Scenario if the file has a [beam] or a [model], which are then validated too.
-    """
+    """Read a scenario file that may lack the beam, for questions about the machine alone."""
     file = Path(path)
     source = _source(read_text(file), os.fspath(path), overrides, file.parent)
     kind = Scenario if {"beam", "model"} & source.data.keys() else Environments

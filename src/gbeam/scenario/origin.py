@@ -17,14 +17,7 @@ from gbeam.scenario.text.source import parse
 
 
 def provenance(scenario: Environments, command: str = "") -> Provenance:
-    """Where results of a scenario come from.
-
-    Parameters
-    ----------
-    scenario : Environments
-    command : str
-        The command line.
-    """
+    """Where results of a scenario come from."""
     source = scenario.source
     if source is None:
         return Provenance(command=command)
@@ -45,13 +38,7 @@ _parsed = lru_cache(maxsize=4)(parse)
 
 
 def fingerprint(data: dict[str, Any]) -> str:
-    """SHA-256 of what a scenario says, however it is written and in whatever order.
-
-    Parameters
-    ----------
-    data : dict
-        The parsed text, with its overrides.
-    """
+    """SHA-256 of what a scenario says, however it is written and in whatever order."""
     text = json.dumps(data, sort_keys=True, ensure_ascii=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()
 

@@ -32,15 +32,7 @@ class Collector:
 
 
 def placed(scenario: Environments, errors: Iterable[InputError]) -> ScenarioError:
-    """Return the ScenarioError of what the objects of the core refused.
-
-    Parameters
-    ----------
-    scenario : Environments
-        What they were built from.
-    errors : iterable of InputError
-        Whose ``where`` are paths from the top of the scenario, such as ``beam.masses[0].at``.
-    """
+    """Return the ScenarioError of what the objects of the core refused."""
     return ScenarioError(_diagnostic(scenario.source, error) for error in errors)
 
 

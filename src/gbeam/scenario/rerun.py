@@ -74,15 +74,7 @@ def rerun(path: str | os.PathLike[str]) -> Reproduction:
 
 
 def reproduction(file: str, then: Mapping[str, Any], now: Mapping[str, Any], origin: Provenance) -> Reproduction:
-    """Compare what a file holds with what has been computed again.
-
-    Parameters
-    ----------
-    file : str
-    then, now : mapping of str to array, number or text
-    origin : Provenance
-        With its environment.
-    """
+    """Compare what a file holds with what has been computed again."""
     assert origin.environment is not None
     names = [*then, *(name for name in now if name not in then)]
     differences = [each for name in names if (each := _difference(name, then.get(name), now.get(name))) is not None]

@@ -122,18 +122,7 @@ _TEMPLATES = {"flight": _FLIGHT, "hub": _HUB}
 
 
 def template(kind: str) -> str:
-    """Return the text of a commented scenario that runs as it is.
-
-    Parameters
-    ----------
-    kind : str
-        ``flight`` (a flight and the centrifuge that imitates it) or ``hub``.
-
-    Raises
-    ------
-    InputError
-        If there is no such template.
-    """
+    """Return the text of a commented scenario that runs as it is."""
     if kind not in _TEMPLATES:
         raise InputError("kind", f"is {kind!r}, of which there is no template", advise(kind, _TEMPLATES))
     return _HEAD + _TEMPLATES[kind]
@@ -166,13 +155,7 @@ def _distribution_schema() -> dict[str, Any]:
 
 
 def json_schema(*, distributions: bool = True) -> str:
-    """Return the JSON schema of a scenario: every field with description, quantity and SI unit.
-
-    Parameters
-    ----------
-    distributions : bool
-        Whether it lets a distribution stand in place of every quantity.
-    """
+    """Return the JSON schema of a scenario: every field with description, quantity and SI unit."""
     schema = Scenario.model_json_schema()
     if distributions:
         _allow_distributions(schema)

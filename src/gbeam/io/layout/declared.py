@@ -14,17 +14,7 @@ _NUMBERED = {"mode": (1, "number of the mode"), "coordinate": (0, "axial, along 
 
 
 def group_of(record: Any, over: tuple[str, ...] = (), prefix: str = "") -> Group:
-    """Return what a file holds of a record: variables, with the coordinates of their dimensions, and attributes.
-
-    Parameters
-    ----------
-    record : object
-        Its class says of each field what it is; see :mod:`gbeam.results.declared`.
-    over : tuple of str
-        Dimensions before those that the fields declare.
-    prefix : str
-        Of every name.
-    """
+    """Return what a file holds of a record: variables, with the coordinates of their dimensions, and attributes."""
     group = Group()
     for field, each in declarations(type(record)):
         value = getattr(record, field)

@@ -174,19 +174,7 @@ def _statistics(sweep: Sweep) -> dict[str, Variable]:
 
 
 def write_zarr(sweep: Sweep, path: str | os.PathLike[str]) -> None:
-    """Write a sweep as a Zarr store, which ``xarray.open_zarr`` opens, whole or not at all.
-
-    Parameters
-    ----------
-    sweep : Sweep
-    path : path
-        Replaced if it exists.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written.
-    """
+    """Write a sweep as a Zarr store, which ``xarray.open_zarr`` opens, whole or not at all."""
     import zarr  # noqa: F401  # xarray takes one that cannot be loaded for one that is not installed
 
     bytearray(_ROOM)  # a thread that lacks it is waited for without end: a MemoryError comes first

@@ -31,21 +31,7 @@ def is_binary(path: str | os.PathLike[str]) -> bool:
 
 
 def read_binary(path: str | os.PathLike[str], words: Iterable[str] = ()) -> Table:
-    """Read the names and units of all columns, and the samples of those that are needed.
-
-    Parameters
-    ----------
-    path : path
-    words : iterable of str
-        Names of the columns that are needed, with signs; see :meth:`Table.vector`.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read.
-    OSError
-        If there is none.
-    """
+    """Read the names and units of all columns, and the samples of those that are needed."""
     status = os.stat(path)
     version = status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
     table = _kept(os.fspath(path), tuple(sorted(set(words))), os.getcwd(), version)

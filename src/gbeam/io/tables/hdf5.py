@@ -24,17 +24,6 @@ def read_hdf5(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
 
     A vector is a column by its path, ``group/az``, or the path's last word; a matrix is one column per vector,
     ``acc[:,0]``. The attribute `units` is the unit; `scale_factor`, `add_offset` and `_FillValue` are applied.
-
-    Parameters
-    ----------
-    path : path
-    words : sequence of str
-        Names that are needed; all columns can be read in any case.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read.
     """
     try:
         with open(path, "rb") as file:

@@ -26,18 +26,6 @@ def read_mat(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
 
     A vector is a column by its name, ``az``, or a structure's field by its path, ``rec.az``, or the path's last word; a
     matrix is one column per vector, ``acc(:,1)``.
-
-    Parameters
-    ----------
-    path : path
-    words : sequence of str
-        Names that are needed, with signs: structures without a part in them are not read. All are if there are none.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, or holds no numeric variables; MATLAB keeps tables and timetables as objects that
-        nothing else reads.
     """
     try:
         with warnings.catch_warnings():

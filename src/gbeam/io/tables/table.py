@@ -66,19 +66,7 @@ class Table:
         return f"{count} {'sample' if self.rows is None else 'row'}(s)"
 
     def column(self, axis: str, name: str) -> Column:
-        """Find a column by its name, or else by an alias.
-
-        Parameters
-        ----------
-        axis : str
-            Key of the scenario's record that names it.
-        name : str
-
-        Raises
-        ------
-        InputError
-            If no column or several have that name.
-        """
+        """Find a column by its name, or else by an alias."""
         found = [one for one in self.columns if one.name == name]
         found = found or [one for one in self.columns if name in one.aliases]
         if len(found) == 1:
@@ -172,20 +160,7 @@ class Table:
 def array_columns(
     name: str, shape: tuple[int, ...], read: Callable[[], NDArray[Any]], *, unit: str = "", matlab: bool = False
 ) -> list[Column]:
-    """Columns of one array of a file: itself if it is a vector, its vectors if it is a matrix, else none.
-
-    Parameters
-    ----------
-    name : str
-        Path of the array in its file; the last word is an alias.
-    shape : tuple of int
-    read : callable
-        Returns the array.
-    unit : str
-        As in :class:`Column`.
-    matlab : bool
-        Paths have dots, and the first vector of a matrix is ``acc(:,1)``; else slashes, and ``acc[:,0]``.
-    """
+    """Columns of one array of a file: itself if it is a vector, its vectors if it is a matrix, else none."""
     short = name.rpartition("." if matlab else "/")[2]
     long = [size for size in shape if size > 1]
     if len(long) == 1:

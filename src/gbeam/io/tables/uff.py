@@ -23,17 +23,6 @@ def read_uff(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
 
     A column goes by the first line of the data set's identification, and by its node and direction, ``12+Z``; the
     abscissa is the column ``time``.
-
-    Parameters
-    ----------
-    path : path
-    words : sequence of str
-        Names that are needed; all columns are read in any case.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, holds no time response, or its responses have not all the same times.
     """
     import pyuff  # 0.2 s to import
 

@@ -30,10 +30,7 @@ class Base:
 def gradient(w_WB_B: Any, alpha_WB_B: Any) -> Any:
     """Growth of the acceleration along x of a base in rotation, base axes, (..., 3) 1/s² (2020 (4)).
 
-    Parameters
-    ----------
-    w_WB_B, alpha_WB_B : array, shape (..., 3)
-        rad/s, rad/s².
+    `w_WB_B`, `alpha_WB_B` (..., 3) rad/s².
     """
     xp = namespace(w_WB_B, alpha_WB_B)
     (wx, wy, wz), (_, aly, alz) = (xp.moveaxis(each, -1, 0) for each in (w_WB_B, alpha_WB_B))

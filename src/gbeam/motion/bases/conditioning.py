@@ -112,20 +112,7 @@ def without_spikes(time: Floats, load: Floats, at: NDArray[np.bool_]) -> Floats:
 def filtered(time: Floats, values: Floats, cutoff: float | None, resample: float | None) -> tuple[Floats, Floats]:
     """Times and values after the low-pass and at the new rate.
 
-    Parameters
-    ----------
-    time : (t,) s; uneven ones are made even before the low-pass
-    values : (t, ...)
-    cutoff : float or None
-        Hz, −6 dB; see :func:`gbeam.numerics.filters.low_pass.low_pass`.
-    resample : float or None
-        New sampling rate, Hz; between samples by a cubic spline.
-
-    Raises
-    ------
-    InputError
-        If the cut-off is at or above half of either sampling rate, or a lower rate is given without a cut-off, or the
-        rate leaves too few samples or makes too many.
+    `time` (t,), `values` (t, ...).
     """
     step = float(time[-1] - time[0]) / (len(time) - 1)
     if cutoff is not None:

@@ -120,16 +120,7 @@ class Flight:
 
 
 def body_rates(recorded: PiecewiseLinear, smoothing: float = 0.0) -> Profile:
-    """Return recorded body rates without corners, ready to be differentiated.
-
-    Parameters
-    ----------
-    recorded : PiecewiseLinear
-        rad/s, base axes.
-    smoothing : float
-        Width of the Hann kernel, s; at least four of the record's intervals, since a straight line between samples has
-        an angular acceleration in steps.
-    """
+    """Return recorded body rates without corners, ready to be differentiated."""
     times = recorded.times
     interval = float(times[-1] - times[0]) / max(times.size - 1, 1)
     return smoothed(recorded, max(smoothing, 4 * interval))

@@ -42,13 +42,7 @@ class Course:
         return self.solution
 
     def solved(self, inverse: str, limits: Limits, ends: Ends) -> Course:
-        """The same with the axis motions, and how they begin and end.
-
-        Raises
-        ------
-        InputError
-            If the inverse cannot follow the target, or the spin-up or spin-down is too short.
-        """
+        """The same with the axis motions, and how they begin and end."""
         solution = INVERSES[inverse].build(self.target, self.geometry, limits, ends)
         own = solution.extent is not None
         ramps = None if own else build_ramps(self.target, solution, self.geometry, limits, ends)
@@ -125,11 +119,6 @@ def prepare(
     """Build the target of a load over a span, s, and, unless they are planned, the axis motions.
 
     Parameters are those of :class:`gbeam.motion.Centrifuge`.
-
-    Raises
-    ------
-    InputError
-        If the load cannot be followed, the inverse cannot follow its corners, or the spin-up or spin-down is too short.
     """
     build = partial(
         build_target, load, span=span, idle=idle, smoothing=smoothing, gravity=geometry.gravity > 0, arm=geometry.arm,

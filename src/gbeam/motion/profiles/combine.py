@@ -120,21 +120,7 @@ def vector(x: Any | None = None, y: Any | None = None, z: Any | None = None) -> 
 
 
 def as_profile(where: str, given: Any, components: int = 1) -> Profile:
-    """The profile itself, or the constant one of a number or of three.
-
-    Parameters
-    ----------
-    where : str
-        Name of the argument.
-    given : Profile, float or array_like
-    components : int
-        1 for a scalar, 3 for a vector.
-
-    Raises
-    ------
-    InputError
-        If it is neither, or has the other shape.
-    """
+    """The profile itself, or the constant one of a number or of three."""
     if isinstance(given, Profile):
         profile = given
     else:

@@ -17,20 +17,9 @@ TURN = 2 * pi
 def hann(order: int, x: Any) -> Any:
     """Return the `order`-th derivative of the rounded ramp of unit width at `x`.
 
-    The rounded ramp is max(x, 0) convolved with the Hann kernel k(x) = 1 + cos 2πx on abs(x) < 1/2, whose
-    integral is one: zero below −1/2, x above 1/2, three times continuously differentiable. Order 1 is the
-    rounded step x + 1/2 + sin(2πx)/2π, order 2 the kernel itself, order 3 its continuous derivative.
-
-    Parameters
-    ----------
-    order : int
-        0 or more; JAX's derivatives raise it by one, so they are exact and free of ties at ±1/2.
-    x : array, any shape
-        Dimensionless: time over the width.
-
-    Returns
-    -------
-    array, shape of `x`
+    The rounded ramp is max(x, 0) convolved with the Hann kernel k(x) = 1 + cos 2πx on abs(x) < 1/2, whose integral is
+    one: zero below −1/2, x above 1/2, three times continuously differentiable. Order 1 is the rounded step x + 1/2 +
+    sin(2πx)/2π, order 2 the kernel itself, order 3 its continuous derivative.
     """
     x = as_array(x)
     return _differentiable()(order, x) if is_jax(x) else hann_orders(order, order, x)[0]
@@ -87,28 +76,14 @@ def _differentiable() -> Any:
 
 
 def soft_floor(value: Any, floor: Any, band: Any) -> Any:
-    """Return a three times differentiable max(value, floor).
-
-    Parameters
-    ----------
-    value : array or Series, any shape
-    floor, band : float
-        In the unit of `value`: the result is `floor` below floor − band/2 and `value` above floor + band/2.
-    """
+    """Return a three times differentiable max(value, floor)."""
     x = (value - floor) / band
     ramp = compose(hann_orders(0, x.order, x.value), x) if isinstance(x, Series) else hann(0, x)
     return ramp * band + floor
 
 
 def soft_step(value: Series, middle: Any, band: Any) -> Series:
-    """Return a twice differentiable step from 0 to 1.
-
-    Parameters
-    ----------
-    value : Series, any shape
-    middle, band : float
-        In the unit of `value`: the step is 0 below middle − band/2 and 1 above middle + band/2.
-    """
+    """Return a twice differentiable step from 0 to 1."""
     x = (value - middle) / band
     # Beyond half a unit the integral of the kernel no longer rises; its rounding there is no step.
     return where(x.value <= -0.5, 0.0, where(x.value >= 0.5, 1.0, compose(hann_orders(1, 1 + x.order, x.value), x)))

@@ -30,14 +30,7 @@ class Filters(NamedTuple):
 def run(filters: Filters, values: Floats) -> Floats:
     """Return every filter's output for every column, from rest.
 
-    Parameters
-    ----------
-    filters : Filters
-    values : (t, k)
-
-    Returns
-    -------
-    (f, t, k)
+    `values` (t, k); returns (f, t, k).
     """
     y = _in_blocks(filters, values)
     return y.swapaxes(2, 3).reshape(len(y), -1, values.shape[1])[:, : len(values)]
@@ -46,18 +39,7 @@ def run(filters: Filters, values: Floats) -> Floats:
 def largest(filters: Filters, values: Floats, offset: Floats, covered: NDArray[np.bool_]) -> Floats:
     """Return the largest size of every filter's output, from rest, plus an offset.
 
-    Parameters
-    ----------
-    filters : Filters
-    values : (t, k)
-    offset : (k,)
-        Added to every output.
-    covered : (t,)
-        Samples that count; one at least.
-
-    Returns
-    -------
-    (f, k)
+    `values` (t, k), `offset` (k,), `covered` (t,); returns (f, k).
     """
     sizes = []
     for i in range(0, len(filters.d), _TOGETHER):

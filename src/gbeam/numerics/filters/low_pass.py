@@ -17,19 +17,7 @@ def low_pass(values: Floats, step: float, cutoff: float) -> Floats:
 
     The ends are continued by their point reflection over one period of the cut-off, as far as the samples reach.
 
-    Parameters
-    ----------
-    values : (t, ...)
-        Evenly spaced.
-    step : float
-        Interval, s.
-    cutoff : float
-        Hz.
-
-    Raises
-    ------
-    InputError
-        If the cut-off is not between zero and half the sampling rate.
+    `values` (t, ...).
     """
     if not 0 < cutoff < 0.5 / step:
         raise InputError(

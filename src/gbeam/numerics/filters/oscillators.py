@@ -15,31 +15,14 @@ _SMALL = 1.0  # angle per sample below which closed forms lose digits and the se
 def displacement(load: Floats, frequency: ArrayLike, damping: float, step: float) -> Floats:
     """η of η̈ + 2ζω η̇ + ω² η = load, starting at rest under the first load.
 
-    Parameters
-    ----------
-    load : (t, ...)
-        Unit of η times 1/s².
-    frequency : float or (f,)
-        ω, rad/s.
-    damping : float
-        ζ, below 1.
-    step : float
-        Interval, s.
-
-    Returns
-    -------
-    (t, ...), or (f, t, ...) for several frequencies
+    `load` (t, ...), `frequency` (f,) rad/s; returns (t, ...).
     """
     omega = np.asarray(frequency, dtype=float)
     return _responses(load, omega, damping, step, np.ones_like(omega), np.zeros_like(omega), 1 / omega**2)
 
 
 def riding_acceleration(base: Floats, frequency: ArrayLike, damping: float, step: float) -> Floats:
-    """Absolute acceleration of oscillators riding on a base with the given acceleration, starting at rest on it.
-
-    Parameters, returns
-        As for :func:`displacement`.
-    """
+    """Absolute acceleration of oscillators riding on a base with the given acceleration, starting at rest on it."""
     omega = np.asarray(frequency, dtype=float)
     return _responses(base, omega, damping, step, omega**2, 2 * damping * omega, np.ones_like(omega))
 
@@ -49,13 +32,7 @@ def largest_riding_acceleration(
 ) -> Floats:
     """Largest size of :func:`riding_acceleration` at the samples `covered` (t,): a shock response spectrum, (f, k).
 
-    Parameters
-    ----------
-    base : (t, k)
-    frequency : (f,)
-        ω, rad/s.
-    damping, step, covered
-        ζ; s; one sample at least is covered.
+    `base` (t, k), `frequency` (f,) rad/s.
     """
     filters = _filters(frequency, damping, step, frequency**2, 2 * damping * frequency)
     return largest(filters, base - base[0], base[0], covered)

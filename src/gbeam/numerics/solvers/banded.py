@@ -14,15 +14,7 @@ Floats = NDArray[np.float64]
 def solve_banded(band: Floats, right: Floats) -> Floats:
     """Solve A x = b.
 
-    Parameters
-    ----------
-    band : (w + 1, n)
-        ``band[d, j]`` is A[j + d, j]: the diagonal, then those below it; what stands past the last row is not read.
-    right : (n, k)
-
-    Returns
-    -------
-    (n, k)
+    `band` (w + 1, n), `right` (n, k); returns (n, k).
     """
     width, n = band.shape[0] - 1, band.shape[1]
     blocks = -(-n // width)

@@ -19,16 +19,7 @@ def coarse(low: float, high: float) -> tuple[float, ...]:
 
 
 def refine(evaluate: Evaluate, points: tuple[float, ...]) -> None:
-    """Look for a better number around the best of the coarse ones; what was evaluated is the caller's to keep.
-
-    Parameters
-    ----------
-    evaluate : callable
-        Of a positive number: the value to make least, and the share of what is allowed, which may not exceed 1. Both
-        infinite where there is no answer.
-    points : tuple of float
-        Ascending, already evaluated: evaluating them again costs nothing.
-    """
+    """Look for a better number around the best of the coarse ones; what was evaluated is the caller's to keep."""
     values = [evaluate(x) for x in points]
     allowed = [i for i, (_, share) in enumerate(values) if share <= 1]
     if not allowed:

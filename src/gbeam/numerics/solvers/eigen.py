@@ -12,13 +12,7 @@ Array = Any
 
 
 def symmetric_modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:
-    """Eigenvalues (n,), ascending, and eigenvectors (n, n) in columns, of unit length in M.
-
-    Parameters
-    ----------
-    stiffness : (n, n), symmetric
-    mass : (n, n), symmetric and positive definite
-    """
+    """Eigenvalues (n,), ascending, and eigenvectors (n, n) in columns, of unit length in M."""
     xp = namespace(stiffness, mass)
     scale = xp.linalg.inv(xp.linalg.cholesky(mass))
     value, vector = xp.linalg.eigh(scale @ stiffness @ scale.T)

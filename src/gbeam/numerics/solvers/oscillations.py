@@ -26,19 +26,7 @@ def eigenvalues(
 ) -> tuple[Complex, Complex]:
     """Eigenvalues λ and modes of M ÿ + C ẏ + K y = 0.
 
-    Parameters
-    ----------
-    mass, velocity, stiffness : (n, n)
-        M, C and K.
-    gyroscopic : bool
-        False leaves out the skew part of C.
-
-    Returns
-    -------
-    eigenvalue : (2n − r,), 1/s
-        Without the r zeros of coordinates on which nothing depends, such as a free hub's angle.
-    mode : (n, 2n − r)
-        In columns, of unit length in M.
+    `mass`, `velocity`, `stiffness` (n, n).
     """
     damping = velocity if gyroscopic else (velocity + velocity.T) / 2
     # In modes of the symmetric part, each scaled by its own frequency, all blocks are of the size of the frequencies:

@@ -17,21 +17,7 @@ Floats = NDArray[np.float64]
 def solve_quadratic(hessian: Any, slope: Floats, rows: Any, lower: Floats, upper: Floats) -> Floats | None:
     """Find the x that minimises ½ xᵀHx + gᵀx within lower <= A x <= upper.
 
-    Parameters
-    ----------
-    hessian : sparse array, shape (n, n)
-        H, symmetric and positive semidefinite.
-    slope : array, shape (n,)
-        g.
-    rows : sparse array, shape (m, n)
-        A.
-    lower, upper : array, shape (m,)
-        Infinite where there is no limit.
-
-    Returns
-    -------
-    array, shape (n,), or None
-        None where no x within the limits is found.
+    `hessian` (n, n), `slope` (n,), `rows` (m, n), `lower`, `upper` (m,); returns (n,).
     """
     import piqp
 

@@ -10,21 +10,7 @@ EPS = 2.0**-52
 def brent(
     function: Callable[[float], float], low: float, high: float, *, xtol: float = 2e-12, rtol: float = 4 * EPS
 ) -> float:
-    """Root of a continuous function by Brent's method: inverse interpolation, or bisection where that is slow.
-
-    Parameters
-    ----------
-    function : callable
-        Of opposite signs at the bounds.
-    low, high : float
-    xtol, rtol : float
-        Absolute and relative error of the root.
-
-    Raises
-    ------
-    ValueError
-        If the signs at the bounds are equal.
-    """
+    """Root of a continuous function by Brent's method: inverse interpolation, or bisection where that is slow."""
     before, best, f_before, f_best = low, high, function(low), function(high)
     if f_before == 0:
         return low

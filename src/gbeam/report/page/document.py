@@ -60,22 +60,7 @@ def _figures(facts: Mapping[str, Any], *_: Any) -> str:
 
 
 def html(facts: Mapping[str, Any], variables: Mapping[str, Any], origin: Mapping[str, Any] | None = None) -> str:
-    """Return a whole page.
-
-    Parameters
-    ----------
-    facts : mapping
-        As the result's verb prints them with ``--json``.
-    variables : mapping of str to array
-        Of the result's file, by path; empty where there is none, and the page then has no histories.
-    origin : mapping, optional
-        The provenance as JSON, where it is not among the facts.
-
-    Raises
-    ------
-    InputError
-        If these are no facts of a result that has a report.
-    """
+    """Return a whole page."""
     facts = json.loads(as_json(facts))  # what is not finite is null, as in a file
     kind = _kind(facts)
     if kind is None:

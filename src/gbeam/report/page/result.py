@@ -30,13 +30,7 @@ _FIX = "give the result.nc of `gbeam run`, its folder, or the JSON of another ve
 
 
 def report_of(result: Result) -> str:
-    """Return the page of a result.
-
-    Raises
-    ------
-    InputError
-        If a result of this kind has no report.
-    """
+    """Return the page of a result."""
     found = facts(result)
     if found is None:
         raise InputError("result", f"{type(result).__name__} has no report", "print it, or plot it")
@@ -61,13 +55,7 @@ def variables_of(result: Result) -> dict[str, Any]:
 
 
 def shown(result: Result) -> tuple[dict[str, Any], Numbers]:
-    """What the viewer shows of a result: its header, and the numbers.
-
-    Raises
-    ------
-    InputError
-        If there is nothing to show in motion.
-    """
+    """What the viewer shows of a result: its header, and the numbers."""
     numbers = Numbers()
     header: dict[str, Any] = {"plots": [], "maps": []}
     if isinstance(result, Modes):
@@ -89,13 +77,7 @@ def write_report(result: Result, path: str | os.PathLike[str]) -> None:
 
 
 def report_of_file(path: Path) -> str:
-    """Return the page of a result that a verb wrote: a netCDF file, JSON, or a folder with one of them.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, or holds no figures of a result that has a report.
-    """
+    """Return the page of a result that a verb wrote: a netCDF file, JSON, or a folder with one of them."""
     file = file_in(path) if path.is_dir() else path
     try:
         with np.errstate(all="ignore"):  # what a damaged file holds beyond all bounds is drawn as a gap

@@ -14,17 +14,7 @@ Variables = Mapping[str, Any]
 
 
 def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) -> dict[str, Any] | None:
-    """Return the motions that have an outline, and the time of the first one's largest deflection; None where none has.
-
-    Parameters
-    ----------
-    motions : mapping of str to str
-        Environment of each motion by its name.
-    variables : mapping of str to array
-        By path, ``motions/NAME/outline``.
-    numbers : Numbers
-        Where the arrays go.
-    """
+    """Return the motions that have an outline, and the first one's time of largest deflection, if any."""
     shown = [
         motion(name, environment, variables, numbers)
         for name, environment in motions.items()

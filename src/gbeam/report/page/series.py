@@ -79,17 +79,7 @@ class Plots:
         x: str = "time, s",
         **more: Any,
     ) -> str:
-        """Add a plot and return the id of its place.
-
-        Parameters
-        ----------
-        title, x, y : str
-            Of the plot and its axes, with units.
-        lines : sequence of mapping
-            Each with a label, x, y, a number of its colour, and whether it is dashed.
-        **more
-            Bands, levels, logarithmic axes.
-        """
+        """Add a plot and return the id of its place."""
         name = f"plot-{len(self.specs)}"
         series = [{**line, "x": self._numbers.add(line["x"]), "y": self._numbers.add(line["y"])} for line in lines]
         self.specs.append(

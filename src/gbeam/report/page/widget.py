@@ -12,13 +12,7 @@ from gbeam.results.result import Result
 
 
 def widget(result: Result) -> Any:
-    """Return the viewer of a result as a widget of Jupyter.
-
-    Raises
-    ------
-    InputError
-        If there is nothing to show in motion, or anywidget is not installed.
-    """
+    """Return the viewer of a result as a widget of Jupyter."""
     header, numbers = shown(result)
     try:
         import anywidget

@@ -8,16 +8,7 @@ from gbeam.results.modal import Campbell
 
 
 def text(diagram: Campbell, unit: str = "rad/s", size: float = 1.0) -> str:
-    """First and last frequency of each mode, crossings, and a critical speed if there is one.
-
-    Parameters
-    ----------
-    diagram : Campbell
-    unit : str
-        Of the speeds.
-    size : float
-        Of the unit, rad/s.
-    """
+    """First and last frequency of each mode, crossings, and a critical speed if there is one."""
     low, high = diagram.speed[[0, -1]] / size
     lines = [f"{diagram.motion}: {diagram.model}, {low:.4g} to {high:.4g} {unit}"]
     lines.append("  mode along   Hz at the start   at the end  largest error")

@@ -16,14 +16,7 @@ WIDTH = 100  # columns of the text
 
 
 def to_json(system: StateSpace, gauges: Iterable[Gauge] = ()) -> dict[str, Any]:
-    """State space as JSON.
-
-    Parameters
-    ----------
-    system : StateSpace
-    gauges : iterable of Gauge
-        Strain gauges among the outputs, in the order of their names.
-    """
+    """State space as JSON."""
 
     def signals(listed: Any, values: Any) -> list[dict[str, Any]]:
         pairs = zip(listed, values, strict=True)

@@ -12,15 +12,7 @@ from gbeam.results.result import Floats
 
 
 def estimates(sweep: Sweep, name: str, heads: list[str]) -> list[str]:
-    """Lines on one measure or history.
-
-    Parameters
-    ----------
-    sweep : Sweep
-    name : str
-    heads : list of str
-        Names and units of the grid's parameters, if it has some.
-    """
+    """Lines on one measure or history."""
     statistics, unit = sweep.statistics[name], sweep.units[name]
     title = f"{name}{f', {unit}' if unit else ''}"
     if name in sweep.histories:

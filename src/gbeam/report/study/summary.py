@@ -21,18 +21,7 @@ from gbeam.results.study import Study
 
 
 def table(study: Study) -> RenderableType:
-    """Study as tables and lines.
-
-    Parameters
-    ----------
-    study : Study
-
-    Returns
-    -------
-    renderable of rich
-        Per environment outcome, tip displacement, accuracy, and what the machine or the hub does; then the
-        comparisons.
-    """
+    """Study as tables and lines."""
     parts: list[RenderableType] = [Text(study.title, style="bold")] if study.title else []
     common = _common_warnings(study)
     parts += [Text(f"warning: {warning}", style="yellow") for warning in common]

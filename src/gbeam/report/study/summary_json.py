@@ -21,19 +21,7 @@ from gbeam.results.study import Study
 
 
 def to_json(study: Study, files: Iterable[Path] = ()) -> dict[str, Any]:
-    """Study as JSON.
-
-    Parameters
-    ----------
-    study : Study
-    files : iterable of Path
-        Those written.
-
-    Returns
-    -------
-    dict
-        ``title``, ``outcome``, ``state``, ``motions`` by name, ``comparisons`` and ``files``; NaN where unknown.
-    """
+    """Study as JSON."""
     return {
         "title": study.title,
         "outcome": study.outcome,

@@ -13,22 +13,7 @@ from gbeam.scenario.values.units import unit_of
 
 
 def edited(source: Source, table: Path, changes: Mapping[str, str | float]) -> str:
-    """Return the text with some entries of one table set to other text.
-
-    Parameters
-    ----------
-    source : Source
-        As it stands in the file; its overrides are left out.
-    table : tuple
-        Path of the table, such as ``("motion", "centrifuge")``.
-    changes : mapping of str to (str or float)
-        By key. One that the table lacks is added to its end.
-
-    Raises
-    ------
-    InputError
-        If the table is not written, or in a way that this cannot follow.
-    """
+    """Return the text with some entries of one table set to other text."""
     text = source.text
     given = ", ".join(f"{path_text((*table, key))}={value}" for key, value in changes.items())
     refusal = InputError(source.name, "is written in a way that cannot be changed here", f"write it yourself: {given}")
@@ -43,19 +28,7 @@ def edited(source: Source, table: Path, changes: Mapping[str, str | float]) -> s
 
 
 def with_quantities(source: Source, changes: Mapping[str, tuple[float, str]]) -> str:
-    """Return the text with some quantities set to other values, each in the unit that it was written in.
-
-    Parameters
-    ----------
-    source : Source
-    changes : mapping of str to (float, str)
-        By path, ``beam.masses[0].mass``: the value in SI, and its kind, a key of ``KINDS``.
-
-    Raises
-    ------
-    InputError
-        As for :func:`edited`, and if the entry of a list is to be changed.
-    """
+    """Return the text with some quantities set to other values, each in the unit that it was written in."""
     text, before = source.text, parse(source.name, source.text)
     for path_words, (value, kind) in changes.items():
         *table, key = parse_path(path_words) or ("",)

@@ -12,13 +12,7 @@ _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[{}\[\]:,]|[^\s{}\[\]:,"]+')
 
 
 def locate_json(text: str) -> dict[Path, Place]:
-    """Map every path to its place.
-
-    Parameters
-    ----------
-    text : str
-        A JSON document that parses: nothing is checked again.
-    """
+    """Map every path to its place."""
     reader = _Reader(text)
     reader.value((), None)
     return reader.places

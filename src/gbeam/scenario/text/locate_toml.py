@@ -13,13 +13,7 @@ if TYPE_CHECKING:
 
 
 def locate_toml(text: str) -> dict[Path, Place]:
-    """Map every path, such as ``("beam", "masses", 0, "at")``, to its place.
-
-    Parameters
-    ----------
-    text : str
-        A TOML document that parses. What tree-sitter's grammar does not know is left out.
-    """
+    """Map every path, such as ``("beam", "masses", 0, "at")``, to its place."""
     finder = _Finder(text)
     finder.document(syntax_tree(text.encode()))
     return finder.places

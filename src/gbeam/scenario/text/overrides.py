@@ -28,23 +28,7 @@ class _Refused(ValueError):
 
 
 def override(data: dict[str, Any], name: str, texts: Iterable[str]) -> tuple[dict[str, Any], tuple[Override, ...]]:
-    """Return `data` with the overrides in it, and the overrides as read.
-
-    Parameters
-    ----------
-    data : dict
-        A parsed scenario; not changed.
-    name : str
-        Name of the scenario's file, for messages.
-    texts : iterable of str
-        Such as ``beam.masses[0].mass=0.2 kg``. A value that reads as a TOML number, boolean, list or inline
-        table is one; anything else is text.
-
-    Raises
-    ------
-    ScenarioError
-        For all overrides that have no place in the scenario. Whether a key exists is for the schema to say.
-    """
+    """Return `data` with the overrides in it, and the overrides as read."""
     changed = deepcopy(data)
     done: list[Override] = []
     refused: list[Diagnostic] = []

@@ -24,21 +24,7 @@ _COMMENTS = re.compile(rb"(?:\r?\n[ \t]*#[^\n]*?)*(?=\s*\r?\n[ \t]*\r?\n|\s*$)")
 
 
 def with_entry(text: str, path: Path, value: Any) -> str:
-    """Return the text with an entry at `path`: its value replaced, or added with the tables around it.
-
-    Parameters
-    ----------
-    text : str
-        TOML or JSON. JSON, which has no comments, is laid out anew.
-    path : tuple
-        An index one past the end of a list adds to it.
-    value : str, bool, number, list or dict
-
-    Raises
-    ------
-    InputError
-        If the text is written in a way that this cannot follow.
-    """
+    """Return the text with an entry at `path`: its value replaced, or added with the tables around it."""
     expected = parse("", text)
     try:
         _put(expected, path, value)
@@ -48,13 +34,7 @@ def with_entry(text: str, path: Path, value: Any) -> str:
 
 
 def without_entry(text: str, path: Path) -> str:
-    """Return the text without the entry at `path`, a value, a table or an element of a list.
-
-    Raises
-    ------
-    InputError
-        If there is none, or the text is written in a way that this cannot follow.
-    """
+    """Return the text without the entry at `path`, a value, a table or an element of a list."""
     expected = parse("", text)
     try:
         del _at(expected, path[:-1])[path[-1]]

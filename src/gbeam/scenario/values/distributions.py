@@ -76,13 +76,7 @@ class Distribution:
 
 
 def read_distribution(family: str, parts: Sequence[str]) -> Distribution:
-    """Read a distribution from its name and its numbers.
-
-    Raises
-    ------
-    InputError
-        Without a place, if it is unknown or its numbers are wrong.
-    """
+    """Read a distribution from its name and its numbers."""
     known = FAMILIES.get(family)
     if known is None:
         near = closest(family, FAMILIES)
@@ -121,13 +115,7 @@ def _is_distribution(node: Any) -> bool:
 
 
 def from_table(name: str, given: Any) -> Distribution:
-    """Read what stands in a scenario.
-
-    Raises
-    ------
-    InputError
-        Without a place.
-    """
+    """Read what stands in a scenario."""
     known = FAMILIES.get(name)
     plain = isinstance(given, list) and all(
         isinstance(each, (str, int, float)) and not isinstance(each, bool) for each in given
@@ -138,13 +126,7 @@ def from_table(name: str, given: Any) -> Distribution:
 
 
 def quantities(parts: Sequence[str]) -> tuple[list[float], str]:
-    """Numbers and their one unit; where some have none they have the others'.
-
-    Raises
-    ------
-    InputError
-        Without a place, if one is no number, or the units differ.
-    """
+    """Numbers and their one unit; where some have none they have the others'."""
     values, units = [], []
     for part in parts:
         match = NUMBER.fullmatch(part)

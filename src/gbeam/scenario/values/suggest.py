@@ -17,17 +17,7 @@ def closest(word: str, choices: Iterable[str]) -> str | None:
 
 
 def advise(word: str, choices: Iterable[str], *, listed: str = "choose one of") -> str:
-    """Return ``did you mean 'thickness'?``, or the list of choices when none is near.
-
-    Parameters
-    ----------
-    word : str
-        What was written.
-    choices : iterable of str
-        What could have been written.
-    listed : str
-        How the list of choices begins.
-    """
+    """Return ``did you mean 'thickness'?``, or the list of choices when none is near."""
     possible = list(choices)
     near = closest(word, possible)
     return f"did you mean {near!r}?" if near else f"{listed} {', '.join(possible)}"

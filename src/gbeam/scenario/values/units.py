@@ -77,33 +77,7 @@ class UnitError(ValueError):
 
 
 def quantity(value: object, kind: str) -> float:
-    """Read a quantity into SI.
-
-    Parameters
-    ----------
-    value : object
-        A number, which is SI already, or text with a unit: ``"300 mm"``, ``"15 g/s"``, ``"60 rpm"``.
-    kind : str
-        A key of ``KINDS``: what is expected. It decides what `g` is (gram or 9.80665 m/s²) and
-        what `Hz` is (2π rad/s, or 1/s where a frequency is expected).
-
-    Returns
-    -------
-    float
-        Value in the kind's SI unit; finite.
-
-    Raises
-    ------
-    UnitError
-        If the value is not a finite number, has no unit, or has the wrong one.
-
-    Examples
-    --------
-    >>> quantity("300 mm", "length")
-    0.3
-    >>> quantity("3 g", "mass"), quantity("3 g", "acceleration")
-    (0.003, 29.41995)
-    """
+    """Read a quantity into SI."""
     expected = KINDS[kind]
     such_as = f'{expected.phrase}, such as "{expected.example}"'
     # bool is an int to Python, a mistake to the reader of a scenario.
@@ -143,33 +117,13 @@ def _ratio(decibels: float) -> float:
 
 
 def argument(text: str, kind: str) -> float:
-    """Read a quantity of the command line, where a bare number is text too: ``2.5`` is SI, ``60 rpm`` is not.
-
-    Parameters
-    ----------
-    text : str
-    kind : str
-        As for :func:`quantity`.
-
-    Raises
-    ------
-    UnitError
-        As for :func:`quantity`.
-    """
+    """Read a quantity of the command line, where a bare number is text too: ``2.5`` is SI, ``60 rpm`` is not."""
     match = NUMBER.fullmatch(text) if len(text) <= QUANTITY else None
     return quantity(float(text) if match and not match[2] else text, kind)
 
 
 def unit_of(text: str, kind: str) -> tuple[str, float]:
-    """Unit of a quantity of the command line and its SI value: ``60 rpm`` is in rpm, of 2π/60 rad/s; a bare number SI.
-
-    Parameters
-    ----------
-    text : str
-        That :func:`argument` reads.
-    kind : str
-        As for :func:`quantity`.
-    """
+    """Unit of a quantity of the command line, and its SI value: ``60 rpm`` is in rpm, of 2π/60 rad/s; bare ones SI."""
     match = NUMBER.fullmatch(text)
     unit = (match[2] if match else "") or KINDS[kind].unit
     return unit, _factor(unit, kind)

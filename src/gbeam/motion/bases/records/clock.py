@@ -23,17 +23,7 @@ _GAP = 1.9  # of the median interval: a sample is missing, and no clock that jit
 def check_sampling(time: NDArray[np.float64], place: Callable[[int], str], *, jitter: bool) -> float:
     """Refuse times that stand still, go back, jump or wander; return how far they are off even ones, s.
 
-    Parameters
-    ----------
-    time : (t,) s
-    place : callable
-        Where a sample is in its file, in words.
-    jitter : bool
-        Whether times may be uneven, because the record is resampled.
-
-    Raises
-    ------
-    InputError
+    `time` (t,) s.
     """
     steps = np.diff(time)
 
@@ -72,16 +62,7 @@ def check_sampling(time: NDArray[np.float64], place: Callable[[int], str], *, ji
 def check_interval(time: NDArray[np.float64], unit: str) -> None:
     """Refuse an interval that no record of a flight has, and say which unit of time would make it one.
 
-    Parameters
-    ----------
-    time : (t,) s
-    unit : str
-        That the times were read in.
-
-    Raises
-    ------
-    InputError
-        If there are fewer than 5 samples a second, or more than 1000 a second for less than 10 s.
+    `time` (t,) s.
     """
     step, length = float(np.median(np.diff(time))), float(time[-1] - time[0])
     trust = 'if it is right as it is, add skip_checks = ["sampling"]'
@@ -108,20 +89,7 @@ def check_interval(time: NDArray[np.float64], unit: str) -> None:
 def part_within(clock: NDArray[np.float64], of_day: Clock | None, span: Span, counted: Callable[[int], str]) -> slice:
     """Return the samples within a span of a record's times.
 
-    Parameters
-    ----------
-    clock : (t,) s
-    of_day : Clock or None
-        Where the file has times of day.
-    span : (first, last)
-        Either in s, a time of day, or None for the record's end.
-    counted : callable
-        So many samples, in the file's words.
-
-    Raises
-    ------
-    InputError
-        If the span is not one of the record, or leaves too few samples.
+    `clock` (t,) s.
     """
     if span == (None, None):
         return slice(0, len(clock))

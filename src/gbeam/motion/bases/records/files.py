@@ -13,19 +13,7 @@ from gbeam.motion.bases.records.text import read_text
 
 
 def read_table(path: str | os.PathLike[str], words: Iterable[str] = ()) -> Table:
-    """Read the columns of a record, and the samples of those that are needed.
-
-    Parameters
-    ----------
-    path : path
-    words : iterable of str
-        Names of the columns that are needed, with signs; see :meth:`Table.vector`.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read.
-    """
+    """Read the columns of a record, and the samples of those that are needed."""
     try:
         refuse_large_file("record.file", path, BINARY_BYTES, "cut the record, or export it at a lower rate")
         return read_binary(path, words) if is_binary(path) else read_text(path)

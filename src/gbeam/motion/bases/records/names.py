@@ -27,18 +27,7 @@ _OTHERS = {
 
 
 def refuse_other_kinds(table: Table, names: dict[str, str]) -> None:
-    """Refuse a column that is no load by its name, and one that is named for two components.
-
-    Parameters
-    ----------
-    table : Table
-    names : dict of str to str
-        Columns of x, y and z, with their signs.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a column that is no load by its name, and one that is named for two components."""
     used: dict[str, str] = {}
     for axis, name in names.items():
         _, column = table.signed(name)

@@ -161,13 +161,7 @@ def read_flight(
     quantity: Quantity = "specific-force",
     span: Span = (None, None),
 ) -> FlightRecord:
-    """Read a record with the body's rates, and say what was done to it; see :func:`read_record`.
-
-    Parameters
-    ----------
-    rates : Rates, optional
-        Which columns hold them.
-    """
+    """Read a record with the body's rates, and say what was done to it; see :func:`read_record`."""
     skip = conditioning.skipped
     trust = "unit" in skip
     names = {"x": x, "y": y, "z": z}

@@ -63,15 +63,6 @@ def refuse_unsound(record: Samples, whole: Samples, skip: Collection[str]) -> No
     """Raise InputError if a record does not look like a flight's; single samples far off are judged first.
 
     A fragment of less than 2 s need hold no level flight: of that only the size is judged, and dropouts.
-
-    Parameters
-    ----------
-    record : Samples
-        What is flown.
-    whole : Samples
-        Of which that is a part: where level flight is looked for.
-    skip : collection of str
-        Checks left out, of :data:`CHECKS`.
     """
     odd, calm, size = _calmed(record)
     if "spikes" not in skip and _lasts(record):

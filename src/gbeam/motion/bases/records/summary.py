@@ -19,19 +19,7 @@ _LISTED = 4  # flat tops
 def summary(
     record: Samples, file: str, whole: tuple[float, float], clock: str, notes: tuple[str, ...]
 ) -> RecordSummary:
-    """Summarise a record.
-
-    Parameters
-    ----------
-    record : Samples
-    file : str
-    whole : tuple of float
-        First and last time of the file, s.
-    clock : str
-        Time of day at zero seconds.
-    notes : tuple of str
-        What was done to it, and looks odd.
-    """
+    """Summarise a record."""
     time, load = record.time, record.load
     top = int(np.linalg.norm(load, axis=1).argmax())
     first, last = float(time[0]), float(time[-1])

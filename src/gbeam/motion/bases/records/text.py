@@ -37,15 +37,6 @@ def read_text(path: str | os.PathLike[str]) -> Table:
     Columns are separated by commas, semicolons, tabs or white space, with a decimal point or comma; UTF-8, UTF-16 or
     Latin-1. Lines that begin with ``#``, ``%``, ``//`` or, before the data, ``;`` are comments; the last of them names
     the columns if nothing else does. A row of units may follow the names, or a name may end in one: ``a_z [g]``.
-
-    Parameters
-    ----------
-    path : path
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, or holds no named columns of numbers; rows are counted from 1.
     """
     lines = [(i, line) for i, line in enumerate(_LINE_END.split(_decoded(path)), start=1) if line.strip(_BLANK)]
     if not lines:

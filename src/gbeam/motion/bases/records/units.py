@@ -66,27 +66,7 @@ def is_unit(text: str) -> bool:
 def unit_of(
     key: str, quantity: str, declared: str | None, stated: Iterable[tuple[str, str]], *, trust: bool
 ) -> str | None:
-    """Return the unit that the scenario and the file agree on, a key of ``UNITS[quantity]``; None if neither has one.
-
-    Parameters
-    ----------
-    key : str
-        Of the scenario's record: ``unit``, ``rate_unit`` or ``time_unit``.
-    quantity : str
-        A key of :data:`UNITS`.
-    declared : str or None
-        By the scenario.
-    stated : iterable of (str, str)
-        Columns and the units that the file gives for them, by their names where it gives none; spellings that are not
-        known are ignored.
-    trust : bool
-        Believe the scenario where they disagree.
-
-    Raises
-    ------
-    InputError
-        If the scenario names a unit that is not in the list, or the file another than the scenario.
-    """
+    """Return the unit that the scenario and the file agree on, a key of ``UNITS[quantity]``; None without one."""
     units = UNITS[quantity]
     declared = declared.replace("²", "^2") if declared else None
     if declared is not None and declared not in units:

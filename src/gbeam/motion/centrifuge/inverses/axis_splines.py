@@ -76,10 +76,7 @@ class AxisSplines:
     def assembled(self, pieces: Floats) -> Any:
         """A symmetric matrix on x, sparse (size, size), as a sum of matrices that act on a piece's coefficients each.
 
-        Parameters
-        ----------
-        pieces : array, shape (171, pieces)
-            Row by row the lower triangles of these; a piece has six places, with a coefficient of every axis at each.
+        `pieces` (171, pieces).
         """
         band = np.zeros((NEAR, AXES * self.grid.size))  # row d couples every coefficient with the d-th after it
         for i, j, values in zip(*np.tril_indices(NEAR), pieces, strict=True):

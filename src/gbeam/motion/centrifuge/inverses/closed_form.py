@@ -65,10 +65,7 @@ def speed(load: Series, geometry: Geometry) -> Series:
 def across_beam(load: Series, geometry: Geometry) -> Series:
     """B2 = ±sqrt(f_y² + f_z² − γ²), the horizontal load across the beam, m/s²; zero, with no rates, where it is none.
 
-    Parameters
-    ----------
-    load : Series, shape (..., 3)
-        At the control point, base axes, m/s².
+    `load` (..., 3) m/s².
     """
     horizontal2 = square(load[..., 1:]) - geometry.gravity**2
     bent = horizontal2.value > 0
@@ -78,20 +75,8 @@ def across_beam(load: Series, geometry: Geometry) -> Series:
 def gimbals(load: Series, lag: Series | float, geometry: Geometry) -> tuple[Series, Series]:
     """Angles of axes 2 and 3 that put the load where the specimen wants it.
 
-    Parameters
-    ----------
-    load : Series, shape (..., 3)
-        Reference at the control point, base axes, m/s².
-    lag : Series, shape (...), or zero
-        δ, rad: the angle by which the horizontal load trails the inward radius.
+    `load` (..., 3) m/s².
 
-    Returns
-    -------
-    tuple of two Series, shape (...)
-        θ2 = π − δ − atan2(B2, f_x) and θ3 = atan2(γ, B2) − atan2(f_z, f_y), B2 = ±sqrt(f_y² + f_z² − γ²).
-
-    Notes
-    -----
     A load along the beam leaves θ3 open: it is then zero.
     """
     fx, fy, fz = load[..., 0], load[..., 1], load[..., 2]

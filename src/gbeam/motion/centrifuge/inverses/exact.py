@@ -60,13 +60,7 @@ class Exact(Inverse):
 
 
 def exact(target: Target, geometry: Geometry) -> Exact:
-    """Solve for the lag.
-
-    Raises
-    ------
-    InputError
-        If the load turns too sharply for the arm, with the smoothing that it needs.
-    """
+    """Solve for the lag."""
     first, last = _times(target)
     lag: Spline | None = None
     for step in _STEPS:

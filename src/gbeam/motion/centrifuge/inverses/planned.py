@@ -66,11 +66,6 @@ def planned(target: Target, geometry: Geometry, limits: Limits, ends: Ends) -> P
     With `ends.start` ``idle`` the motion begins and ends at the flight's first and last time, with the arm turning at a
     constant rate and the gimbals at rest. Otherwise all is at rest at both ends; with ``pre-yawed`` the search begins
     from another motion.
-
-    Raises
-    ------
-    InputError
-        If the limits do not allow idle, or do not in the time that is given to reach it.
     """
     # scipy.sparse and the solver take longer to import than most commands to run
     from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines

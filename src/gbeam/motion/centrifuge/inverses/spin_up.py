@@ -135,14 +135,7 @@ def _quotient(s: Series) -> Series:
 def build_ramps(
     target: Target, inverse: Inverse, geometry: Geometry, limits: Limits, ends: Ends
 ) -> tuple[Ramp, Ramp] | None:
-    """Spin-up and spin-down around an inverse; None for a machine that begins and ends at idle.
-
-    Raises
-    ------
-    InputError
-        If a given time is so short that the specimen would be loaded beyond what the flight begins or ends with, or
-        none is given and JAX traces a machine that has limits.
-    """
+    """Spin-up and spin-down around an inverse; None for a machine that begins and ends at idle."""
     if ends.start == "idle":
         return None
     up = _build("spin_up", target, inverse, geometry, limits, ends)

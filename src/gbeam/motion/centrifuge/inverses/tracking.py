@@ -96,14 +96,7 @@ class Tracking:
         return hessian, self.states.T @ by_states + self.ease @ x
 
     def error(self, state: Floats, order: int) -> tuple[Floats, ...]:
-        """Weighted tracking error in g0 and what follows from it, of states (4, times).
-
-        Returns
-        -------
-        tuple of arrays
-            The error (3, times); with `order` 2 also its derivatives by the states, (3, 4, times), and the second
-            derivatives of half its square, (times, 4, 4).
-        """
+        """Weighted tracking error in g0 and what follows from it, of states (4, times)."""
         arm, gravity, (rate, acceleration, yaw, roll) = self.arm, self.gravity, state
         radial, tangential = -arm * rate**2, arm * acceleration
         sin2, cos2, sin3, cos3 = np.sin(yaw), np.cos(yaw), np.sin(roll), np.cos(roll)

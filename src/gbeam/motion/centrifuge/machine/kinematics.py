@@ -55,21 +55,6 @@ class Axes:
 def forward(axes: Axes, arm: Any, gravity: Any) -> Base:
     """Motion of the specimen at the control point C, where the axes 2 and 3 meet.
 
-    Parameters
-    ----------
-    axes : Axes
-    arm : float
-        R, from axis 1 to axis 2, m.
-    gravity : float
-        γ, m/s²: 9.80665 for the specific force a − g, 0 for the acceleration.
-
-    Returns
-    -------
-    Base
-        At C: its ``a_WO_B`` is that of C; see :func:`moved`.
-
-    Notes
-    -----
     a1 points outward, a2 along the arm's motion, Z up; b1 = cos θ2 a1 + sin θ2 a2, b2 = −sin θ2 a1 + cos θ2
     a2, and the base axes are e1 = b1, e2 = cos θ3 b2 + sin θ3 Z, e3 = −sin θ3 b2 + cos θ3 Z. The paper's
     control point lies "at the intersection of axes 1 and 2", which are parallel: 2 and 3 are meant.
@@ -105,11 +90,7 @@ def control_point_load(axes: Axes, arm: Any, gravity: Any) -> Any:
 def moved(base: Base, offset: Any) -> Base:
     """Return the motion at another point of the same rigid base: a + α × r + ω × (ω × r).
 
-    Parameters
-    ----------
-    base : Base
-    offset : array, shape (3,)
-        r, from the point of `base` to the new one, base axes, m.
+    `offset` (3,) m.
     """
     xp = namespace(base.a_WO_B, base.w_WB_B, offset)
     r = xp.broadcast_to(xp.asarray(offset, dtype=float), base.w_WB_B.shape)
@@ -139,12 +120,7 @@ class AxisHistory:
 def axis_history(axes: Axes, times: Any) -> AxisHistory:
     """Unwrap the angles of axes 2 and 3 and integrate that of axis 1.
 
-    Parameters
-    ----------
-    axes : Axes
-        At `times`.
-    times : array_like, shape (n,)
-        s, ascending, fine enough that no axis turns by half a revolution between two.
+    `times` (n,).
     """
     time = np.asarray(times, dtype=float)
     angle1 = cumulative(time, np.asarray(axes.rate1), np.asarray(axes.acceleration1))

@@ -113,18 +113,7 @@ def usage(
 ) -> tuple[LimitUse, ...]:
     """How much of its limits a motion uses.
 
-    Parameters
-    ----------
-    time : array, shape (n,)
-        s, fine enough to meet the peaks.
-    rate, acceleration, jerk : array, shape (n, 3)
-        Of axes 1, 2, 3: rad/s, rad/s², rad/s³.
-    limits : Limits
-
-    Returns
-    -------
-    tuple of LimitUse
-        Rate, acceleration and jerk of each axis, whether limited or not; then the arm's power if its inertia is known.
+    `time` (n,) s, `rate`, `acceleration`, `jerk` (n, 3) rad/s³.
     """
     allowed = np.asarray(limits.axes)
     uses = [

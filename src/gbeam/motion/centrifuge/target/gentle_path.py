@@ -21,20 +21,7 @@ Flags = NDArray[np.bool_]
 def unwrapped(times: Floats, y: Floats, x: Floats, whole: float) -> tuple[Floats, Floats]:
     """Angle atan2(y, x) of a load over time, and how much it counts.
 
-    Parameters
-    ----------
-    times : array, shape (k,)
-        s.
-    y, x : array, shape (k,)
-        m/s².
-    whole : float
-        Load that counts wholly, m/s².
-
-    Returns
-    -------
-    tuple of array (k,)
-        The angle, rad, without jumps: by the shorter way from each load that has a direction to the next, straight
-        between; π/2 if none has. Then its weight from 0 to 1.
+    `times` (k,) s, `y`, `x` (k,) m/s²; returns (k,).
     """
     size = np.hypot(y, x)
     directed = size >= _DIRECTED * whole
@@ -56,15 +43,7 @@ def gentle(times: Floats, values: Floats, weight: Floats, fixed: Flags, time_sca
     corner; changes quicker than a period of 2πT are left out. T is `time_scale`, less beside fixed values that change
     so quickly that the path would be carried far away before it turns.
 
-    Parameters
-    ----------
-    times : array, shape (k,)
-        s, ascending.
-    values, weight : array, shape (k,)
-        Weight w from 0 to 1.
-    fixed : array of bool, shape (k,)
-    time_scale : float
-        T, s.
+    `times` (k,), `values`, `weight` (k,), `fixed` (k,).
     """
     if fixed.all() or times.size < 4:
         return values

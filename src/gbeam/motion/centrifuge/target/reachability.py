@@ -26,16 +26,7 @@ Floats = NDArray[np.float64]
 
 
 def shortfalls(target: Target, arm: float, *, turns: bool = True) -> tuple[Shortfall, ...]:
-    """List where the flight's load is below idle, across the beam below gravity, or turns too sharply.
-
-    Parameters
-    ----------
-    target : Target
-    arm : float
-        R, m.
-    turns : bool
-        Whether what turns too sharply is listed.
-    """
+    """List where the flight's load is below idle, across the beam below gravity, or turns too sharply."""
     time = _times(target)
     flight = np.asarray(target.flight(time))
     idle, gravity = float(target.idle), float(target.gravity)

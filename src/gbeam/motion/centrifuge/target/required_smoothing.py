@@ -24,26 +24,10 @@ def required_smoothing(
 ) -> list[float | None]:
     """For each stretch of times, the smallest smoothing with which nothing in it turns too sharply for the arm.
 
-    It is found by trying: on a slope that gravity bends, −ä <= a²/R may need more than a corner's 2jR/a², or be out
-    of any smoothing's reach.
+    It is found by trying: on a slope that gravity bends, −ä <= a²/R may need more than a corner's 2jR/a², or be out of
+    any smoothing's reach.
 
-    Parameters
-    ----------
-    corners : Profile
-        The load before its corners are rounded, m/s².
-    gravity, idle, arm : float
-        γ and the least load, m/s², and R, m.
-    time : array, shape (t,)
-        Even times, s.
-    runs : sequence of slice
-        Stretches of `time`.
-    width : float
-        The smoothing that is too small, s.
-
-    Returns
-    -------
-    list of float or None
-        s, within 5 %; None where no width up to 3 s does.
+    `time` (t,) s.
     """
     step = min(float(time[1] - time[0]), max(width, _LEAST) / _PER_WIDTH)
     count = np.ceil((time[-1] - time[0] + _WIDEST) / step)

@@ -20,16 +20,7 @@ Row = tuple[float, float, float, float]  # start s, end s, number of the reason,
 def stretches(times: Floats, reasons: NDArray[np.int64], size: Floats, reach: Floats, flight: Profile) -> list[Row]:
     """Rows of the runs of knots with one reason, by start.
 
-    Parameters
-    ----------
-    times : array, shape (k,)
-        Knots, s.
-    reasons : array of int, shape (k,)
-        The place in :data:`REASONS` of why the target is not the flight's load; −1 where it is.
-    size, reach : array, shape (k,)
-        By how much, m/s², the load exceeds idle, and that across the beam the least that the gimbals make.
-    flight : Profile
-        The flight's own load, m/s².
+    `times` (k,) s, `reasons` (k,), `size`, `reach` (k,).
     """
 
     def edge(outside: int, inside: int) -> float:

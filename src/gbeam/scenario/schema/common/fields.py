@@ -33,18 +33,7 @@ class Table(BaseModel):
 
 
 def wrong(message: str, hint: str = "", *, mark: Literal["value", "key"] = "value") -> PydanticCustomError:
-    """Make the error of one value.
-
-    Parameters
-    ----------
-    message : str
-        What is wrong. ``{value}`` stands for the value as written, ``{beam.length}`` and
-        ``{response.duration}`` for those.
-    hint : str
-        What would be right; may hold the same placeholders.
-    mark : str
-        Whether the caret goes under the value or under its key.
-    """
+    """Make the error of one value."""
     return PydanticCustomError("scenario", "{message}", {"message": message, "hint": hint, "mark": mark})
 
 
