@@ -24,7 +24,7 @@ from plan_minute import TIME, f16, maneuvers
 
 from gbeam.motion import STANDARD_GRAVITY, Centrifuge, Flight, MachineLimits, PiecewiseLinear, machines
 from gbeam.motion.centrifuge.inverses import planned
-from gbeam.numerics.solvers import sequential
+from gbeam.numerics import minimise as sequential
 
 G, IDLE, LAST = STANDARD_GRAVITY, 1.4 * STANDARD_GRAVITY, 60.0
 MACHINE = machines["specimen-3.3m"]

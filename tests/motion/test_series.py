@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 import sympy
 
-from gbeam.numerics.intervals import joined, true_runs
-from gbeam.numerics.quadrature import cumulative
+from gbeam.numerics.samples import cumulative, joined, true_runs
 from gbeam.numerics.series import Series, arctan2, compose, power, sin_cos, sqrt, square, stack, where
 
 T = np.array([-0.7, 0.0, 0.31, 1.9])

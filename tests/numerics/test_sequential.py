@@ -7,8 +7,7 @@ import pytest
 import scipy.optimize
 import scipy.sparse
 
-from gbeam.numerics.solvers.quadratic import solve_quadratic
-from gbeam.numerics.solvers.sequential import minimise, nearest_within
+from gbeam.numerics.minimise import minimise, nearest_within, solve_quadratic
 
 RANDOM = np.random.default_rng(7)
 

@@ -20,7 +20,7 @@ from gbeam.analysis.imitation.place_measures import Choice
 from gbeam.cli import main
 from gbeam.cli.verbs.machine import parse
 from gbeam.motion import AxisLimit, MachineLimits
-from gbeam.numerics.solvers.bounded_search import coarse, refine
+from gbeam.numerics.minimise import coarse, refine
 from gbeam.results.imitation.placement import MEASURES, Candidate, Placement
 from gbeam.results.machine import LimitUse
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from gbeam.integrate.equations import LinearEquations
 from gbeam.integrate.schemes import Scheme
-from gbeam.numerics.solvers.eigen import symmetric_modes
+from gbeam.numerics.eigen import symmetric_modes
 
 FITTED = 2.0  # rad in a step, up to which a mode is fitted; a faster one takes what that one does
 

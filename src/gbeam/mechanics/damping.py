@@ -8,7 +8,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import as_array, is_jax, namespace
 from gbeam.errors import InputError
-from gbeam.numerics.solvers.eigen import symmetric_modes
+from gbeam.numerics.eigen import symmetric_modes
 
 Array = Any
 

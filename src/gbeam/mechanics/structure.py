@@ -19,7 +19,7 @@ from gbeam.mechanics.equations.linear import Coefficients, Geometric, LoadTerms,
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.rotation import Field
 from gbeam.mechanics.fields.taylor import Places
-from gbeam.numerics.solvers.eigen import positive_definite
+from gbeam.numerics.eigen import positive_definite
 
 if TYPE_CHECKING:
     from gbeam.mechanics.equations.dalembert import Complete, CompleteHub

@@ -1,9 +1,4 @@
-"""Truncated Taylor series in time: a value with its time derivatives, carried through arithmetic.
-
-A series holds f⁽ᵏ⁾(t)/k! for k = 0 ... order at every time of an array; sums, products, quotients, roots and angles of
-series are those of the functions, exact to rounding (Griewank and Walther, Evaluating Derivatives, 2008, chapter 13).
-NumPy or JAX arrays; two series of different orders give one of the lower.
-"""
+"""Taylor series in time, and derivatives by complex steps."""
 
 from __future__ import annotations
 
@@ -14,6 +9,7 @@ from operator import add
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, namespace
 from gbeam.arrays.tree import record
@@ -186,3 +182,21 @@ def compose(derivatives: Sequence[Any], inner: Series) -> Series:
     for k in range(inner.order - 1, -1, -1):
         result = result * away + derivatives[k] / factorial(k)
     return result
+
+
+_STEP = 1e-30
+
+
+def complex_step(
+    function: Callable[[NDArray[np.complex128]], NDArray[np.complex128]], x: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Jacobian (m, n) of a function of a vector (n,) that is analytic and computes with complex numbers.
+
+    f(x + ih) = f(x) + ih f'(x) − …: the imaginary part holds the derivative to rounding, whatever the step.
+    """
+    columns = []
+    for k in range(len(x)):
+        moved = x.astype(complex)
+        moved[k] += 1j * _STEP
+        columns.append(np.imag(function(moved)) / _STEP)
+    return np.stack(columns, axis=-1)

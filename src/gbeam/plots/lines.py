@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 
-from gbeam.numerics.intervals import true_runs
+from gbeam.numerics.samples import true_runs
 from gbeam.plots.style import ENVELOPE, colour, moving, subtitle
 from gbeam.results.imitation.accounting import Accounting
 from gbeam.results.machine import AxesResult

@@ -20,7 +20,7 @@ from gbeam.mechanics.equations.hub import FreeHub, ground_of
 from gbeam.mechanics.section_forces import absolute_accelerations
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
-from gbeam.numerics.solvers.eigen import symmetric_modes
+from gbeam.numerics.eigen import symmetric_modes
 from gbeam.results.result import Floats
 
 

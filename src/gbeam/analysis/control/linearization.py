@@ -33,7 +33,7 @@ from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.complex_step import complex_step
+from gbeam.numerics.series import complex_step
 from gbeam.results.state_space import ACCURATE, Gauge, Signal, StateSpace
 from gbeam.structure.beam import Beam
 from gbeam.structure.section import fibre_strain

@@ -20,7 +20,7 @@ from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.spline import SplineProfile
-from gbeam.numerics.solvers.quadratic import solve_quadratic
+from gbeam.numerics.minimise import solve_quadratic
 from gbeam.progress import Progress, tell
 from gbeam.results.response import Response
 from gbeam.results.result import Floats

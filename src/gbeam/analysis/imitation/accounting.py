@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from gbeam.guards.checks import choice, positive
 from gbeam.motion.centrifuge.machine.kinematics import moved
-from gbeam.numerics.intervals import true_runs
-from gbeam.numerics.prominence import separate_peaks
+from gbeam.numerics.samples import separate_peaks, true_runs
 from gbeam.results.imitation.accounting import TOLERANCE_OF, Accounting, LoadPeak, NotFollowed, PeakPair, Preload
 from gbeam.results.machine import AxesResult
 from gbeam.results.result import Flags, Floats

@@ -11,10 +11,9 @@ from gbeam.analysis.response.peaks import vector_peaks
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.motion.bases.base import gradient
-from gbeam.numerics.filters.low_pass import low_pass
-from gbeam.numerics.filters.oscillators import largest_riding_acceleration
-from gbeam.numerics.interpolation import interpolated
+from gbeam.numerics.filters import largest_riding_acceleration, low_pass
 from gbeam.numerics.peaks import maxima, near_maxima, seven_point, turning_points
+from gbeam.numerics.samples import interpolated
 from gbeam.results.imitation.accounting import TOLERANCE, PeakPair
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.criteria import Limit, checked_limits

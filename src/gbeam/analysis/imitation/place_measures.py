@@ -18,8 +18,8 @@ from gbeam.motion.bases.base import gradient
 from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge
 from gbeam.motion.centrifuge.inverses.registry import INVERSES
 from gbeam.motion.centrifuge.machine.kinematics import forward
-from gbeam.numerics.filters.oscillators import displacement
-from gbeam.numerics.solvers.bounded_search import coarse
+from gbeam.numerics.filters import displacement
+from gbeam.numerics.minimise import coarse
 from gbeam.results.result import Flags, Floats
 
 _FACTOR = 4.0  # of the centrifuge's own smoothing, either way

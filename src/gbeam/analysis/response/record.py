@@ -26,7 +26,7 @@ from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.flight import Flight
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.attitude import attitude
+from gbeam.numerics.samples import attitude
 from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
 from gbeam.results.machine import AxesResult
 from gbeam.results.parts import Influence, Loads, Outline, Peaks

@@ -20,8 +20,7 @@ from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.solvers.oscillations import mac, matched
-from gbeam.numerics.solvers.roots import brent
+from gbeam.numerics.eigen import mac, matched
 from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
 from gbeam.results.modal import Campbell, Crossing
 from gbeam.results.result import Complex, Floats
@@ -205,6 +204,8 @@ def _crossings(
     """Speeds at which a followed mode meets an engine order, with the mode and the slope of its circular frequency
     there.
     """
+    from scipy.optimize import brentq
+
     gap = frequency - order * rates / (2 * np.pi)
     found = []
     for i in np.flatnonzero((gap[:-1] > 0) & (gap[1:] <= 0) | (gap[:-1] < 0) & (gap[1:] >= 0)):
@@ -217,7 +218,7 @@ def _crossings(
 
         ends = difference(rates[i]), difference(rates[i + 1])
         if ends[0] * ends[1] <= 0:
-            rate = brent(difference, float(rates[i]), float(rates[i + 1]), xtol=1e-10)
+            rate = brentq(difference, float(rates[i]), float(rates[i + 1]), xtol=1e-10)
         else:  # the mode veers within the step: keep what the curve says
             rate = rates[i] - gap[i] * (rates[i + 1] - rates[i]) / (gap[i + 1] - gap[i])
         here = at(rate)

@@ -15,8 +15,7 @@ import numpy as np
 from gbeam.analysis.steady.equilibrium import expanded
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.structure import Structure
-from gbeam.numerics.solvers.eigen import symmetric
-from gbeam.numerics.solvers.oscillations import eigenvalues, growth_rate, stability_margin, unsymmetric
+from gbeam.numerics.eigen import eigenvalues, growth_rate, stability_margin, symmetric, unsymmetric
 from gbeam.results.response import BaseMotion
 
 Array = Any

@@ -13,8 +13,7 @@ from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.equations.residuals import OnBase
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
-from gbeam.numerics.solvers.eigen import positive_definite
-from gbeam.numerics.solvers.oscillations import stability_margin
+from gbeam.numerics.eigen import positive_definite, stability_margin
 
 Array = Any
 _ITERATIONS = 30  # of Newton's method

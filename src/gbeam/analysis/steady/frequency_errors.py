@@ -22,7 +22,7 @@ from gbeam.mechanics.equations.residuals import OnHub
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
 from gbeam.motion.bases.base import Base
-from gbeam.numerics.solvers.oscillations import ZERO, eigenvalues, mac, matched
+from gbeam.numerics.eigen import ZERO, eigenvalues, mac, matched
 from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
 from gbeam.results.result import Complex, Floats
 

@@ -20,9 +20,7 @@ from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
 from gbeam.motion.bases.base import Base
-from gbeam.numerics.solvers.eigen import symmetric_modes
-from gbeam.numerics.solvers.oscillations import stability_margin
-from gbeam.numerics.solvers.roots import brent
+from gbeam.numerics.eigen import stability_margin, symmetric_modes
 from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Critical
 from gbeam.results.errors import ErrorEstimate
@@ -62,7 +60,9 @@ def first_loss_along(
         return answer(None, "none", "", why)
     if first == 0:
         return answer(0.0, "divergence", "", "the beam is unstable before anything moves")
-    root = brent(margin, grid[first - 1], grid[first], xtol=1e-11)
+    from scipy.optimize import brentq
+
+    root = brentq(margin, grid[first - 1], grid[first], xtol=1e-11)
     point = _point(*path(root)) or on_base(*path(grid[first - 1]))
     beyond = _point(*path(root * (1 + 1e-5)))
     if beyond is None:
@@ -147,11 +147,13 @@ def _lost(rich: Structure, path: Path, near: float, progress: Progress, shares: 
         except (ComputationError, np.linalg.LinAlgError):
             return -1.0
 
+    from scipy.optimize import brentq
+
     low = 0.0
     for i, share in enumerate(shares):
         tell(progress, f"errors of the critical value, by {rich.kind} with more shapes", i / len(shares))
         if margin(share * near) < 0:
-            return brent(margin, low, share * near, xtol=CLOSE * near)
+            return brentq(margin, low, share * near, xtol=CLOSE * near)
         low = share * near
     return math.inf
 

@@ -14,7 +14,7 @@ from gbeam.mechanics.equations.sampled import slopes
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.solvers.oscillations import ZERO, eigenvalues, growth_limit
+from gbeam.numerics.eigen import ZERO, eigenvalues, growth_limit
 from gbeam.results.modal import Instability, Modes
 from gbeam.results.result import Complex, Floats
 

@@ -16,7 +16,7 @@ from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.complex_step import complex_step
+from gbeam.numerics.series import complex_step
 from gbeam.results.response import BaseMotion
 
 Array = Any

@@ -22,7 +22,7 @@ from gbeam.motion.centrifuge.target.reachability import sharp_turns, size_and_ra
 from gbeam.motion.centrifuge.target.target import Target
 from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.bspline import PIECE, Grid, Normal, Spline
-from gbeam.numerics.intervals import true_runs
+from gbeam.numerics.samples import true_runs
 from gbeam.numerics.series import sin_cos, sqrt, square
 
 # Of the horizontal load: refined until this is reached. The third derivative of a rounded record jumps wherever a knot

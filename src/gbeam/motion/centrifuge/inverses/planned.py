@@ -71,7 +71,7 @@ def planned(target: Target, geometry: Geometry, limits: Limits, ends: Ends) -> P
     from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines
     from gbeam.motion.centrifuge.inverses.kept_limits import KeptLimits, idle_rate
     from gbeam.motion.centrifuge.inverses.tracking import Tracking
-    from gbeam.numerics.solvers.sequential import minimise, nearest_within
+    from gbeam.numerics.minimise import minimise, nearest_within
 
     idle, fastest = idle_rate(target, geometry), float(limits.axes[0, 0])
     if idle > fastest:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.motion.bases.base import Base
-from gbeam.numerics.quadrature import cumulative
+from gbeam.numerics.samples import cumulative
 
 
 @record

@@ -38,7 +38,7 @@ from gbeam.motion.centrifuge.target.target import Target
 from gbeam.motion.profiles.clamp import clamped
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.profiles.profile import Profile, sampled, smoothed
-from gbeam.numerics.intervals import joined, true_runs
+from gbeam.numerics.samples import joined, true_runs
 
 _GRID = 0.01  # s, spacing of knots where a load without smoothing is held
 _CURVE, _MOST = 0.002, 100_000  # s, the same along a curved profile; knots along one, unless the kernel needs more

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.numerics.intervals import true_runs
-from gbeam.numerics.solvers.banded import solve_banded
+from gbeam.numerics.samples import true_runs
 
 _DIRECTED = 0.2  # of what counts as a whole load: below, the angle about the beam is not looked at
 _POLE = 0.05  # rad from the beam: nearer to it the angle about it would run away
@@ -47,6 +46,8 @@ def gentle(times: Floats, values: Floats, weight: Floats, fixed: Flags, time_sca
     """
     if fixed.all() or times.size < 4:
         return values
+    from scipy.linalg import solveh_banded  # imported when a path is sought
+
     left, right = np.diff(times)[:-1], np.diff(times)[1:]
     penalty = _time_scales(times, values, fixed, time_scale)[1:-1] ** 4 * (left + right) / 2
     second = 2 * np.stack([1 / (left * (left + right)), -1 / (left * right), 1 / (right * (left + right))])
@@ -62,7 +63,7 @@ def gentle(times: Floats, values: Floats, weight: Floats, fixed: Flags, time_sca
     for d in (1, 2):
         band[d, : times.size - d] *= ~(fixed[: times.size - d] | fixed[d:])
     band[0, fixed], side[fixed] = 1.0, 0.0
-    return np.asarray(values + solve_banded(band, side[:, None])[:, 0])
+    return np.asarray(values + solveh_banded(band, side, lower=True))
 
 
 def _time_scales(times: Floats, values: Floats, fixed: Flags, longest: float) -> Floats:

@@ -13,7 +13,7 @@ from gbeam.motion.centrifuge.target.load_limits import LEAST_IDLE, MIN_TRANSVERS
 from gbeam.motion.centrifuge.target.required_smoothing import required_smoothing
 from gbeam.motion.centrifuge.target.target import Target
 from gbeam.motion.profiles.profile import Profile
-from gbeam.numerics.intervals import joined, true_runs
+from gbeam.numerics.samples import joined, true_runs
 from gbeam.numerics.series import sqrt, square, where
 from gbeam.results.machine import Shortfall
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.motion.profiles.profile import Profile
-from gbeam.numerics.intervals import true_runs
+from gbeam.numerics.samples import true_runs
 
 REASONS = ("below idle", "gimbals", "left out")
 BELOW_IDLE, GIMBALS, LEFT_OUT = range(len(REASONS))

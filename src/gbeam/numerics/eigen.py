@@ -1,11 +1,38 @@
-"""Eigenvalues and modes of M ÿ + C ẏ + K y = 0, which of them grow, and how alike two modes are."""
+"""The symmetric eigenproblem, and small oscillations about an equilibrium."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.numerics.solvers.eigen import symmetric, symmetric_modes
+from gbeam.arrays.namespace import namespace
+
+Array = Any
+
+
+def symmetric_modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:
+    """Eigenvalues (n,), ascending, and eigenvectors (n, n) in columns, of unit length in M."""
+    xp = namespace(stiffness, mass)
+    scale = xp.linalg.inv(xp.linalg.cholesky(mass))
+    value, vector = xp.linalg.eigh(scale @ stiffness @ scale.T)
+    return value, scale.T @ vector
+
+
+def positive_definite(matrices: Array) -> bool:
+    """Whether the symmetric parts of all matrices (..., n, n) are, by factors: a tenth of what eigenvalues cost."""
+    try:
+        np.linalg.cholesky(matrices + np.swapaxes(matrices, -1, -2))
+    except np.linalg.LinAlgError:
+        return False
+    return True
+
+
+def symmetric(matrices: Array) -> Array:
+    """The symmetric parts of matrices (..., n, n)."""
+    return (matrices + namespace(matrices).swapaxes(matrices, -1, -2)) / 2
+
 
 Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -1,1 +1,0 @@
-"""Digital filters and oscillators on evenly sampled histories, without scipy.signal."""

@@ -1,0 +1,143 @@
+"""Least values: of one number between bounds, of quadratics within limits, and of a sequence of these."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+GRID = 5  # coarse points
+_RESOLUTION = 0.02  # of the number
+_BISECTIONS, _REFINEMENTS = 6, 8
+
+Evaluate = Callable[[float], tuple[float, float]]
+
+
+def coarse(low: float, high: float) -> tuple[float, ...]:
+    """Numbers from `low` to `high` in equal ratios."""
+    return tuple(float(x) for x in np.geomspace(low, high, GRID)) if high > low else (low,)
+
+
+def refine(evaluate: Evaluate, points: tuple[float, ...]) -> None:
+    """Look for a better number around the best of the coarse ones; what was evaluated is the caller's to keep."""
+    values = [evaluate(x) for x in points]
+    allowed = [i for i, (_, share) in enumerate(values) if share <= 1]
+    if not allowed:
+        return
+    best = min(allowed, key=lambda i: values[i][0])
+
+    def edge(inside: float, outside: float) -> float:
+        """The last number that is allowed on the way from `inside` to `outside`, by bisection of the ratio."""
+        for _ in range(_BISECTIONS):
+            if abs(np.log(outside / inside)) < _RESOLUTION:
+                break
+            middle = float(np.sqrt(inside * outside))
+            inside, outside = (middle, outside) if evaluate(middle)[1] <= 1 else (inside, middle)
+        return inside
+
+    def neighbour(i: int) -> float:
+        if not 0 <= i < len(points):
+            return points[best]
+        return points[i] if values[i][1] <= 1 else edge(points[best], points[i])
+
+    low, high = neighbour(best - 1), neighbour(best + 1)
+    if high <= low * (1 + _RESOLUTION):
+        return
+    import scipy.optimize
+
+    scipy.optimize.minimize_scalar(
+        lambda x: evaluate(float(np.exp(x)))[0],
+        bounds=(np.log(low), np.log(high)),
+        method="bounded",
+        options={"xatol": _RESOLUTION, "maxiter": _REFINEMENTS},
+    )
+
+
+_TOLERANCE = 1e-7  # of what limits leave, which are of the order of one, and of the slope
+_GAP = 1e-9, 1e-5  # between the costs of the two programs, alone and beside the cost
+_SCALE = 1e4  # of the cost: the solver adds up to 1e-10 to H, which must be small beside its least eigenvalue
+
+
+def solve_quadratic(hessian: Any, slope: Floats, rows: Any, lower: Floats, upper: Floats) -> Floats | None:
+    """Find the x that minimises ½ xᵀHx + gᵀx within lower <= A x <= upper.
+
+    `hessian` (n, n), `slope` (n,), `rows` (m, n), `lower`, `upper` (m,); returns (n,).
+    """
+    import piqp
+
+    solver = piqp.SparseSolver()
+    settings = solver.settings
+    settings.kkt_solver = piqp.KKTSolver.sparse_ldlt_ineq_cond  # limits only widen the band of H
+    settings.eps_abs = settings.eps_rel = _TOLERANCE
+    settings.eps_duality_gap_abs, settings.eps_duality_gap_rel = _GAP
+    settings.preconditioner_iter = 0  # limits and cost are scaled as they are given: it would take a quarter more steps
+    solver.setup(_SCALE * _sorted(hessian), _SCALE * slope, G=_sorted(rows), h_l=lower, h_u=upper)
+    status = solver.solve()
+    return np.array(solver.result.x) if status == piqp.PIQP_SOLVED else None
+
+
+def _sorted(matrix: Any) -> Any:
+    """By columns, each in order: PIQP takes no others."""
+    columns = matrix.tocsc()
+    columns.sort_indices()
+    return columns
+
+
+_STEPS = 60  # at most
+_ENOUGH = 1e-3  # gain of a step that ends the search, of what the cost has above its bound
+_SUFFICIENT = 1e-4  # of the gain that the slope promises
+_SHORTEST = 1e-3  # part of a step
+
+
+class Cost(Protocol):
+    """A cost of unknowns x (n,)."""
+
+    bound: float  # below which it cannot be
+
+    def cost(self, x: Floats) -> float:
+        """The cost."""
+
+    def model(self, x: Floats) -> tuple[Any, Floats]:
+        """A positive semidefinite matrix near the cost's second derivatives, sparse (n, n), and its slope (n,)."""
+
+
+class Limits(Protocol):
+    """Limits of unknowns x (n,)."""
+
+    def at(self, x: Floats) -> tuple[Any, Floats, Floats]:
+        """Rows, sparse (m, n), with lower and upper limits (m,): whatever keeps them keeps the true ones."""
+
+
+def minimise(cost: Cost, limits: Limits, x: Floats) -> tuple[Floats, float]:
+    """Find the minimum near `x`, which keeps the limits; return it and its cost."""
+    value = cost.cost(x)
+    for _ in range(_STEPS):
+        hessian, slope = cost.model(x)
+        rows, lower, upper = limits.at(x)
+        now = rows @ x
+        move = solve_quadratic(hessian, slope, rows, lower - now, upper - now)
+        if move is None:
+            break
+        promised, part = float(slope @ move), 1.0
+        while (new := cost.cost(x + part * move)) > value + _SUFFICIENT * part * promised:
+            part /= 2
+            if part < _SHORTEST:
+                return x, value
+        x, gain, value = x + part * move, value - new, new
+        if gain <= _ENOUGH * (value - cost.bound):
+            break
+    return x, value
+
+
+def nearest_within(limits: Limits, x: Floats) -> Floats | None:
+    """The point within the limits that is nearest to `x`; None if there is none."""
+    import scipy.sparse
+
+    rows, lower, upper = limits.at(x)
+    now = rows @ x
+    move = solve_quadratic(scipy.sparse.eye_array(x.size), 0 * x, rows, lower - now, upper - now)
+    return None if move is None else x + move

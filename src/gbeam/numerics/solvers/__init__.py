@@ -1,1 +1,0 @@
-"""Solvers without a beam: banded systems, eigenvalues, roots, a bounded search, an interior-point method."""
