@@ -31,7 +31,7 @@ from gbeam.mechanics.fields.rooted import RootedField
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Sections, Structure
-from gbeam.motion.bases.base import Base
+from gbeam.motion.bases.base import mapped
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.complex_step import complex_step
 from gbeam.results.state_space import ACCURATE, Gauge, Signal, StateSpace
@@ -95,7 +95,7 @@ class Outputs:
         i = self.residual.first
         q, qd, qdd = y[i:], yd[i:], ydd[i:]
         base, (_, values) = self.residual.base(y, yd, ydd, u), self.residual.unpack(u)
-        now = Base(*(x[None] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
+        now = mapped(base, lambda x: x[None])
         loads = None if values is None else values[None]
         _, moment, *carried, a = sections(self.structure, self.outboard, now, q[None], qd[None], qdd[None], loads)
         xp = namespace(y, a)
