@@ -36,8 +36,7 @@ from gbeam.motion.bases.base import mapped
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.complex_step import complex_step
 from gbeam.results.state_space import ACCURATE, Gauge, Signal, StateSpace, import_control
-from gbeam.structure.beam import Beam
-from gbeam.structure.section import fibre_strain
+from gbeam.structure.beam import Beam, fibre_strain
 
 
 @typed
