@@ -16,8 +16,8 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.analysis.case import Case as Case
     from gbeam.analysis.case import describe as describe
     from gbeam.analysis.control.linearization import linearize as linearize
+    from gbeam.analysis.control.linearization import nonlinear_system as nonlinear_system
     from gbeam.analysis.control.linearization import surface_gauges as surface_gauges
-    from gbeam.analysis.control.nonlinear import nonlinear_system as nonlinear_system
     from gbeam.analysis.control.reduction import balanced_truncation as balanced_truncation
     from gbeam.analysis.control.reduction import modal_truncation as modal_truncation
     from gbeam.analysis.control.shaping import shape_command as shape_command
@@ -145,7 +145,7 @@ _HOME = {
     "machines": "motion.centrifuge.machine.examples",
     "modal_truncation": "analysis.control.reduction",
     "modes": "analysis.steady.modal",
-    "nonlinear_system": "analysis.control.nonlinear",
+    "nonlinear_system": "analysis.control.linearization",
     "optimise": "studies.optimise",
     "place": "analysis.imitation.place",
     "plan": "analysis.imitation.plan",

@@ -7,8 +7,7 @@ import pytest
 import scipy.io
 
 from gbeam import Beam, Gauge, InputError, Model, Root, assemble
-from gbeam.analysis.control.linearization import linearize
-from gbeam.analysis.control.nonlinear import nonlinear_system
+from gbeam.analysis.control.linearization import linearize, nonlinear_system
 from gbeam.analysis.control.reduction import balanced_truncation, modal_truncation
 from gbeam.analysis.steady.modal import modes
 from gbeam.analysis.steady.operating_point import evaluated_at, linear_matrices, on_base, on_hub, operating_point

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from gbeam import Beam, InputError, Load, Material, Model, PointMass, Root, Section, assemble
-from gbeam.analysis.control.linearization import linearize
-from gbeam.analysis.control.nonlinear import nonlinear_system
+from gbeam.analysis.control.linearization import linearize, nonlinear_system
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.motion import Flight, Hub, constant
 from gbeam.results.response import BaseMotion

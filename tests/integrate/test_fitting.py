@@ -10,7 +10,7 @@ import pytest
 from scipy.linalg import eigh
 
 from gbeam.integrate import LinearEquations, gauss, integrate, newmark
-from gbeam.integrate.fitting import added
+from gbeam.integrate.schemes import added
 
 from .systems import VARYING
 

@@ -10,8 +10,7 @@ import numpy as np
 from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.integrate import linear
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations, Trajectory
-from gbeam.integrate.fitting import added
-from gbeam.integrate.schemes import Scheme
+from gbeam.integrate.schemes import Scheme, added
 from gbeam.integrate.steps import Corners, Floats, Steps, fitted
 
 _LINEAR_CHUNK = 500  # steps whose maps are found at once: as many as stay in a cache

@@ -70,15 +70,16 @@ def _guess(t: Tableau, carry: Carry) -> Array:
     return x + (x[-1] - x[0]) * t.end_z[0, 1] / (t.w_q[-1, 1] - t.w_q[0, 1])
 
 
+def mass_and_acceleration(residual: Any, q: Array, qd: Array, inputs: Any) -> tuple[Array, Array]:
+    """M (n, n) and q̈ (n,) of equations, which are linear in q̈, at one state."""
+    rest, mass = with_slope(lambda qdd: residual(q, qd, qdd, inputs))(jnp.zeros_like(q))
+    return mass, jnp.linalg.solve(mass, -rest)
+
+
 @jax.jit
 def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
-    """q̈ that the equations demand, which are linear in them, at states (k, n) and inputs (k, ...): (k, n)."""
-
-    def at(q: Array, qd: Array, inputs: Any) -> Array:
-        rest, mass = with_slope(lambda qdd: residual(q, qd, qdd, inputs))(jnp.zeros_like(q))
-        return jnp.linalg.solve(mass, -rest)
-
-    return jax.vmap(at)(q, qd, inputs)
+    """q̈ that the equations demand at states (k, n) and inputs (k, ...): (k, n)."""
+    return jax.vmap(lambda *state: mass_and_acceleration(residual, *state)[1])(q, qd, inputs)
 
 
 def _next(t: Tableau, carry: Carry, x: Array) -> tuple[Carry, Array, Array]:

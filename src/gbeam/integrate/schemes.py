@@ -22,6 +22,8 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.tree import record
 from gbeam.errors import InputError
+from gbeam.integrate.equations import LinearEquations
+from gbeam.numerics.eigen import symmetric_modes
 
 Floats = NDArray[np.float64]
 
@@ -183,3 +185,32 @@ def _gauss_exponent(z: NDArray[np.complex128]) -> NDArray[np.complex128]:
     """Solve R(μ) = (12 + 6μ + μ²)/(12 − 6μ + μ²) = e^z."""
     half = np.tanh(z / 2)
     return 12 * half / (3 + np.sqrt(9 - 12 * half**2))
+
+
+# A scheme multiplies a vibration e^λt by R(λh) in a step h, which is e^λh to its order only: lightly damped, it is
+# delayed more with every cycle. With μ/h in place of λ, R(μ) = e^λh, it keeps its time. Mass and damping change so;
+# stiffness and forces stay, and with them slow deflections. The changes are of the scheme's order in h, and so is the
+# error that remains: exponentially fitted (Gautschi, 1961).
+FITTED = 2.0  # rad in a step, up to which a mode is fitted; a faster one takes what that one does
+
+
+def added(equations: LinearEquations, scheme: Scheme, step: float) -> tuple[Floats, Floats]:
+    """Matrices (n, n) that steps of a length (s) add to M and C; zero of a scheme that does not fit."""
+    if scheme.exponent is None or equations.rest is None:
+        nothing = np.zeros(np.shape(equations.mass))
+        return nothing, nothing
+    damping, stiffness = equations.rest
+    square, modes = symmetric_modes(stiffness, equations.mass)
+    frequency = np.sqrt(np.maximum(square, 0.0))
+    rate = np.einsum("ia,ij,ja->a", modes, damping, modes)
+    fits = (frequency > 0) & (np.abs(rate) < 2 * frequency)
+    frequency, rate, modes = frequency[fits], rate[fits], modes[:, fits]
+    angle = np.minimum(frequency * step, FITTED)
+    ratio = rate / (2 * frequency)
+    z = angle * (-ratio + 1j * np.sqrt(1 - ratio**2))
+    mu = scheme.exponent(z)
+    # μ² m + μ h c + (ω h)² = 0 with the mode's own stiffness.
+    mass = np.abs(z / mu) ** 2
+    slower = np.divide(mu.real, z.real, out=np.ones_like(ratio), where=ratio > 0)
+    shapes = equations.mass @ modes
+    return shapes * (mass - 1) @ shapes.T, shapes * (rate * (slower * mass - 1)) @ shapes.T

@@ -19,8 +19,7 @@ import numpy as np
 from gbeam.integrate import lanes, newton
 from gbeam.integrate.chunks import chunks, stretches
 from gbeam.integrate.equations import LinearEquations, LinearTerms, NonlinearEquations, Trajectory
-from gbeam.integrate.fitting import added
-from gbeam.integrate.schemes import Scheme
+from gbeam.integrate.schemes import Scheme, added
 from gbeam.integrate.steps import Steps
 
 Array = Any

@@ -12,9 +12,8 @@ from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import NODES, refuse_more
-from gbeam.mechanics.damping import damping_matrix
 from gbeam.mechanics.equations.inertia import Elasticity, Inertia, weighed
-from gbeam.mechanics.equations.linear import coefficients
+from gbeam.mechanics.equations.linear import coefficients, damping_matrix
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.adapted import adapted_shapes
 from gbeam.mechanics.fields.basis import Families, Quadrature, quadrature

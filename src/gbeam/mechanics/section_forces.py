@@ -12,6 +12,7 @@ differ from its own generalised forces by terms of third order in (q, q̇).
 from __future__ import annotations
 
 from dataclasses import replace
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.mechanics.equations.sampled import paths
 from gbeam.mechanics.fields.rotation import cross, skew
 from gbeam.mechanics.structure import Sections, Structure
-from gbeam.motion.bases.base import Base
+from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
 from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
@@ -50,9 +51,12 @@ def section_forces(
     pieces = []
     for i in range(0, len(q), _BLOCK):
         part = slice(i, i + _BLOCK)
-        now = Base(base.a_WO_B[part], base.w_WB_B[part], base.alpha_WB_B[part])
         values = None if applied is None else applied[part]
-        pieces.append(sections(structure, structure.sections, now, q[part], qd[part], qdd[part], values))
+        pieces.append(
+            sections(
+                structure, structure.sections, mapped(base, itemgetter(part)), q[part], qd[part], qdd[part], values
+            )
+        )
     force, moment, section_force, section_moment, a = (
         xp.concatenate(part) if len(pieces) > 1 else part[0] for part in zip(*pieces, strict=True)
     )

@@ -12,10 +12,16 @@ from gbeam.arrays.tree import Value, record, static
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
-from gbeam.mechanics.damping import damping_matrix, rest_modes
 from gbeam.mechanics.equations import sampled
 from gbeam.mechanics.equations.hub import FreeHub, free_hub, ground_of
-from gbeam.mechanics.equations.linear import Coefficients, Geometric, LoadTerms, coefficients
+from gbeam.mechanics.equations.linear import (
+    Coefficients,
+    Geometric,
+    LoadTerms,
+    coefficients,
+    damping_matrix,
+    rest_modes,
+)
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.rotation import Field
 from gbeam.mechanics.fields.taylor import Places

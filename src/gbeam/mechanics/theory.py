@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 
 from gbeam.integrate.equations import LinearTerms
 from gbeam.mechanics.assembly import load_work, sections_of
-from gbeam.mechanics.damping import damping_matrix
 from gbeam.mechanics.enrichment import enrichment, own_families
-from gbeam.mechanics.equations.linear import LoadTerms, coefficients, geometric_of
+from gbeam.mechanics.equations.linear import LoadTerms, coefficients, damping_matrix, geometric_of
 from gbeam.mechanics.equations.virtual_work import LoadWork
 from gbeam.mechanics.fields.basis import Families, Quadrature
 from gbeam.mechanics.fields.strained import StrainedField

@@ -116,3 +116,9 @@ def assumptions(beam: Beam) -> tuple[str, ...]:
         if np.isnan(beam.section.torsion_constant(np.zeros(1))).any():
             words.append(NO_TWIST)
     return tuple(words)
+
+
+def fibre_strain(beam: Beam, at: Any, force: Any, moment: Any, y: Any, z: Any) -> Any:
+    """Normal strain, (..., s), at places (y, z) m in a beam's sections `at` (s,) m, by what these carry."""
+    axial, along_z, along_y = beam.rigidities(at)
+    return force[..., 0] / axial + moment[..., 1] * z / along_z - moment[..., 2] * y / along_y

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,9 +16,6 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive
 from gbeam.guards.plausibility import possible
 from gbeam.structure.shapes import ROUND, SHAPES
-
-if TYPE_CHECKING:
-    from gbeam.structure.beam import Beam
 
 Array = NDArray[np.float64]
 
@@ -316,12 +313,6 @@ def fibre_stress(values: SectionValues, force: Any, moment: Any, y: Any, z: Any)
     """Normal stress N/A + M_y z/I_y − M_z y/I_z at places (y, z) m in sections (s,), (..., s) Pa."""
     along_z, along_y = moment[..., 1] * z / values.inertia_y, moment[..., 2] * y / values.inertia_z
     return force[..., 0] / values.area + along_z - along_y
-
-
-def fibre_strain(beam: Beam, at: Any, force: Any, moment: Any, y: Any, z: Any) -> Any:
-    """Normal strain, (..., s), at places (y, z) m in a beam's sections `at` (s,) m, by what these carry."""
-    axial, along_z, along_y = beam.rigidities(at)
-    return force[..., 0] / axial + moment[..., 1] * z / along_z - moment[..., 2] * y / along_y
 
 
 def worst_fibre(values: SectionValues, section: int, force: Any, moment: Any) -> Any:

@@ -22,7 +22,7 @@ from gbeam.results.study import Study
 from gbeam.scenario.values.kinds import KINDS
 from gbeam.scenario.values.suggest import advise
 from gbeam.scenario.values.units import UnitError, argument
-from gbeam.structure.section import fibre_strain
+from gbeam.structure.beam import fibre_strain
 
 OPTION = "--data"
 _TIME = ("time", "time_s", "t")

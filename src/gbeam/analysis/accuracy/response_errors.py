@@ -24,7 +24,7 @@ from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import Enrichment, enrichment
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Structure
-from gbeam.motion.bases.base import Base
+from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
 from gbeam.results.result import Floats
 from gbeam.structure.section import extreme_stresses
@@ -175,7 +175,7 @@ def _base(motion: Any, solution: Solution) -> tuple[Base, Floats | None]:
     if motion.free:
         hub = np.stack([x[:, 0] for x in (solution.y, solution.yd, solution.ydd)], axis=1)
     base = motion.base(solution.time) if hub is None else motion.mount.base(*hub.T)
-    return Base(*(np.asarray(x) for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B))), hub
+    return mapped(base, np.asarray), hub
 
 
 def settled(of: Operator, rest: Floats) -> State:
@@ -199,7 +199,7 @@ def _departure(begin: Begin, richer: Structure, at: Sampled) -> State:
 
 def at_rest(at: Sampled) -> Sampled:
     """The first state at rest, a free hub at its angle."""
-    base, hub = Base(*(x[:1] for x in (at.base.a_WO_B, at.base.w_WB_B, at.base.alpha_WB_B))), at.hub
+    base, hub = mapped(at.base, lambda x: x[:1]), at.hub
     if hub is not None:
         hub = hub[:1] * [1, 0, 0]
         base = at.motion.mount.base(*hub.T)

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from gbeam.analysis.steady.frequency_errors import doubtful, pole_errors
 from gbeam.analysis.steady.modal import modes_at
 from gbeam.analysis.steady.operating_point import (
+    REST,
     OperatingPoint,
     linear_matrices,
     on_base,
@@ -31,12 +32,11 @@ from gbeam.mechanics.fields.rooted import RootedField
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Sections, Structure
-from gbeam.motion.bases.base import Base
+from gbeam.motion.bases.base import mapped
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.series import complex_step
-from gbeam.results.state_space import ACCURATE, Gauge, Signal, StateSpace
-from gbeam.structure.beam import Beam
-from gbeam.structure.section import fibre_strain
+from gbeam.results.state_space import ACCURATE, Gauge, Signal, StateSpace, import_control
+from gbeam.structure.beam import Beam, fibre_strain
 
 
 @typed
@@ -95,7 +95,7 @@ class Outputs:
         i = self.residual.first
         q, qd, qdd = y[i:], yd[i:], ydd[i:]
         base, (_, values) = self.residual.base(y, yd, ydd, u), self.residual.unpack(u)
-        now = Base(*(x[None] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
+        now = mapped(base, lambda x: x[None])
         loads = None if values is None else values[None]
         _, moment, *carried, a = sections(self.structure, self.outboard, now, q[None], qd[None], qdd[None], loads)
         xp = namespace(y, a)
@@ -299,4 +299,49 @@ def linearize(
         frequency=frequency,
         errors=errors,
         warnings=warnings,
+    )
+
+
+@typed
+def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[Gauge] = ()) -> Any:
+    """The model as ``control.nlsys``, complete: on a free hub driven by the torque, on any other base by its motion.
+
+    States are (y, ẏ) and, on a base that is not a free hub, the base's angular velocity; inputs and outputs are those
+    of :func:`gbeam.linearize`, not as departures but whole.
+
+    Parameters
+    ----------
+    structure : Structure
+    motion : Flight, Centrifuge or Hub
+        Tells the kind of base only.
+    gauges : sequence of Gauge
+
+    Raises
+    ------
+    InputError
+        If python-control is not installed.
+    """
+    control = import_control()
+    from gbeam.mechanics.equations.compiled import rates
+
+    straight = np.zeros(structure.size)
+    if motion.free:
+        point, states = on_hub(structure, motion, 0.0, q=straight), coordinate_signals(structure, 1)
+    else:
+        point, states = on_base(structure, REST, straight), coordinate_signals(structure, 0) + BASE_RATES
+    outputs = outputs_of(structure, point, gauges)
+
+    def update(t: float, x: Any, u: Any, params: Any) -> Any:
+        return np.asarray(rates(outputs, np.asarray(x, dtype=float), np.asarray(u, dtype=float))[0])
+
+    def measure(t: float, x: Any, u: Any, params: Any) -> Any:
+        return np.asarray(rates(outputs, np.asarray(x, dtype=float), np.asarray(u, dtype=float))[1])
+
+    return control.nlsys(
+        update,
+        measure,
+        states=[signal.name for signal in states],
+        inputs=[signal.name for signal in input_signals(structure, motion)],
+        outputs=[signal.name for signal in output_signals(gauges, motion)],
+        name=structure.kind,
     )

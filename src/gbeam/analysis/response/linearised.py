@@ -15,8 +15,7 @@ import numpy as np
 
 from gbeam.analysis.response.problem import Problem
 from gbeam.integrate.equations import LinearEquations
-from gbeam.integrate.fitting import added
-from gbeam.integrate.schemes import Scheme
+from gbeam.integrate.schemes import Scheme, added
 from gbeam.integrate.tangent import System
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.structure import Structure

@@ -17,7 +17,7 @@ from gbeam.guards.checks import choice, finite
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations
 from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.structure import Structure
-from gbeam.motion.bases.base import Base
+from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
 
 Array = Any
@@ -221,5 +221,4 @@ def start_of(structure: Structure, motion: Any, start: float, initial: Initial) 
         pulled, o = motion.mount.gravity is not None or structure.history is not None, np.zeros(())
         return initial_state(structure, motion.mount.base(o, o, o) if pulled else None, start, initial)
     base = motion.base(np.array([start]))
-    first = Base(*(x[0] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
-    return initial_state(structure, first, start, initial)
+    return initial_state(structure, mapped(base, lambda x: x[0]), start, initial)

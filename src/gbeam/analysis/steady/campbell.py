@@ -207,26 +207,26 @@ def _crossings(
     from scipy.optimize import brentq
 
     gap = frequency - order * rates / (2 * np.pi)
-    found = []
+    crossings = []
     for i in np.flatnonzero((gap[:-1] > 0) & (gap[1:] <= 0) | (gap[:-1] < 0) & (gap[1:] >= 0)):
         mode = speeds[i].coordinates[index[i][track]][None]
 
         def difference(rate: float, mode: Complex = mode) -> float:
-            here = at(rate)
-            like = int(mac(mode, here.coordinates, here.mass)[0].argmax())
-            return float(here.frequency[like] - order * rate / (2 * np.pi))
+            speed = at(rate)
+            like = int(mac(mode, speed.coordinates, speed.mass)[0].argmax())
+            return float(speed.frequency[like] - order * rate / (2 * np.pi))
 
         ends = difference(rates[i]), difference(rates[i + 1])
         if ends[0] * ends[1] <= 0:
             rate = brentq(difference, float(rates[i]), float(rates[i + 1]), xtol=1e-10)
         else:  # the mode veers within the step: keep what the curve says
             rate = rates[i] - gap[i] * (rates[i + 1] - rates[i]) / (gap[i + 1] - gap[i])
-        here = at(rate)
-        like = int(mac(mode, here.coordinates, here.mass)[0].argmax())
-        crossing = Crossing(track, order, float(rate), order * float(rate) / (2 * np.pi), here.direction[like])
+        speed = at(rate)
+        like = int(mac(mode, speed.coordinates, speed.mass)[0].argmax())
+        crossing = Crossing(track, order, float(rate), order * float(rate) / (2 * np.pi), speed.direction[like])
         slope = 2 * np.pi * (frequency[i + 1] - frequency[i]) / (rates[i + 1] - rates[i])
-        found.append((crossing, here.coordinates[like], float(slope)))
-    return found
+        crossings.append((crossing, speed.coordinates[like], float(slope)))
+    return crossings
 
 
 def crossing_errors(

@@ -87,14 +87,14 @@ CLOSE = 1e-6  # of the critical value: how closely a root is found
 Path = Callable[[float], tuple[Structure, Base]]
 
 
-def judged(found: Critical, path: Path, progress: Progress = None) -> Critical:
+def judged(critical: Critical, path: Path, progress: Progress = None) -> Critical:
     """A critical value with its estimated errors, and warnings where they are above one in a hundred."""
     structure, _ = path(0.0)
-    if structure.source is None or found.value == 0:
-        return found
-    if found.value is None:
-        return replace(found, warnings=found.warnings + _unseen(found, path, progress))
-    at, (_, along_y, along_z) = found.value, structure.counts
+    if structure.source is None or critical.value == 0:
+        return critical
+    if critical.value is None:
+        return replace(critical, warnings=critical.warnings + _unseen(critical, path, progress))
+    at, (_, along_y, along_z) = critical.value, structure.counts
     more, directions = enrichment(structure, path(at)[1]), (True, along_y > 0, along_z > 0)
 
     def lost(kind: str) -> float:
@@ -111,8 +111,8 @@ def judged(found: Critical, path: Path, progress: Progress = None) -> Critical:
     errors = ErrorEstimate(0.0, shapes, model, total=total).with_theory(0.0 if math.isinf(model) else beam_theory)
     lowest = _lowest(theory.slender, *path(at))[:, : theory.own]
     causes = mode_causes(theory, path(at)[1], path(at)[0].load_values, lowest, np.zeros(1), plate)
-    doubts = doubtful_loss(found.quantity, found.model, errors, described(structure, causes))
-    return replace(found, errors=errors, warnings=found.warnings + doubts)
+    doubts = doubtful_loss(critical.quantity, critical.model, errors, described(structure, causes))
+    return replace(critical, errors=errors, warnings=critical.warnings + doubts)
 
 
 def _lowest(slender: Structure, structure: Structure, base: Base) -> Floats:
@@ -122,17 +122,17 @@ def _lowest(slender: Structure, structure: Structure, base: Base) -> Floats:
     return symmetric_modes((stiffness + stiffness.T) / 2, slender.coefficients.mass)[1][:, :1].T
 
 
-def _unseen(found: Critical, path: Path, progress: Progress) -> tuple[str, ...]:
+def _unseen(critical: Critical, path: Path, progress: Progress) -> tuple[str, ...]:
     """Warn where a beam that twists loses what a model without torsion keeps (a strip on edge), at halves of the
     search's end.
     """
     shares = tuple(2.0**-k for k in range(HALVINGS, -1, -1))
-    lost = _lost(theory_of(path(0.0)[0]).thick, path, found.searched_to, progress, shares)
+    lost = _lost(theory_of(path(0.0)[0]).thick, path, critical.searched_to, progress, shares)
     if math.isinf(lost):
         return ()
     return (
         f"with shear and twist, which no model here has, the equilibrium is lost at an estimated {lost:.4g} "
-        f"{found.unit}",
+        f"{critical.unit}",
     )
 
 

@@ -14,7 +14,7 @@ from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.structure import Structure
-from gbeam.motion.bases.base import Base
+from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.series import complex_step
 from gbeam.results.response import BaseMotion
@@ -119,8 +119,7 @@ def _split(d: Array, n: int) -> Linear:
 
 def frozen_base(motion: Motion, time: float) -> Base:
     """Base motion at one time, arrays (3,)."""
-    base = motion.base(np.array([time]))
-    return Base(*(np.asarray(x)[0] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
+    return mapped(motion.base(np.array([time])), lambda x: np.asarray(x)[0])
 
 
 def steady_base(hub: Any, rate: float) -> Base:

@@ -21,7 +21,7 @@ from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
-from gbeam.motion.bases.base import Base
+from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.errors import ErrorEstimate, Errors
@@ -101,7 +101,7 @@ def _lifted(rich: Structure, index: IntArray, point: OperatingPoint) -> Sampled:
 
 def _resting(q: Floats, point: OperatingPoint) -> Sampled:
     base, loads, still = point.base, point.structure.load_values, np.zeros((1, len(q)))
-    at = Base(*(np.asarray(x)[None] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
+    at = mapped(base, lambda x: np.asarray(x)[None])
     return Sampled(np.zeros(1), at, q[None], still, still, loads=None if loads is None else np.asarray(loads)[None])
 
 

@@ -15,6 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from gbeam.arrays.jax_setup import linear_root, with_slope
+from gbeam.integrate.newton import mass_and_acceleration
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.motion.bases.base import Base
 
@@ -112,9 +113,7 @@ def rates(outputs: Any, x: Array, u: Array) -> tuple[Array, Array]:
     n = outputs.structure.size + i
     y, yd, rate = x[:n], x[n : 2 * n], x[2 * n :]
     full = u if i else jnp.concatenate([u[:3], rate, u[3:]])
-    inputs = residual.unpack(full)
-    rest, mass = with_slope(lambda ydd: residual(y, yd, ydd, inputs))(jnp.zeros(n))
-    ydd = jnp.linalg.solve(mass, -rest)
+    _, ydd = mass_and_acceleration(residual, y, yd, residual.unpack(full))
     return jnp.concatenate([yd, ydd, u[3:6] if not i else jnp.zeros(0)]), outputs(y, yd, ydd, full)
 
 
@@ -134,9 +133,7 @@ def residuals(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> Ar
 @jax.jit
 def _about(residual: Any, q: Array, qd: Array, inputs: Any) -> Any:
     def at(q: Array, qd: Array, inputs: Any) -> Any:
-        # The equations are linear in q̈.
-        rest, mass = with_slope(lambda qdd: residual(q, qd, qdd, inputs))(jnp.zeros_like(q))
-        qdd = jnp.linalg.solve(mass, -rest)
+        mass, qdd = mass_and_acceleration(residual, q, qd, inputs)
         k, c = jax.jacfwd(lambda q, qd: residual(q, qd, qdd, inputs), argnums=(0, 1))(q, qd)
         return mass, c, k, qdd
 

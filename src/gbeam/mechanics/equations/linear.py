@@ -15,10 +15,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from gbeam.arrays.namespace import namespace
+import numpy as np
+
+from gbeam.arrays.namespace import as_array, is_jax, namespace
 from gbeam.arrays.tree import record
+from gbeam.errors import InputError
 from gbeam.integrate.equations import LinearTerms
 from gbeam.mechanics.fields.taylor import EPSILON, Places
+from gbeam.numerics.eigen import symmetric_modes
 
 Array = Any
 
@@ -234,3 +238,54 @@ def _twice(xp: Any, x: Array) -> Array:
 def _once(xp: Any, x: Array) -> Array:
     """a·(α × b) of products x[a, b, ...]: along the axes of α."""
     return xp.tensordot(xp.asarray(EPSILON), x, axes=((0, 2), (0, 1)))
+
+
+def rest_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
+    """Circular frequencies (n,) rad/s, ascending, and mass-normalised modes (n, n) of a structure on a base at rest."""
+    square, modes = symmetric_modes(stiffness, mass)
+    xp = namespace(square)
+    return xp.sqrt(xp.maximum(square, 0)), modes
+
+
+def damping_matrix(ratio: Any, mass: Array, stiffness: Array) -> Array:
+    """Modal damping matrix M Φ diag(2ζω) Φᵀ M, (n, n), of one ratio or one per mode, ascending in frequency."""
+    n, ratio = mass.shape[0], as_array(ratio)
+    if ratio.ndim and len(ratio) != n:
+        raise InputError(
+            "damping_ratio",
+            f"lists {len(ratio)} values for the {n} modes of the model",
+            f"give one value for all, or {n}, ascending in frequency",
+        )
+    xp = namespace(ratio, mass, stiffness)
+    if not is_jax(ratio) and not np.any(ratio):
+        return xp.zeros((n, n))
+    if xp is not np and ratio.ndim == 0:
+        # With one ratio for all, 2ζ M √(M⁻¹K): a function of matrices that has a derivative where frequencies meet.
+        return 2 * ratio * _weighted_root(mass, stiffness)
+    frequency, modes = rest_modes(mass, stiffness)
+    weighted = mass @ modes
+    return (weighted * (2 * ratio * frequency)) @ weighted.T
+
+
+def _weighted_root(mass: Array, stiffness: Array) -> Array:
+    """M Φ diag(ω) Φᵀ M = L √(L⁻¹KL⁻ᵀ) Lᵀ with M = LLᵀ, differentiable also at equal frequencies."""
+    import jax
+    import jax.numpy as jnp
+
+    @jax.custom_jvp
+    def root(a: Array) -> Array:
+        value, vector = jnp.linalg.eigh(a)
+        return (vector * jnp.sqrt(jnp.maximum(value, 0))) @ vector.T
+
+    @root.defjvp
+    def _(primals: tuple[Array], tangents: tuple[Array]) -> tuple[Array, Array]:
+        (a,), (da,) = primals, tangents
+        value, vector = jnp.linalg.eigh(a)
+        size = jnp.sqrt(jnp.maximum(value, 0))
+        # X dX + dX X = dA, in the eigenvectors of A.
+        change = (vector.T @ da @ vector) / (size[:, None] + size[None, :])
+        return (vector * size) @ vector.T, vector @ change @ vector.T
+
+    low = jnp.linalg.cholesky(mass)
+    inverse = jnp.linalg.inv(low)
+    return low @ root(inverse @ stiffness @ inverse.T) @ low.T

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from gbeam.arrays.namespace import namespace
@@ -25,6 +26,11 @@ class Base:
     a_WO_B: Any
     w_WB_B: Any
     alpha_WB_B: Any
+
+
+def mapped(base: Any, function: Callable[[Any], Any]) -> Base:
+    """Apply a function to acceleration, angular velocity and angular acceleration of a base's motion."""
+    return Base(function(base.a_WO_B), function(base.w_WB_B), function(base.alpha_WB_B))
 
 
 def gradient(w_WB_B: Any, alpha_WB_B: Any) -> Any:
