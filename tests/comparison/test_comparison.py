@@ -10,8 +10,7 @@ import pytest
 from scipy.linalg import expm
 
 from gbeam import Comparison, InputError, compare, simulate
-from gbeam.numerics import filters as low_pass
-from gbeam.numerics.filters import displacement, largest_riding_acceleration, riding_acceleration
+from gbeam.numerics.filters import displacement, largest_riding_acceleration, low_pass, riding_acceleration
 from gbeam.report.study.comparison import lines
 
 M, L, EI = 2700 * 0.02 * 0.004, 0.3, 70e9 * 0.02 * 0.004**3 / 12

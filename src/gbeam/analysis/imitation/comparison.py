@@ -11,8 +11,7 @@ from gbeam.analysis.response.peaks import vector_peaks
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.motion.bases.base import gradient
-from gbeam.numerics import filters as low_pass
-from gbeam.numerics.filters import largest_riding_acceleration
+from gbeam.numerics.filters import largest_riding_acceleration, low_pass
 from gbeam.numerics.peaks import maxima, near_maxima, seven_point, turning_points
 from gbeam.numerics.samples import interpolated
 from gbeam.results.imitation.accounting import TOLERANCE, PeakPair

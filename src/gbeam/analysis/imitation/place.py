@@ -28,7 +28,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion import Base, Centrifuge, Flight
 from gbeam.motion.centrifuge.machine.kinematics import forward
 from gbeam.motion.centrifuge.machine.limits import exceeded
-from gbeam.numerics import filters as low_pass
+from gbeam.numerics.filters import low_pass
 from gbeam.numerics.minimise import refine
 from gbeam.numerics.samples import interpolated
 from gbeam.results.imitation.placement import EXCEEDED, MEASURES, Candidate, Placement, Verification
