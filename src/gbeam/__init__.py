@@ -49,11 +49,10 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.mechanics.structure import Structure as Structure
     from gbeam.motion.bases.flight import Flight as Flight
     from gbeam.motion.bases.hub import Hub as Hub
-    from gbeam.motion.bases.records.record import read_record as read_record
     from gbeam.motion.centrifuge.centrifuge import Centrifuge as Centrifuge
-    from gbeam.motion.centrifuge.machine.examples import machines as machines
-    from gbeam.motion.centrifuge.machine.limits import AxisLimit as AxisLimit
-    from gbeam.motion.centrifuge.machine.limits import MachineLimits as MachineLimits
+    from gbeam.motion.centrifuge.limits import AxisLimit as AxisLimit
+    from gbeam.motion.centrifuge.limits import MachineLimits as MachineLimits
+    from gbeam.motion.centrifuge.limits import machines as machines
     from gbeam.motion.centrifuge.target.build import build_target as build_target
     from gbeam.motion.profiles.combine import Sum as Sum
     from gbeam.motion.profiles.combine import vector as vector
@@ -64,6 +63,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.motion.profiles.pulse import Sine as Sine
     from gbeam.motion.profiles.pulse import SmoothStep as SmoothStep
     from gbeam.motion.profiles.spline import SplineProfile as SplineProfile
+    from gbeam.motion.records.record import read_record as read_record
     from gbeam.results.cases import Sensitivity as Sensitivity
     from gbeam.results.cases import Sweep as Sweep
     from gbeam.results.imitation.comparison import Comparison as Comparison
@@ -92,7 +92,7 @@ __version__ = "0.2.0"
 
 # Every public name, and the module it is in.
 _HOME = {
-    "AxisLimit": "motion.centrifuge.machine.limits",
+    "AxisLimit": "motion.centrifuge.limits",
     "Beam": "structure.beam",
     "Case": "analysis.case",
     "Centrifuge": "motion.centrifuge.centrifuge",
@@ -107,7 +107,7 @@ _HOME = {
     "Initial": "analysis.response.problem",
     "InputError": "errors",
     "Load": "structure.attachments",
-    "MachineLimits": "motion.centrifuge.machine.limits",
+    "MachineLimits": "motion.centrifuge.limits",
     "Material": "structure.material",
     "Model": "mechanics.models",
     "Optimum": "results.searches",
@@ -142,14 +142,14 @@ _HOME = {
     "describe": "analysis.case",
     "fit": "studies.fit",
     "linearize": "analysis.control.linearization",
-    "machines": "motion.centrifuge.machine.examples",
+    "machines": "motion.centrifuge.limits",
     "modal_truncation": "analysis.control.reduction",
     "modes": "analysis.steady.modal",
     "nonlinear_system": "analysis.control.linearization",
     "optimise": "studies.optimise",
     "place": "analysis.imitation.place",
     "plan": "analysis.imitation.plan",
-    "read_record": "motion.bases.records.record",
+    "read_record": "motion.records.record",
     "read_scenario": "scenario.build",
     "rerun": "scenario.rerun",
     "sensitivity": "studies.sensitivity",

@@ -18,7 +18,7 @@ import pytest
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards import confined as module
 from gbeam.guards.confined import confined
-from gbeam.motion.bases.records.record import read_record
+from gbeam.motion.records.record import read_record
 
 from ..calling import Answer, gbeam
 from ..scenarios import FLIGHT, SPECIMEN, model

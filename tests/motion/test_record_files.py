@@ -12,7 +12,7 @@ import pytest
 
 from gbeam.errors import InputError
 from gbeam.motion import STANDARD_GRAVITY
-from gbeam.motion.bases.records.record import Conditioning, FlightRecord, Rates, read_flight
+from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
 
 NAMES = ("t", "a_x", "a_y", "a_z")
 T = np.arange(240) / 100

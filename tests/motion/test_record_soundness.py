@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from gbeam.errors import InputError
 from gbeam.motion import STANDARD_GRAVITY
-from gbeam.motion.bases.records.record import Conditioning, FlightRecord, read_flight
+from gbeam.motion.records.record import Conditioning, FlightRecord, read_flight
 
 DATA = Path(__file__).parents[2] / "examples" / "data"
 STEP = 0.02

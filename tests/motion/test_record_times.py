@@ -10,7 +10,7 @@ import pytest
 
 from gbeam import Flight, InputError, read_record, smoothed, trapezoid
 from gbeam.io.tables.times import read_clock
-from gbeam.motion.bases.records.record import Conditioning, FlightRecord, Rates, read_flight
+from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
 
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 NAMES = ("n_x_g", "-n_y_g", "-n_z_g", "g")

@@ -26,7 +26,7 @@ from gbeam.motion import (
     trapezoid,
     vector,
 )  # fmt: skip
-from gbeam.motion.profiles.clamp import clamped
+from gbeam.motion.profiles.combine import clamped
 
 G = STANDARD_GRAVITY
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"

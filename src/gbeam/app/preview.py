@@ -12,8 +12,8 @@ import numpy as np
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion import Flight
-from gbeam.motion.bases.records.files import read_table
-from gbeam.motion.bases.records.units import UNITS, spelled
+from gbeam.motion.records.record import read_table
+from gbeam.motion.records.units import UNITS, spelled
 from gbeam.scenario import build, loads
 
 SAMPLES = 1500

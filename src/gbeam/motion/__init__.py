@@ -7,14 +7,11 @@ end)``; a hub that is `free` to turn has a torque in place of a motion.
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.flight import Flight
-from gbeam.motion.bases.hub import Hub
-from gbeam.motion.bases.mount import Mount
-from gbeam.motion.bases.records.record import read_record
+from gbeam.motion.bases.hub import Hub, Mount
 from gbeam.motion.centrifuge.centrifuge import Centrifuge
 from gbeam.motion.centrifuge.inverses.registry import INVERSES
-from gbeam.motion.centrifuge.machine.examples import Machine, machines
-from gbeam.motion.centrifuge.machine.kinematics import Axes, AxisHistory, axis_history, forward, moved
-from gbeam.motion.centrifuge.machine.limits import AxisLimit, Limits, MachineLimits, usage
+from gbeam.motion.centrifuge.kinematics import Axes, AxisHistory, axis_history, forward, moved
+from gbeam.motion.centrifuge.limits import AxisLimit, Limits, Machine, MachineLimits, machines, usage
 from gbeam.motion.centrifuge.target.build import build_target
 from gbeam.motion.centrifuge.target.target import Episode, Target
 from gbeam.motion.profiles.combine import Sum, Vector, vector
@@ -22,6 +19,7 @@ from gbeam.motion.profiles.piecewise import PiecewiseLinear, constant, tabulated
 from gbeam.motion.profiles.profile import Profile, smoothed
 from gbeam.motion.profiles.pulse import Sine, SmoothStep
 from gbeam.motion.protocol import Motion
+from gbeam.motion.records.record import read_record
 
 __all__ = [
     "INVERSES",

@@ -15,7 +15,7 @@ from gbeam.analysis.case import Case
 from gbeam.analysis.control.linearization import surface_gauge
 from gbeam.errors import InputError
 from gbeam.io.tables.table import Table
-from gbeam.motion.bases.records.text import read_text
+from gbeam.motion.records.text import read_text
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Study

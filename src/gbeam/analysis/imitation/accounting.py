@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.guards.checks import choice, positive
-from gbeam.motion.centrifuge.machine.kinematics import moved
+from gbeam.motion.centrifuge.kinematics import moved
 from gbeam.numerics.samples import separate_peaks, true_runs
 from gbeam.results.imitation.accounting import TOLERANCE_OF, Accounting, LoadPeak, NotFollowed, PeakPair, Preload
 from gbeam.results.machine import AxesResult

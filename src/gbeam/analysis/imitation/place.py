@@ -26,8 +26,8 @@ from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion import Base, Centrifuge, Flight
-from gbeam.motion.centrifuge.machine.kinematics import forward
-from gbeam.motion.centrifuge.machine.limits import exceeded
+from gbeam.motion.centrifuge.kinematics import forward
+from gbeam.motion.centrifuge.limits import exceeded
 from gbeam.numerics.filters import low_pass
 from gbeam.numerics.minimise import refine
 from gbeam.numerics.samples import interpolated

@@ -17,7 +17,7 @@ from gbeam.motion import Flight
 from gbeam.motion.bases.base import gradient
 from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge
 from gbeam.motion.centrifuge.inverses.registry import INVERSES
-from gbeam.motion.centrifuge.machine.kinematics import forward
+from gbeam.motion.centrifuge.kinematics import forward
 from gbeam.numerics.filters import displacement
 from gbeam.numerics.minimise import coarse
 from gbeam.results.result import Flags, Floats

@@ -9,7 +9,7 @@ import numpy as np
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.motion.bases.base import Base
-from gbeam.motion.bases.mount import Mount
+from gbeam.motion.bases.hub import Mount
 
 Array = Any
 Loads = Any  # components of the loads (loads, 6), or None

@@ -16,14 +16,12 @@ from gbeam.guards.checks import choice, positive
 from gbeam.guards.plausibility import possible
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.flight import Flight
-from gbeam.motion.centrifuge.axis_motion import AxisMotion
-from gbeam.motion.centrifuge.course import Course, prepare
+from gbeam.motion.centrifuge.course import AxisMotion, Course, prepare
 from gbeam.motion.centrifuge.ends import Ends
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry
 from gbeam.motion.centrifuge.inverses.registry import INVERSES
-from gbeam.motion.centrifuge.machine.examples import Machine
-from gbeam.motion.centrifuge.machine.kinematics import forward, moved
-from gbeam.motion.centrifuge.machine.limits import Limits, MachineLimits
+from gbeam.motion.centrifuge.kinematics import forward, moved
+from gbeam.motion.centrifuge.limits import Limits, Machine, MachineLimits
 
 MOUNTINGS = {"upright": 1.0, "inverted": -1.0}
 

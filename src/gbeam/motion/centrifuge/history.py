@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gbeam.motion.centrifuge.machine.kinematics import Axes, axis_history
-from gbeam.motion.centrifuge.machine.limits import usage
+from gbeam.motion.centrifuge.kinematics import Axes, axis_history
+from gbeam.motion.centrifuge.limits import usage
 from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.result import Floats
 

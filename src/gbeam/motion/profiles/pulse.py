@@ -11,8 +11,7 @@ from gbeam.arrays.namespace import as_array, namespace
 from gbeam.arrays.tree import assign, record
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive
-from gbeam.motion.profiles.convolution import Convolved
-from gbeam.motion.profiles.hann import TURN, hann_orders
+from gbeam.motion.profiles.convolution import TURN, Convolved, hann_orders
 from gbeam.motion.profiles.profile import STEPS_PER_EVENT, Profile, sampled
 from gbeam.numerics.series import Series
 

@@ -25,7 +25,7 @@ from gbeam.guards.limits import KNOTS, refuse_more
 from gbeam.motion.centrifuge.ends import Ends
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse, Pose, QuasiStatic
 from gbeam.motion.centrifuge.inverses.spin_up import Ramp, build_ramps
-from gbeam.motion.centrifuge.machine.limits import Limits
+from gbeam.motion.centrifuge.limits import Limits
 from gbeam.motion.centrifuge.target.target import Target
 from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.bspline import PIECE, Grid, Spline
@@ -68,8 +68,7 @@ def planned(target: Target, geometry: Geometry, limits: Limits, ends: Ends) -> P
     from another motion.
     """
     # scipy.sparse and the solver take longer to import than most commands to run
-    from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines
-    from gbeam.motion.centrifuge.inverses.kept_limits import KeptLimits, idle_rate
+    from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines, KeptLimits, idle_rate
     from gbeam.motion.centrifuge.inverses.tracking import Tracking
     from gbeam.numerics.minimise import minimise, nearest_within
 

@@ -9,7 +9,7 @@ from gbeam.motion.centrifuge.ends import Ends
 from gbeam.motion.centrifuge.inverses.closed_form import Flat, Geometry, Inverse, QuasiStatic
 from gbeam.motion.centrifuge.inverses.exact import exact, unfollowable
 from gbeam.motion.centrifuge.inverses.planned import planned
-from gbeam.motion.centrifuge.machine.limits import Limits
+from gbeam.motion.centrifuge.limits import Limits
 from gbeam.motion.centrifuge.target.target import Target
 
 

@@ -15,7 +15,6 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.guards.limits import KNOTS, refuse_more
-from gbeam.motion.centrifuge.target.gentle_path import gentle, off_axis, unwrapped
 from gbeam.motion.centrifuge.target.load_limits import (
     LEAST_IDLE,
     MIN_TRANSVERSE_LOAD,
@@ -25,17 +24,17 @@ from gbeam.motion.centrifuge.target.load_limits import (
     refuse_singular,
     refuse_undirected,
 )
-from gbeam.motion.centrifuge.target.nearest_load import NearestLoad
-from gbeam.motion.centrifuge.target.stretches import (
+from gbeam.motion.centrifuge.target.nearest_load import NearestLoad, gentle, off_axis, unwrapped
+from gbeam.motion.centrifuge.target.target import (
     BELOW_IDLE,
     GIMBALS,
     LEFT_OUT,
+    Target,
     merged_edges,
     padded_rows,
     stretches,
 )
-from gbeam.motion.centrifuge.target.target import Target
-from gbeam.motion.profiles.clamp import clamped
+from gbeam.motion.profiles.combine import clamped
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.profiles.profile import Profile, sampled, smoothed
 from gbeam.numerics.samples import joined, true_runs

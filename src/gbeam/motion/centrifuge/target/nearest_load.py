@@ -1,4 +1,4 @@
-"""The load nearest to a flight's that a machine can make, at every time."""
+"""The nearest load that a machine can follow, and gentle paths of its direction."""
 
 from __future__ import annotations
 
@@ -11,14 +11,87 @@ from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record, static
 from gbeam.motion.centrifuge.target.load_limits import IDLE_BAND, REACH_BAND
 from gbeam.motion.profiles.combine import merged_breaks
-from gbeam.motion.profiles.convolution import Convolved, beside
-from gbeam.motion.profiles.hann import soft_floor, soft_step
+from gbeam.motion.profiles.convolution import Convolved, beside, soft_floor, soft_step
 from gbeam.motion.profiles.profile import Profile
+from gbeam.numerics.samples import true_runs
 from gbeam.numerics.series import Series, sin_cos, sqrt, square, stack, where
+
+_DIRECTED = 0.2  # of what counts as a whole load: below, the angle about the beam is not looked at
+_POLE = 0.05  # rad from the beam: nearer to it the angle about it would run away
+_LEAST_WEIGHT = 1e-3  # of values without a direction: what keeps the path in one piece between them
+_CARRIED = 0.2  # rad: how far a slope beside the path may carry it away
+_WIDENING = 0.3  # s per s: how its time scale grows from there
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+def unwrapped(times: Floats, y: Floats, x: Floats, whole: float) -> tuple[Floats, Floats]:
+    """Angle atan2(y, x) of a load over time, and how much it counts.
+
+    `times` (k,) s, `y`, `x` (k,) m/s²; returns (k,).
+    """
+    size = np.hypot(y, x)
+    directed = size >= _DIRECTED * whole
+    if not directed.any():
+        return np.full(times.size, np.pi / 2), np.zeros(times.size)
+    angle = np.unwrap(np.arctan2(y[directed], x[directed]))
+    return np.interp(times, times[directed], angle), np.where(directed, np.minimum(size / whole, 1.0), 0.0)
+
+
+def off_axis(angle: Floats) -> Floats:
+    """Angles from the beam, rad, kept away from its axis."""
+    return np.clip(angle, _POLE, np.pi - _POLE)
+
+
+def gentle(times: Floats, values: Floats, weight: Floats, fixed: Flags, time_scale: float) -> Floats:
+    """Replace the values that are not fixed by a path near them.
+
+    It minimises ∫ w (z − values)² + T⁴ z''² dt with the fixed values kept, so that it leaves and meets them without a
+    corner; changes quicker than a period of 2πT are left out. T is `time_scale`, less beside fixed values that change
+    so quickly that the path would be carried far away before it turns.
+
+    `times` (k,), `values`, `weight` (k,), `fixed` (k,).
+    """
+    if fixed.all() or times.size < 4:
+        return values
+    from scipy.linalg import solveh_banded  # imported when a path is sought
+
+    left, right = np.diff(times)[:-1], np.diff(times)[1:]
+    penalty = _time_scales(times, values, fixed, time_scale)[1:-1] ** 4 * (left + right) / 2
+    second = 2 * np.stack([1 / (left * (left + right)), -1 / (left * right), 1 / (right * (left + right))])
+    rows = times.size - 2
+    bend = penalty * sum(second[i] * values[i : i + rows] for i in range(3))
+    band, side = np.zeros((3, times.size)), np.zeros(times.size)
+    band[0] = np.gradient(times) * np.maximum(weight, _LEAST_WEIGHT)
+    for i in range(3):
+        side[i : i + rows] -= second[i] * bend
+        for d in range(3 - i):
+            band[d, i : i + rows] += penalty * second[i] * second[i + d]
+    # What is solved for is the distance from the values: where it is none, its rows are those of the unit matrix.
+    for d in (1, 2):
+        band[d, : times.size - d] *= ~(fixed[: times.size - d] | fixed[d:])
+    band[0, fixed], side[fixed] = 1.0, 0.0
+    return np.asarray(values + solveh_banded(band, side, lower=True))
+
+
+def _time_scales(times: Floats, values: Floats, fixed: Flags, longest: float) -> Floats:
+    """T at every knot: from a slope v beside it a path goes on by about v T."""
+    scale = np.full(times.size, longest)
+    for run in true_runs(~fixed):
+        for edge, inward in ((run.start - 1, -1), (run.stop, 1)):
+            beyond = edge + inward
+            if min(edge, beyond) < 0 or max(edge, beyond) >= times.size:
+                continue
+            slope = abs((values[beyond] - values[edge]) / (times[beyond] - times[edge]))
+            nearest = _CARRIED / max(slope, _CARRIED / longest) + _WIDENING * np.abs(times[run] - times[edge])
+            scale[run] = np.minimum(scale[run], nearest)
+    return scale
+
 
 # Times idle: where a load is its own size again after the gimbals' reach has raised it, and where its direction is
 # wholly its own. Between idle and there the path agrees with it, up to what rounding the path changes.
-_SIZED, _DIRECTED = 1.1, 1.5
+_SIZED, _FOLLOWED = 1.1, 1.5
 _FREE = 1.5  # times the least load across the beam: the same
 
 
@@ -65,7 +138,7 @@ class NearestLoad(Profile):
         flight = self.flight.series(now, order)
         xp = namespace(now, flight.value, self.idle)
         size2, across2 = square(flight), square(flight[..., 1:])
-        free = (size2.value >= (_DIRECTED * self.idle) ** 2) & (across2.value >= (_FREE * self.least) ** 2)
+        free = (size2.value >= (_FOLLOWED * self.idle) ** 2) & (across2.value >= (_FREE * self.least) ** 2)
         gate: Any = 1.0
         if self.gate is not None:
             gate = _sharp_to_smooth(self.gate.series(now, order))
@@ -88,7 +161,7 @@ class NearestLoad(Profile):
             return stack([along, *(reached * each for each in _blend(share, unit, [cosine[..., 0], sine[..., 0]]))])
         size = sqrt(where(size2.value > (self.idle / 2) ** 2, size2, self.idle**2 / 4))
         sized, directed = (
-            gate * soft_step(size, (1 + each) / 2 * self.idle, (each - 1) * self.idle) for each in (_SIZED, _DIRECTED)
+            gate * soft_step(size, (1 + each) / 2 * self.idle, (each - 1) * self.idle) for each in (_SIZED, _FOLLOWED)
         )
         held = self.idle + gate * (soft_floor(size, self.idle, IDLE_BAND * self.idle) - self.idle)
         y, z = _blend(share * directed, unit, [cosine[..., 0], sine[..., 0]])

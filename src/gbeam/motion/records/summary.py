@@ -8,7 +8,7 @@ import numpy as np
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion.bases.conditioning import Floats, flat_tops
-from gbeam.motion.bases.records.soundness import LEVEL, Samples, rows
+from gbeam.motion.records.soundness import LEVEL, Samples, rows
 from gbeam.numerics.samples import true_runs
 from gbeam.results.description import Level, RecordSummary, Vector
 

@@ -1,8 +1,9 @@
-"""Flight records: read from a file of any kind, checked and conditioned before they are used."""
+"""Record of a flight: its columns, conditioned and judged, as a profile."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -11,17 +12,27 @@ from numpy.typing import NDArray
 
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.limits import SAMPLES, refuse_more
+from gbeam.guards.limits import BINARY_BYTES, SAMPLES, refuse_large_file, refuse_more
+from gbeam.io.tables.binary import is_binary, read_binary
 from gbeam.io.tables.table import NO_COLUMN, Table
 from gbeam.io.tables.times import Clock
 from gbeam.motion.bases.conditioning import FEWEST, Floats, filtered, spikes, without_spikes
-from gbeam.motion.bases.records.clock import Span, check_interval, check_sampling, part_within
-from gbeam.motion.bases.records.files import read_table
-from gbeam.motion.bases.records.names import load_factors, mirrored, refuse_other_kinds
-from gbeam.motion.bases.records.soundness import CHECKS, Samples, refuse_unsound
-from gbeam.motion.bases.records.summary import oddities, summary
-from gbeam.motion.bases.records.units import UNITS, unit_of
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
+from gbeam.motion.records.soundness import CHECKS, Samples, load_factors, mirrored, refuse_other_kinds, refuse_unsound
+from gbeam.motion.records.summary import oddities, summary
+from gbeam.motion.records.text import Span, check_interval, check_sampling, part_within, read_text
+from gbeam.motion.records.units import UNITS, unit_of
+
+
+def read_table(path: str | os.PathLike[str], words: Iterable[str] = ()) -> Table:
+    """Read the columns of a record, and the samples of those that are needed."""
+    try:
+        refuse_large_file("record.file", path, BINARY_BYTES, "cut the record, or export it at a lower rate")
+        return read_binary(path, words) if is_binary(path) else read_text(path)
+    except OSError as error:
+        problem = f"{path} cannot be read ({error.strerror})"
+        raise InputError("record.file", problem, "give the path of a record") from None
+
 
 Quantity = Literal["specific-force", "acceleration"]
 
@@ -120,7 +131,7 @@ def read_record(
     unit : str
         ``g`` (9.80665 m/s²) or ``m/s^2``.
     conditioning : Conditioning
-        Of :class:`gbeam.motion.bases.records.record.Conditioning`; by default nothing is done to the record.
+        Of :class:`gbeam.motion.records.record.Conditioning`; by default nothing is done to the record.
     time_unit : str, optional
         ``s``, ``ms``, ``us`` or ``min``; what the file says if left out, or else s.
     quantity : str

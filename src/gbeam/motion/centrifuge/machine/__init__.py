@@ -1,1 +1,0 @@
-"""The machine itself: its axes' kinematics, its limits, examples of machines."""
