@@ -4,7 +4,16 @@ from __future__ import annotations
 
 
 class GbeamError(Exception):
-    """Base of everything that gbeam raises on purpose."""
+    """Base of everything that gbeam raises on purpose.
+
+    Examples
+    --------
+    >>> try:
+    ...     gb.Material(density=-2700, youngs_modulus=70e9)
+    ... except gb.GbeamError as error:
+    ...     print(error)
+    density is -2700 kg/m³; give a positive, finite value
+    """
 
 
 class InputError(GbeamError, ValueError):
@@ -19,6 +28,14 @@ class InputError(GbeamError, ValueError):
         What is wrong, with the value: ``is 0.4 m, beyond the beam's tip``.
     fix : str
         What would be right: ``give a position between 0 and 0.3 m``.
+
+    Examples
+    --------
+    >>> try:
+    ...     gb.PointMass(at=0.1, mass=-1.0)
+    ... except gb.InputError as error:
+    ...     print(error.where, "|", error.problem, "|", error.fix)
+    mass | is -1 kg | give a non-negative, finite value
     """
 
     def __init__(self, where: str, problem: str, fix: str) -> None:
@@ -40,6 +57,18 @@ class ComputationError(GbeamError, RuntimeError):
         The named outcome: ``"diverged"`` or ``"not converged"``.
     message : str
         What happened, where, and what to try next.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> hub = gb.Hub(radius=0.0, rate=0.0)
+    >>> try:
+    ...     gb.shape_command(structure, hub, angle=1.0, duration=0.02, limit=1.0)
+    ... except gb.ComputationError as error:
+    ...     print(error.outcome)
+    limits exceeded
     """
 
     def __init__(self, outcome: str, message: str) -> None:

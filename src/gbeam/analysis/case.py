@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 @typed
 @dataclass(frozen=True, eq=False)
 class Case(Value):
-    """What a scenario describes, as objects.
+    """Objects that a scenario describes.
 
     Parameters
     ----------
@@ -55,6 +55,14 @@ class Case(Value):
     ----------
     scenario : Scenario or None
         What the case was read from, of which studies make others; None of one that is made, or changed, by hand.
+
+    Examples
+    --------
+    >>> case = gb.read_scenario("examples/f16_8g_turn.toml")
+    >>> list(case.motions)
+    ['flight', 'centrifuge']
+    >>> case.tracks["centrifuge"]
+    'flight'
     """
 
     title: str
@@ -112,6 +120,13 @@ def describe(case: Case) -> Description:
     ------
     InputError
         If the beam does not fit its model, with its place in the scenario.
+
+    Examples
+    --------
+    >>> case = gb.read_scenario("examples/f16_8g_turn.toml")
+    >>> description = gb.describe(case)
+    >>> print(f"{description.mass:.4f} kg, {description.duration} s, {description.counts}")
+    0.0648 kg, 15.99 s, (1, 3, 3)
     """
     structure, beam, settings = case.assemble(), case.beam, case.response
     span = settings.start, settings.start + settings.duration

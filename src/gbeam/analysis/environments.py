@@ -41,6 +41,14 @@ def study(case: Case, progress: Progress = None) -> Study:
         With its place in the scenario.
     ComputationError
         If no motion has a relative equilibrium to start from; the message names each.
+
+    Examples
+    --------
+    >>> answer = gb.study(gb.read_scenario("examples/zhang2020_example1.toml"))
+    >>> answer.outcome
+    'done'
+    >>> print(f"{answer.comparisons[0].relative[2]:.1%}")
+    0.0%
     """
     if case.model.automatic and not case.response.estimate:
         fix = "give it, or leave response.estimate out"

@@ -65,6 +65,16 @@ def compare_models(case: Case, kinds: Sequence[str] = tuple(KINDS), progress: Pr
     ------
     InputError
         If a kind is unknown, or the beam has no damping ratio.
+
+    Examples
+    --------
+    >>> shorter = ["response.duration=2 s", "response.residual_from=1 s"]
+    >>> case = gb.read_scenario("examples/hubbeam2009_slew_2p8.toml", shorter)
+    >>> for row in gb.compare_models(case, kinds=["TLAM", "FOAM"]).rows:
+    ...     print(row.model, row.outcome)
+    TLAM done
+    FOAM done
+    exact done
     """
     for kind in kinds:
         if kind not in KINDS:

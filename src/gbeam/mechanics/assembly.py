@@ -61,6 +61,13 @@ def assemble(
     InputError
         If a station lies off the beam, the list of damping ratios does not fit the model, the section has too many
         stations to integrate between, or numbers do not hold a body or a spring beside the beam.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> gb.assemble(beam, "FOAM", axial=1, y=2, z=2, stations=[0.1, 0.2]).stations
+    array([0.1, 0.2, 0.3])
     """
     if isinstance(model, str):
         given = axial or y or z

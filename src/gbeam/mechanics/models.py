@@ -36,7 +36,7 @@ KINDS = {
 @typed
 @dataclass(frozen=True)
 class Model:
-    """Which model to use and how many coordinates.
+    """Kind of model, and the numbers of its coordinates.
 
     Parameters
     ----------
@@ -56,6 +56,11 @@ class Model:
     ------
     InputError
         If the kind or the shapes are unknown, a number is negative, or there is no coordinate.
+
+    Examples
+    --------
+    >>> gb.Model("FOAM", axial=1, y=2, z=2).counts
+    (1, 2, 2)
     """
 
     kind: str

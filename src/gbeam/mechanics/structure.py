@@ -102,6 +102,14 @@ class Structure:
         What it was made of; None for a structure of particles, whose errors of shapes and model are unknown.
     compiled : bool
         Whether a complete model is expanded by JAX, to rounding; else by NumPy, to nine digits.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> structure.size, structure.kind
+    (5, 'FOAM')
     """
 
     kind: str = static()

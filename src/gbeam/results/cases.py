@@ -130,6 +130,14 @@ class Sweep(Figured):
         Of measures and, at every time, of histories, where something is drawn: at every point of the grid.
     indices : mapping of str to Indices
         Sobol indices of the measures, of what the sampler saltelli draws.
+
+    Examples
+    --------
+    >>> moduli = ["beam.material.youngs_modulus=60 GPa, 70 GPa, 80 GPa"]
+    >>> hub = "examples/hubbeam2009_slew_2p8.toml"
+    >>> answer = gb.sweep(hub, moduli, ["modes[0].frequency"], verb="modes")
+    >>> print(answer.measures["modes[0].frequency"].round(3), answer.units["modes[0].frequency"])
+    [0.432 0.467 0.499] Hz
     """
 
     title: str
@@ -215,6 +223,13 @@ class Sensitivity(Figured):
         their largest; NaN of other verbs. Exact derivatives are those of these runs and have no error of their own.
     not_varied : tuple of str
         Values of the scenario that may not be a little more or less, and why; they have no derivative.
+
+    Examples
+    --------
+    >>> slew = "examples/hubbeam2009_slew_2p8.toml"
+    >>> answer = gb.sensitivity(slew, ["modes[0].frequency"], ["beam.length"], verb="modes")
+    >>> print(answer.relative.round(2))
+    [[-2.]]
     """
 
     title: str

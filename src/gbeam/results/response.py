@@ -126,6 +126,18 @@ class Response(Figured):
         First and last time of the whole flight, s, of which this is a part; None where it is all of it.
     kept_every : int
         How many samples of the histories make one in a file.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> turn = gb.Flight(z=gb.trapezoid(78.5, jerk=39.2, start=0.5, hold=1.0))
+    >>> response = gb.simulate(structure, turn, duration=6.0)
+    >>> response.outcome, response.displacement.shape[1:]
+    ('done', (1, 3))
+    >>> print(f"{1e3 * response.peaks.max_abs[2]:.3f} mm at {response.peaks.time_of_max[2]:.1f} s")
+    2.302 mm at 2.5 s
     """
 
     name: str

@@ -72,6 +72,19 @@ class Fit(Figured):
         Searches, and how many of them ended at these values.
     condition : float
         Of the derivatives, each parameter's of unit length: 1 where the data tell them apart perfectly.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import mkdtemp
+    >>> import numpy as np
+    >>> taps = Path(mkdtemp()) / "taps.csv"
+    >>> measured = [(1, 0.46, 0.01), (2, 2.88, 0.01), (3, 8.06, 0.01)]
+    >>> np.savetxt(taps, measured, delimiter=",", header="mode,frequency,damping_ratio", comments="")
+    >>> hub = "examples/hubbeam2009_slew_2p8.toml"
+    >>> answer = gb.fit(hub, taps, ["beam.material.youngs_modulus"])
+    >>> print(f"{answer.values[0]:.4g} ± {answer.errors[0]:.1g} {answer.units[0]}")
+    6.788e+10 ± 6e+08 Pa
     """
 
     title: str
@@ -175,6 +188,14 @@ class Optimum(Figured):
         Searches, and how many of them ended at these values.
     outcome : str
         done, or ``limits exceeded`` where no values within the bounds keep the requirements.
+
+    Examples
+    --------
+    >>> scenario = "examples/zhang2020_example1.toml"
+    >>> over = ["motion.centrifuge.control_point"]
+    >>> answer = gb.optimise(scenario, "verdict.tip", over, overrides=["response.step=5 ms"])
+    >>> answer.outcome, answer.minimise
+    ('done', 'verdict.tip')
     """
 
     title: str
@@ -271,6 +292,16 @@ class ShapedCommand(Figured):
         Models that it was designed on, and that the runs are of.
     motion : str
         Name of the scenario's hub, where there is one.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> hub = gb.Hub(radius=0.0, rate=0.0)
+    >>> command = gb.shape_command(structure, hub, angle=1.0, duration=0.5)
+    >>> command.outcome, command.unit
+    ('done', 'rad/s')
     """
 
     kind: str

@@ -35,6 +35,11 @@ class Gauge:
         Position from the root, m.
     y, z : float
         Where it sits in the section, m from the axis.
+
+    Examples
+    --------
+    >>> gb.Gauge(at=0.01, z=0.002)
+    Gauge(at=0.01, y=0.0, z=0.002)
     """
 
     at: float
@@ -104,6 +109,16 @@ class StateSpace(Result):
         Of these frequencies; None where there is no estimate.
     truncation : Truncation or None
         What a smaller model leaves out.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> gauge = gb.Gauge(0.01, z=0.002)
+    >>> plant = gb.linearize(structure, gb.Flight(z=0.0), gauges=[gauge])
+    >>> plant.a.shape, plant.inputs[2].name
+    ((10, 10), 'base_acceleration_z')
     """
 
     a: Floats

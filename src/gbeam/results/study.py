@@ -32,6 +32,12 @@ class Study(Figured):
     comparisons : tuple of Comparison
     failures : mapping of str to Failure
         Where a response has no state to start from.
+
+    Examples
+    --------
+    >>> study = gb.study(gb.read_scenario("examples/zhang2020_example1.toml"))
+    >>> study.outcome, list(study.responses)
+    ('done', ['flight', 'centrifuge'])
     """
 
     title: str

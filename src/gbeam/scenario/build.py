@@ -44,6 +44,12 @@ def read_scenario(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -
     ------
     ScenarioError
         With everything that is wrong, each with its place in the file.
+
+    Examples
+    --------
+    >>> case = gb.read_scenario("examples/f16_8g_turn.toml", ["beam.length=250 mm"])
+    >>> case.beam.length
+    0.25
     """
     return build(load(path, overrides))
 

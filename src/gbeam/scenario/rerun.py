@@ -55,6 +55,17 @@ def rerun(path: str | os.PathLike[str]) -> Reproduction:
         If the file cannot be read or holds no scenario, or the scenario or a record is not the one that was run.
     ComputationError
         If there is no answer any more.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import mkdtemp
+    >>> shorter = ["response.duration=2 s", "response.residual_from=1 s"]
+    >>> case = gb.read_scenario("examples/hubbeam2009_slew_2p8.toml", shorter)
+    >>> path = Path(mkdtemp()) / "result.nc"
+    >>> gb.study(case).save(path)
+    >>> gb.rerun(path).reproduced
+    True
     """
     from gbeam.analysis.environments import study
     from gbeam.io.stored import read_stored, stored

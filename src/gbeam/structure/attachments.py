@@ -40,6 +40,14 @@ class PointMass(Value):
     ------
     InputError
         If a value is impossible, or the moments break the triangle inequality of a rigid body.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> sensor = gb.PointMass(at=0.3, mass=0.02, offset=(0.0, 0.0, 0.005))
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), masses=[sensor])
+    >>> print(gb.modes(gb.assemble(beam, "FOAM", axial=1, z=3)).frequency[:2].round(1))
+    [ 24.3 182.6]
     """
 
     at: float
@@ -109,6 +117,15 @@ class Load(Value):
     ------
     InputError
         If the position is impossible, a component is not finite, or there is neither force nor moment.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> pull = gb.Load(at=0.3, force=(0.0, 0.0, -10.0))
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), loads=[pull])
+    >>> rest = gb.static(gb.assemble(beam, "FOAM", axial=1, z=3))
+    >>> print(f"{1e3 * rest.tip[2]:.2f} mm")
+    -12.04 mm
     """
 
     at: float | None = None
@@ -150,6 +167,15 @@ class Root(Value):
     ------
     InputError
         If a stiffness is not positive and finite.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> hinge = gb.Root(rotation_y=50.0)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), root=hinge)
+    >>> lowest = gb.modes(gb.assemble(beam, "FOAM", axial=1, z=4)).frequency[0]
+    >>> print(f"{lowest:.2f} Hz")
+    21.00 Hz
     """
 
     translation_x: float | None = None

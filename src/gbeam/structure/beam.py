@@ -47,6 +47,13 @@ class Beam(Value):
     ------
     InputError
         If a value is impossible, a mass or a load lies off the beam, or the section's stations do not cover it.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> beam.length
+    0.3
     """
 
     length: float

@@ -41,6 +41,12 @@ class Material(Value):
     ------
     InputError
         If a value is not positive and finite, or Poisson's ratio not between -1 and 0.5.
+
+    Examples
+    --------
+    >>> aluminium = gb.Material(density=2700, youngs_modulus=70e9, poissons_ratio=0.33)
+    >>> print(f"{aluminium.rigidity:.4g} Pa")
+    2.632e+10 Pa
     """
 
     density: float

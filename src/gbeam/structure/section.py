@@ -60,6 +60,13 @@ class Section(Value):
     Notes
     -----
     I_y = ∫z² dA bends the beam along z, I_z = ∫y² dA along y (2020 (14), (22)).
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> tapered = gb.Section.tube([0.05, 0.03], [0.002, 0.002], stations=[0.0, 1.0])
+    >>> print(f"{tapered.at(0.5).area:.4g} m²")
+    0.0002388 m²
     """
 
     shape: str

@@ -82,6 +82,19 @@ def fit(
         If the scenario, the data, a value or a bound is wrong, or there are more values than data.
     ComputationError
         If the data cannot tell two values apart, or do not depend on one; or a run is not done.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import mkdtemp
+    >>> import numpy as np
+    >>> taps = Path(mkdtemp()) / "taps.csv"
+    >>> measured = [(1, 0.46, 0.01), (2, 2.88, 0.01), (3, 8.06, 0.01)]
+    >>> np.savetxt(taps, measured, delimiter=",", header="mode,frequency,damping_ratio", comments="")
+    >>> hub = "examples/hubbeam2009_slew_2p8.toml"
+    >>> answer = gb.fit(hub, taps, ["beam.material.youngs_modulus"])
+    >>> print(f"{answer.values[0]:.4g} {answer.units[0]}")
+    6.788e+10 Pa
     """
     base = scenario_of(scenario, overrides)
     assert base.source is not None  # it was read from a file

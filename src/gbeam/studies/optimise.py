@@ -91,6 +91,14 @@ def optimise(
         If the scenario, a figure, a value, a bound or a requirement is wrong.
     ComputationError
         If the scenario's own run is not done.
+
+    Examples
+    --------
+    >>> scenario = "examples/zhang2020_example1.toml"
+    >>> over = ["motion.centrifuge.control_point"]
+    >>> answer = gb.optimise(scenario, "verdict.tip", over, overrides=["response.step=5 ms"])
+    >>> print(f"{1e3 * answer.values[0]:.1f} mm")
+    37.5 mm
     """
     base = scenario_of(scenario, overrides)
     assert base.source is not None  # it was read from a file

@@ -83,6 +83,13 @@ def sensitivity(
         If the scenario, a figure or a value is wrong; or a value that is named may not be a little more or less.
     ComputationError
         If a run whose figures are differentiated is not done.
+
+    Examples
+    --------
+    >>> slew = "examples/hubbeam2009_slew_2p8.toml"
+    >>> answer = gb.sensitivity(slew, ["modes[0].frequency"], ["beam.length"], verb="modes")
+    >>> print(answer.relative.round(2))
+    [[-2.]]
     """
     base = scenario_of(scenario, overrides)
     assert base.source is not None  # it was read from a file

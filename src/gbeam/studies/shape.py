@@ -78,6 +78,12 @@ def shape_hub_command(
         :func:`gbeam.shape_command` does.
     ComputationError
         If no command within the limit does it in that time, or a run diverges.
+
+    Examples
+    --------
+    >>> hub = "examples/hubbeam2009_slew_2p8.toml"
+    >>> gb.shape_hub_command(hub, duration=20.0).outcome
+    'done'
     """
     case = build(scenario_of(scenario, overrides))
     name, hub = hub_of(case, motion)

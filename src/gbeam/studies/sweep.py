@@ -121,6 +121,14 @@ def sweep(
         use.
     ComputationError
         If the scheduler is lost; the store keeps what is done.
+
+    Examples
+    --------
+    >>> moduli = ["beam.material.youngs_modulus=60 GPa, 70 GPa, 80 GPa"]
+    >>> hub = "examples/hubbeam2009_slew_2p8.toml"
+    >>> answer = gb.sweep(hub, moduli, ["modes[0].frequency"], verb="modes")
+    >>> answer
+    Sweep of modes over 3 beam.material.youngs_modulus: 3 done; modes[0].frequency
     """
     base = scenario_of(scenario, overrides, distributions=True)
     assert base.source is not None  # it was read from a file

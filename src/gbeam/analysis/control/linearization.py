@@ -41,7 +41,7 @@ from gbeam.structure.beam import Beam, fibre_strain
 
 @typed
 def surface_gauges(beam: Beam, stations: Iterable[float]) -> list[Gauge]:
-    """Two gauges at each station, on the extreme fibres towards +z and +y.
+    """Return two gauges at each station, on the extreme fibres towards +z and +y.
 
     Parameters
     ----------
@@ -53,6 +53,13 @@ def surface_gauges(beam: Beam, stations: Iterable[float]) -> list[Gauge]:
     ------
     InputError
         If a station is off the beam, or the extreme fibres of its section are not known.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> gb.surface_gauges(beam, [0.01])
+    [Gauge(at=0.01, y=0.0, z=0.002), Gauge(at=0.01, y=0.01, z=0.0)]
     """
     gauges: list[Gauge] = []
     for i, at in enumerate(stations):
@@ -237,6 +244,17 @@ def linearize(
         without a hub, or a time of a hub that swings.
     ComputationError
         If there is no relative equilibrium.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> plant = gb.linearize(structure, gb.Hub(radius=0.5, inertia=2.0))
+    >>> [each.name for each in plant.inputs]
+    ['torque']
+    >>> print(plant.frequency.round(2))
+    [  36.56  183.71  229.1  1146.58 4243.13]
     """
     structure.require_damping("the state-space model")
     if rate is None:
@@ -304,7 +322,7 @@ def linearize(
 
 @typed
 def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[Gauge] = ()) -> Any:
-    """The model as ``control.nlsys``, complete: on a free hub driven by the torque, on any other base by its motion.
+    """Return the complete model as ``control.nlsys``: driven by the torque on a free hub, else by its base's motion.
 
     States are (y, ẏ) and, on a base that is not a free hub, the base's angular velocity; inputs and outputs are those
     of :func:`gbeam.linearize`, not as departures but whole.
@@ -320,6 +338,15 @@ def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[G
     ------
     InputError
         If python-control is not installed.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> system = gb.nonlinear_system(structure, gb.Hub(radius=0.5, inertia=2.0))
+    >>> system.nstates, system.input_labels
+    (12, ['torque'])
     """
     control = import_control()
     from gbeam.mechanics.equations.compiled import rates

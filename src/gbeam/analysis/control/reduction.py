@@ -53,6 +53,15 @@ def modal_truncation(system: StateSpace, modes: int) -> StateSpace:
     ------
     InputError
         If there are not so many modes.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> plant = gb.linearize(structure, gb.Flight(z=0.0))
+    >>> gb.modal_truncation(plant, modes=2).a.shape
+    (4, 4)
     """
     size = np.abs(scipy.linalg.eigvals(system.a))
     levels = [RIGID * size.max()]
@@ -94,6 +103,16 @@ def balanced_truncation(system: StateSpace, order: int) -> tuple[StateSpace, Flo
     ------
     InputError
         If nothing decays, or not so much.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> plant = gb.linearize(structure, gb.Flight(z=0.0))
+    >>> small, hankel = gb.balanced_truncation(plant, order=4)
+    >>> plant.a.shape, small.a.shape
+    ((10, 10), (4, 4))
     """
     tolerance = DECAYS * np.abs(scipy.linalg.eigvals(system.a)).max()
     kept, decaying = _split(system, lambda value: value.real > -tolerance)

@@ -89,6 +89,16 @@ def shape_command(
         If the hub turns already or gravity acts, there is not one of angle and rate, or a number is impossible.
     ComputationError
         If no command within the limit does it in that time, or a run diverges.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> hub = gb.Hub(radius=0.0, rate=0.0)
+    >>> command = gb.shape_command(structure, hub, angle=1.0, duration=0.5)
+    >>> command.residual < 1e-9
+    True
     """
     goal = check_goal(angle, rate, duration)
     if hub.mount.gravity is not None:

@@ -155,6 +155,23 @@ def compare(
     ------
     InputError
         If a limit has no such name, or means nothing.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> load = gb.Sum((gb.constant(20.0), gb.trapezoid(50.0, jerk=25.0, start=1.0, hold=2.0)))
+    >>> turn = gb.Flight(z=load)
+    >>> machine = gb.Centrifuge(
+    ...     turn, arm=3.3, control_point=0.22, gravity=True, smoothing=0.1, span=(0.0, 8.0)
+    ... )
+    >>> options = {"duration": 8.0, "step": 0.002, "estimate": False}
+    >>> flight = gb.simulate(structure, turn, **options)
+    >>> run = gb.simulate(structure, machine, **options)
+    >>> comparison = gb.compare(flight, run, accept={"tip": 0.05})
+    >>> print(f"{comparison.relative[2]:.2%}")
+    0.26%
     """
     limits = checked_limits(accept)
     flown, made = (float(flight.time[0]), float(flight.time[-1])), centrifuge.flight_span

@@ -153,6 +153,15 @@ def place(
     InputError
         If the beam has no damping ratio where vibration is judged, a measure is unknown or none has weight, or no
         option can be built: the first one's reason.
+
+    Examples
+    --------
+    >>> case = gb.read_scenario("examples/f16_8g_turn.toml")
+    >>> flight, machine = case.motions["flight"], case.motions["centrifuge"]
+    >>> choice = gb.choice_of(machine)
+    >>> placement = gb.place(case.assemble(), flight, choice, case.response, {"tip": 1.0}, current=machine)
+    >>> print(f"{1e3 * placement.best.control_point:.0f} mm from the root")
+    220 mm from the root
     """
     check_weights(weights)
     if check or "vibration" in weights:

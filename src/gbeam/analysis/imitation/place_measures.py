@@ -28,7 +28,7 @@ _FACTOR = 4.0  # of the centrifuge's own smoothing, either way
 @typed
 @dataclass(frozen=True)
 class Choice:
-    """What may be chosen beside the control point.
+    """Options beside the control point: mountings and widths of smoothing.
 
     Parameters
     ----------
@@ -42,6 +42,15 @@ class Choice:
         Whether to search on between the best of them and its neighbours.
     limited : bool
         Whether the machine's limits must be kept.
+
+    Examples
+    --------
+    >>> load = gb.Sum((gb.constant(20.0), gb.trapezoid(50.0, jerk=25.0, start=1.0, hold=2.0)))
+    >>> machine = gb.Centrifuge(
+    ...     gb.Flight(z=load), arm=3.3, control_point=0.22, gravity=True, smoothing=0.1, span=(0.0, 8.0)
+    ... )
+    >>> gb.choice_of(machine, smoothing=[0.1]).mountings
+    ('upright', 'inverted')
     """
 
     make: Callable[[str, float], Centrifuge]
@@ -70,7 +79,7 @@ def width_of(centrifuge: Centrifuge) -> float:
 
 @typed
 def choice_of(centrifuge: Centrifuge, smoothing: Sequence[float] = (), *, limited: bool = True) -> Choice:
-    """Both mountings of a centrifuge, its own first, and widths of smoothing.
+    """Return both mountings of a centrifuge, its own first, and widths of smoothing.
 
     Parameters
     ----------
@@ -86,6 +95,15 @@ def choice_of(centrifuge: Centrifuge, smoothing: Sequence[float] = (), *, limite
     ------
     InputError
         If there are more than two widths, or one of two is not positive.
+
+    Examples
+    --------
+    >>> load = gb.Sum((gb.constant(20.0), gb.trapezoid(50.0, jerk=25.0, start=1.0, hold=2.0)))
+    >>> machine = gb.Centrifuge(
+    ...     gb.Flight(z=load), arm=3.3, control_point=0.22, gravity=True, smoothing=0.1, span=(0.0, 8.0)
+    ... )
+    >>> gb.choice_of(machine, smoothing=[0.05, 0.2]).refined
+    True
     """
     if len(smoothing) > 2:
         raise InputError("smoothing", f"is given {len(smoothing)} times", "give one width, or the ends of a range")

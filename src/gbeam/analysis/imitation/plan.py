@@ -62,6 +62,16 @@ def plan(
     ------
     InputError
         If the motion has no span, the load cannot be followed, or a limit means nothing.
+
+    Examples
+    --------
+    >>> load = gb.Sum((gb.constant(20.0), gb.trapezoid(50.0, jerk=25.0, start=1.0, hold=2.0)))
+    >>> machine = gb.Centrifuge(
+    ...     gb.Flight(z=load), arm=3.3, control_point=0.22, gravity=True, smoothing=0.1, span=(0.0, 8.0)
+    ... )
+    >>> answer = gb.plan("centrifuge", machine)
+    >>> answer.outcome
+    'done'
     """
     limits = checked_limits(accept)
     first, last = (float(end) for end in motion.extent)
@@ -121,6 +131,16 @@ def axis_commands(motion: Centrifuge, sample: float) -> Commands:
     ------
     InputError
         If there are too many.
+
+    Examples
+    --------
+    >>> load = gb.Sum((gb.constant(20.0), gb.trapezoid(50.0, jerk=25.0, start=1.0, hold=2.0)))
+    >>> machine = gb.Centrifuge(
+    ...     gb.Flight(z=load), arm=3.3, control_point=0.22, gravity=True, smoothing=0.1, span=(0.0, 8.0)
+    ... )
+    >>> table = gb.axis_commands(machine, sample=0.01)
+    >>> print(f"{table.time[0]:.2f} s to {table.time[-1]:.2f} s")
+    -5.52 s to 13.52 s
     """
     (first, _), (begin, end) = motion.target.span, motion.extent
     still = motion.ends.start != "idle"

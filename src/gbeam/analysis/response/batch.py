@@ -106,6 +106,19 @@ def simulate_batch(
 
     A case's digits depend neither on the cases beside it nor on their order, on one machine: with as many `together`,
     and `one_structure` alike, a case alone, the last of a hundred and one in other company give the same bytes.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> hubs = [gb.Hub(radius=0.5, rate=gb.SmoothStep(level, 2.0)) for level in (1.0, 2.0, 3.0)]
+    >>> cases = [(structure, hub) for hub in hubs]
+    >>> for place, response in gb.simulate_batch(cases, duration=4.0, step=0.002):
+    ...     print(place, f"{1e6 * response.peaks.max_abs[1]:.2f} µm")
+    0 0.84 µm
+    1 1.69 µm
+    2 2.53 µm
     """
     settings = settings_of(settings, options if settings else {"estimate": False, **options})
     if together < 1:

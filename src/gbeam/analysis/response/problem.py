@@ -50,6 +50,16 @@ class Initial(Value):
     ------
     InputError
         If a value is impossible, or two displacements are given.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> drawn = gb.Initial(tip_displacement={"z": 2e-3})
+    >>> response = gb.simulate(structure, gb.Flight(z=0.0), duration=0.5, initial=drawn)
+    >>> print(f"{1e3 * response.displacement[0, -1, 2]:.3f} mm")
+    2.000 mm
     """
 
     state: str = "equilibrium"

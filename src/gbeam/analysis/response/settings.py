@@ -39,7 +39,7 @@ class Settings(TypedDict, total=False):
 @typed
 @dataclass(frozen=True, eq=False)
 class ResponseSettings(Value):
-    """How a response over time is computed.
+    """Settings of a response over time.
 
     Parameters
     ----------
@@ -72,6 +72,16 @@ class ResponseSettings(Value):
     ------
     InputError
         If duration, start, step or tolerance is impossible, there are too many steps, or the estimate has no loads.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> turn = gb.Flight(z=gb.trapezoid(78.5, jerk=39.2, start=0.5, hold=1.0))
+    >>> settings = gb.ResponseSettings(duration=6.0, integrator="gauss", tolerance=0.001)
+    >>> gb.simulate(structure, turn, settings).integrator
+    'gauss'
     """
 
     duration: float

@@ -65,6 +65,18 @@ def simulate(
         many steps, or a traced run has no step.
     ComputationError
         If there is no relative equilibrium to start from.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> turn = gb.Flight(z=gb.trapezoid(78.5, jerk=39.2, start=0.5, hold=1.0))
+    >>> response = gb.simulate(structure, turn, duration=6.0)
+    >>> response.outcome
+    'done'
+    >>> print(f"{1e3 * response.peaks.max_abs[2]:.3f} mm, error {response.error_estimate:.0e}")
+    2.302 mm, error 1e-02
     """
     settings = settings_of(settings, options)
     structure.require_damping("the response")

@@ -97,6 +97,17 @@ def campbell(
     ------
     InputError
         If the motion has no hub, the range is empty, or no mode is to be followed.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> hub = gb.Hub(radius=0.5)
+    >>> diagram = gb.campbell(structure, hub, end=20.0, count=10, modes=2)
+    >>> print(diagram.frequency[[0, -1]].round(2))
+    [[ 36.56 182.78]
+     [ 37.08 182.86]]
     """
     hub = hub_of(motion, "a Campbell diagram", "ask `gbeam modes` for its frequencies at a time", name)
     if speeds is None:

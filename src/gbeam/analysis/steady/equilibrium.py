@@ -54,6 +54,16 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
     ------
     ComputationError
         ``not converged``, with the share of the load that was reached.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> base = gb.Hub(radius=0.5, rate=20.0).base(0.0)
+    >>> equilibrium = gb.solve_equilibrium(structure, base)
+    >>> print(f"{1e6 * structure.tip(equilibrium.q)[0]:.3f} µm")
+    0.495 µm
     """
     structure = structure if time is None else structure.at_time(time)
     frozen = base.a_WO_B, base.w_WB_B, base.alpha_WB_B, structure.load_values

@@ -120,6 +120,14 @@ def modes(
     ------
     ComputationError
         If there is no relative equilibrium.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> print(gb.modes(structure).frequency.round(1))
+    [  36.6  182.8  229.1 1145.5 4243.1]
     """
     point = operating_point(structure, motion, time)
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)

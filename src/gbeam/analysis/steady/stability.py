@@ -86,6 +86,17 @@ def critical_speed(
     ------
     InputError
         If the motion has no hub.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> hub = gb.Hub(radius=0.5)
+    >>> print(gb.critical_speed(gb.assemble(beam, "FOAM", axial=1, y=2, z=2), hub, upper=100.0).value)
+    None
+    >>> loss = gb.critical_speed(gb.assemble(beam, "TLAM", axial=1, y=2, z=2), hub)
+    >>> print(f"{loss.value:.4g} rad/s")
+    1148 rad/s
     """
     hub = hub_of(motion, "a critical speed", INSTEAD, name)
     limit = SEARCH_FACTOR * lowest_frequency(structure) if upper is None else positive("to", upper, "rad/s")
@@ -133,6 +144,16 @@ def critical_speed_map(
     ------
     InputError
         If the motion has no hub, or a mass or a position is impossible.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> model = gb.Model("TLAM", axial=1, y=2)
+    >>> answer = gb.critical_speed_map(beam, model, gb.Hub(radius=0.5), [0.01, 0.1], [0.15, 0.3])
+    >>> print(answer.speed.round(1))
+    [[1109.4  901.4]
+     [ 869.1  424.8]]
     """
     hub, unloaded = hub_of(motion, "a critical speed", INSTEAD, name), assemble(beam, model)
     limit = SEARCH_FACTOR * lowest_frequency(unloaded) if upper is None else upper
@@ -172,6 +193,14 @@ def buckling_acceleration(structure: Structure, *, upper: float | None = None, p
     Returns
     -------
     Critical
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> print(f"{gb.buckling_acceleration(structure).value:.4g} m/s²")
+    1.005e+04 m/s²
     """
     limit = SEARCH_FACTOR * lowest_frequency(structure) ** 2 * structure.length if upper is None else upper
 
@@ -208,6 +237,15 @@ def critical_load(
     ------
     InputError
         If there is no load, or none acts at the time, or they change no stiffness.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> push = gb.Load(at=0.3, force=(-1.0, 0.0, 0.0))
+    >>> column = gb.Beam(0.3, strip, gb.Material(2700, 70e9), loads=[push])
+    >>> euler = gb.critical_load(gb.assemble(column, "FOAM", axial=1, z=4))
+    >>> print(f"{euler.value:.4g} N")
+    204.9 N
     """
     values = structure.load_values
     share = 0.0 if values is None else _share(structure, values)

@@ -124,7 +124,7 @@ def static(
     acceleration: Sequence[float] | None = None,
     name: str = "",
 ) -> Deflection:
-    """Where the beam rests relative to a base whose motion is frozen at a time, and what its sections carry.
+    """Equilibrium relative to a base whose motion is frozen at a time, and what its sections carry.
 
     Parameters
     ----------
@@ -149,6 +149,15 @@ def static(
         If both a motion and an acceleration are given.
     ComputationError
         ``not converged``: the beam buckles or diverges before the whole load is on.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> rest = gb.static(structure, acceleration=(0.0, 0.0, 78.5))
+    >>> print(f"{1e3 * rest.tip[2]:.3f} mm")
+    -2.297 mm
     """
     if acceleration is None:
         point = operating_point(structure, motion, time)

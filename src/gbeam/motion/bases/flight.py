@@ -41,6 +41,12 @@ class Flight:
     ------
     InputError
         If components and vector are given, or neither, or one has the other's shape.
+
+    Examples
+    --------
+    >>> turn = gb.Flight(z=gb.trapezoid(78.5, jerk=39.2, start=0.5, hold=1.0))
+    >>> turn.base(3.0).a_WO_B
+    array([ 0. ,  0. , 78.5])
     """
 
     kind: ClassVar[str] = "flight"

@@ -126,6 +126,12 @@ class Hub:
     InputError
         If a value is impossible, a torque is given beside a rate or without an inertia, or a spring or damper beside a
         rate.
+
+    Examples
+    --------
+    >>> hub = gb.Hub(radius=0.5, rate=gb.SmoothStep(3.0, 2.0))
+    >>> hub.base(5.0).a_WO_B
+    array([-4.5,  0. ,  0. ])
     """
 
     kind: ClassVar[str] = "hub"

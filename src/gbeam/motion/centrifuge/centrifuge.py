@@ -74,6 +74,15 @@ class Centrifuge(AxisMotion):
     ------
     InputError
         If a number is impossible or a name unknown; when the target is built, also if the load cannot be followed.
+
+    Examples
+    --------
+    >>> load = gb.Sum((gb.constant(20.0), gb.trapezoid(50.0, jerk=25.0, start=1.0, hold=2.0)))
+    >>> machine = gb.Centrifuge(
+    ...     gb.Flight(z=load), arm=3.3, control_point=0.22, gravity=True, smoothing=0.1, span=(0.0, 8.0)
+    ... )
+    >>> print(f"{machine.axes(3.0).rate1:.3f} rad/s")
+    4.579 rad/s
     """
 
     kind: ClassVar[str] = "centrifuge"

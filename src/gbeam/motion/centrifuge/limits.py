@@ -22,12 +22,17 @@ QUANTITIES = {"rate": "rad/s", "acceleration": "rad/s^2", "jerk": "rad/s^3"}
 @typed
 @dataclass(frozen=True)
 class AxisLimit:
-    """What one axis of a centrifuge can do.
+    """Limits of one axis of a centrifuge.
 
     Parameters
     ----------
     rate, acceleration, jerk : float or None
         Largest size, rad/s, rad/s² and rad/s³; None where it is not known.
+
+    Examples
+    --------
+    >>> gb.AxisLimit(rate=7.0, acceleration=10.0)
+    AxisLimit(rate=7.0, acceleration=10.0, jerk=None)
     """
 
     rate: float | None = None
@@ -47,6 +52,12 @@ class MachineLimits:
         Of all that turns about axis 1, kg m².
     power : float or None
         Largest power that speeds the arm up or brakes it, J ω1 dω1/dt without friction and drag, W; needs `inertia`.
+
+    Examples
+    --------
+    >>> limits = gb.MachineLimits(axis1=gb.AxisLimit(rate=7.0), inertia=2000.0, power=30e3)
+    >>> limits.power
+    30000.0
     """
 
     axis1: AxisLimit = field(default_factory=AxisLimit)

@@ -33,6 +33,12 @@ class Sum(Profile):
     ------
     InputError
         If there is no part.
+
+    Examples
+    --------
+    >>> profile = gb.Sum((gb.constant(1.0), gb.Sine(amplitude=2.0, duration=4.0)))
+    >>> print(profile.derivatives(1.0, 0)[0])
+    3.0
     """
 
     parts: tuple[Profile, ...]
@@ -115,6 +121,12 @@ def vector(x: Any | None = None, y: Any | None = None, z: Any | None = None) -> 
     ------
     InputError
         If a component is no scalar.
+
+    Examples
+    --------
+    >>> load = gb.vector(x=gb.constant(9.81), z=gb.Sine(20.0, 4.0))
+    >>> print(load.derivatives(1.0, 0)[0])
+    [ 9.81  0.   20.  ]
     """
     parts = [as_profile(name, 0.0 if given is None else given) for name, given in (("x", x), ("y", y), ("z", z))]
     return Vector((parts[0], parts[1], parts[2]))

@@ -212,6 +212,11 @@ def constant(value: ArrayLike) -> PiecewiseLinear:
     ------
     InputError
         If a number is not finite.
+
+    Examples
+    --------
+    >>> print(gb.constant(9.81).derivatives(3.0, 0)[0])
+    9.81
     """
     number = as_array(value)
     if not is_traced(number) and not np.isfinite(np.asarray(number)).all():
@@ -238,6 +243,12 @@ def trapezoid(level: Any, *, jerk: Any, start: Any = 0.0, hold: Any) -> Piecewis
     ------
     InputError
         If the level is zero or a number is impossible.
+
+    Examples
+    --------
+    >>> pulse = gb.trapezoid(78.5, jerk=39.2, start=0.5, hold=1.0)
+    >>> print(pulse.derivatives(3.0, 0)[0])
+    78.5
     """
     height, begin, slope = finite("level", level), finite("start", start), positive("jerk", jerk, "per second")
     plateau = positive("hold", hold, "s", zero=True)
@@ -269,5 +280,11 @@ def tabulated(times: ArrayLike, values: ArrayLike) -> PiecewiseLinear:
     ------
     InputError
         If the shapes differ, a number is not finite or the times do not increase.
+
+    Examples
+    --------
+    >>> ramp = gb.tabulated([0.0, 1.0, 2.0], [0.0, 10.0, 0.0])
+    >>> print(ramp.derivatives(1.5, 0)[0])
+    5.0
     """
     return PiecewiseLinear(times, values)

@@ -98,6 +98,12 @@ def smoothed(profile: Profile, width: Any) -> Profile:
     ------
     InputError
         If the width is not positive and finite.
+
+    Examples
+    --------
+    >>> ramp = gb.smoothed(gb.trapezoid(50.0, jerk=25.0, hold=2.0), width=0.2)
+    >>> print(f"{ramp.derivatives(0.0, 0)[0]:.4f}")
+    0.3717
     """
     return profile.smoothed(positive("smoothing", width, "s"))
 

@@ -34,6 +34,12 @@ class SmoothStep(Profile):
     ------
     InputError
         If a number is impossible.
+
+    Examples
+    --------
+    >>> slew = gb.SmoothStep(level=3.0, duration=2.0)
+    >>> print(slew.derivatives(1.0, 0)[0], slew.derivatives(5.0, 0)[0])
+    1.5 3.0
     """
 
     level: Any
@@ -96,6 +102,12 @@ class Sine(Profile):
     ------
     InputError
         If a number is impossible.
+
+    Examples
+    --------
+    >>> pulse = gb.Sine(amplitude=50.0, duration=2.0)
+    >>> print(pulse.derivatives(0.5, 0)[0])
+    50.0
     """
 
     amplitude: Any

@@ -36,6 +36,13 @@ class SplineProfile(Profile):
     ------
     InputError
         If a number is impossible, there are fewer than eleven coefficients, or the ends differ.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> slew = gb.SplineProfile(2.0, np.repeat([0.0, 3.0], [6, 6]))
+    >>> print(slew.derivatives(1.0, 0)[0])
+    1.5
     """
 
     duration: Any

@@ -151,6 +151,13 @@ def read_record(
     InputError
         If the file, a column, a cell or the sampling is wrong, the file states other units, or the record looks
         unsound; rows are counted from 1, samples too.
+
+    Examples
+    --------
+    >>> columns = {"time": "time_s", "x": "n_x_g", "y": "-n_y_g", "z": "-n_z_g"}
+    >>> record = gb.read_record("examples/data/f16_8g_turn.csv", **columns, unit="g").record
+    >>> print(record.samples, f"{record.largest[2] / 9.80665:.2f} g at {record.time_of_peak} s")
+    1600 8.06 g at 4.92 s
     """
     return read_flight(
         path, time, x, y, z, unit, conditioning=conditioning, time_unit=time_unit, quantity=quantity, span=span

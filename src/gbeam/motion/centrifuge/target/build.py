@@ -100,6 +100,14 @@ def build_target(
     InputError
         If a number is impossible, or the load cannot be followed: it has no direction; without idle, it comes near
         zero, reverses through zero or is out of reach; without gravity, it is along the beam on its way.
+
+    Examples
+    --------
+    >>> along_z = gb.Sum((gb.constant(20.0), gb.trapezoid(50.0, jerk=25.0, start=1.0, hold=2.0)))
+    >>> load = gb.vector(z=along_z)
+    >>> target = gb.build_target(load, span=(0.0, 8.0), idle=None, smoothing=0.1, gravity=True)
+    >>> print(f"{target.load.derivatives(4.0, 0)[0][2]:.4f} m/s²")
+    70.0000 m/s²
     """
     first, last = span
     if not (np.isfinite(first) and np.isfinite(last) and last > first):
