@@ -11,7 +11,7 @@ import pytest
 
 from gbeam.results.imitation.criteria import RULES, SETTINGS
 from gbeam.scenario import ScenarioError, build, loads
-from gbeam.scenario.schema.common.accept import Accept
+from gbeam.scenario.schema.motion import Accept
 
 from ..scenarios import FAST
 

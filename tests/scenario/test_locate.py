@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 
-from gbeam.scenario.text.locate_json import locate_json
-from gbeam.scenario.text.locate_toml import locate_toml
+from gbeam.scenario.text.locate import locate_json, locate_toml
 from gbeam.scenario.values.paths import Path
 
 TOML = """\

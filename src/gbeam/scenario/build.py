@@ -11,8 +11,7 @@ from gbeam.guards.arguments import typed
 from gbeam.results.imitation.criteria import RULES
 from gbeam.scenario import schema
 from gbeam.scenario.load import change, load
-from gbeam.scenario.origin import provenance
-from gbeam.scenario.placing import Collector, placed
+from gbeam.scenario.origin import Collector, placed, provenance
 
 if TYPE_CHECKING:
     from gbeam.analysis.case import Case

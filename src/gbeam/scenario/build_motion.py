@@ -9,7 +9,7 @@ from gbeam.motion import Profile
 from gbeam.motion.bases.flight import body_rates
 from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
 from gbeam.scenario import schema
-from gbeam.scenario.placing import Collector
+from gbeam.scenario.origin import Collector
 from gbeam.scenario.schema.record import Record
 
 

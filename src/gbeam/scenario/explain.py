@@ -7,12 +7,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
 from gbeam.scenario.schema import Scenario
-from gbeam.scenario.schema.common.fields import Quantity, Table, fields_of
+from gbeam.scenario.schema.fields import Quantity, Table, fields_of
 from gbeam.scenario.text.diagnostics import Diagnostic
 from gbeam.scenario.text.source import Mark, Source
 from gbeam.scenario.values.kinds import KINDS
-from gbeam.scenario.values.paths import Path
-from gbeam.scenario.values.suggest import advise
+from gbeam.scenario.values.paths import Path, advise
 from gbeam.scenario.values.units import spoken
 
 if TYPE_CHECKING:

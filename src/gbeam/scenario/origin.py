@@ -1,19 +1,26 @@
-"""What a scenario's results say of where they come from."""
+"""Where a scenario came from, and errors at their places in it."""
 
 from __future__ import annotations
 
 import hashlib
 import json
 import os
+from collections.abc import Callable, Iterable
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
+from gbeam.errors import InputError
 from gbeam.guards.limits import EMBEDDED
 from gbeam.results.provenance import Provenance, RecordFile
 from gbeam.scenario.schema import Environments, Flight
+from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import parse
+from gbeam.scenario.values.paths import parse_path
+
+if TYPE_CHECKING:
+    from gbeam.scenario.text.source import Mark, Source
 
 
 def provenance(scenario: Environments, command: str = "") -> Provenance:
@@ -47,3 +54,34 @@ def _record(motion: str, file: str) -> RecordFile:
     content = Path(file).read_bytes()
     small = len(content) <= EMBEDDED
     return RecordFile(motion, os.fspath(file), hashlib.sha256(content).hexdigest(), content if small else None)
+
+
+T = TypeVar("T")
+
+
+class Collector:
+    """Collects the InputErrors of what it attempts, in `errors`."""
+
+    def __init__(self) -> None:
+        self.errors: list[InputError] = []
+
+    def attempt(self, where: str, make: Callable[..., T], *args: Any, **options: Any) -> T | None:
+        """Return ``make(*args, **options)``; None, with its error kept as one of `where`, if it refuses."""
+        try:
+            return make(*args, **options)
+        except InputError as error:
+            self.errors.append(error.within(where))
+            return None
+
+
+def placed(scenario: Environments, errors: Iterable[InputError]) -> ScenarioError:
+    """Return the ScenarioError of what the objects of the core refused."""
+    return ScenarioError(_diagnostic(scenario.source, error) for error in errors)
+
+
+def _diagnostic(source: Source | None, error: InputError) -> Diagnostic:
+    if source is None:  # a scenario made without a text
+        return Diagnostic("scenario", error.where, error.problem, error.fix)
+    # "is given beside rate" is about the key, everything else about the value.
+    mark: Mark = "key" if error.problem.startswith("is given") else "value"
+    return source.diagnostic(parse_path(error.where) or (), error.problem, error.fix, mark)

@@ -28,7 +28,7 @@ from gbeam.scenario.build import build
 from gbeam.scenario.load import change
 from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.text.source import Source
-from gbeam.scenario.values.suggest import advise
+from gbeam.scenario.values.paths import advise
 from gbeam.studies.answers import Facts, answered, study_facts
 from gbeam.studies.figures import History, Keys, own_keys, value_at
 

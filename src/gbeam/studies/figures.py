@@ -16,8 +16,7 @@ from gbeam.results.equilibrium import Deflection
 from gbeam.results.result import Floats
 from gbeam.scenario.schema import Centrifuge
 from gbeam.scenario.schema.scenario import Scenario
-from gbeam.scenario.values.paths import path_text
-from gbeam.scenario.values.suggest import advise, closest
+from gbeam.scenario.values.paths import advise, closest, path_text
 from gbeam.studies.answers import DECLARED, Facts
 
 if TYPE_CHECKING:

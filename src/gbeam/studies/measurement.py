@@ -20,7 +20,7 @@ from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Study
 from gbeam.scenario.values.kinds import KINDS
-from gbeam.scenario.values.suggest import advise
+from gbeam.scenario.values.paths import advise
 from gbeam.scenario.values.units import UnitError, argument
 from gbeam.structure.beam import fibre_strain
 

@@ -14,11 +14,11 @@ from gbeam.errors import InputError
 from gbeam.guards.limits import refuse_more
 from gbeam.results.result import Floats
 from gbeam.scenario.load import load
-from gbeam.scenario.schema.common.quantities import quantities
+from gbeam.scenario.schema.fields import quantities
 from gbeam.scenario.schema.scenario import Scenario
-from gbeam.scenario.text.edit import with_quantities
+from gbeam.scenario.text.revise import with_quantities
 from gbeam.scenario.values.kinds import KINDS
-from gbeam.scenario.values.suggest import advise
+from gbeam.scenario.values.paths import advise
 from gbeam.scenario.values.units import UnitError, argument
 
 # Values of the computation, not of what is computed.

@@ -23,7 +23,7 @@ from gbeam.progress import Progress
 from gbeam.questions import motion_of
 from gbeam.results.searches import ShapedCommand
 from gbeam.scenario.build import build, scenario_of
-from gbeam.scenario.values.suggest import advise
+from gbeam.scenario.values.paths import advise
 
 _REST = 1e-9  # of the largest rate: a hub that turns slower at its end is to turn by an angle
 _POINTS = 401  # of a table: straight lines between them are off by 1e-4 of a smooth step

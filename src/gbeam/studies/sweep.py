@@ -20,7 +20,7 @@ from gbeam.progress import tell
 from gbeam.results.cases import Sweep
 from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
-from gbeam.scenario.schema.common.fields import kind_of
+from gbeam.scenario.schema.fields import kind_of
 from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.values.kinds import KINDS
 from gbeam.scenario.values.paths import parse_path

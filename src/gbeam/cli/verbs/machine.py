@@ -182,7 +182,7 @@ def place(
 
 def _apply(given: Input, file: Path, name: str, changes: dict[str, str]) -> str:
     """Write the changes of one centrifuge into the scenario file; return its name."""
-    from gbeam.scenario.text.edit import edited
+    from gbeam.scenario.text.revise import edited
 
     source = given.scenario.source
     assert source is not None  # it was read from a file

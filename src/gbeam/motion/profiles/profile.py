@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.guards.arguments import typed
+from gbeam.guards.arguments import refuse_units, typed
 from gbeam.guards.checks import positive
 from gbeam.guards.limits import KNOTS, refuse_more
-from gbeam.guards.quantities import refuse_units
 from gbeam.numerics.series import Series
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Generic, Literal, TypeVar, get_args
 
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
-from gbeam.scenario.schema.common.fields import (
+from gbeam.scenario.schema.fields import (
     Acceleration,
     AngularAcceleration,
     AngularRate,

@@ -9,7 +9,7 @@ from pydantic import Field, StrictBool, field_validator, model_validator
 from pydantic_core import PydanticCustomError
 
 from gbeam.guards.limits import ENTRIES
-from gbeam.scenario.schema.common.fields import (
+from gbeam.scenario.schema.fields import (
     Acceleration,
     Duration,
     Loc,

@@ -1,26 +1,85 @@
-"""The whole scenario, and what its tables must agree on."""
+"""The whole scenario with its [model] and [sweep], and what its tables must agree on."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, model_validator
+from pydantic import AfterValidator, Field, PrivateAttr, StrictInt, ValidationInfo, model_validator
 from pydantic_core import PydanticCustomError
 
-from gbeam.guards.limits import NAME, TITLE
+from gbeam.guards.limits import NAME, SHAPES, TITLE
 from gbeam.printable import shortened, unprintable
+from gbeam.questions import QUESTIONS
 from gbeam.scenario.schema.beam import Beam
-from gbeam.scenario.schema.common.fields import Loc, Table, refuse, wrong
-from gbeam.scenario.schema.model import Model
+from gbeam.scenario.schema.fields import Loc, Table, refuse, wrong
 from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub, Motion
 from gbeam.scenario.schema.response import Response
-from gbeam.scenario.schema.sweep import Sweep
-from gbeam.scenario.values.suggest import advise
+from gbeam.scenario.values.paths import advise
 
 if TYPE_CHECKING:
     from gbeam.scenario.text.source import Source
+
+    Verb = str
+else:
+    Verb = Literal[tuple(QUESTIONS)]
+
+
+Count = Annotated[StrictInt, Field(ge=0, le=SHAPES)]
+
+
+class Modes(Table):
+    """Numbers of shape functions."""
+
+    axial: Count = Field(description="axial shapes; for `exact` strain shapes")
+    y: Count = Field(description="bending shapes along y; for `exact` rotation shapes for bending along y")
+    z: Count = Field(description="bending shapes along z; for `exact` rotation shapes for bending along z")
+
+
+class Model(Table):
+    """The model of the beam's deformation."""
+
+    kind: Literal["TLAM", "FOAM", "SFOAM", "CFOAM", "exact"] = Field(
+        description="TLAM: linear, no foreshortening. FOAM: first order with foreshortening. SFOAM: FOAM "
+        "without axial coordinates. CFOAM: FOAM's field, complete energy. exact: any rotation"
+    )
+    modes: Modes | None = Field(
+        default=None,
+        description="numbers of shapes: { axial, y, z }; where left out, `run` raises them until they are enough",
+    )
+    shapes: Literal["clamped-free", "adapted"] | None = Field(
+        default=None,
+        description="clamped-free: shapes of the bare uniform beam (for `exact`, polynomials); the default for `exact` "
+        "and where `modes` are given. adapted: the modes at rest of this beam with its tapers, masses and root "
+        "springs, of which fewer are needed; the default where `modes` are left out",
+    )
+
+
+class Sweep(Table):
+    """Figures of many cases; `gbeam run` and the others answer for the scenario as it stands."""
+
+    over: dict[str, str] = Field(
+        default_factory=dict,
+        description='values by the path of a key: a range "1 m:12 m:12" (from, to, how many), a list "FOAM, exact", or '
+        'a distribution "normal(70 GPa, 2 GPa)", lognormal, uniform or triangular; what is a distribution where it '
+        "stands is drawn too",
+    )
+    measure: tuple[str, ...] = Field(
+        default=(),
+        description="figures by the end of their path in the verb's JSON, such as tip.z.max_abs or verdict.tip",
+    )
+    history: tuple[str, ...] = Field(
+        default=(), description="histories over time by motion, quantity and axis, such as flight.tip.z"
+    )
+    verb: Verb = Field(default="run", description="whose figures")
+    samples: int | None = Field(
+        default=None, ge=1, strict=True, description="how many are drawn from distributions; 64"
+    )
+    sampler: Literal["sobol", "latin", "random", "saltelli"] = Field(
+        default="sobol", description="how they are drawn; saltelli for Sobol indices"
+    )
+    seed: int = Field(default=0, ge=0, strict=True, description="the same seed draws the same samples")
 
 
 def _word(name: str) -> str:

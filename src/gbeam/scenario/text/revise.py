@@ -1,23 +1,56 @@
-"""Write, add and remove single entries of a scenario's text: comments, and all that they are not about, stay."""
+"""Changes to the text of a scenario that keep its comments."""
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from gbeam.errors import InputError
 from gbeam.scenario.text.diagnostics import ScenarioError
-from gbeam.scenario.text.layout import BLOCKS, Layout
-from gbeam.scenario.text.locate_toml import keys_of
-from gbeam.scenario.text.source import is_json, parse
-from gbeam.scenario.values.paths import Path, path_text
+from gbeam.scenario.text.locate import BLOCKS, Layout, keys_of
+from gbeam.scenario.text.source import Source, is_json, parse
+from gbeam.scenario.values.paths import Path, parse_path, path_text, written_at
+from gbeam.scenario.values.units import unit_of
 
 if TYPE_CHECKING:
     from tree_sitter import Node
+
+
+def edited(source: Source, table: Path, changes: Mapping[str, str | float]) -> str:
+    """Return the text with some entries of one table set to other text."""
+    text = source.text
+    given = ", ".join(f"{path_text((*table, key))}={value}" for key, value in changes.items())
+    refusal = InputError(source.name, "is written in a way that cannot be changed here", f"write it yourself: {given}")
+    if written_at(parse(source.name, text), table) is None:
+        raise refusal
+    for key, value in changes.items():
+        try:
+            text = with_entry(text, (*table, key), value)
+        except InputError:
+            raise refusal from None
+    return text
+
+
+def with_quantities(source: Source, changes: Mapping[str, tuple[float, str]]) -> str:
+    """Return the text with some quantities set to other values, each in the unit that it was written in."""
+    text, before = source.text, parse(source.name, source.text)
+    for path_words, (value, kind) in changes.items():
+        *table, key = parse_path(path_words) or ("",)
+        if not isinstance(key, str):
+            raise InputError(source.name, f"has {path_words} in a list", f"write it yourself: {value:.8g}")
+        plain = replace(source, text=text, data=before, overrides=())
+        old = plain.raw((*table, key))
+        unit, size = unit_of(old, kind) if isinstance(old, str) else ("", 1.0)
+        number = f"{value / size:.8g}"
+        written: str | float = f"{number} {unit}" if unit else float(number)
+        text = edited(replace(source, text=text, overrides=()), tuple(table), {key: written})
+    return text
+
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _COMMENTS = re.compile(rb"(?:\r?\n[ \t]*#[^\n]*?)*(?=\s*\r?\n[ \t]*\r?\n|\s*$)")

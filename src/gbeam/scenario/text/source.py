@@ -13,12 +13,10 @@ from typing import Any, Literal
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import SCENARIO_BYTES, refuse_large_file
-from gbeam.scenario.text.bounds import crowded, excess, no_text
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
-from gbeam.scenario.text.overrides import Override
+from gbeam.scenario.text.overrides import Override, crowded, excess, no_text
 from gbeam.scenario.values.distributions import Distribution
-from gbeam.scenario.values.paths import Path, Place, Span, path_text, written_at
-from gbeam.scenario.values.suggest import closest
+from gbeam.scenario.values.paths import Path, Place, Span, closest, path_text, written_at
 
 Mark = Literal["value", "key"]
 
@@ -52,8 +50,7 @@ class Source:
     def places(self) -> dict[Path, Place]:
         """Where each entry of the text stands."""
         # Imported where something is wrong: what is right needs no places.
-        from gbeam.scenario.text.locate_json import locate_json
-        from gbeam.scenario.text.locate_toml import locate_toml
+        from gbeam.scenario.text.locate import locate_json, locate_toml
 
         return locate_json(self.text) if is_json(self.text) else locate_toml(self.text)
 

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from gbeam.errors import InputError
-from gbeam.scenario.values.paths import Path, walk
-from gbeam.scenario.values.suggest import closest
+from gbeam.scenario.values.paths import Path, closest, walk
 from gbeam.scenario.values.units import NUMBER
 
 

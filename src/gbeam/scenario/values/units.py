@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from gbeam.guards.limits import QUANTITY
 from gbeam.printable import shortened
 from gbeam.scenario.values.kinds import KINDS, USUAL, Kind
-from gbeam.scenario.values.suggest import closest
+from gbeam.scenario.values.paths import closest
 
 if TYPE_CHECKING:
     from pint import UnitRegistry

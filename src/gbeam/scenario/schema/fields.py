@@ -1,8 +1,8 @@
-"""What the schema's tables are made of: a strict table, quantities with a dimension, errors with advice."""
+"""Fields of the schema: quantities with their units, and what they have in common."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
 
@@ -12,11 +12,13 @@ from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, cor
 
 from gbeam.guards.limits import ENTRIES, LARGEST, SMALLEST
 from gbeam.scenario.values.kinds import KINDS
+from gbeam.scenario.values.paths import Path, path_text
 from gbeam.scenario.values.units import UnitError, quantity
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
     from pydantic.json_schema import JsonSchemaValue
+
 
 Sign = Literal["any", "positive", "zero or more"]
 Loc = tuple[int | str, ...]
@@ -176,3 +178,22 @@ Ratios = Annotated[
     Annotated[Ratio, Tag("one")] | Annotated[tuple[Ratio, ...], _SOME, Tag("list")],
     ONE_OR_LIST,
 ]
+
+
+def quantities(table: BaseModel) -> dict[str, tuple[float, str]]:
+    """Value in SI and kind, a key of ``KINDS``, of every quantity of a scenario, by its path."""
+    return {path_text(path): (value, kind) for path, value, kind in _of(table, (), "")}
+
+
+def _of(node: Any, path: Path, kind: str) -> Iterator[tuple[Path, float, str]]:
+    if isinstance(node, BaseModel):
+        for key, name in zip(fields_of(type(node)), type(node).model_fields, strict=True):
+            yield from _of(getattr(node, name), (*path, key), kind_of(node, key))
+    elif isinstance(node, Mapping):
+        for key, value in node.items():
+            yield from _of(value, (*path, key), kind)
+    elif isinstance(node, tuple):
+        for index, value in enumerate(node):
+            yield from _of(value, (*path, index), kind)
+    elif kind and isinstance(node, (int, float)) and not isinstance(node, bool):
+        yield path, float(node), kind
