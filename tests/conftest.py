@@ -7,8 +7,12 @@ from collections.abc import Iterator
 from importlib.metadata import version
 from pathlib import Path
 
+import hypothesis
 import pytest
 
+# A busy machine is no error.
+hypothesis.settings.register_profile("gbeam", deadline=None)
+hypothesis.settings.load_profile("gbeam")
 # As the command line does: a beam's matrices are small, and the threads of two processes would wait for one another.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Compiled programs are kept from run to run, in the project's own ignored folder.

@@ -48,7 +48,7 @@ def swinging() -> Profile:
     return vector(x=Sine(G, 6.0, start=-1.0), y=y, z=z)
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 @given(
     load=st.tuples(*[st.floats(-8, 8)] * 3), sign=st.sampled_from([1, -1]), gravity=st.booleans(),
     inverse=st.sampled_from(sorted(INVERSES)),

@@ -41,7 +41,7 @@ def test_constant_trapezoid_table() -> None:
     assert TRAPEZOID(2.0).shape == ()
 
 
-@settings(deadline=None, max_examples=30)
+@settings(max_examples=30)
 @given(tables(), st.floats(0.02, 0.5))
 def test_smoothing_equals_the_convolution(profile: PiecewiseLinear, width: float) -> None:
     t0 = float(profile.times[2]) + 0.1 * width
@@ -55,7 +55,7 @@ def test_smoothing_equals_the_convolution(profile: PiecewiseLinear, width: float
     assert float(smoothed(profile, width)(t0)) == pytest.approx(expected, abs=1e-9)
 
 
-@settings(deadline=None, max_examples=30)
+@settings(max_examples=30)
 @given(tables(), tables(), st.floats(-3, 3))
 def test_smoothing_is_linear_and_keeps_the_order_of_values(a: PiecewiseLinear, b: PiecewiseLinear, k: float) -> None:
     t = np.linspace(0, 12, 200)
@@ -67,7 +67,7 @@ def test_smoothing_is_linear_and_keeps_the_order_of_values(a: PiecewiseLinear, b
     assert np.diff(np.asarray(smoothed(rising, 0.1)(t))).min() > -1e-12
 
 
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 @given(tables())
 def test_integral_is_preserved_and_straight_stretches_stay(profile: PiecewiseLinear) -> None:
     t = np.linspace(float(profile.times[0]) - 1, float(profile.times[-1]) + 1, 40001)

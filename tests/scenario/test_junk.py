@@ -47,7 +47,7 @@ JUNK = st.recursive(
 )
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.lists(st.tuples(st.sampled_from(PATHS), JUNK, st.booleans()), min_size=1, max_size=2))
 def test_junk(changes: list[tuple[Path, Any, bool]]) -> None:
     data = tomllib.loads(MANY_KINDS)

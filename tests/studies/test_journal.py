@@ -234,7 +234,7 @@ def test_a_folder_in_its_place_is_a_message(fast: Path, gbeam: Call, name: str) 
 
 
 @given(data())
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_no_damage_of_a_store_changes_a_figure(fast: Path, draw: DataObject) -> None:
     """A few bytes changed, cut out or doubled anywhere: refused by name, or the same figures."""
     shutil.rmtree("there", ignore_errors=True)

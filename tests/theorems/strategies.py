@@ -21,7 +21,6 @@ from gbeam.motion.protocol import Motion
 theorem = settings(
     max_examples=12,
     derandomize=True,
-    deadline=None,
     phases=[Phase.generate],
     suppress_health_check=list(HealthCheck),
 )
