@@ -126,6 +126,8 @@ def _of_cases(done: int, failed: int, count: int) -> tuple[str, float]:
 
 
 def _in_notebook() -> bool:
+    if "IPython" not in sys.modules:  # rich need not be imported to know
+        return False
     from rich.console import Console
 
     return Console(stderr=True).is_jupyter

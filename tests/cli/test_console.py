@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -106,3 +107,9 @@ def test_a_bar_counts_the_cases_of_a_sweep() -> None:
     bar = progress.Bar()
     bar(3, 1, 12)
     assert bar.line().startswith("3 of 12 cases, 1 failed: 25%")
+
+
+def test_plain_lines_need_no_rich() -> None:
+    code = "import sys, time; from gbeam.progress import Bar\nwith Bar(): time.sleep(0.2)\nprint('rich' in sys.modules)"
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert (ran.stdout, ran.stderr) == ("False\n", "gbeam: compiling\n")
