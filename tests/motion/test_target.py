@@ -294,6 +294,13 @@ def test_a_path_is_the_least_of_its_cost_and_keeps_what_needs_no_bending() -> No
     np.testing.assert_allclose(gentle(t, 2 - t, weight, fixed, 0.5), 2 - t, atol=1e-12)
 
 
+def test_a_path_of_close_and_uneven_knots_is_that_of_the_continuous_load() -> None:
+    t = np.sort(np.random.default_rng(2).uniform(0, 20, 20_000))  # some are nearer than 1e-6 s
+    path = gentle(t, np.cos(3 * t), np.ones(t.size), np.zeros(t.size, bool), 0.5)
+    inside = (t > 8) & (t < 12)  # far from the free ends: z + T⁴ d⁴z/dt⁴ = cos 3t
+    np.testing.assert_allclose(path[inside], np.cos(3 * t[inside]) / (1 + 1.5**4), atol=1e-3)
+
+
 def test_curved_profiles_are_kept_exactly_or_sampled_finely() -> None:
     raw = vector(z=Sum((constant(3 * G), Sine(2 * G, 10.0, start=1.0))))
     np.testing.assert_allclose(target(raw).load(T), smoothed(raw, W)(T), rtol=1e-14)
