@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -101,7 +102,7 @@ def _difference(panel: Axes, compared: Comparison, axis: int, index: int) -> Non
     subtitle(panel, f"{compared.centrifuge} − {compared.flight}" + (", scaled to the times compared" if beyond else ""))
 
 
-def _stretches(responses: dict[str, Response], compared: Comparison) -> list[Stretch]:
+def _stretches(responses: Mapping[str, Response], compared: Comparison) -> list[Stretch]:
     response = responses.get(compared.centrifuge)
     if response is None:
         return stretches(None, compared.time, compared.accounting)

@@ -27,7 +27,7 @@ from gbeam.scenario.values.paths import parse_path
 from gbeam.studies.cases import Cases, read_cases
 from gbeam.studies.cluster import on_scheduler
 from gbeam.studies.evaluate import Function, Question, Row, Task, may_share, width
-from gbeam.studies.figures import HISTORY, TIMES, judged, usual
+from gbeam.studies.figures import HISTORY, TIMES, judged, offered, usual
 from gbeam.studies.journal import Journal, identity, opened
 from gbeam.studies.start import NO_HISTORIES, OverTime, Start, go_on, start
 from gbeam.studies.statistics import indices, statistics
@@ -143,6 +143,8 @@ def sweep(
     names = tuple(measure)
     if not (names or histories):
         raise InputError("--measure", "is missing", 'name figures: --measure "tip.z.max_abs, verdict.tip"')
+    if not isinstance(measure, Mapping):
+        offered(verb, names)
     over_time = _over_time(tuple(histories), times, verb)
     if not 1 <= workers <= WORKERS:
         raise InputError("--workers", f"is {workers}", f"give 1 to {WORKERS}; a --scheduler has any number")
