@@ -12,8 +12,9 @@ from gbeam.report.study import comparison, sentences
 from gbeam.report.words import as_json
 from gbeam.results.cases import Sweep
 from gbeam.results.equilibrium import Deflection
-from gbeam.results.facts import by_motion, json_of, paths_of, tree_of
+from gbeam.results.facts import json_of, paths_of, tree_of
 from gbeam.results.imitation.plan import MachinePlan
+from gbeam.results.kinds import by_motion
 from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.study import Study

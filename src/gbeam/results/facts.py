@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from gbeam.results.declared import INSIDE, NAMES, Declaration, annotation, declarations, record_in
-from gbeam.results.imitation.criteria import Judged, state_of
 
 ANY = "*"  # in units: any key that has no entry of its own
 Units = dict[str, Any]
@@ -22,15 +21,6 @@ Units = dict[str, Any]
 def json_of(result: Any) -> dict[str, Any]:
     """Return a whole result as JSON: how it ended, its figures, and its warnings."""
     return {"outcome": getattr(result, "outcome", "done"), **facts_of(result)}
-
-
-def by_motion(answers: Sequence[Any], title: str = "") -> dict[str, Any]:
-    """Return results in several motions as JSON, by the motions' names."""
-    outcome = next((end for each in answers if (end := getattr(each, "outcome", "done")) != "done"), "done")
-    judged = [each for each in answers if isinstance(each, Judged)]
-    state = {"state": state_of(outcome, judged)} if judged else {}
-    named = {getattr(each, "motion", "") or getattr(each, "name", ""): json_of(each) for each in answers}
-    return {"title": title, "outcome": outcome, **state, "motions": named}
 
 
 def facts_of(record: Any) -> dict[str, Any]:

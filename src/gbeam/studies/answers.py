@@ -31,7 +31,8 @@ def answered(verb: str, case: Case, motion: str | None, at: float | None, needs:
 
 def answer_facts(answer: Any, title: str = "") -> Facts:
     """The facts of an answer with what has a name by its name: comparisons, and the limits of machines."""
-    from gbeam.results.facts import by_motion, json_of
+    from gbeam.results.facts import json_of
+    from gbeam.results.kinds import by_motion
 
     several = isinstance(answer, tuple)
     facts = by_motion(answer, title) if several else json_of(answer)

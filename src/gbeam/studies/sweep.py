@@ -143,14 +143,14 @@ def sweep(
     names = tuple(measure)
     if not (names or histories):
         raise InputError("--measure", "is missing", 'name figures: --measure "tip.z.max_abs, verdict.tip"')
-    if not isinstance(measure, Mapping):
-        offered(verb, names)
     over_time = _over_time(tuple(histories), times, verb)
     if not 1 <= workers <= WORKERS:
         raise InputError("--workers", f"is {workers}", f"give 1 to {WORKERS}; a --scheduler has any number")
     cases = read_cases(_texts(over), samples, sampler or "sobol", seed := seed or 0, base.source.distributions)
     size = len(over_time.names) * over_time.count * len(cases)
     refuse_more("--times", "values of histories", size, HISTORY_BYTES // 8, 8.0, "give fewer times, or fewer cases")
+    if not isinstance(measure, Mapping):
+        offered(verb, names)
     functions = tuple(measure.values()) if isinstance(measure, Mapping) else ()
     share = not functions and may_share(verb, [each.path for each in cases.variations])
     question = Question(base.source, verb, motion, at, functions=functions, together=share)
