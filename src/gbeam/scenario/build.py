@@ -148,12 +148,16 @@ def _beam(parts: Collector, table: schema.Beam) -> Beam | None:
     for i, body in enumerate(table.masses):
         moments = (body.inertia.x, body.inertia.y, body.inertia.z) if body.inertia else (0.0, 0.0, 0.0)
         offset = body.offset or (0.0, 0.0, 0.0)
-        masses.append(parts.attempt(f"beam.masses[{i}]", PointMass, body.at, body.mass, moments, offset))
+        named = body.name or ""
+        masses.append(parts.attempt(f"beam.masses[{i}]", PointMass, body.at, body.mass, moments, offset, named))
     root = parts.attempt("beam.root", Root, **table.root.model_dump())
     loads = [_load(parts, f"beam.loads[{i}]", entry) for i, entry in enumerate(table.loads)]
     if section is None or material is None or root is None or None in masses or None in loads:
         return None
-    return parts.attempt("beam", Beam, table.length, section, material, masses, table.damping_ratio, root, loads)
+    points = {each.name: each.at for each in table.points}
+    return parts.attempt(
+        "beam", Beam, table.length, section, material, masses, table.damping_ratio, root, loads, points
+    )
 
 
 def _load(parts: Collector, where: str, table: schema.Load) -> Load | None:

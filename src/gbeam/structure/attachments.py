@@ -35,6 +35,8 @@ class PointMass(Value):
         Principal moments of inertia about its centre, axes of the section (x, y, z), kg m²; zero for a point.
     offset : tuple of float
         Centre of mass from the beam's axis, in axes of the section, m.
+    name : str
+        Of the point of the beam at `at`, where output is then given.
 
     Raises
     ------
@@ -54,6 +56,7 @@ class PointMass(Value):
     mass: float
     inertia: tuple[float, float, float] = (0.0, 0.0, 0.0)
     offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    name: str = ""
 
     def __post_init__(self) -> None:
         positive("at", self.at, "m", zero=True)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -20,6 +21,10 @@ from gbeam.structure.material import ASSUMED_RATIO, Material
 from gbeam.structure.section import Section
 from gbeam.structure.shapes import ASSUMED_SHEAR
 
+TIP = "tip"
+_NAME = re.compile(r"[A-Za-z_]\w*")
+# Of quantities that stand where a point's name may stand.
+_TAKEN = (TIP, "root_force", "root_moment", "hub", "strain", "size")
 NO_TWIST = "no twist (section.torsion_constant is not given)"
 
 
@@ -42,11 +47,15 @@ class Beam(Value):
     root : Root
         Springs that hold the root; clamped where there is none.
     loads : sequence of Load
+    points : mapping of str to float
+        Named points of output by their positions from the root, m; a mass with a name is one at its place. The tip is
+        ``tip``.
 
     Raises
     ------
     InputError
-        If a value is impossible, a mass or a load lies off the beam, or the section's stations do not cover it.
+        If a value is impossible, a mass, a load or a point lies off the beam, a name is no word or stands twice, or
+        the section's stations do not cover the beam.
 
     Examples
     --------
@@ -63,13 +72,17 @@ class Beam(Value):
     damping_ratio: float | Sequence[float] | None = None
     root: Root = field(default_factory=Root)
     loads: Sequence[Load] = field(default=())
+    points: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         possible("length", "length", positive("length", self.length, "m"))
         object.__setattr__(self, "masses", tuple(self.masses))
         object.__setattr__(self, "loads", tuple(self.loads))
+        object.__setattr__(self, "points", dict(self.points))
         places = [(f"masses[{i}].at", mass.at) for i, mass in enumerate(self.masses)]
         places += [(f"loads[{i}].at", load.at) for i, load in enumerate(self.loads) if load.at is not None]
+        places += [(f"points.{name}", at) for name, at in self.points.items()]
+        self._check_names()
         for place, at in places:
             if at > self.length * (1 + 1e-12):
                 raise InputError(
@@ -99,6 +112,32 @@ class Beam(Value):
                 raise InputError(
                     place, f"is {ratio:g}", "give a ratio of critical damping from 0 up to 1, such as 0.01"
                 )
+
+    def _check_names(self) -> None:
+        bodies = [(f"masses[{i}].name", mass.name) for i, mass in enumerate(self.masses) if mass.name]
+        names = [*(("points", name) for name in self.points), *bodies]
+        for place, name in names:
+            if not _NAME.fullmatch(name) or name in _TAKEN:
+                fix = f"give letters, digits and underscores, and none of {', '.join(_TAKEN)}"
+                raise InputError(place, f"has the name {name!r}", fix)
+            if sum(name == other for _, other in names) > 1:
+                raise InputError(place, f"has the name {name!r} a second time", "give every point its own")
+        for name, at in self.points.items():
+            positive(f"points.{name}", at, "m", zero=True)
+
+    @property
+    def named_points(self) -> dict[str, float]:
+        """Positions of the named points, bodies among them, and of the tip, from the root, m."""
+        bodies = {mass.name: mass.at for mass in self.masses if mass.name}
+        return {**{name: float(at) for name, at in self.points.items()}, **bodies, TIP: self.length}
+
+    def names_at(self, stations: ArrayLike) -> tuple[str, ...]:
+        """Names of points at positions (s,), m; of one without a name its position, such as 100 mm."""
+        slack, names = 1e-9 * self.length, []
+        for x in np.asarray(stations, dtype=float):
+            near = (name for name, at in self.named_points.items() if abs(at - x) <= slack)
+            names.append(next(near, f"{1e3 * x:g} mm"))
+        return tuple(names)
 
     @property
     def body_centres(self) -> NDArray[np.float64]:

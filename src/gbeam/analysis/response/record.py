@@ -194,6 +194,7 @@ def response_of(
         warnings=warnings,
         time=time,
         stations=np.asarray(structure.stations),
+        points=() if traced or structure.source is None else structure.source.beam.names_at(structure.stations),
         displacement=displacement,
         q=q[:, beam],
         qd=qd[:, beam],
