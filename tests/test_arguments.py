@@ -105,7 +105,8 @@ class Given:
                 {"yield_strength": 1e8, "fatigue_exponent": 5.0, "poissons_ratio": 0.3, "shear_modulus": 26e9},
             ),
             "Model": (("FOAM", 1, 1, 1), {"shapes": "clamped-free", "automatic": False}),
-            "PointMass": ((0.1, 0.1), {"inertia": (0.0, 0.0, 0.0), "offset": (0.0, 0.0, 0.0)}),
+            "Point": (("camera", 0.1), {}),
+            "PointMass": ((0.1, 0.1), {"inertia": (0.0, 0.0, 0.0), "offset": (0.0, 0.0, 0.0), "name": "body"}),
             "ResponseSettings": (
                 (1.0,),
                 {

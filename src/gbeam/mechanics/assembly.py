@@ -24,7 +24,8 @@ from gbeam.mechanics.fields.rotation import Field, Strains
 from gbeam.mechanics.models import KINDS, Kind, Model
 from gbeam.mechanics.structure import Sections, Source, Structure
 from gbeam.motion.profiles.piecewise import constant
-from gbeam.structure.beam import TIP, Beam
+from gbeam.structure.attachments import TIP
+from gbeam.structure.beam import Beam
 from gbeam.structure.plausibility import implausible_beam, refuse_disparate
 
 Array = Any

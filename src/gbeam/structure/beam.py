@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -16,15 +15,11 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.guards.plausibility import possible
-from gbeam.structure.attachments import Load, PointMass, Root
+from gbeam.structure.attachments import TIP, Load, Point, PointMass, Root
 from gbeam.structure.material import ASSUMED_RATIO, Material
 from gbeam.structure.section import Section
 from gbeam.structure.shapes import ASSUMED_SHEAR
 
-TIP = "tip"
-_NAME = re.compile(r"[A-Za-z_]\w*")
-# Of quantities that stand where a point's name may stand.
-_TAKEN = (TIP, "root_force", "root_moment", "hub", "strain", "size")
 NO_TWIST = "no twist (section.torsion_constant is not given)"
 
 
@@ -47,9 +42,8 @@ class Beam(Value):
     root : Root
         Springs that hold the root; clamped where there is none.
     loads : sequence of Load
-    points : mapping of str to float
-        Named points of output by their positions from the root, m; a mass with a name is one at its place. The tip is
-        ``tip``.
+    points : sequence of Point
+        Named points of output; a mass with a name is one at its place. The tip is ``tip``.
 
     Raises
     ------
@@ -72,17 +66,17 @@ class Beam(Value):
     damping_ratio: float | Sequence[float] | None = None
     root: Root = field(default_factory=Root)
     loads: Sequence[Load] = field(default=())
-    points: Mapping[str, float] = field(default_factory=dict)
+    points: Sequence[Point] = field(default=())
 
     def __post_init__(self) -> None:
         possible("length", "length", positive("length", self.length, "m"))
         object.__setattr__(self, "masses", tuple(self.masses))
         object.__setattr__(self, "loads", tuple(self.loads))
-        object.__setattr__(self, "points", dict(self.points))
+        object.__setattr__(self, "points", tuple(self.points))
         places = [(f"masses[{i}].at", mass.at) for i, mass in enumerate(self.masses)]
         places += [(f"loads[{i}].at", load.at) for i, load in enumerate(self.loads) if load.at is not None]
-        places += [(f"points.{name}", at) for name, at in self.points.items()]
-        self._check_names()
+        places += [(f"points[{i}].at", point.at) for i, point in enumerate(self.points)]
+        self._refuse_names_twice()
         for place, at in places:
             if at > self.length * (1 + 1e-12):
                 raise InputError(
@@ -113,23 +107,18 @@ class Beam(Value):
                     place, f"is {ratio:g}", "give a ratio of critical damping from 0 up to 1, such as 0.01"
                 )
 
-    def _check_names(self) -> None:
-        bodies = [(f"masses[{i}].name", mass.name) for i, mass in enumerate(self.masses) if mass.name]
-        names = [*(("points", name) for name in self.points), *bodies]
-        for place, name in names:
-            if not _NAME.fullmatch(name) or name in _TAKEN:
-                fix = f"give letters, digits and underscores, and none of {', '.join(_TAKEN)}"
-                raise InputError(place, f"has the name {name!r}", fix)
-            if sum(name == other for _, other in names) > 1:
-                raise InputError(place, f"has the name {name!r} a second time", "give every point its own")
-        for name, at in self.points.items():
-            positive(f"points.{name}", at, "m", zero=True)
+    def _refuse_names_twice(self) -> None:
+        named = [(f"points[{i}].name", point.name) for i, point in enumerate(self.points)]
+        named += [(f"masses[{i}].name", mass.name) for i, mass in enumerate(self.masses) if mass.name]
+        for k, (place, name) in enumerate(named):
+            if any(name == other for _, other in named[:k]):
+                raise InputError(place, f"is {name!r} a second time", "give every point its own")
 
     @property
     def named_points(self) -> dict[str, float]:
         """Positions of the named points, bodies among them, and of the tip, from the root, m."""
         bodies = {mass.name: mass.at for mass in self.masses if mass.name}
-        return {**{name: float(at) for name, at in self.points.items()}, **bodies, TIP: self.length}
+        return {point.name: point.at for point in self.points} | bodies | {TIP: self.length}
 
     def names_at(self, stations: ArrayLike) -> tuple[str, ...]:
         """Names of points at positions (s,), m; of one without a name its position, such as 100 mm."""

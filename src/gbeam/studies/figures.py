@@ -15,7 +15,7 @@ from gbeam.results.result import Floats
 from gbeam.scenario.schema import Centrifuge
 from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.values.paths import advise, closest, path_text
-from gbeam.structure.beam import TIP
+from gbeam.structure.attachments import TIP
 from gbeam.studies.answers import KIND, Facts, choices, tree_of_answers
 
 if TYPE_CHECKING:

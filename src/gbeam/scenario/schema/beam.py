@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, StrictBool, StringConstraints, Tag, field_validator, model_validator
+from pydantic import Discriminator, Field, StrictBool, StringConstraints, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
 from gbeam.guards.limits import ENTRIES
@@ -260,11 +260,3 @@ class Beam(Table):
     points: tuple[Point, ...] = Field(
         default=(), max_length=ENTRIES, description="points of output beside the tip: [ { name, at } ]"
     )
-
-    @field_validator("points")
-    @classmethod
-    def _once(cls, points: tuple[Point, ...]) -> tuple[Point, ...]:
-        names = [each.name for each in points]
-        twice = [(k, name) for k, name in enumerate(names) if name in names[:k]]
-        refuse(((k, "name"), wrong(f"is {name!r} a second time", "give every point its own")) for k, name in twice)
-        return points
