@@ -31,6 +31,7 @@ def to_json(sweep: Sweep, files: Iterable[Path] = ()) -> dict[str, Any]:
         "measures": {
             name: {"unit": sweep.units[name], "values": values.tolist()} for name, values in sweep.measures.items()
         },
+        "histories": {name: {"unit": sweep.units[name]} for name in sweep.histories},
         "statistics": {name: _statistics(each) for name, each in sweep.statistics.items()},
         "indices": {name: _indices(each) for name, each in sweep.indices.items()},
         "time": sweep.time.tolist(),
