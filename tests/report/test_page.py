@@ -142,8 +142,12 @@ def test_no_report_without_a_result(tmp_path: Path) -> None:
         report_of_file(tmp_path)
     with pytest.raises(InputError, match="no file"):
         report_of_file(tmp_path / "none.nc")
-    with pytest.raises(InputError, match="StateSpace has no report"):
-        report_of(gb.linearize(gb.assemble(BEAM, "FOAM", y=1), gb.Hub(radius=0.5)))
+
+
+def test_a_kind_without_a_page_of_its_own_shows_its_quantities() -> None:
+    system = gb.linearize(gb.assemble(BEAM, "FOAM", y=1), gb.Hub(radius=0.5))
+    page = report_of(system)
+    assert "<h3>states</h3>" in page and f"<td>{system.states[0].name}</td>" in page and "accurate to" in page
 
 
 @pytest.mark.parametrize("name", ["static", "critical", "load", "buckling", "map", "plan"])

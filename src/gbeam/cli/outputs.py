@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from gbeam.results.searches import Fit, Optimum, ShapedCommand
 
 Found = TypeVar("Found", "Fit", "Optimum", "Sensitivity", "ShapedCommand")
+LIST = "list"  # in place of a figure's name
 _PLAIN_WIDTH = 110  # columns of a table where stdout is a file
 
 
@@ -41,6 +42,20 @@ def show_table(table: RenderableType) -> None:
     console = Console(highlight=False, width=None if sys.stdout.isatty() else _PLAIN_WIDTH)
     drawn = [Segment(printable(text), style, control) for text, style, control in console.render(table)]
     console.print(Segments(drawn), end="")
+
+
+def list_figures(verb: str, json: bool) -> int:
+    """Print every figure of a question, with its unit and what it is."""
+    from gbeam.studies.answers import choices
+
+    every = choices(verb)
+    rows = [[path, "" if each.unit == "unit" else each.unit, each.words] for path, each in every.items()]
+    widths = [max(len(row[k]) for row in rows) for k in range(2)]
+    lines = [f"{path:<{widths[0]}}  {unit:<{widths[1]}}  {words}" for path, unit, words in rows]
+    note = "* is a name, such as a motion's or an axis, [i] a place in a list, [0] the first. A path's end is enough."
+    facts = {path: {"unit": unit, "words": words} for path, unit, words in rows}
+    show("\n".join([*lines, note]), facts, json)
+    return 0
 
 
 def list_files(folder: Path | None, files: Sequence[Path]) -> None:
@@ -110,6 +125,8 @@ def show_found(
 ) -> None:
     """Print a study's answer, and write it, its plots, its page and what a verb has `more` into a folder."""
 
+    from gbeam.report.facts import facts
+
     def make(hidden: Path) -> None:
         from gbeam.figures import figures_of
         from gbeam.plots import write_figures
@@ -124,7 +141,7 @@ def show_found(
 
     files = [] if folder is None else publish(folder, make)
     assert answer.provenance is not None  # it is of a scenario
-    show(words.text(answer), signed(words.to_json(answer, files), answer.provenance), json)
+    show(words.text(answer), signed(facts(answer, files=files), answer.provenance), json)
     if not json:
         if written is not None:
             print(f"\n{written} has these values")

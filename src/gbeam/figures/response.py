@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -97,7 +97,7 @@ def _difference(study: Study, compared: Comparison, axis: int, spans: tuple[Span
     return Panel(label, (line,), title, spans=spans, limits=limits, zero=limits is None, named=False, height=0.9)
 
 
-def _spans(responses: dict[str, Response], compared: Comparison) -> tuple[Span, ...]:
+def _spans(responses: Mapping[str, Response], compared: Comparison) -> tuple[Span, ...]:
     response = responses.get(compared.centrifuge)
     if response is None:
         return stretches(None, compared.time, compared.accounting)

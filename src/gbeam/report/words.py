@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.printable import json_printable
-from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
+from gbeam.results.errors import ErrorEstimate
 from gbeam.results.parts import yield_margin
 from gbeam.results.result import Result
 
@@ -52,11 +52,6 @@ def ends(span: tuple[float, float]) -> dict[str, float]:
     return dict(zip(("start", "end"), span, strict=True))
 
 
-def xyz_lists(values: Any) -> dict[str, list[float]]:
-    """The components of vectors (s, 3) by their axes, each a list."""
-    return dict(zip("xyz", values.T.tolist(), strict=True))
-
-
 def number(value: float, digits: int = 4) -> str:
     """Write a number with significant digits; a dash where there is none."""
     if not math.isfinite(value):
@@ -77,13 +72,6 @@ def error_words(errors: ErrorEstimate) -> str:
     known = sorted(((size, name) for name, size in parts.items() if size > 0), reverse=True)
     made = ", ".join(f"{name} {number(100 * size, 2)}" for size, name in known)
     return f"{percent(errors.total)}{f' ({made})' if len(known) > 1 else ''}"
-
-
-def frequency_errors(errors: FrequencyErrors | None, count: int) -> list[dict[str, float]]:
-    """Errors of frequencies, mode by mode; NaN where there is no estimate."""
-    if errors is None:
-        return [dict.fromkeys(PARTS, math.nan) for _ in range(count)]
-    return [{name: float(values[i]) for name, values in errors.parts.items()} for i in range(count)]
 
 
 def tidy(values: Iterable[float], size: float) -> list[float]:

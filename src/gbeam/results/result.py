@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.arrays.tree import Value
-from gbeam.results.declared import document
+from gbeam.results.declared import document, fact
 
 if TYPE_CHECKING:
     from gbeam.plots.files import Panels
@@ -78,7 +78,7 @@ class Result(Value):
         The scenario, the records and the command that it comes from, where there is a scenario.
     """
 
-    warnings: tuple[str, ...] = field(default=(), repr=False)
+    warnings: tuple[str, ...] = fact("why it may not be what it seems", default=(), repr=False)
     provenance: Provenance | None = field(default=None, repr=False)
 
     def __init_subclass__(cls, **options: Any) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -61,12 +61,13 @@ def static(
         given.motion(motion)
     time = given.time(at)
 
+    from gbeam.report.facts import facts as facts_of
     from gbeam.report.steady import deflection as words
 
     with Watch(), given.placing():
         deflections = questions.static(given.case, motion, time, Needs(shapes=True))
     title = given.case.title
-    facts = given.signed(words.to_json(title, deflections))
+    facts = given.signed(facts_of(*deflections, title=title))
 
     from gbeam.figures import of_deflections
 
@@ -107,12 +108,12 @@ def campbell(
         fix = 'give the largest speed, such as "5 rad/s"'
         raise InputError("--to", "is missing: the hub is driven by a torque", fix)
 
+    from gbeam.report.facts import facts as facts_of
     from gbeam.report.steady import campbell as words
-    from gbeam.results.declared import json_of
 
     with Watch(), given.placing(to="--to", modes="--modes"):
         diagram = questions.campbell(given.case, name, start=low, end=high, modes=modes, orders=orders)
-    facts = given.signed(json_of(diagram))
+    facts = given.signed(facts_of(diagram))
 
     from gbeam.scenario.values.units import unit_of
 
@@ -167,11 +168,12 @@ def critical_speed(
     name, _ = given.motion(motion, kind="hub")
     time = given.time(at)
 
+    from gbeam.report.facts import facts as facts_of
     from gbeam.report.steady import critical as words
 
     with Watch() as watch, given.placing():
         critical = questions.critical_speed(given.case, name, time, vary=vary, upper=upper, progress=watch)
-    facts = given.signed(words.to_json(critical, name))
+    facts = given.signed(facts_of(critical))
     write(folder, "critical_speed", facts, report=report)
     show(words.text(critical, name), facts, json)
     return 0
@@ -198,14 +200,14 @@ def critical_map(
 
     from gbeam.analysis.steady.stability import critical_speed_map
     from gbeam.figures import steady
+    from gbeam.report.facts import facts as facts_of
     from gbeam.report.steady import critical as words
-    from gbeam.results.declared import json_of
 
     with Watch() as watch, given.placing():
         critical = critical_speed_map(
             case.beam, case.model, chosen, kilograms, places, upper, name=name, progress=watch
         )
-    facts = given.signed(json_of(critical))
+    facts = given.signed(facts_of(critical))
     figures = {"critical_speed": partial(steady.critical_map, critical, case.title)}
 
     def make(hidden: Path) -> None:
@@ -259,6 +261,7 @@ def linearize(
             raise InputError(option, f"stands beside {beside}", "give one of them")
 
     from gbeam.analysis.control.linearization import linearize, surface_gauges
+    from gbeam.report.facts import facts as facts_of
     from gbeam.report.steady import state_space as report
 
     with naming("--strain-at"):
@@ -275,7 +278,7 @@ def linearize(
             elif balanced is not None:
                 system, _ = reduction.balanced_truncation(system, balanced)
     system = replace(system, provenance=given.case.provenance)
-    facts = given.signed(report.to_json(system, gauges))
+    facts = given.signed(facts_of(system) | {"gauges": [asdict(gauge) for gauge in gauges]})
 
     def make(hidden: Path) -> None:
         system.to_mat(hidden / "linear.mat")

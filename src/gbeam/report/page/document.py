@@ -13,6 +13,7 @@ from typing import Any
 
 from gbeam.errors import InputError
 from gbeam.figures import Describe
+from gbeam.figures.units import raised
 from gbeam.guards.json_files import parse_json
 from gbeam.printable import json_printable
 from gbeam.report.facts import facts_text
@@ -53,13 +54,41 @@ def _kind(facts: Mapping[str, Any]) -> str | None:
         motions = facts["motions"].values() if each and "motions" in facts else ()
         if all(key in facts for key in keys) and all(key in motion for motion in motions for key in each):
             return name
-    # Of a question without a page of its own: its figures, each with its unit.
-    return str(facts["kind"]) if "kind" in facts and "units" in facts else None
+    return str(facts["form"]["kind"]) if "form" in facts else None
+
+
+_APART = ("form", "units", "provenance", "warnings", "files", "title", "outcome", "state")
 
 
 def _figures(facts: Mapping[str, Any], _: Mapping[str, Any], __: Numbers, plots: str, ___: Any) -> str:
-    """The inside of the page of a question that has none of its own."""
-    return table(("", "", ""), [(key, facts[key], unit) for key, unit in facts["units"].items()], words=(0, 2)) + plots
+    """The inside of the page of a kind that has none of its own: its quantities, and a table for each list of them."""
+    units = facts.get("units", {})
+    known = {key: value for key, value in facts.items() if key not in _APART}
+    single = {key: value for key, value in known.items() if not isinstance(value, (dict, list))}
+    told = {key: value for key, value in single.items() if value not in (None, "")}
+    rows = [(key.replace("_", " "), _shown(value), raised(units.get(key, ""))) for key, value in told.items()]
+    parts = [table(("", "", ""), rows, words=(0, 2))]
+    for key, value in known.items():
+        place = f"{key}[i]."
+        if isinstance(value, dict):
+            place = f"{key}.*."
+            value = [{"": name, **each} for name, each in value.items() if isinstance(each, dict)]
+        if isinstance(value, list) and value and all(isinstance(each, dict) for each in value):
+            parts += [heading(key.replace("_", " "), 3), _rows_table(value, units, place)]
+    return "".join([*parts, plots])
+
+
+def _rows_table(rows: list[Mapping[str, Any]], units: Mapping[str, str], place: str) -> str:
+    """A table of records: a column for each of their single values."""
+    names = [key for key in rows[0] if not isinstance(rows[0][key], (dict, list))]
+    words = [k for k, key in enumerate(names) if any(isinstance(row.get(key), str) for row in rows)]
+    cells = [[_shown(row.get(key)) for key in names] for row in rows]
+    heads = [", ".join(filter(None, (name.replace("_", " "), raised(units.get(place + name, ""))))) for name in names]
+    return table(heads, cells, words=words)
+
+
+def _shown(value: Any) -> Value:
+    return {True: "yes", False: "no"}[value] if isinstance(value, bool) else value
 
 
 def html(

@@ -62,7 +62,7 @@ _CHECKS = {
 def _pair(candidate: Facts) -> PeakPair:
     """A candidate's largest load, from its JSON."""
     load = candidate["largest_load"]
-    return PeakPair(known(load["flight"]), known(load["machine"]), place_machine=load["place_machine"])
+    return PeakPair(known(load["flight"]), known(load["machine"]), place_machine=load.get("place_machine", ""))
 
 
 def _options(options: list[Facts]) -> str:
@@ -72,7 +72,7 @@ def _options(options: list[Facts]) -> str:
         limits = Cell(f"exceeds {words}", "bad") if words else share
         point = 1e3 * each["control_point"]
         largest = each["largest_load"]
-        load = [known(largest["machine"]) / STANDARD_GRAVITY, largest["place_machine"].removeprefix("the ")]
+        load = [known(largest["machine"]) / STANDARD_GRAVITY, largest.get("place_machine", "").removeprefix("the ")]
         return [each["mounting"], 1e3 * each["smoothing"], point, _percent(each["total_error"]), *load, limits]
 
     head = ("mounting", "smoothing, ms", "control point, mm", "error", "largest load, g", "at", "limits")
