@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 import gbeam as gb
-from gbeam.plots.figures import figures
+from gbeam.figures import figures_of
 from gbeam.report.facts import facts
 from gbeam.report.page.result import report_of_file
 from gbeam.report.reference import json_schema_of_results, reference_of_results
@@ -42,7 +42,7 @@ def test_every_kind_has_every_output(matrix: dict[str, Any], kind: str, tmp_path
     assert result._repr_html_() and repr(result)
     assert isinstance(result, Figured) == (kind not in WITHOUT_FIGURE)
     if isinstance(result, Figured):
-        assert figures(result)
+        assert figures_of(result)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -18,9 +18,9 @@ from gbeam.errors import InputError
 from gbeam.printable import printable
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
     from rich.console import RenderableType
 
+    from gbeam.figures import Describe
     from gbeam.results.cases import Sensitivity
     from gbeam.results.searches import Fit, Optimum, ShapedCommand
 
@@ -82,7 +82,7 @@ def write(
     folder: Path | None,
     name: str,
     facts: Mapping[str, Any],
-    figures: Callable[[], Mapping[str, Figure]] | None = None,
+    figures: Mapping[str, Describe] | None = None,
     *,
     report: bool = False,
 ) -> list[Path]:
@@ -95,12 +95,11 @@ def write(
         if report:
             from gbeam.report.page.document import html
 
-            (hidden / f"{name}.html").write_text(html(facts, {}), encoding="utf-8")
-        if figures is not None and figures_wanted():
-            from gbeam.plots import save
+            (hidden / f"{name}.html").write_text(html(facts, figures=figures), encoding="utf-8")
+        if figures and figures_wanted():
+            from gbeam.plots import write_figures
 
-            for stem, figure in figures().items():
-                save(figure, hidden, stem, f"gbeam {name}")
+            write_figures(figures, hidden, f"gbeam {name}")
 
     return publish(folder, make)
 
@@ -136,11 +135,12 @@ def show_found(
     from gbeam.report.facts import facts
 
     def make(hidden: Path) -> None:
-        from gbeam.plots import figures, save
+        from gbeam.figures import figures_of
+        from gbeam.plots import write_figures
 
         answer.save(hidden / f"{stem}.nc")
-        for name, draw in figures(answer).items():
-            save(draw(), hidden, re.sub(r"[^\w.-]+", "", name), f"gbeam {verb}")
+        named = {re.sub(r"[^\w.-]+", "", name): each for name, each in figures_of(answer).items()}
+        write_figures(named, hidden, f"gbeam {verb}")
         if report:
             answer.report(hidden / f"{stem}.html")
         if more is not None:

@@ -163,6 +163,12 @@ class Sweep(Figured):
         return {name: Measured(self.units[name], values) for name, values in self.measures.items()}
 
     @property
+    @declared("", "units of the histories by name", role="fact", key="histories")
+    def recorded(self) -> Mapping[str, Mapping[str, str]]:
+        """The histories' units by name; their values are in files only."""
+        return {name: {"unit": self.units[name]} for name in self.histories}
+
+    @property
     @declared("", "estimates by name with their bounds; lists along the grid", role="fact", key="statistics")
     def estimates(self) -> Mapping[str, Mapping[str, Any]]:
         """Every estimate by name with its bounds; lists along the grid, and along the times of a history."""

@@ -95,10 +95,11 @@ def plan(
             time = every or (own.sample if own else SAMPLE)
             write_commands(each, analysis.axis_commands(machines[name], time), hidden)
             if figures_wanted():
-                from gbeam.plots import figures, save
+                from gbeam.figures import figures_of
+                from gbeam.plots import write_figures
 
-                for kind, draw in figures(each, given.title).items():
-                    save(draw(), hidden, f"{kind}_{name}", "gbeam plan")
+                described = figures_of(each, given.title).items()
+                write_figures({f"{kind}_{name}": figure for kind, figure in described}, hidden, "gbeam plan")
 
         if report:
             from gbeam.report.page.result import report_of_plans

@@ -113,10 +113,12 @@ def sweep(
 
     def make(hidden: Path) -> None:
         if figures_wanted():
-            from gbeam.plots import figures, save
+            from gbeam.figures import figures_of
+            from gbeam.plots import write_figures
 
-            for name, draw in figures(answer).items():
-                save(draw(), hidden, re.sub(r"[^\w.-]+", "_", re.sub(r"[\[\]]", "", name)), "gbeam sweep")
+            described = figures_of(answer).items()
+            named = {re.sub(r"[^\w.-]+", "_", re.sub(r"[\[\]]", "", name)): figure for name, figure in described}
+            write_figures(named, hidden, "gbeam sweep")
         write_json(hidden / "sweep.json", signed(facts(answer), answer.provenance))
         if netcdf:
             answer.save(hidden / "sweep.nc")

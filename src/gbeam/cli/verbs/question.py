@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
-from functools import partial
 from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
@@ -88,11 +87,12 @@ def _answer(
     with Watch(), given.placing(**places):
         answer = question.answer(given.case, chosen, time, Needs(shapes=True), **options)
 
+    from gbeam.figures import figures_of
     from gbeam.report.facts import facts as facts_of
 
     facts = given.signed(facts_of(answer))
-    plot = partial(answer.plot, title=given.case.title) if hasattr(answer, "plot") else None
-    write(folder, name, facts, None if plot is None else lambda: {name: plot().figure}, report=report)
+    described = figures_of(answer, given.case.title)
+    write(folder, name, facts, dict(zip([name], described.values(), strict=False)), report=report)
     show(_words(question, answer), facts, json)
     return 0
 

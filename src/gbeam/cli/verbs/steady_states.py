@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import asdict, replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from cyclopts import Parameter
 
@@ -37,9 +38,6 @@ from gbeam.cli.publication import publish
 from gbeam.errors import InputError
 from gbeam.questions import Needs
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 def static(
     scenario: ScenarioFile,
@@ -71,12 +69,9 @@ def static(
     title = given.case.title
     facts = given.signed(facts_of(*deflections, title=title))
 
-    def figures() -> dict[str, Figure]:
-        from gbeam.plots import plot_static
+    from gbeam.figures import of_deflections
 
-        loads = {f"loads_{each.motion}": each.plot("loads", title=title).figure for each in deflections}
-        return {"static": plot_static(deflections, title), **loads}
-
+    figures = of_deflections(deflections, title)
     write(folder, "static", facts, figures, report=report)
     show(words.text(deflections), facts, json)
     return 0
@@ -125,11 +120,9 @@ def campbell(
     # In words and in the diagram speeds are in the unit in which they are given.
     unit, size = unit_of(end or start or "0", "angular rate")
 
-    def figures() -> dict[str, Figure]:
-        from gbeam.plots import plot_campbell
+    from gbeam.figures import steady
 
-        return {"campbell": plot_campbell(diagram, given.case.title, (1 / size, unit))}
-
+    figures = {"campbell": partial(steady.campbell, diagram, given.case.title, (1 / size, unit))}
     files = write(folder, "campbell", facts, figures, report=report)
     show(words.text(diagram, unit, size), facts, json)
     if not json:
@@ -206,6 +199,7 @@ def critical_map(
         raise InputError("--positions", f"has {max(places):g} m, off the beam", f"give 0 to {length:g} m")
 
     from gbeam.analysis.steady.stability import critical_speed_map
+    from gbeam.figures import steady
     from gbeam.report.facts import facts as facts_of
     from gbeam.report.steady import critical as words
 
@@ -214,6 +208,7 @@ def critical_map(
             case.beam, case.model, chosen, kilograms, places, upper, name=name, progress=watch
         )
     facts = given.signed(facts_of(critical))
+    figures = {"critical_speed": partial(steady.critical_map, critical, case.title)}
 
     def make(hidden: Path) -> None:
         write_json(hidden / "critical_speed.json", facts)
@@ -221,11 +216,11 @@ def critical_map(
         if report:
             from gbeam.report.page.document import html
 
-            (hidden / "critical_speed.html").write_text(html(facts, {}), encoding="utf-8")
+            (hidden / "critical_speed.html").write_text(html(facts, figures=figures), encoding="utf-8")
         if figures_wanted():
-            from gbeam.plots import save
+            from gbeam.plots import write_figures
 
-            save(critical.plot(title=case.title).figure, hidden, "critical_speed", "gbeam critical-speed")
+            write_figures(figures, hidden, "gbeam critical-speed")
 
     if out is not None:
         publish(out, make)

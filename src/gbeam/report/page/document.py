@@ -12,13 +12,17 @@ from importlib.resources import files
 from typing import Any
 
 from gbeam.errors import InputError
+from gbeam.figures import Describe
+from gbeam.figures.units import raised
 from gbeam.guards.json_files import parse_json
 from gbeam.printable import json_printable
 from gbeam.report.facts import facts_text
 from gbeam.report.page.bodies import cases, machine, searches, steady, study
 from gbeam.report.page.bodies.steady import crossings_table, modes_table, tracks_table
-from gbeam.report.page.parts import Value, badge, escaped, folded, heading, listed, paragraph, raised, table, verbatim
-from gbeam.report.page.series import Numbers, Plots
+from gbeam.report.page.curves import drawn
+from gbeam.report.page.parts import Value, badge, escaped, folded, heading, listed, paragraph, table, verbatim
+from gbeam.report.page.records import figures_in
+from gbeam.report.page.series import Numbers
 from gbeam.report.words import as_json
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.modal import Campbell, Modes
@@ -26,7 +30,7 @@ from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.study import Study
 
-Body = Callable[[Mapping[str, Any], Mapping[str, Any], Numbers, Plots, dict[str, Any]], str]
+Body = Callable[[Mapping[str, Any], Mapping[str, Any], Numbers, str, dict[str, Any]], str]
 # By verb: keys that its facts have, keys that each of their motions has, and what makes the page's inside.
 KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...], Body]] = {
     "run": (("motions", "comparisons"), (), study.body),
@@ -56,7 +60,7 @@ def _kind(facts: Mapping[str, Any]) -> str | None:
 _APART = ("form", "units", "provenance", "warnings", "files", "title", "outcome", "state")
 
 
-def _figures(facts: Mapping[str, Any], *_: Any) -> str:
+def _figures(facts: Mapping[str, Any], _: Mapping[str, Any], __: Numbers, plots: str, ___: Any) -> str:
     """The inside of the page of a kind that has none of its own: its quantities, and a table for each list of them."""
     units = facts.get("units", {})
     known = {key: value for key, value in facts.items() if key not in _APART}
@@ -71,7 +75,7 @@ def _figures(facts: Mapping[str, Any], *_: Any) -> str:
             value = [{"": name, **each} for name, each in value.items() if isinstance(each, dict)]
         if isinstance(value, list) and value and all(isinstance(each, dict) for each in value):
             parts += [heading(key.replace("_", " "), 3), _rows_table(value, units, place)]
-    return "".join(parts)
+    return "".join([*parts, plots])
 
 
 def _rows_table(rows: list[Mapping[str, Any]], units: Mapping[str, str], place: str) -> str:
@@ -87,8 +91,13 @@ def _shown(value: Any) -> Value:
     return {True: "yes", False: "no"}[value] if isinstance(value, bool) else value
 
 
-def html(facts: Mapping[str, Any], variables: Mapping[str, Any], origin: Mapping[str, Any] | None = None) -> str:
-    """Return a whole page."""
+def html(
+    facts: Mapping[str, Any],
+    variables: Mapping[str, Any] | None = None,
+    origin: Mapping[str, Any] | None = None,
+    figures: Mapping[str, Describe] | None = None,
+) -> str:
+    """Return a whole page; `figures` are read from `facts` and `variables` where they are not given."""
     facts = json.loads(as_json(facts))  # what is not finite is null, as in a file
     kind = _kind(facts)
     if kind is None:
@@ -96,11 +105,11 @@ def html(facts: Mapping[str, Any], variables: Mapping[str, Any], origin: Mapping
         raise InputError("result", "is of a kind that has no report", fix)
     origin = facts.get("provenance") or origin or {}
     numbers = Numbers()
-    plots = Plots(numbers)
-    header: dict[str, Any] = {"maps": []}
+    header: dict[str, Any] = {"plots": [], "maps": []}
+    described = figures_in(kind, facts, variables or {}) if figures is None else figures
+    plots = drawn((each() for each in described.values()), numbers, header)
     make = KINDS[kind][2] if kind in KINDS else _figures
-    body = make(facts, variables, numbers, plots, header)
-    header["plots"] = plots.specs
+    body = make(facts, variables or {}, numbers, plots, header)
     title = facts.get("title") or _title(origin) or f"gbeam {kind}"
     warnings = study.warnings(facts) if "motions" in facts else facts.get("warnings", [])
     if warnings:

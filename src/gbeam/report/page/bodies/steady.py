@@ -7,22 +7,19 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.figures.units import raised
 from gbeam.report import words
-from gbeam.report.page.curves import REFERENCE
-from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, plot_places, raised, table
-from gbeam.report.page.scene import shape
-from gbeam.report.page.series import Numbers, Plots
+from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, table
+from gbeam.report.page.records import modes_in
+from gbeam.report.page.scene import shapes
+from gbeam.report.page.series import Numbers
 from gbeam.report.steady.modes import ROUNDING
 from gbeam.report.words import number, percent
-from gbeam.results.modal import near_multiples
 
 Facts = Mapping[str, Any]
 
-SHOWN = 33  # points of a mode shape in the viewer
-_SIZES = {"width": 0.03, "thickness": 0.012}  # of the length: of a beam whose section a result does not hold
 
-
-def modes_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plots, header: dict[str, Any]) -> str:
+def modes_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, drawn: str, header: dict[str, Any]) -> str:
     """Frequencies, damping and errors, and the shapes as they move."""
     base = facts["base"]
     rate = float(np.linalg.norm(list(base["angular_velocity"].values())))
@@ -38,48 +35,17 @@ def modes_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plot
     if not facts["damping_given"]:
         parts.append(paragraph("undamped: beam.damping_ratio is not given", "faint"))
     if facts["modes"]:
-        header["modes"] = shapes(facts, numbers)
+        header["modes"] = shapes(modes_in(facts), numbers)
         parts += [heading("Shapes"), '<div id="gbeam-viewer"></div>']
         scale = "to scale" if facts.get("section", {}).get("width") else "not to scale: the result does not hold it"
         parts.append(paragraph(f"largest displacement 15 % of the length; the section is drawn {scale}", "faint"))
-        x = np.array(facts["stations"])
-        lines = [
-            {"label": f"mode {i}, {number(each['frequency'])} Hz", "x": x, "y": _main(each), "colour": i - 1}
-            for i, each in enumerate(facts["modes"][:6], 1)
-        ]
-        name = plots.add("Shapes", "displacement, largest 1", lines, x="position along the beam, m")
-        parts.append(plot_places([(name, "Shapes along their main direction")]))
+        parts.append(drawn)
     return "".join(parts)
 
 
-def campbell_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plots, header: dict[str, Any]) -> str:
+def campbell_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, drawn: str, header: dict[str, Any]) -> str:
     """Frequencies against speed, the multiples of the speed, and where they meet."""
-    speed = np.array(facts["speed"])
-    tracks = [_numbers(each["frequency"]) for each in facts["tracks"]]
-    shown = near_multiples(np.array(tracks), speed, facts["orders"])
-    lines = [
-        {
-            "label": f"mode {i + 1}, along {facts['tracks'][i]['direction']}",
-            "x": speed,
-            "y": tracks[i],
-            "colour": i % REFERENCE,
-            "dash": i >= REFERENCE,
-        }
-        for i in shown
-    ]
-    top = max((np.nanmax(line["y"]) for line in lines if np.isfinite(line["y"]).any()), default=np.inf)
-    for order in facts["orders"]:
-        multiple = order * speed / (2 * np.pi)
-        seen = np.where(multiple <= 1.05 * top, multiple, np.nan)
-        lines.append({"label": f"{order} × speed", "x": speed, "y": seen, "colour": REFERENCE, "dash": True})
-    if facts["crossings"]:
-        at = [np.array([each[key] for each in facts["crossings"]]) for key in ("speed", "frequency")]
-        order = np.argsort(at[0])
-        lines.append({"label": "crossings", "x": at[0][order], "y": at[1][order], "colour": 1, "points": True})
-    name = plots.add("Campbell diagram", "frequency, Hz", lines, x="speed, rad/s")
-    parts = [heading("Campbell diagram"), plot_places([(name, f"{facts['motion']}: {facts['model']}")])]
-    if len(shown) < len(tracks):
-        parts.append(paragraph(f"modes not drawn, far above all multiples: {len(tracks) - len(shown)}", "faint"))
+    parts = [heading("Campbell diagram"), drawn]
     if facts["critical_speed"] is not None:
         parts.append(paragraph(f"the equilibrium is lost at {number(facts['critical_speed'])} rad/s", "bad"))
     parts += [heading("Modes"), tracks_table(facts), heading("Crossings")]
@@ -133,38 +99,7 @@ def _error(facts: Facts) -> str:
     return percent(np.nan if error is None else error)
 
 
-def shapes(facts: Facts, numbers: Numbers) -> dict[str, Any]:
-    """Shapes of every mode at some of the stations."""
-    x = np.array(facts["stations"])
-    some = np.unique(np.linspace(0, len(x) - 1, SHOWN).round().astype(int))
-    section = facts.get("section", {})
-    width, thickness = (
-        np.array(section.get(key) or x[-1] * part * np.ones(len(x)))[some] for key, part in _SIZES.items()
-    )
-    parts = [
-        np.array([[each[key][axis] for axis in "xyz"] for each in facts["modes"]])[:, :, some].transpose(0, 2, 1)
-        for key in ("shape", "shape_imaginary")
-    ]
-    return {
-        **shape(x[some], width, thickness, is_round=section.get("round", False)),
-        "labels": [
-            f"{i}: {number(each['frequency'])} Hz, {each['direction']}" for i, each in enumerate(facts["modes"], 1)
-        ],
-        "real": numbers.add(parts[0]),
-        "imaginary": numbers.add(parts[1]),
-    }
-
-
-def _main(mode: Facts) -> Any:
-    parts = [np.array(mode["shape"][axis]) for axis in "xyz"]
-    return max(parts, key=lambda part: np.abs(part).max())
-
-
-def _numbers(values: list[float | None]) -> Any:
-    return np.array([np.nan if each is None else each for each in values])
-
-
-def static_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plots, header: dict[str, Any]) -> str:
+def static_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, drawn: str, header: dict[str, Any]) -> str:
     """Where the beam rests in every motion, and what its sections carry."""
     motions = facts["motions"]
     parts = [
@@ -173,8 +108,7 @@ def static_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plo
         if not each["stable"]
     ]
     parts += [heading("Deflection"), _tips(motions), _loads(motions)]
-    drawn = [plot for i, axis in enumerate("xyz") if (plot := _shape(motions, axis, colour=i, plots=plots)) is not None]
-    return "".join([*parts, heading("Along the beam"), plot_places([*drawn, *_moments(motions, plots)])])
+    return "".join([*parts, heading("Along the beam"), drawn])
 
 
 def _tips(motions: Facts) -> str:
@@ -197,35 +131,7 @@ def _loads(motions: Facts) -> str:
     return table(head, rows, "Of the base on the root, base axes; largest stress anywhere")
 
 
-def _shape(motions: Facts, axis: str, *, colour: int, plots: Plots) -> tuple[str, str] | None:
-    largest = max(abs(known(v)) for each in motions.values() for a in "xyz" for v in each["displacement"][a])
-    values = {name: 1e3 * np.array(each["displacement"][axis], dtype=float) for name, each in motions.items()}
-    if not any(np.abs(each).max() > 10 * largest for each in values.values()):  # a hundredth, in mm of m
-        return None
-    lines = [
-        {"label": name, "x": np.array(motions[name]["stations"]), "y": each, "colour": i}
-        for i, (name, each) in enumerate(values.items())
-    ]
-    title = f"Displacement along {axis}"
-    return plots.add(title, "displacement, mm", lines, x="position along the beam, m"), title
-
-
-def _moments(motions: Facts, plots: Plots) -> list[tuple[str, str]]:
-    loads = {name: each["loads"] for name, each in motions.items() if "loads" in each}
-    lines = [
-        {
-            "label": name,
-            "x": np.array(each["stations"]),
-            "y": np.linalg.norm([each["section_moment"][axis] for axis in "xyz"], axis=0),
-            "colour": i,
-        }
-        for i, (name, each) in enumerate(loads.items())
-    ]
-    title = "Moment of the sections"
-    return [(plots.add(title, "moment, N m", lines, x="position along the beam, m"), title)] if lines else []
-
-
-def critical_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plots, header: dict[str, Any]) -> str:
+def critical_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, drawn: str, header: dict[str, Any]) -> str:
     """The value at which the equilibrium is lost, or that there is none up to the end of the search."""
     value = next((facts[key] for key in facts if key.startswith("critical_")), None)
     unit = f", {raised(facts['unit'])}" if facts["unit"] else ""
@@ -241,21 +147,11 @@ def critical_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: P
     return paragraph(f"{motion}{facts['reason']}", "verdict") + table(("", ""), rows)
 
 
-def critical_map_body(
-    facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plots, header: dict[str, Any]
-) -> str:
+def critical_map_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, drawn: str, header: dict[str, Any]) -> str:
     """Hub rates at which the equilibrium is lost, against one more mass and where it sits."""
     speed = np.array(facts["critical_speed"], dtype=float)
     head = ("at, m", *(f"{words.number(mass)} kg" for mass in facts["mass"]))
     rows = ([place, *values] for place, values in zip(facts["position"], speed.T.tolist(), strict=True))
     caption = f"Critical hub rate, rad/s, with one more mass; –: none up to {words.number(facts['searched_to'])} rad/s"
-    lines = [
-        {"label": f"{words.number(mass)} kg", "x": np.array(facts["position"]), "y": values, "colour": i % 6}
-        for i, (mass, values) in enumerate(zip(facts["mass"], speed, strict=True))
-    ]
-    drawn = []
-    if np.isfinite(speed).any():
-        name = plots.add("Critical hub rate", "critical rate, rad/s", lines, x="position of the mass, m")
-        drawn.append((name, "Critical hub rate with one more mass"))
     text = paragraph(f"motion {facts['motion']}, model {facts['model']}")
-    return text + table(head, rows, caption, words=()) + plot_places(drawn)
+    return text + table(head, rows, caption, words=()) + drawn
