@@ -72,7 +72,16 @@ class Given:
         beam = (0.3, self.beam.section, self.beam.material)
         return {
             "AxisLimit": ((1.0, 1.0, 1.0), {}),
-            "Beam": (beam, {"masses": [gb.PointMass(0.1, 0.1)], "loads": [], "root": gb.Root(), "damping_ratio": 0.01}),
+            "Beam": (
+                beam,
+                {
+                    "masses": [gb.PointMass(0.1, 0.1)],
+                    "loads": [],
+                    "root": gb.Root(),
+                    "damping_ratio": 0.01,
+                    "points": [gb.Point("camera", 0.1)],
+                },
+            ),
             "Case": (
                 ("case", self.beam, gb.Model("FOAM", z=1), {"flight": self.still}, self.settings),
                 {"tracks": {}, "stations": (0.1,), "accept": {}},

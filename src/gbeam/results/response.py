@@ -226,11 +226,12 @@ class Response(Driven, Figured):
     @declared("m", "largest displacement of every named point", "point", role="rows", name=None, key="points",
               optional=True)  # fmt: skip
     def point_peaks(self) -> Mapping[str, VectorPeaks]:
-        """Largest displacement of the tip and of every point that has a name, by it."""
+        """Largest displacement of every point beside the tip that has a name, by it."""
         peaks = self.peaks.displacement
         if peaks is None:
             return {}
-        return {name: peaks[k] for k, name in enumerate(self.points) if name.isidentifier()}  # the others are places
+        named = [(k, name) for k, name in enumerate(self.points) if name.isidentifier() and name != "tip"]
+        return {name: peaks[k] for k, name in named}
 
     def at(self, point: str) -> Floats:
         """Return the displacement of a named point relative to the base axes, (t, 3) m.

@@ -120,14 +120,6 @@ class Beam(Value):
         bodies = {mass.name: mass.at for mass in self.masses if mass.name}
         return {point.name: point.at for point in self.points} | bodies | {TIP: self.length}
 
-    def names_at(self, stations: ArrayLike) -> tuple[str, ...]:
-        """Names of points at positions (s,), m; of one without a name its position, such as 100 mm."""
-        slack, names = 1e-9 * self.length, []
-        for x in np.asarray(stations, dtype=float):
-            near = (name for name, at in self.named_points.items() if abs(at - x) <= slack)
-            names.append(next(near, f"{1e3 * x:g} mm"))
-        return tuple(names)
-
     @property
     def body_centres(self) -> NDArray[np.float64]:
         """Centres of mass of the bodies on the undeformed beam, from the root, axes of the section, (b, 3) m."""
@@ -157,3 +149,12 @@ def fibre_strain(beam: Beam, at: Any, force: Any, moment: Any, y: Any, z: Any) -
     """Normal strain, (..., s), at places (y, z) m in a beam's sections `at` (s,) m, by what these carry."""
     axial, along_z, along_y = beam.rigidities(at)
     return force[..., 0] / axial + moment[..., 1] * z / along_z - moment[..., 2] * y / along_y
+
+
+def names_at(beam: Beam, stations: ArrayLike) -> tuple[str, ...]:
+    """Names of points at positions (s,), m; of one without a name its position, such as 100 mm."""
+    slack, names = 1e-9 * beam.length, []
+    for x in np.asarray(stations, dtype=float):
+        near = (name for name, at in beam.named_points.items() if abs(at - x) <= slack)
+        names.append(next(near, f"{1e3 * x:g} mm"))
+    return tuple(names)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gbeam.errors import InputError
+from gbeam.questions import QUESTIONS
 from gbeam.results.result import Floats
 from gbeam.scenario.schema import Centrifuge
 from gbeam.scenario.schema.scenario import Scenario
@@ -47,10 +48,10 @@ def find(facts: Facts, name: str) -> Keys:
 
 def offered(verb: str, names: Iterable[str], option: str = OPTION) -> None:
     """Refuse a name that no figure of a question can have, before anything is computed."""
-    every = [_segments(path) for path in choices(verb)]
+    every = [_segments(path) for path in choices(verb)] if verb in QUESTIONS else []
     for name in names:
         ends = _segments(name)
-        if '"' not in name and not any(_fits(ends, path) for path in every):
+        if every and '"' not in name and not any(_fits(ends, path) for path in every):
             near = closest(name, [".".join(path[-len(ends) :]) for path in every])
             fix = f"did you mean {near!r}?" if near else "list names every figure, with its unit"
             raise InputError(option, f"{name!r} is no figure of {verb}", fix)
