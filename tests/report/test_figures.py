@@ -17,7 +17,9 @@ from gbeam.report.page.curves import drawn
 from gbeam.report.page.result import report_of, report_of_file
 from gbeam.report.page.series import Numbers, thinned
 from gbeam.results.cases import Indices, Parameter, Statistics
-from gbeam.results.imitation.measures import Shock
+from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.imitation.measures import Mismatch, RootHistory, RootLoads, Shock, Sizes
+from gbeam.results.imitation.measures import Statistics as Apart
 from gbeam.results.result import Result
 from gbeam.results.study import Study
 
@@ -67,11 +69,12 @@ def _results(study: Study) -> dict[str, list[Result]]:
     machine = gb.Centrifuge(gb.Flight(z=20.0), arm=3.3, control_point=0.2, gravity=False, span=(0.0, 0.5))
     spectra = np.outer(np.arange(1.0, 6.0), [1, 1, 2])
     shock = Shock(10.0, np.geomspace(1, 100, 5), spectra, 2 * spectra)
-    compared = replace(study.comparisons[0], shock=shock)
+    compared = replace(_apart(study.comparisons[0]), shock=shock)
     fit, modal = _fit(), replace(_fit(), modal=True, at=np.arange(1.0, 6.0))
     column = replace(fit.columns[0], measured=1 + fit.at)
     return {
         "study": [study, replace(study, comparisons=(compared,)), study.responses["slew"]],
+        "comparison": [study.comparisons[0], compared],
         "static": [gb.static(structure, acceleration=(0, 0, 78.5))],
         "modes": [gb.modes(structure, hub)],
         "campbell": [gb.campbell(structure, hub, speeds=np.linspace(0, 30, 7))],
@@ -85,13 +88,37 @@ def _results(study: Study) -> dict[str, list[Result]]:
     }
 
 
+def _apart(compared: Comparison) -> Comparison:
+    """A comparison with root loads, a mismatch, trends and vibrations."""
+    t, one = compared.time, np.ones((1, 3))
+    waves = [np.outer(k + np.sin(t), [1.0, 2.0, 3.0]) for k in range(9)]
+    root = RootLoads(*(np.arange(3.0) + k for k in range(6)), 1.0, 2.0, 3.0, RootHistory(*waves[:4]))
+    most = np.abs(waves[4]).max(axis=0)
+    mismatch = Mismatch(0.1, waves[4], most, 0.2 * most, most, most, most, length=0.3)
+    sizes = [Sizes(one, one, one) for _ in range(3)]
+    return replace(compared, root=root, mismatch=mismatch, stations=Apart(np.array([0.3]), 5.0, *sizes, *waves[5:]))
+
+
 def _sparse(plan: gb.MachinePlan) -> gb.MachinePlan:
     """Every sixth sample: with so few no line becomes an envelope."""
     histories = {name: each[::6] for name, each in vars(plan.axes).items() if isinstance(each, np.ndarray)}
     return replace(plan, time=plan.time[::6], axes=replace(plan.axes, **histories))
 
 
-NAMES = ["study", "static", "modes", "campbell", "map", "plan", "fit", "optimize", "sensitivity", "shape", "sweep"]
+NAMES = [
+    "study",
+    "comparison",
+    "static",
+    "modes",
+    "campbell",
+    "map",
+    "plan",
+    "fit",
+    "optimize",
+    "sensitivity",
+    "shape",
+    "sweep",
+]
 
 
 @pytest.fixture(scope="module")
@@ -145,7 +172,7 @@ def _compare_lines(axes: object, panel: description.Panel, spec: dict, numbers: 
         np.testing.assert_allclose(x, along, rtol=1e-6, atol=1e-6 * np.ptp(along))
         np.testing.assert_allclose(y, np.clip(values, low, high), rtol=1e-6, atol=1e-6 * np.ptp(values))
         assert line.get_label() == one.label if panel.named and one.label else line.get_label().startswith("_")
-        assert each["label"] == one.label.removeprefix("_")
+        assert each["label"] == (one.label.removeprefix("_") or panel.y)
     levels = [line.get_ydata()[0] for line in lines[len(panel.lines) :][: len(panel.levels)]]
     assert levels == [each["value"] for each in spec["levels"]]
     shaded = [

@@ -102,10 +102,11 @@ def plan(
                 write_figures({f"{kind}_{name}": figure for kind, figure in described}, hidden, "gbeam plan")
 
         if report:
-            from gbeam.report.page.result import report_of_plans
+            from gbeam.report.page.document import html
+            from gbeam.report.page.records import of_plans
 
             known = signed(facts(*plans.values(), title=given.title), origin)
-            (hidden / "plan.html").write_text(report_of_plans(known, plans), encoding="utf-8")
+            (hidden / "plan.html").write_text(html(known, figures=of_plans(plans)), encoding="utf-8")
 
     if not json:
         show_table(words.table(given.title, plans.values()))

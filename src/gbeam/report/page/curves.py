@@ -10,7 +10,7 @@ import numpy as np
 from gbeam.figures.description import GREY, REFERENCE, Bars, Figure, Line, Map, Panel
 from gbeam.report.page.parts import Cell, Value, heading, paragraph, plot_places, table
 from gbeam.report.page.series import Numbers, thinned
-from gbeam.report.words import number, sentence
+from gbeam.report.words import number
 from gbeam.results.result import Floats
 
 _NUDGE = 1e-5  # of the whole width: places that are the same are drawn beside each other
@@ -45,7 +45,7 @@ def _plot(panel: Panel, subject: str, numbers: Numbers, specs: list[dict[str, An
     }
     spec |= {"time": panel.x == "time, s", "series": series, "bands": shaded, "levels": levels}
     specs.append(spec | ({"logX": True, "logY": True} if panel.logarithmic else {}))
-    return place, "; ".join([panel.title or sentence(quantity), *_said(panel)])
+    return place, "; ".join([": ".join(filter(None, (quantity, panel.title))), *_said(panel)])
 
 
 def _said(panel: Panel) -> Iterator[str]:
@@ -69,11 +69,11 @@ def _series(panel: Panel) -> Iterator[tuple[dict[str, Any], Floats, Floats]]:
             label = ", ".join(filter(None, (area.label, end)))
             yield {"label": label, "colour": area.colour, "dash": bool(end)}, _ascending(area.x), values
     for line in panel.lines:
-        yield _look(line), *thinned(_ascending(line.x), line.y)
+        yield _look(line, panel.y), *thinned(_ascending(line.x), line.y)
 
 
-def _look(line: Line) -> dict[str, Any]:
-    look: dict[str, Any] = {"label": line.label.removeprefix("_"), "colour": min(line.colour, REFERENCE)}
+def _look(line: Line, quantity: str) -> dict[str, Any]:
+    look: dict[str, Any] = {"label": line.label.removeprefix("_") or quantity, "colour": min(line.colour, REFERENCE)}
     if line.broad:
         look["broad"] = True
     if line.dash != "solid" or line.colour == GREY:

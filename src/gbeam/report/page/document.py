@@ -21,7 +21,8 @@ from gbeam.report.page.bodies import cases, machine, searches, steady, study
 from gbeam.report.page.bodies.steady import crossings_table, modes_table, tracks_table
 from gbeam.report.page.curves import drawn
 from gbeam.report.page.parts import Value, badge, escaped, folded, heading, listed, paragraph, table, verbatim
-from gbeam.report.page.records import figures_in
+from gbeam.report.page.records import figures_in, modes_in
+from gbeam.report.page.scene import scene, shapes
 from gbeam.report.page.series import Numbers
 from gbeam.report.words import as_json
 from gbeam.results.imitation.comparison import Comparison
@@ -30,7 +31,7 @@ from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.study import Study
 
-Body = Callable[[Mapping[str, Any], Mapping[str, Any], Numbers, str, dict[str, Any]], str]
+Body = Callable[[Mapping[str, Any], str, str], str]  # of the JSON, the viewer's place, and the figures
 # By verb: keys that its facts have, keys that each of their motions has, and what makes the page's inside.
 KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...], Body]] = {
     "run": (("motions", "comparisons"), (), study.body),
@@ -60,7 +61,7 @@ def _kind(facts: Mapping[str, Any]) -> str | None:
 _APART = ("form", "units", "provenance", "warnings", "files", "title", "outcome", "state")
 
 
-def _figures(facts: Mapping[str, Any], _: Mapping[str, Any], __: Numbers, plots: str, ___: Any) -> str:
+def _figures(facts: Mapping[str, Any], _: str, plots: str) -> str:
     """The inside of the page of a kind that has none of its own: its quantities, and a table for each list of them."""
     units = facts.get("units", {})
     known = {key: value for key, value in facts.items() if key not in _APART}
@@ -75,7 +76,7 @@ def _figures(facts: Mapping[str, Any], _: Mapping[str, Any], __: Numbers, plots:
             value = [{"": name, **each} for name, each in value.items() if isinstance(each, dict)]
         if isinstance(value, list) and value and all(isinstance(each, dict) for each in value):
             parts += [heading(key.replace("_", " "), 3), _rows_table(value, units, place)]
-    return "".join([*parts, plots])
+    return "".join([*parts, heading("Figures") + plots if plots else ""])
 
 
 def _rows_table(rows: list[Mapping[str, Any]], units: Mapping[str, str], place: str) -> str:
@@ -109,7 +110,8 @@ def html(
     described = figures_in(kind, facts, variables or {}) if figures is None else figures
     plots = drawn((each() for each in described.values()), numbers, header)
     make = KINDS[kind][2] if kind in KINDS else _figures
-    body = make(facts, variables or {}, numbers, plots, header)
+    header |= _viewer(kind, facts, variables or {}, numbers)
+    body = make(facts, '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else "", plots)
     title = facts.get("title") or _title(origin) or f"gbeam {kind}"
     warnings = study.warnings(facts) if "motions" in facts else facts.get("warnings", [])
     if warnings:
@@ -122,6 +124,18 @@ def html(
         header,
         numbers,
     )
+
+
+def _viewer(
+    kind: str, facts: Mapping[str, Any], variables: Mapping[str, Any], numbers: Numbers
+) -> dict[str, dict[str, Any]]:
+    """What the viewer shows of a kind, if anything."""
+    if kind == "modes" and facts["modes"]:
+        return {"modes": shapes(modes_in(facts), numbers)}
+    motions = facts["motions"] if kind == "run" else {}
+    environments = {name: each["environment"] for name, each in motions.items() if "environment" in each}
+    shown = scene(environments, variables, numbers)
+    return {} if shown is None else {"scene": shown}
 
 
 def _subject(kind: str, origin: Mapping[str, Any]) -> str:

@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields
 from typing import Any, TypeVar
 
 import numpy as np
 
 from gbeam.figures import Describe, figures_of, of_deflections
-from gbeam.report.page.parts import known
 from gbeam.results.cases import BOUNDS, ORDERS, Indices, Parameter, Sensitivity, Statistics, Sweep
+from gbeam.results.declared import INSIDE, NAMES, Declaration, annotation, declarations, record_in
 from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
-from gbeam.results.errors import ErrorEstimate, Errors, FrequencyErrors
 from gbeam.results.imitation import measures
-from gbeam.results.imitation.accounting import Accounting, NotFollowed
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.plan import MachinePlan
-from gbeam.results.machine import AxesResult, LimitUse
-from gbeam.results.modal import Campbell, Crossing, Modes
-from gbeam.results.parts import Loads, Peaks
+from gbeam.results.machine import AxesResult
+from gbeam.results.modal import Campbell, Modes
+from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion, HubResult, Response
 from gbeam.results.result import Floats
 from gbeam.results.searches import CommandRun, Fit, FittedColumn, Optimum, ShapedCommand
@@ -28,7 +26,6 @@ from gbeam.results.study import Study
 Facts = Mapping[str, Any]
 _NONE = np.empty(0)
 _R = TypeVar("_R")
-_ERRORS = ("displacement", "loads", "stress")
 
 
 def figures_in(kind: str, facts: Facts, variables: Facts) -> dict[str, Describe]:
@@ -41,12 +38,10 @@ def figures_in(kind: str, facts: Facts, variables: Facts) -> dict[str, Describe]
             return of_plans(_plans(facts, variables))
         case "static":
             return of_deflections([_deflection(name, each) for name, each in facts["motions"].items()])
-        case "fit" | "optimize" | "shape":
-            needed, read = _SEARCHES[kind]
-            return figures_of(read(facts, variables)) if needed in variables else {}
-        case "sweep":
-            return figures_of(_sweep(facts, variables))
-    return figures_of(_ALONE[kind](facts)) if kind in _ALONE else {}
+    if kind not in _ALONE:
+        return {}
+    needed, read = _ALONE[kind]
+    return figures_of(read(facts, variables)) if not needed or needed in variables else {}
 
 
 def of_plans(plans: Mapping[str, MachinePlan]) -> dict[str, Describe]:
@@ -55,11 +50,59 @@ def of_plans(plans: Mapping[str, MachinePlan]) -> dict[str, Describe]:
     return {f"{what} {name}": each for name, figures in every.items() for what, each in figures.items()}
 
 
-def _partly(kind: type[_R], facts: Facts, /, *same: str, **more: Any) -> _R:
-    """A record with the facts of the `same` names and what is given; the rest, which no figure reads, is empty."""
-    values = {name: facts[name] for name in same} | more
-    needed = [each for each in fields(kind) if each.default is MISSING and each.default_factory is MISSING]  # type: ignore[arg-type]
-    return kind(**{each.name: _NONE for each in needed if each.name not in values}, **values)
+def _read(kind: type[_R], facts: Facts, /, **more: Any) -> _R:
+    """A record of `more` and of what its JSON says; what neither has, which no figure reads, is empty."""
+    every = fields(kind)  # type: ignore[arg-type]
+    for name, each in declarations(kind):
+        if name not in more and any(name == field.name for field in every):
+            value = _value(kind, name, each, facts)
+            more |= {} if value is None else {name: value}
+    needed = {field.name for field in every if field.default is MISSING and field.default_factory is MISSING}
+    return kind(**dict.fromkeys(needed - more.keys(), _NONE), **more)
+
+
+def _value(kind: type, name: str, each: Declaration, facts: Facts) -> Any:
+    """A field, which JSON has in the rows of a dimension or at its key; None where it is not there."""
+    key, written = each.key or name, annotation(kind, name)
+    lists: dict[str, str] = {} if key.startswith("/") else getattr(kind, "json_rows", {})
+    along = next((dim for dim in each.dims if dim in lists), None)
+    rows: Any = [] if along is None else facts.get(lists[along], [])
+    if each.role == "labels" and along is not None:
+        return tuple(rows)
+    if each.key is None or (key == INSIDE and "None" in written):
+        return None
+    inside = record_in(kind, name) if each.role in ("part", "rows") else None
+    if along is not None:
+        listed = rows if isinstance(rows, list) else [rows[place] for place in NAMES.get(along, rows)]
+        shares = [_at(row, key) for row in listed]
+        if inside is not None:  # such as errors: of a record of arrays, what the rows have
+            names: Facts = next((share for share in shares if share), {})
+            return _read(inside, {one: [share[one] for share in shares] for one in names}) if names else None
+        across = [_bare(np.nan if share is None else share, written, each) for share in shares]
+        return tuple(shares) if "tuple" in written else np.stack(across, each.dims.index(along)) if across else None
+    value = facts if key == INSIDE else _at(facts, key)
+    if inside is None or value is None:
+        return _bare(value, written, each)
+    if each.role == "part":
+        return _read(inside, value)
+    return tuple(_read(inside, row) for row in value) if isinstance(value, list) else None
+
+
+def _at(facts: Any, key: str) -> Any:
+    for word in key.removeprefix("/").split("."):
+        facts = facts.get(word) if isinstance(facts, dict) else None
+    return facts
+
+
+def _bare(value: Any, written: str, each: Declaration) -> Any:
+    """A value of JSON as a record has it: arrays for lists, vectors for components, NaN for null."""
+    if isinstance(value, dict) and each.dims[-1:] and each.dims[-1] in NAMES:
+        return _vectors(value)
+    if value is not None and ("Floats" in written or "Complex" in written):
+        return _array(value)
+    if isinstance(value, list):
+        return tuple(value)
+    return np.nan if value is None and written == "float" else value
 
 
 def _under(place: str, variables: Facts) -> dict[str, Any]:
@@ -80,12 +123,7 @@ def _words(rows: Any, key: str) -> tuple[str, ...]:
 
 
 def _vectors(values: Facts) -> Floats:
-    return np.stack([_array(values[axis]) for axis in "xyz"], axis=-1)
-
-
-def _errors(facts: Facts) -> Errors:
-    totals = {of: ErrorEstimate(total=known(facts["errors"][of]["total"])) for of in _ERRORS}
-    return _partly(Errors, {}, **totals)
+    return np.stack([_array(each) for each in values.values()], axis=-1)
 
 
 def _study(facts: Facts, variables: Facts) -> Study:
@@ -98,21 +136,16 @@ def _study(facts: Facts, variables: Facts) -> Study:
     for each in facts["comparisons"]:
         v = _under(f"comparisons/{each['centrifuge']}/", variables)
         if "time" in v and each["flight"] in responses:
-            comparisons.append(_comparison(each, v, float(responses[each["flight"]].stations[-1])))
+            comparisons.append(_comparison(each, v, responses[each["flight"]].stations))
     return Study("", responses, tuple(comparisons))
 
 
 def _response(name: str, facts: Facts, v: Facts) -> Response:
-    hub = None
-    if "hub_angle" in v:
-        torque = v.get("drive_torque")
-        hub = HubResult(v["hub_angle"], v["hub_rate"], v["hub_acceleration"], torque)
-    return _partly(
-        Response, facts, "environment", "model", "outcome", name=name, time=v["time"], stations=v["station"],
-        displacement=v["displacement"],
+    turned = {of: v.get(f"hub_{of}") for of in ("angle", "rate", "acceleration")}
+    return _read(
+        Response, facts, name=name, time=v["time"], stations=v["station"], displacement=v["displacement"],
         base=BaseMotion(v["root_acceleration"], v["angular_velocity"], v["angular_acceleration"]),
-        peaks=_partly(Peaks, {}, max_abs=_column([facts["tip"][axis] for axis in "xyz"], "max_abs")),
-        error_estimate=known(facts["error_estimate"]), hub=hub, errors=_errors(facts),
+        hub=None if "hub_angle" not in v else _read(HubResult, v, **turned, drive_torque=v.get("drive_torque")),
         axes=_axes(facts, v) if "axis_rate" in v else None,
         loads=_loads(facts.get("loads", {}), v, v["section"]) if "section_force" in v else None,
     )  # fmt: skip
@@ -120,50 +153,40 @@ def _response(name: str, facts: Facts, v: Facts) -> Response:
 
 def _loads(facts: Facts, v: Facts, stations: Floats) -> Loads:
     unknown = np.full(v["section_force"].shape[:-1], np.nan)
-    return _partly(
-        Loads, v, "section_force", "section_moment", stations=stations,
-        stress_tension=v.get("stress_tension", unknown), stress_compression=v.get("stress_compression", unknown),
-        beam_torque=v.get("beam_torque"), drive_torque=v.get("drive_torque"),
-        yield_strength=facts.get("yield_strength"),
-    )  # fmt: skip
+    stress = {name: v.get(name, unknown) for name in ("stress_tension", "stress_compression")}
+    torques = {name: v.get(name) for name in ("beam_torque", "drive_torque")}
+    carried = {name: v[name] for name in ("section_force", "section_moment")}
+    return _read(Loads, facts, stations=stations, **carried, **stress, **torques)
 
 
 def _axes(facts: Facts, v: Facts) -> AxesResult:
-    names = ("axis", "quantity", "unit", "used", "allowed", "time")
-    uses = [{name: np.inf if each[name] is None else each[name] for name in names} for each in facts["limits"]]
-    return _partly(
-        AxesResult, {}, angle=v["axis_angle"], rate=v["axis_rate"], acceleration=v["axis_acceleration"],
-        jerk=v.get("axis_jerk"), reference=v["load_reference"], actual=v["load_actual"], idle=float(v["idle"]),
-        not_followed=v["not_followed"].astype(bool), limits=tuple(_partly(LimitUse, use, *names) for use in uses),
-        episodes=tuple((each["start"], each["end"], each["reason"]) for each in facts["not_followed"]),
+    histories = {name: v.get(f"axis_{name}") for name in ("angle", "rate", "acceleration", "jerk")}
+    episodes = tuple((each["start"], each["end"], each["reason"]) for each in facts["not_followed"])
+    limits = [each | {"allowed": np.inf} if each["allowed"] is None else each for each in facts["limits"]]
+    return _read(
+        AxesResult, {**facts, "limits": limits}, **histories, episodes=episodes, idle=float(v["idle"]),
+        reference=v["load_reference"], actual=v["load_actual"], not_followed=v["not_followed"].astype(bool),
         span=(float(v["flight_from"]), float(v["flight_to"])),
     )  # fmt: skip
 
 
-def _accounting(facts: Facts) -> Accounting:
-    runs = [_partly(NotFollowed, each, "start", "end", "reason") for each in facts["accounting"]["not_followed"]]
-    return _partly(Accounting, {}, not_followed=tuple(runs))
-
-
-def _comparison(facts: Facts, v: Facts, length: float) -> Comparison:
-    more: dict[str, Any] = {key: _vectors(facts[key]) for key in ("peak_flight", "peak_centrifuge")}
+def _comparison(facts: Facts, v: Facts, stations: Floats) -> Comparison:
+    places, more = ("flight", "centrifuge"), dict[str, Any](stations=None, mismatch=None, root=None)
     if "trend_flight" in v:
-        names = [f"{part}_{place}" for part in ("trend", "vibration") for place in ("flight", "centrifuge")]
-        more["stations"] = _partly(measures.Statistics, v, *names, cutoff=facts["cutoff"])
+        parts = {name: v[name] for name in (f"{part}_{at}" for part in ("trend", "vibration") for at in places)}
+        more["stations"] = _read(measures.Statistics, {}, cutoff=facts["cutoff"], **parts)
     if "mismatch_gradient" in v:
-        each = facts["mismatch"]
-        most = {name: _vectors(each[name]) for name in ("max_gradient", "tip_bound")}
-        place = {"control_point": each["control_point"], "length": length}
-        more["mismatch"] = _partly(measures.Mismatch, {}, gradient=v["mismatch_gradient"], **place, **most)
-    if "root_force_flight" in v:
-        names = [f"{kind}_{place}" for kind in ("force", "moment") for place in ("flight", "centrifuge")]
-        history = measures.RootHistory(**{name: v[f"root_{name}"] for name in names})
-        more["root"] = _partly(measures.RootLoads, {}, history=history)
+        gradient = v["mismatch_gradient"]
+        more["mismatch"] = _read(measures.Mismatch, facts["mismatch"], gradient=gradient, length=float(stations[-1]))
+    if "root_force_history_flight" in v:  # which files of 0.2 lack
+        names = [f"root_{kind}_{at}" for kind in ("force", "moment") for at in ("history_flight", "centrifuge")]
+        history = (v[name] for name in names)
+        more["root"] = _read(measures.RootLoads, {}, history=measures.RootHistory(*history))
     if facts.get("shock"):
-        spectra = {key: _array(facts["shock"][key]) for key in ("frequency", "flight", "centrifuge")}
+        spectra = {key: _array(facts["shock"][key]) for key in ("frequency", *places)}
         more["shock"] = measures.Shock(facts["shock"]["quality"], **spectra)
     more |= {"time": v["time"], "difference": v["difference"], "covered": v["covered"].astype(bool)}
-    return _partly(Comparison, facts, "flight", "centrifuge", accounting=_accounting(facts), **more)
+    return _read(Comparison, facts, **more)
 
 
 def _plans(facts: Facts, variables: Facts) -> dict[str, MachinePlan]:
@@ -172,7 +195,7 @@ def _plans(facts: Facts, variables: Facts) -> dict[str, MachinePlan]:
     for name, each in facts["motions"].items():
         v = _under(f"motions/{name}/", variables)
         if "time" in v:
-            every[name] = _partly(MachinePlan, each, "outcome", name=name, time=v["time"], axes=_axes(each, v))
+            every[name] = _read(MachinePlan, each, name=name, time=v["time"], axes=_axes(each, v))
     return every
 
 
@@ -182,54 +205,32 @@ def _deflection(name: str, facts: Facts) -> Deflection:
         v: dict[str, Any] = {key: _vectors(loads[key])[None] for key in ("section_force", "section_moment")}
         v |= {key: _array(loads[key])[None] for key in ("stress_tension", "stress_compression")}
         loads = _loads(loads, v, _array(loads["stations"]))
-    return _partly(
-        Deflection, facts, "model", "time", motion=name, stations=_array(facts["stations"]),
-        displacement=_vectors(facts["displacement"]), loads=loads, errors=_errors(facts),
-    )  # fmt: skip
+    return _read(Deflection, facts, motion=name, loads=loads)
 
 
-def modes_in(facts: Facts) -> Modes:
+def modes_in(facts: Facts, _: Facts | None = None) -> Modes:
     """Modes from their JSON."""
-    rows, stations, section = facts["modes"], _array(facts["stations"]), facts.get("section", {})
+    rows = facts["modes"]
     ratio, size = _column(rows, "damping_ratio"), 2 * np.pi * _column(rows, "frequency")
     real, imaginary = (
-        np.array([_vectors(each[key]) for each in rows]).reshape(-1, len(stations), 3)
+        np.array([_vectors(each[key]) for each in rows]).reshape(len(rows), -1, 3)
         for key in ("shape", "shape_imaginary")
     )
-    return _partly(
-        Modes, facts, "motion", "model", "time", eigenvalue=size * (-ratio + 1j * np.sqrt(1 - ratio**2)),
-        direction=_words(rows, "direction"), stations=stations, shape=real + 1j * imaginary,
-        errors=_frequency_errors(rows), width=_array(section.get("width") or []),
-        thickness=_array(section.get("thickness") or []), round=bool(section.get("round")),
-    )  # fmt: skip
+    eigenvalue = size * (-ratio + 1j * np.sqrt(1 - ratio**2))
+    return _read(Modes, facts, eigenvalue=eigenvalue, shape=real + 1j * imaginary)
 
 
-def _frequency_errors(rows: Any) -> FrequencyErrors:
-    return _partly(FrequencyErrors, {}, total=_column(rows, "error_estimate"))
+def _campbell(facts: Facts, _: Facts) -> Campbell:
+    value = facts["critical_speed"]
+    critical = None if value is None else _read(Critical, {"kind": "equilibrium lost"}, value=value)
+    return _read(Campbell, facts, critical=critical)
 
 
-def _campbell(facts: Facts) -> Campbell:
-    rows, value = facts["tracks"], facts["critical_speed"]
-    crossings = [_partly(Crossing, each, "track", "order", "speed", "frequency") for each in facts["crossings"]]
-    return _partly(
-        Campbell, facts, "motion", "model", speed=_array(facts["speed"]), orders=tuple(facts["orders"]),
-        frequency=_array([each["frequency"] for each in rows]).T, direction=_words(rows, "direction"),
-        crossings=tuple(crossings), errors=_frequency_errors(rows),
-        critical=None if value is None else _partly(Critical, {}, value=value, kind="equilibrium lost"),
-    )  # fmt: skip
-
-
-def _critical_map(facts: Facts) -> CriticalMap:
-    speed = _array(facts["critical_speed"])
-    arrays = {key: _array(facts[key]) for key in ("mass", "position")}
-    return _partly(CriticalMap, facts, "motion", "model", "searched_to", speed=speed, **arrays)
-
-
-def _sensitivity(facts: Facts) -> Sensitivity:
+def _sensitivity(facts: Facts, _: Facts) -> Sensitivity:
     every = facts["measures"].values()
     rows = {each["path"]: each for each in next(iter(every))["parameters"]}
     by_path = [{one["path"]: one["derivative"] for one in each["parameters"]} for each in every]
-    return _partly(
+    return _read(
         Sensitivity, facts, measures=tuple(facts["measures"]), units=_words(every, "unit"),
         figures=_column(every, "value"), parameters=tuple(rows), parameter_units=_words(rows.values(), "unit"),
         values=_column(rows.values(), "value"), derivatives=_array([[one[path] for path in rows] for one in by_path]),
@@ -242,15 +243,14 @@ def _sweep(facts: Facts, variables: Facts) -> Sweep:
         Parameter(each["path"], np.array(each["values"]), each["unit"], each["distribution"] or "")
         for each in facts["parameters"]
     ]
-    histories = {name: variables.get(f"{name} history") for name in named["histories"]}
-    return _partly(
-        Sweep, facts, "verb", parameters=tuple(parameters), outcome=np.array(facts["outcomes"], dtype=object),
+    return _read(
+        Sweep, facts, parameters=tuple(parameters), outcome=np.array(facts["outcomes"], dtype=object),
+        message=np.array(facts["messages"], dtype=object), time=_array(facts.get("time", [])),
         measures={name: _array(each["values"]) for name, each in named["measures"].items()},
         units={name: each["unit"] for key in named for name, each in named[key].items()},
-        histories={name: each for name, each in histories.items() if each is not None},
+        histories={name: variables[f"{name} history"] for name in named["histories"] if f"{name} history" in variables},
         statistics={name: _statistics(each) for name, each in facts["statistics"].items()},
         indices={name: _indices(each) for name, each in facts["indices"].items()},
-        time=_array(facts.get("time", [])), title="",
     )  # fmt: skip
 
 
@@ -262,59 +262,45 @@ def _bounds(facts: Facts) -> Floats:
 def _statistics(facts: Facts) -> Statistics:
     names = tuple(name for name in facts if name != "draws")
     values = np.stack([_bounds(facts[name]) for name in names], axis=-2)
-    return _partly(Statistics, {}, names=names, values=values)
+    return _read(Statistics, {}, names=names, values=values)
 
 
 def _indices(facts: Facts) -> Indices:
     values = np.stack([np.stack([_bounds(each[order]) for order in ORDERS], axis=-2) for each in facts.values()], -3)
-    return _partly(Indices, {}, parameters=tuple(facts), values=values)
+    return _read(Indices, {}, parameters=tuple(facts), values=values)
 
 
 def _fit(facts: Facts, v: Facts) -> Fit:
-    at, rows = "time" if "time" in v else "mode", facts["parameters"]
+    at = "time" if "time" in v else "mode"
+    data = zip(v["measured"], v["fitted"], v["computed_before"], strict=True)
     columns = [
-        _partly(
-            FittedColumn, each, "unit", name=name, noise=known(each["noise"]), measured=v["measured"][k],
-            fitted=v["fitted"][k], before=v["computed_before"][k],
-        )
-        for k, (name, each) in enumerate(facts["columns"].items())
-    ]  # fmt: skip
-    return _partly(
-        Fit, {}, title="", parameters=tuple(rows), units=_words(rows.values(), "unit"),
-        values=_column(rows.values(), "value"), columns=tuple(columns), at=v[at], modal=at == "mode",
-    )  # fmt: skip
-
-
-def _optimum(facts: Facts, v: Facts) -> Optimum:
-    goal, rows = facts["minimise"], facts["parameters"]
-    return _partly(
-        Optimum, {**facts, **v}, "outcome", "path", "history", title="", minimise=goal["name"], unit=goal["unit"],
-        parameters=tuple(rows), units=_words(rows.values(), "unit"), values=_column(rows.values(), "value"),
-        bounds=_array(_words(rows.values(), "bounds")), figure_before=known(goal["before"]),
-        figure=known(goal["value"]),
-    )  # fmt: skip
+        _read(FittedColumn, each, name=name, measured=measured, fitted=fitted, before=before)
+        for (name, each), (measured, fitted, before) in zip(facts["columns"].items(), data, strict=True)
+    ]
+    return _read(Fit, facts, columns=tuple(columns), at=v[at], modal=at == "mode")
 
 
 def _shaped(facts: Facts, v: Facts) -> ShapedCommand:
     ((goal, size),) = facts["goal"].items()
+    histories = zip(v["command"], v["by_ratio"], v["tip"], strict=True)
     runs = [
-        _partly(
-            CommandRun, {}, name=name, command=v["command"][k], by_ratio=v["by_ratio"][k], time=v["run_time"],
-            tip=v["tip"][k], residual=known(each["residual_amplitude"]),
-        )
-        for k, (name, each) in enumerate(facts["commands"].items())
-    ]  # fmt: skip
-    return _partly(
-        ShapedCommand, {**facts, **v}, "kind", "duration", "robust", "design", "check", "time", "ratio", goal=size,
-        to_rate=goal == "rate", runs=tuple(runs),
-    )  # fmt: skip
+        _read(CommandRun, each, name=name, command=command, by_ratio=by_ratio, time=v["run_time"], tip=tip)
+        for (name, each), (command, by_ratio, tip) in zip(facts["commands"].items(), histories, strict=True)
+    ]
+    return _read(
+        ShapedCommand, facts, goal=size, to_rate=goal == "rate", time=v["time"], ratio=v["ratio"], runs=tuple(runs)
+    )
 
 
-_ALONE = {
-    "modes": modes_in,
-    "campbell": _campbell,
-    "critical-speed --masses": _critical_map,
-    "sensitivity": _sensitivity,
-}
 # By verb: a variable without which there are no histories, and what reads the record.
-_SEARCHES = {"fit": ("measured", _fit), "optimize": ("history", _optimum), "shape": ("command", _shaped)}
+_ALONE: dict[str, tuple[str, Callable[[Facts, Facts], Any]]] = {
+    "modes": ("", modes_in),
+    "campbell": ("", _campbell),
+    "critical-speed --masses": ("", lambda facts, _: _read(CriticalMap, facts)),
+    "Comparison": ("time", lambda facts, v: _comparison(facts, v, v.get("station", np.array([np.nan])))),
+    "sensitivity": ("", _sensitivity),
+    "sweep": ("", _sweep),
+    "fit": ("measured", _fit),
+    "optimize": ("history", lambda facts, v: _read(Optimum, facts, path=v["path"], history=v["history"])),
+    "shape": ("command", _shaped),
+}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +15,9 @@ from gbeam.io.netcdf import FACTS, groups_of
 from gbeam.io.stored import read_stored
 from gbeam.report.facts import facts, whole
 from gbeam.report.page.document import html
-from gbeam.report.page.records import of_plans
 from gbeam.report.page.scene import scene, shapes
 from gbeam.report.page.series import Numbers
 from gbeam.report.provenance import to_json as origin_json
-from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.modal import Modes
 from gbeam.results.provenance import Provenance
 from gbeam.results.result import Result
@@ -36,14 +33,6 @@ def report_of(result: Result) -> str:
         raise InputError("result", f"{type(result).__name__} has no report", "print it, or plot it")
     origin = origin_json(result.provenance or Provenance())
     return html(found, variables_of(result), origin, figures_of(whole(result)))
-
-
-def report_of_plans(facts: Mapping[str, Any], plans: Mapping[str, MachinePlan]) -> str:
-    """Return the page of the plans of a scenario's machines, by motion; `facts` as `gbeam plan --json` prints them."""
-    variables = {
-        f"motions/{name}/{key}": values for name, plan in plans.items() for key, values in variables_of(plan).items()
-    }
-    return html(facts, variables, figures=of_plans(plans))
 
 
 def variables_of(result: Result) -> dict[str, Any]:

@@ -10,7 +10,6 @@ import numpy as np
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.report.machine.placement import largest
 from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, table, verbatim
-from gbeam.report.page.series import Numbers
 from gbeam.report.words import number
 from gbeam.results.cases import BOUNDS
 from gbeam.results.imitation.accounting import PeakPair
@@ -20,7 +19,7 @@ _PLACES = {"current": "now", "best": "placed", "middle": "at mid-span"}
 _CASES = 400  # listed
 
 
-def placement_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, drawn: str, header: dict[str, Any]) -> str:
+def placement_body(facts: Facts, viewer: str, drawn: str) -> str:
     """Where to put the specimen, what that changes, and the other options."""
     best = f"{1e3 * facts['control_point']:.2f} mm from the root, {facts['fraction_of_length']:.4f} of the length"
     now = f"{1e3 * facts['current_control_point']:.2f} mm"
@@ -83,7 +82,7 @@ def _use(use: Facts) -> str:
     return f"{use['axis']} {use['quantity']} {number(use['used'])} of {number(use['allowed'])} {use['unit']}"
 
 
-def sweep_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, drawn: str, header: dict[str, Any]) -> str:
+def sweep_body(facts: Facts, viewer: str, drawn: str) -> str:
     """How many cases ended how, a plot or a map of each measure, and every case."""
     counts = ", ".join(f"{count} {name}" for name, count in facts["counts"].items())
     outcomes = np.array(facts["outcomes"], dtype=object)
@@ -91,7 +90,16 @@ def sweep_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, drawn: str,
     parts = [paragraph(f"figures of gbeam {facts['verb']}: {outcomes.size} cases: {counts}", kind), _varied(facts)]
     parts += [_estimates(facts)]
     values = {name: np.array(each["values"], dtype=float) for name, each in facts["measures"].items()}
-    return "".join([*parts, drawn, heading("Cases"), _cases(facts, values, outcomes), _failures(facts, outcomes)])
+    return "".join(
+        [
+            *parts,
+            heading("Figures"),
+            drawn,
+            heading("Cases"),
+            _cases(facts, values, outcomes),
+            _failures(facts, outcomes),
+        ]
+    )
 
 
 def _estimates(facts: Facts) -> str:

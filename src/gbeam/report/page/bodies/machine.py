@@ -10,7 +10,6 @@ from gbeam.constants import STANDARD_GRAVITY
 from gbeam.figures.units import raised
 from gbeam.report.machine.tracking import followed
 from gbeam.report.page.parts import Cell, Value, folded, heading, known, listed, paragraph, table
-from gbeam.report.page.series import Numbers
 from gbeam.results.imitation.criteria import RULES
 from gbeam.results.imitation.verdict import change, percent
 
@@ -103,7 +102,7 @@ def _percent(value: float | None) -> str:
     return percent(share if abs(share) > 5e-5 else 0.0) if math.isfinite(share) else "–"
 
 
-def plan_body(facts: Facts, variables: Mapping[str, Any], _: Numbers, drawn: str, header: dict[str, Any]) -> str:
+def plan_body(facts: Facts, viewer: str, drawn: str) -> str:
     """The verdict, what the axes do, what that uses of the limits, and where the target is held."""
     parts = []
     for name, each in facts["motions"].items():

@@ -9,13 +9,12 @@ import numpy as np
 
 from gbeam.figures.units import raised
 from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, table
-from gbeam.report.page.series import Numbers
 from gbeam.report.words import number, percent
 
 Facts = Mapping[str, Any]
 
 
-def fit_body(facts: Facts, variables: Facts, _: Numbers, drawn: str, header: dict[str, Any]) -> str:
+def fit_body(facts: Facts, viewer: str, drawn: str) -> str:
     """Values with their intervals, what the data leave, and both over time or the modes."""
 
     def row(path: str, each: Facts) -> list[Value]:
@@ -42,7 +41,7 @@ def fit_body(facts: Facts, variables: Facts, _: Numbers, drawn: str, header: dic
     )
 
 
-def optimum_body(facts: Facts, variables: Facts, _: Numbers, drawn: str, header: dict[str, Any]) -> str:
+def optimum_body(facts: Facts, viewer: str, drawn: str) -> str:
     """The figure before and after, the values, the requirements, and the way to them."""
     goal = facts["minimise"]
     unit = raised(goal["unit"])
@@ -83,7 +82,7 @@ def optimum_body(facts: Facts, variables: Facts, _: Numbers, drawn: str, header:
     return "".join([*parts, heading("Way to the optimum") + drawn if drawn else ""])
 
 
-def sensitivity_body(facts: Facts, variables: Facts, _: Numbers, drawn: str, header: dict[str, Any]) -> str:
+def sensitivity_body(facts: Facts, viewer: str, drawn: str) -> str:
     """Of each figure the values that it depends on, those that matter most first."""
     parts = []
     for name, each in facts["measures"].items():
@@ -107,7 +106,7 @@ def sensitivity_body(facts: Facts, variables: Facts, _: Numbers, drawn: str, hea
     return "".join([*parts, drawn, listed(f"not varied: {each}" for each in facts["not_varied"])])
 
 
-def shaping_body(facts: Facts, variables: Facts, _: Numbers, drawn: str, header: dict[str, Any]) -> str:
+def shaping_body(facts: Facts, viewer: str, drawn: str) -> str:
     """What each command leaves, the commands, the tip, and what is left where the frequencies are others."""
     ((goal, size),) = facts["goal"].items()
     aim = f"to {number(size)} rad/s" if goal == "rate" else f"by {number(size)} rad"

@@ -10,16 +10,13 @@ import numpy as np
 from gbeam.figures.units import raised
 from gbeam.report import words
 from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, table
-from gbeam.report.page.records import modes_in
-from gbeam.report.page.scene import shapes
-from gbeam.report.page.series import Numbers
 from gbeam.report.steady.modes import ROUNDING
 from gbeam.report.words import number, percent
 
 Facts = Mapping[str, Any]
 
 
-def modes_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, drawn: str, header: dict[str, Any]) -> str:
+def modes_body(facts: Facts, viewer: str, drawn: str) -> str:
     """Frequencies, damping and errors, and the shapes as they move."""
     base = facts["base"]
     rate = float(np.linalg.norm(list(base["angular_velocity"].values())))
@@ -35,15 +32,14 @@ def modes_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, drawn: str,
     if not facts["damping_given"]:
         parts.append(paragraph("undamped: beam.damping_ratio is not given", "faint"))
     if facts["modes"]:
-        header["modes"] = shapes(modes_in(facts), numbers)
-        parts += [heading("Shapes"), '<div id="gbeam-viewer"></div>']
+        parts += [heading("Shapes"), viewer]
         scale = "to scale" if facts.get("section", {}).get("width") else "not to scale: the result does not hold it"
         parts.append(paragraph(f"largest displacement 15 % of the length; the section is drawn {scale}", "faint"))
         parts.append(drawn)
     return "".join(parts)
 
 
-def campbell_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, drawn: str, header: dict[str, Any]) -> str:
+def campbell_body(facts: Facts, viewer: str, drawn: str) -> str:
     """Frequencies against speed, the multiples of the speed, and where they meet."""
     parts = [heading("Campbell diagram"), drawn]
     if facts["critical_speed"] is not None:
@@ -99,7 +95,7 @@ def _error(facts: Facts) -> str:
     return percent(np.nan if error is None else error)
 
 
-def static_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, drawn: str, header: dict[str, Any]) -> str:
+def static_body(facts: Facts, viewer: str, drawn: str) -> str:
     """Where the beam rests in every motion, and what its sections carry."""
     motions = facts["motions"]
     parts = [
@@ -131,7 +127,7 @@ def _loads(motions: Facts) -> str:
     return table(head, rows, "Of the base on the root, base axes; largest stress anywhere")
 
 
-def critical_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, drawn: str, header: dict[str, Any]) -> str:
+def critical_body(facts: Facts, viewer: str, drawn: str) -> str:
     """The value at which the equilibrium is lost, or that there is none up to the end of the search."""
     value = next((facts[key] for key in facts if key.startswith("critical_")), None)
     unit = f", {raised(facts['unit'])}" if facts["unit"] else ""
@@ -147,11 +143,11 @@ def critical_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, drawn: s
     return paragraph(f"{motion}{facts['reason']}", "verdict") + table(("", ""), rows)
 
 
-def critical_map_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, drawn: str, header: dict[str, Any]) -> str:
+def critical_map_body(facts: Facts, viewer: str, drawn: str) -> str:
     """Hub rates at which the equilibrium is lost, against one more mass and where it sits."""
     speed = np.array(facts["critical_speed"], dtype=float)
     head = ("at, m", *(f"{words.number(mass)} kg" for mass in facts["mass"]))
     rows = ([place, *values] for place, values in zip(facts["position"], speed.T.tolist(), strict=True))
     caption = f"Critical hub rate, rad/s, with one more mass; –: none up to {words.number(facts['searched_to'])} rad/s"
     text = paragraph(f"motion {facts['motion']}, model {facts['model']}")
-    return text + table(head, rows, caption, words=()) + drawn
+    return text + table(head, rows, caption, words=()) + heading("Figure") + drawn

@@ -9,21 +9,14 @@ from typing import Any
 from gbeam.report import words
 from gbeam.report.page.bodies.machine import machine_section, verdict
 from gbeam.report.page.parts import folded, heading, known, listed, paragraph, table
-from gbeam.report.page.scene import scene
-from gbeam.report.page.series import Numbers
 
 Facts = Mapping[str, Any]
 
 
-def body(facts: Facts, variables: Mapping[str, Any], numbers: Numbers, drawn: str, header: dict[str, Any]) -> str:
-    """The page's inside; what the viewer shows goes into `header`."""
+def body(facts: Facts, viewer: str, drawn: str) -> str:
+    """The page's inside."""
     motions = {name: each for name, each in facts["motions"].items() if "environment" in each}
-    shown = scene({name: each["environment"] for name, each in motions.items()}, variables, numbers)
-    if shown is not None:
-        header["scene"] = shown
-    parts = [_verdict(facts)]
-    if shown is not None:
-        parts += [heading("Motion"), '<div id="gbeam-viewer"></div>']
+    parts = [_verdict(facts), heading("Motion") + viewer if viewer else ""]
     if drawn:
         parts += [heading("Histories"), paragraph(_HINT, "faint gbeam-screen"), drawn]
     parts += [heading("Response"), tips_table(motions), loads_table(motions)]
