@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+import shutil
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from gbeam.cli.inputs import naming, signed
@@ -48,13 +50,18 @@ def list_figures(verb: str, json: bool) -> int:
     """Print every figure of a question, with its unit and what it is."""
     from gbeam.studies.answers import choices
 
-    every = choices(verb)
-    rows = [[path, "" if each.unit == "unit" else each.unit, each.words] for path, each in every.items()]
-    widths = [max(len(row[k]) for row in rows) for k in range(2)]
-    lines = [f"{path:<{widths[0]}}  {unit:<{widths[1]}}  {words}" for path, unit, words in rows]
+    units = {path: "" if each.unit == "unit" else each.unit for path, each in choices(verb).items()}
+    named = {path: f"{path} [{unit}]" if unit else path for path, unit in units.items()}
+    wide, room = max(map(len, named.values())), shutil.get_terminal_size((0, 0)).columns
+    lines = []
+    for path, each in choices(verb).items():
+        if 0 < room < wide + 40:
+            lines += [named[path], *wrap(each.words, room - 2, initial_indent="  ", subsequent_indent="  ")]
+        else:
+            lines.append(f"{named[path]:<{wide}}  {each.words}")
     note = "* is a name, such as a motion's or an axis, [i] a place in a list, [0] the first. A path's end is enough."
-    facts = {path: {"unit": unit, "words": words} for path, unit, words in rows}
-    show("\n".join([*lines, note]), facts, json)
+    facts = {path: {"unit": units[path], "words": each.words} for path, each in choices(verb).items()}
+    show("\n".join([*lines, *wrap(note, room or len(note))]), facts, json)
     return 0
 
 

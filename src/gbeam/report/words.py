@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import shutil
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -33,8 +34,16 @@ def _plain(value: Any) -> Any:
 
 
 def columns(heads: list[str], rows: list[list[str]]) -> list[str]:
-    """Lines of a table, flush right but for its first column."""
+    """Lines of a table, flush right but for its first column; on a narrower terminal each row in lines of its own."""
     widths = [max(len(row[k]) for row in [heads, *rows]) for k in range(len(heads))]
+    room = shutil.get_terminal_size((0, 0)).columns  # zero where nobody says: a file takes any width
+    if 0 < room < sum(widths) + 2 * len(widths):
+        beside = max(map(len, heads))
+        folded: list[str] = []
+        for first, *others in rows:
+            named = zip(heads[1:], others, strict=True)
+            folded += [first, *(f"  {head:<{beside}}  {cell}" for head, cell in named if cell)]
+        return folded
     cells = [
         [row[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(row[1:], widths[1:], strict=True))]
         for row in [heads, *rows]

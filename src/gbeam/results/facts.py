@@ -91,6 +91,7 @@ def tree_of(kind: type) -> dict[str, Any]:
             leaf = _each(leaf, lambda figure: replace(figure, ends=figure.ends or ("[i]",)))
         if isinstance(each.unit, dict):
             named_unit = {"unit": Figure("", "SI unit", types=("string",))} if inside else {}
+            leaf = leaf if inside else replace(leaf, ends=())
             for row, unit in each.unit.items():
                 united = _each(leaf, partial(_united, unit=unit))
                 _put(tree, f"{key}.{row}" if inside else row, united | named_unit if inside else united)

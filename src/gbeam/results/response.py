@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
 import numpy as np
 
 from gbeam.arrays.namespace import is_traced
+from gbeam.errors import InputError
 from gbeam.results.declared import INSIDE, declared, fact, part, quantity
 from gbeam.results.errors import Errors
 from gbeam.results.machine import AxesResult, Driven
-from gbeam.results.parts import Influence, Loads, Outline, Peaks
+from gbeam.results.parts import Influence, Loads, Outline, Peaks, VectorPeaks
 from gbeam.results.result import Figured, Floats, Part, brief
 
 
@@ -196,6 +198,16 @@ class Response(Driven, Figured):
         note="of which this is a part; None where it is all of it",
         default=None,
     )
+    points: tuple[str, ...] = quantity(
+        "",
+        "name of the station",
+        "station",
+        name="station_name",
+        key="name",
+        optional=True,
+        note="tip, that of a point of the beam, or its position",
+        default=(),
+    )
     kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
 
     @property
@@ -209,6 +221,34 @@ class Response(Driven, Figured):
     def histories(self) -> dict[str, int]:
         """Number of samples of the histories, and how many a file has."""
         return {"samples": len(self.time), "written": len(self.time[:: self.kept_every])}
+
+    @property
+    @declared("m", "largest displacement of every named point", "point", role="rows", name=None, key="points",
+              optional=True)  # fmt: skip
+    def point_peaks(self) -> Mapping[str, VectorPeaks]:
+        """Largest displacement of every point beside the tip that has a name, by it."""
+        peaks = self.peaks.displacement
+        if peaks is None:
+            return {}
+        named = [(k, name) for k, name in enumerate(self.points) if name.isidentifier() and name != "tip"]
+        return {name: peaks[k] for k, name in named}
+
+    def at(self, point: str) -> Floats:
+        """Return the displacement of a named point relative to the base axes, (t, 3) m.
+
+        Parameters
+        ----------
+        point : str
+            tip, or the name of another point of the beam.
+
+        Raises
+        ------
+        InputError
+            If there is no such point.
+        """
+        if point not in self.points:
+            raise InputError("point", f"is {point!r}", f"choose from {', '.join(self.points)}")
+        return self.displacement[:, self.points.index(point)]
 
     @property
     def tip(self) -> Floats:

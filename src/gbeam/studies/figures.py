@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gbeam.errors import InputError
+from gbeam.questions import QUESTIONS
 from gbeam.results.result import Floats
 from gbeam.scenario.schema import Centrifuge
 from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.values.paths import advise, closest, path_text
+from gbeam.structure.attachments import TIP
 from gbeam.studies.answers import KIND, Facts, choices, tree_of_answers
 
 if TYPE_CHECKING:
@@ -46,10 +48,10 @@ def find(facts: Facts, name: str) -> Keys:
 
 def offered(verb: str, names: Iterable[str], option: str = OPTION) -> None:
     """Refuse a name that no figure of a question can have, before anything is computed."""
-    every = [_segments(path) for path in choices(verb)]
+    every = [_segments(path) for path in choices(verb)] if verb in QUESTIONS else []
     for name in names:
         ends = _segments(name)
-        if '"' not in name and not any(_fits(ends, path) for path in every):
+        if every and '"' not in name and not any(_fits(ends, path) for path in every):
             near = closest(name, [".".join(path[-len(ends) :]) for path in every])
             fix = f"did you mean {near!r}?" if near else "list names every figure, with its unit"
             raise InputError(option, f"{name!r} is no figure of {verb}", fix)
@@ -142,12 +144,15 @@ def _starts(path: str) -> list[int]:
 
 HISTORY = "--history"
 TIMES = 501  # by default
-_QUANTITIES = {"tip": "m", "root_force": "N", "root_moment": "N m"}
+_LOADS = {"root_force": "N", "root_moment": "N m"}  # of the root
 
 
 @dataclass(frozen=True)
 class History:
-    """One component over time: of `quantity` along `axis` (0, 1, 2) of base axes, in the motion of that name."""
+    """One component over time along `axis` (0, 1, 2) of base axes, in the motion of that name.
+
+    Its `quantity` is the root's force or moment, or the displacement of the point of that name, such as tip.
+    """
 
     name: str
     motion: str
@@ -157,7 +162,7 @@ class History:
     @property
     def unit(self) -> str:
         """SI."""
-        return _QUANTITIES[self.quantity]
+        return _LOADS.get(self.quantity, "m")
 
     def at(self, study: Study, times: Floats) -> Floats:
         """Values at times (t,); NaN where the response has none."""
@@ -166,8 +171,8 @@ class History:
         if response is None:
             return nothing
         loads = response.loads
-        if self.quantity == "tip":
-            values = response.tip
+        if self.quantity not in _LOADS:
+            values = response.at(self.quantity)
         elif loads is None:
             return nothing
         else:
@@ -181,12 +186,13 @@ class History:
         return np.where(inside, spline(times), math.nan)
 
 
-def read_history(text: str, motions: Collection[str]) -> History:
-    """Read ``flight.tip.z``; the motion may be left out where there is one."""
+def read_history(text: str, motions: Collection[str], points: Collection[str] = (TIP,)) -> History:
+    """Read ``flight.tip.z``, or that of another point; the motion may be left out where there is one."""
     *before, quantity, axis = ["", "", *text.split(".")]
     motion = ".".join(part for part in before if part)
-    if axis not in ("x", "y", "z") or quantity not in _QUANTITIES:
-        raise InputError(HISTORY, f"{text!r} is no history", f"write MOTION.QUANTITY.AXIS of {', '.join(_QUANTITIES)}")
+    if axis not in ("x", "y", "z") or quantity not in (*points, *_LOADS):
+        fix = f"write MOTION.QUANTITY.AXIS of {', '.join((*points, *_LOADS))}"
+        raise InputError(HISTORY, f"{text!r} is no history", fix)
     if not motion:
         if len(motions) > 1:
             raise InputError(HISTORY, f"{text!r} leaves the motion out", f"write {next(iter(motions))}.{text}")

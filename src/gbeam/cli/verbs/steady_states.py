@@ -252,7 +252,8 @@ def linearize(
     name, chosen = given.motion(motion, kind="" if rate is None else "hub")
     time = given.time(at)
     steady = None if rate is None else number("--rate", rate, "angular rate")
-    stations = [number("--strain-at", text, "length") for text in strain_at]
+    points = given.case.beam.named_points
+    stations = [points[text] if text in points else number("--strain-at", text, "length") for text in strain_at]
     for option, beside, both in (
         ("--balanced", "--modes", modes is not None and balanced is not None),
         ("--rate", "--at", rate is not None and at is not None),
