@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from gbeam import InputError
-from gbeam.figures import comparison, response, steady
+from gbeam.figures import imitation, response, steady
 from gbeam.figures.description import Figure as Described
 from gbeam.plots import draw, write_plots
 from gbeam.plots.draw import BROAD
@@ -35,11 +35,11 @@ def _drawing(describe: Callable[..., Described]) -> Callable[..., Figure]:
 
 plot_axes, plot_base, plot_hub = map(_drawing, (response.axes_of, response.base, response.hub))
 plot_loads, plot_tip, plot_tracking = map(_drawing, (response.loads, response.tip, response.tracking))
-plot_shock, plot_static = map(_drawing, (comparison.shock, steady.static))
+plot_shock, plot_static = map(_drawing, (imitation.shock, steady.static))
 
 
 def plot_comparison(compared: Comparison, title: str = "") -> Figure:
-    return draw(comparison.parts(compared, compared.main_axis, title))
+    return draw(imitation.parts(compared, compared.main_axis, title))
 
 
 def _assert_labelled(figure: Figure) -> None:

@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from gbeam.errors import InputError
-from gbeam.figures import cases, comparison, response, steady
+from gbeam.figures import imitation, response, steady, studies
 from gbeam.figures.description import Figure
 from gbeam.results.cases import PROBABILITY, Sensitivity, Sweep
 from gbeam.results.equilibrium import CriticalMap, Deflection
@@ -57,16 +57,16 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
         case Sweep():
             return _of_sweep(result, title)
         case Fit():
-            return {"fit": partial(cases.fit, result, title)}
+            return {"fit": partial(studies.fit, result, title)}
         case Optimum():
-            return {"optimum": partial(cases.optimum, result, title)}
+            return {"optimum": partial(studies.optimum, result, title)}
         case ShapedCommand():
             return {
-                "shaping": partial(cases.shaping, result, title),
-                "robustness": partial(cases.robustness, result, title),
+                "shaping": partial(studies.shaping, result, title),
+                "robustness": partial(studies.robustness, result, title),
             }
         case Sensitivity():
-            return {name: partial(cases.sensitivity, result, name, title) for name in result.measures}
+            return {name: partial(studies.sensitivity, result, name, title) for name in result.measures}
     return {}
 
 
@@ -86,11 +86,11 @@ def _of_sweep(result: Sweep, title: str) -> dict[str, Describe]:
     for name in result.measures:
         likely = name in result.statistics and PROBABILITY in result.statistics[name].names
         if likely and len(result.dimensions) == 2:
-            every[name] = partial(cases.probability, result, name, title)
+            every[name] = partial(studies.probability, result, name, title)
         elif few and not likely:
-            every[name] = partial(cases.sweep, result, name, title)
-    every |= {f"{name} indices": partial(cases.indices, result, name, title) for name in result.indices}
-    return every | {f"{name} history": partial(cases.history, result, name, title) for name in result.histories}
+            every[name] = partial(studies.sweep, result, name, title)
+    every |= {f"{name} indices": partial(studies.indices, result, name, title) for name in result.indices}
+    return every | {f"{name} history": partial(studies.history, result, name, title) for name in result.histories}
 
 
 def _of_machine(
@@ -115,11 +115,11 @@ def _of_response(result: Response, title: str, flight: Response | None = None) -
 
 
 def _of_comparison(result: Comparison, title: str, main: str, other: str, end: str = "") -> dict[str, Describe]:
-    first, *others = comparison.moved(result)
-    every: dict[str, Describe] = {f"{main}{end}": partial(comparison.parts, result, first, title)}
-    every |= {f"{other}{'xyz'[i]}{end}": partial(comparison.parts, result, i, title) for i in others}
+    first, *others = imitation.moved(result)
+    every: dict[str, Describe] = {f"{main}{end}": partial(imitation.parts, result, first, title)}
+    every |= {f"{other}{'xyz'[i]}{end}": partial(imitation.parts, result, i, title) for i in others}
     if result.shock is not None:
-        every[f"shock{end}"] = partial(comparison.shock, result, result.shock, title)
+        every[f"shock{end}"] = partial(imitation.shock, result, result.shock, title)
     return every
 
 

@@ -40,7 +40,6 @@ from gbeam.results.study import Study
 AXES = ("axis 1, the arm", "axis 2, yaw", "axis 3, roll")
 FORCES = ("axial N", "shear V_y", "shear V_z")
 MOMENTS = ("torque", "bending M_y", "bending M_z")
-_UNITS = {"rate": "rad/s", "acceleration": "rad/s²", "jerk": "rad/s³"}
 
 
 def looks(study: Study) -> dict[str, dict[str, Any]]:
@@ -183,7 +182,7 @@ def base(response: Response, title: str = "") -> Figure:
 
 def hub(response: Response, turned: HubResult, title: str = "") -> Figure:
     """Describe the turning of a hub about z."""
-    shown = [("angle, rad", turned.angle), ("rate, rad/s", turned.rate)]
+    shown = [(f"{of}, {declared(HubResult, of)[1]}", getattr(turned, of)) for of in ("angle", "rate")]
     torque = turned.drive_torque
     if torque is None and response.loads is not None:
         torque = response.loads.drive_torque
@@ -197,15 +196,16 @@ def hub(response: Response, turned: HubResult, title: str = "") -> Figure:
 def axes_of(response: PlotHeading, axes: AxesResult, quantity: str, title: str = "") -> Figure:
     """Describe one quantity of a centrifuge's axes, a panel for each axis, with its limits."""
     history: Floats = getattr(axes, quantity)
+    unit = raised(declared(AxesResult, quantity)[1])
     allowed = {use.axis: use.allowed for use in axes.limits if use.quantity == quantity}
     spans, panels = stretches(axes, response.time), []
     for i in range(3):
         limit = allowed.get(f"axis {i + 1}", math.inf)
         levels = limit_levels(limit, history[:, i])
         beyond = ", beyond the panel" if math.isfinite(limit) and not levels else ""
-        title_of = f"{AXES[i]}: {_used(history[:, i], limit, _UNITS[quantity])}{beyond}"
+        title_of = f"{AXES[i]}: {_used(history[:, i], limit, unit)}{beyond}"
         lines = (Line(response.time, history[:, i], **imitating(0)),)
-        panels.append(Panel(f"{quantity}, {_UNITS[quantity]}", lines, title_of, levels=levels, spans=spans, zero=True))
+        panels.append(Panel(f"{quantity}, {unit}", lines, title_of, levels=levels, spans=spans, zero=True))
     if quantity == "acceleration":
         panels[0] = _with_power(panels[0], axes)
     about = of_motion(response.name, f"{quantity} of the machine's axes")

@@ -31,7 +31,7 @@ _DASHES: dict[str, Any] = {"solid": "-", "dashed": (0, (4, 3)), "dotted": (0, (1
 _MARKS: dict[str, dict[str, Any]] = {
     "": {},
     "joined": {"marker": "o", "ms": 3.5},
-    "dots": {"marker": ".", "ms": 2.5, "ls": ""},
+    "dots": {"marker": ".", "ms": 3.5, "ls": ""},
     "rings": {"marker": "o", "ms": 4, "mfc": "none", "mec": "black", "mew": 0.8, "ls": ""},
 }
 _SCREEN = 100  # dots per inch
@@ -141,6 +141,10 @@ def _fill(axes: Axes, panel: Panel, *, first: bool) -> None:
     for x, y, words in panel.texts:
         white = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
         axes.text(x, y, words, ha="center", va="center", color="0.35", fontsize=8, zorder=1.2, bbox=white)
+    if panel.lines and all(
+        one.marks == "joined" and not np.any(one.x % 1) for one in panel.lines
+    ):  # counted, as tries are
+        axes.xaxis.set_major_locator(MaxNLocator("auto", integer=True))
     if panel.ticks:
         axes.set_xticks(range(len(panel.ticks)), panel.ticks)
     axes.set_ylabel(textwrap.fill(panel.y, max(12, round(_LABEL * PANEL * panel.height))))
@@ -181,7 +185,7 @@ def _bars(axes: Axes, bars: Bars) -> None:
 
 
 def _map(axes: Axes, cells: Map) -> None:
-    axes.set_axisbelow(False)
+    axes.grid(visible=False)
     mesh = axes.pcolormesh(cells.x, cells.y, cells.values.T, cmap="cividis", shading="nearest")
     axes.figure.colorbar(mesh, ax=axes, ticks=MaxNLocator(5))
 

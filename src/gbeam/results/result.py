@@ -172,8 +172,8 @@ class Figured(Result):
         ----------
         what : str
             Which of its figures; the first that the result has by default. Of a response: tip, base, loads, tracking,
-            axes_rate, axes_acceleration, axes_jerk, hub; of a study: tip, or any other followed by a space and a
-            motion's name; of a comparison: parts, parts x, parts y, parts z but for the main axis, shock; of a
+            axes_rate, axes_acceleration, axes_jerk, hub; of a study: tip, sizes, or any other followed by a space and
+            a motion's name; of a comparison: parts, parts x, parts y, parts z but for the main axis, shock; of a
             deflection: shape, loads; of a plan: those of its axes and tracking. Other results have one.
         title : str
             First line above the figure.

@@ -22,7 +22,9 @@ def drawn(figures: Iterable[Figure], numbers: Numbers, header: dict[str, Any]) -
 
 
 def _figure(figure: Figure, numbers: Numbers, header: dict[str, Any]) -> str:
-    parts = [heading(figure.subject, 3), *(paragraph(note, "faint") for note in figure.notes)]
+    reasons = dict.fromkeys(reason for panel in figure.panels for *_, reason in panel.spans)
+    notes = [*figure.notes, *([f"grey: {', '.join(reasons)}"] if reasons else [])]
+    parts = [heading(figure.subject, 3), *(paragraph(note, "faint") for note in notes)]
     plain = [panel for panel in figure.panels if panel.bars is None and panel.map is None]
     parts.append(plot_places([_plot(panel, figure.subject, numbers, header["plots"]) for panel in plain]))
     parts += [_table(panel, panel.bars) for panel in figure.panels if panel.bars is not None]
@@ -37,12 +39,8 @@ def _plot(panel: Panel, subject: str, numbers: Numbers, specs: list[dict[str, An
     series = [{**each, "x": numbers.add(x), "y": numbers.add(np.clip(y, low, high))} for each, x, y in _series(panel)]
     shaded = [[start, end] for start, end, _ in panel.spans] + [[each.value, each.value] for each in panel.marks]
     levels = [{"label": each.label, "value": each.value} for each in panel.levels]
-    spec: dict[str, Any] = {
-        "id": place,
-        "title": f"{subject}: {panel.title or quantity}",
-        "x": panel.x,
-        "y": panel.y,
-    }
+    title = f"{subject}: {panel.title or quantity}"
+    spec: dict[str, Any] = {"id": place, "title": title, "x": panel.x, "y": panel.y}
     spec |= {"time": panel.x == "time, s", "series": series, "bands": shaded, "levels": levels}
     specs.append(spec | ({"logX": True, "logY": True} if panel.logarithmic else {}))
     return place, "; ".join([": ".join(filter(None, (quantity, panel.title))), *_said(panel)])
@@ -50,9 +48,6 @@ def _plot(panel: Panel, subject: str, numbers: Numbers, specs: list[dict[str, An
 
 def _said(panel: Panel) -> Iterator[str]:
     """What a picture would name where it is, in words."""
-    reasons = dict.fromkeys(reason for *_, reason in panel.spans)
-    if reasons:
-        yield f"grey: {', '.join(reasons)}"
     for each in panel.marks:
         yield f"{each.label} at {number(each.value)}"
     named = {line.label.removeprefix("_") for line in panel.lines}

@@ -17,13 +17,13 @@ from gbeam.figures.units import raised
 from gbeam.guards.json_files import parse_json
 from gbeam.printable import json_printable
 from gbeam.report.facts import facts_text
-from gbeam.report.page.bodies import cases, machine, searches, steady, study
-from gbeam.report.page.bodies.steady import crossings_table, modes_table, tracks_table
+from gbeam.report.page import cases, machine, searches, steady, study
 from gbeam.report.page.curves import drawn
 from gbeam.report.page.parts import Value, badge, escaped, folded, heading, listed, paragraph, table, verbatim
 from gbeam.report.page.records import figures_in, modes_in
 from gbeam.report.page.scene import scene, shapes
 from gbeam.report.page.series import Numbers
+from gbeam.report.page.steady import crossings_table, modes_table, tracks_table
 from gbeam.report.words import as_json
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.modal import Campbell, Modes

@@ -50,14 +50,18 @@ def of_plans(plans: Mapping[str, MachinePlan]) -> dict[str, Describe]:
     return {f"{what} {name}": each for name, figures in every.items() for what, each in figures.items()}
 
 
-def _read(kind: type[_R], facts: Facts, /, **more: Any) -> _R:
-    """A record of `more` and of what its JSON says; what neither has, which no figure reads, is empty."""
-    every = fields(kind)  # type: ignore[arg-type]
+def _read(kind: type[_R], facts: Facts, v: Facts | None = None, /, **more: Any) -> _R:
+    """A record of `more`, of variables of a file and of its JSON; what none has, which no figure reads, is empty."""
+    every = {field.name: field for field in fields(kind)}  # type: ignore[arg-type]
     for name, each in declarations(kind):
-        if name not in more and any(name == field.name for field in every):
-            value = _value(kind, name, each, facts)
-            more |= {} if value is None else {name: value}
-    needed = {field.name for field in every if field.default is MISSING and field.default_factory is MISSING}
+        stored = (v or {}).get(each.dims[-1] if each.role == "coordinate" else each.name or name)
+        if name in more or name not in every:
+            continue
+        if stored is not None and each.name is not None and each.role in ("variable", "coordinate"):
+            more[name] = stored.astype(bool) if each.flags else stored if stored.ndim else stored.item()
+        elif (value := _value(kind, name, each, facts)) is not None:
+            more[name] = value
+    needed = {name for name, each in every.items() if each.default is MISSING and each.default_factory is MISSING}
     return kind(**dict.fromkeys(needed - more.keys(), _NONE), **more)
 
 
@@ -141,52 +145,39 @@ def _study(facts: Facts, variables: Facts) -> Study:
 
 
 def _response(name: str, facts: Facts, v: Facts) -> Response:
-    turned = {of: v.get(f"hub_{of}") for of in ("angle", "rate", "acceleration")}
     return _read(
-        Response, facts, name=name, time=v["time"], stations=v["station"], displacement=v["displacement"],
-        base=BaseMotion(v["root_acceleration"], v["angular_velocity"], v["angular_acceleration"]),
-        hub=None if "hub_angle" not in v else _read(HubResult, v, **turned, drive_torque=v.get("drive_torque")),
+        Response, facts, v, name=name, base=_read(BaseMotion, {}, v),
+        hub=_read(HubResult, {}, v) if "hub_angle" in v else None,
         axes=_axes(facts, v) if "axis_rate" in v else None,
-        loads=_loads(facts.get("loads", {}), v, v["section"]) if "section_force" in v else None,
+        loads=_loads(facts.get("loads", {}), v) if "section_force" in v else None,
     )  # fmt: skip
 
 
-def _loads(facts: Facts, v: Facts, stations: Floats) -> Loads:
+def _loads(facts: Facts, v: Facts) -> Loads:
     unknown = np.full(v["section_force"].shape[:-1], np.nan)
-    stress = {name: v.get(name, unknown) for name in ("stress_tension", "stress_compression")}
-    torques = {name: v.get(name) for name in ("beam_torque", "drive_torque")}
-    carried = {name: v[name] for name in ("section_force", "section_moment")}
-    return _read(Loads, facts, stations=stations, **carried, **stress, **torques)
+    return _read(Loads, facts, {"stress_tension": unknown, "stress_compression": unknown, **v})
 
 
 def _axes(facts: Facts, v: Facts) -> AxesResult:
-    histories = {name: v.get(f"axis_{name}") for name in ("angle", "rate", "acceleration", "jerk")}
     episodes = tuple((each["start"], each["end"], each["reason"]) for each in facts["not_followed"])
     limits = [each | {"allowed": np.inf} if each["allowed"] is None else each for each in facts["limits"]]
-    return _read(
-        AxesResult, {**facts, "limits": limits}, **histories, episodes=episodes, idle=float(v["idle"]),
-        reference=v["load_reference"], actual=v["load_actual"], not_followed=v["not_followed"].astype(bool),
-        span=(float(v["flight_from"]), float(v["flight_to"])),
-    )  # fmt: skip
+    span = float(v["flight_from"]), float(v["flight_to"])
+    return _read(AxesResult, {"limits": limits}, v, episodes=episodes, span=span)
 
 
 def _comparison(facts: Facts, v: Facts, stations: Floats) -> Comparison:
-    places, more = ("flight", "centrifuge"), dict[str, Any](stations=None, mismatch=None, root=None)
+    parts = dict[str, Any](stations=None, mismatch=None, root=None)
     if "trend_flight" in v:
-        parts = {name: v[name] for name in (f"{part}_{at}" for part in ("trend", "vibration") for at in places)}
-        more["stations"] = _read(measures.Statistics, {}, cutoff=facts["cutoff"], **parts)
+        parts["stations"] = _read(measures.Statistics, {"cutoff": facts["cutoff"]}, v)
     if "mismatch_gradient" in v:
-        gradient = v["mismatch_gradient"]
-        more["mismatch"] = _read(measures.Mismatch, facts["mismatch"], gradient=gradient, length=float(stations[-1]))
+        length = float(stations[-1])
+        parts["mismatch"] = _read(measures.Mismatch, facts["mismatch"], _under("mismatch_", v), length=length)
     if "root_force_history_flight" in v:  # which files of 0.2 lack
-        names = [f"root_{kind}_{at}" for kind in ("force", "moment") for at in ("history_flight", "centrifuge")]
-        history = (v[name] for name in names)
-        more["root"] = _read(measures.RootLoads, {}, history=measures.RootHistory(*history))
+        parts["root"] = _read(measures.RootLoads, {}, history=_read(measures.RootHistory, {}, _under("root_", v)))
     if facts.get("shock"):
-        spectra = {key: _array(facts["shock"][key]) for key in ("frequency", *places)}
-        more["shock"] = measures.Shock(facts["shock"]["quality"], **spectra)
-    more |= {"time": v["time"], "difference": v["difference"], "covered": v["covered"].astype(bool)}
-    return _read(Comparison, facts, **more)
+        spectra = {key: _array(facts["shock"][key]) for key in ("frequency", "flight", "centrifuge")}
+        parts["shock"] = measures.Shock(facts["shock"]["quality"], **spectra)
+    return _read(Comparison, facts, v, **parts)
 
 
 def _plans(facts: Facts, variables: Facts) -> dict[str, MachinePlan]:
@@ -195,7 +186,7 @@ def _plans(facts: Facts, variables: Facts) -> dict[str, MachinePlan]:
     for name, each in facts["motions"].items():
         v = _under(f"motions/{name}/", variables)
         if "time" in v:
-            every[name] = _read(MachinePlan, each, name=name, time=v["time"], axes=_axes(each, v))
+            every[name] = _read(MachinePlan, each, v, name=name, axes=_axes(each, v))
     return every
 
 
@@ -204,7 +195,7 @@ def _deflection(name: str, facts: Facts) -> Deflection:
     if loads is not None:
         v: dict[str, Any] = {key: _vectors(loads[key])[None] for key in ("section_force", "section_moment")}
         v |= {key: _array(loads[key])[None] for key in ("stress_tension", "stress_compression")}
-        loads = _loads(loads, v, _array(loads["stations"]))
+        loads = _loads(loads, v)
     return _read(Deflection, facts, motion=name, loads=loads)
 
 
@@ -271,25 +262,27 @@ def _indices(facts: Facts) -> Indices:
 
 
 def _fit(facts: Facts, v: Facts) -> Fit:
-    at = "time" if "time" in v else "mode"
-    data = zip(v["measured"], v["fitted"], v["computed_before"], strict=True)
+    at, data = "time" if "time" in v else "mode", ("measured", "fitted", "computed_before")
     columns = [
-        _read(FittedColumn, each, name=name, measured=measured, fitted=fitted, before=before)
-        for (name, each), (measured, fitted, before) in zip(facts["columns"].items(), data, strict=True)
+        _read(FittedColumn, each, {key: v[key][k] for key in data}, name=name)
+        for k, (name, each) in enumerate(facts["columns"].items())
     ]
     return _read(Fit, facts, columns=tuple(columns), at=v[at], modal=at == "mode")
 
 
 def _shaped(facts: Facts, v: Facts) -> ShapedCommand:
     ((goal, size),) = facts["goal"].items()
-    histories = zip(v["command"], v["by_ratio"], v["tip"], strict=True)
     runs = [
-        _read(CommandRun, each, name=name, command=command, by_ratio=by_ratio, time=v["run_time"], tip=tip)
-        for (name, each), (command, by_ratio, tip) in zip(facts["commands"].items(), histories, strict=True)
+        _read(
+            CommandRun,
+            each,
+            name=name,
+            time=v["run_time"],
+            **{key: v[key][k] for key in ("command", "by_ratio", "tip")},
+        )
+        for k, (name, each) in enumerate(facts["commands"].items())
     ]
-    return _read(
-        ShapedCommand, facts, goal=size, to_rate=goal == "rate", time=v["time"], ratio=v["ratio"], runs=tuple(runs)
-    )
+    return _read(ShapedCommand, facts, v, goal=size, to_rate=goal == "rate", runs=tuple(runs))
 
 
 # By verb: a variable without which there are no histories, and what reads the record.
@@ -301,6 +294,6 @@ _ALONE: dict[str, tuple[str, Callable[[Facts, Facts], Any]]] = {
     "sensitivity": ("", _sensitivity),
     "sweep": ("", _sweep),
     "fit": ("measured", _fit),
-    "optimize": ("history", lambda facts, v: _read(Optimum, facts, path=v["path"], history=v["history"])),
+    "optimize": ("history", lambda facts, v: _read(Optimum, facts, v)),
     "shape": ("command", _shaped),
 }

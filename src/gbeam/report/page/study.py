@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from gbeam.report import words
-from gbeam.report.page.bodies.machine import machine_section, verdict
+from gbeam.report.page.machine import machine_section, verdict
 from gbeam.report.page.parts import folded, heading, known, listed, paragraph, table
 
 Facts = Mapping[str, Any]
