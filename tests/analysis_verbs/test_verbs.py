@@ -208,3 +208,8 @@ def test_models(call):
     assert status == 0 and set(rows) == {"TLAM", "FOAM", "SFOAM", "CFOAM", "exact"}
     # The first-order models beat the linear one by far, and the complete one too.
     assert abs(rows["FOAM"]["peak_error"]) < 1e-3 < 0.02 < abs(rows["TLAM"]["peak_error"])
+
+
+def test_the_rounding_of_a_profile_turns_no_base(scenario, gbeam):
+    answer = gbeam("modes", "hub.toml", "--motion", "slew", "--at", "0 s")
+    assert answer.status == 0 and "base turning at 0 rad/s" in answer.out

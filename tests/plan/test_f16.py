@@ -106,3 +106,12 @@ def test_the_reference_never_exceeds_the_record_itself_or_idle_by_more_than_2_pe
     assert reach.mean() > 0.6
     assert np.linalg.norm(made, axis=1)[reach].max() > 70
     assert (np.linalg.norm(made, axis=1) / most)[reach].max() < 1.02
+
+
+def test_what_is_held_is_a_share_of_the_flights_time() -> None:
+    """Spin-up and spin-down, half of the run, are no part of it."""
+    made = planned("start=rest")
+    flown = (made.time >= made.axes.span[0]) & (made.time <= made.axes.span[1])
+    assert flown.mean() < 0.9
+    held = made.axes.not_followed[flown].mean()
+    assert f"held {held:.0%} of the flight's time" in repr(made) and held < made.axes.not_followed.mean()

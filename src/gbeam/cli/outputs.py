@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -48,11 +47,12 @@ def show_table(table: RenderableType) -> None:
 
 def list_figures(verb: str, json: bool) -> int:
     """Print every figure of a question, with its unit and what it is."""
+    from gbeam.report.words import terminal_width
     from gbeam.studies.answers import choices
 
     units = {path: "" if each.unit == "unit" else each.unit for path, each in choices(verb).items()}
     named = {path: f"{path} [{unit}]" if unit else path for path, unit in units.items()}
-    wide, room = max(map(len, named.values())), shutil.get_terminal_size((0, 0)).columns
+    wide, room = max(map(len, named.values())), terminal_width()
     lines = []
     for path, each in choices(verb).items():
         if 0 < room < wide + 40:

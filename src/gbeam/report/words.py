@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import shutil
+import sys
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -33,10 +34,15 @@ def _plain(value: Any) -> Any:
     return value
 
 
+def terminal_width() -> int:
+    """Columns of the terminal that is printed to; zero of a file, which takes any width."""
+    return shutil.get_terminal_size().columns if sys.stdout.isatty() else 0
+
+
 def columns(heads: list[str], rows: list[list[str]]) -> list[str]:
     """Lines of a table, flush right but for its first column; on a narrower terminal each row in lines of its own."""
     widths = [max(len(row[k]) for row in [heads, *rows]) for k in range(len(heads))]
-    room = shutil.get_terminal_size((0, 0)).columns  # zero where nobody says: a file takes any width
+    room = terminal_width()
     if 0 < room < sum(widths) + 2 * len(widths):
         beside = max(map(len, heads))
         folded: list[str] = []

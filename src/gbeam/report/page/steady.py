@@ -10,7 +10,7 @@ import numpy as np
 from gbeam.figures.units import raised
 from gbeam.report import words
 from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, table
-from gbeam.report.steady.modes import ROUNDING
+from gbeam.report.steady.modes import RESTING, ROUNDING
 from gbeam.report.words import number, percent
 
 Facts = Mapping[str, Any]
@@ -21,7 +21,7 @@ def modes_body(facts: Facts, viewer: str, drawn: str) -> str:
     base = facts["base"]
     rate = float(np.linalg.norm(list(base["angular_velocity"].values())))
     coupling = "in" if facts["gyroscopic"] else "left out"
-    rate = rate if rate > 1e-9 else 0.0  # a profile's rounding
+    rate = rate if rate > RESTING else 0.0
     where = f"motion {facts['motion']} at {number(facts['time'])} s, model {facts['model']}"
     parts = [paragraph(f"{where}, base turning at {number(rate)} rad/s, Coriolis coupling {coupling}")]
     growing = [

@@ -5,12 +5,14 @@ from __future__ import annotations
 from gbeam.report.words import percent, warning_lines
 from gbeam.results.modal import Modes
 
+RESTING = 1e-9  # rad/s: a smaller rate of a base is a profile's rounding
 ROUNDING = 1e-10  # a damping ratio smaller than this is none
 
 
 def text(modes: Modes) -> str:
     """Modes on a line each."""
-    rate = float((modes.base.w_WB_B**2).sum() ** 0.5)
+    turning = float((modes.base.w_WB_B**2).sum() ** 0.5)
+    rate = turning if turning > RESTING else 0.0
     lines = [f"{modes.motion} at {modes.time:.4g} s: {modes.model}, base turning at {rate:.4g} rad/s"]
     rows = enumerate(zip(modes.frequency, modes.damping_ratio, modes.direction, modes.error_estimate, strict=True), 1)
     lines += [

@@ -71,8 +71,10 @@ class MachinePlan(Judged, Driven, Figured):
         lines.append(f"axis rates up to {_listed(rate)} rad/s, accelerations {_listed(acceleration)} rad/s²")
         error = self.axes.tracking_error[~self.axes.not_followed]
         if error.size:
-            held = float(self.axes.not_followed.mean())
-            lines.append(f"target followed within {error.max():.3g} m/s², held {held:.0%} of the time")
+            first, last = self.axes.span
+            flown = (self.time >= first) & (self.time <= last)  # without spin-up and spin-down
+            held = float(self.axes.not_followed[flown].mean()) if flown.any() else 0.0
+            lines.append(f"target followed within {error.max():.3g} m/s², held {held:.0%} of the flight's time")
         return "\n  ".join(lines)
 
 
