@@ -229,7 +229,7 @@ def _crossings(
 
         ends = difference(rates[i]), difference(rates[i + 1])
         if ends[0] * ends[1] <= 0:
-            rate = brentq(difference, float(rates[i]), float(rates[i + 1]), xtol=1e-10)
+            rate = brentq(difference, float(rates[i]), float(rates[i + 1]), xtol=1e-10, maxiter=200)
         else:  # the mode veers within the step: keep what the curve says
             rate = rates[i] - gap[i] * (rates[i + 1] - rates[i]) / (gap[i + 1] - gap[i])
         speed = at(rate)

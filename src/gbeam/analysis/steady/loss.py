@@ -62,7 +62,7 @@ def first_loss_along(
         return answer(0.0, "divergence", "", "the beam is unstable before anything moves")
     from scipy.optimize import brentq
 
-    root = brentq(margin, grid[first - 1], grid[first], xtol=1e-11)
+    root = brentq(margin, grid[first - 1], grid[first], xtol=1e-11, maxiter=200)
     point = _point(*path(root)) or on_base(*path(grid[first - 1]))
     beyond = _point(*path(root * (1 + 1e-5)))
     if beyond is None:
@@ -153,7 +153,7 @@ def _lost(rich: Structure, path: Path, near: float, progress: Progress, shares: 
     for i, share in enumerate(shares):
         tell(progress, f"errors of the critical value, by {rich.kind} with more shapes", i / len(shares))
         if margin(share * near) < 0:
-            return brentq(margin, low, share * near, xtol=CLOSE * near)
+            return brentq(margin, low, share * near, xtol=CLOSE * near, maxiter=200)
         low = share * near
     return math.inf
 
