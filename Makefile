@@ -53,9 +53,10 @@ check: .venv/dev-installed
 validate: .venv/dev-installed
 	OPENBLAS_NUM_THREADS=1 JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/python -m validation
 
-# The page made from the scenario's schema, then the site; warnings are errors, and nothing is fetched from a network.
+# The pages made from the schemas, then the site; warnings are errors, and nothing is fetched from a network.
 docs: .venv/dev-installed
 	$(BIN)/gbeam schema --markdown > docs/scenario.md
+	$(BIN)/gbeam schema --results --markdown > docs/results.md
 	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going docs out/docs
 	@echo "out/docs/index.html"
 

@@ -72,7 +72,16 @@ class Given:
         beam = (0.3, self.beam.section, self.beam.material)
         return {
             "AxisLimit": ((1.0, 1.0, 1.0), {}),
-            "Beam": (beam, {"masses": [gb.PointMass(0.1, 0.1)], "loads": [], "root": gb.Root(), "damping_ratio": 0.01}),
+            "Beam": (
+                beam,
+                {
+                    "masses": [gb.PointMass(0.1, 0.1)],
+                    "loads": [],
+                    "root": gb.Root(),
+                    "damping_ratio": 0.01,
+                    "points": [gb.Point("camera", 0.1)],
+                },
+            ),
             "Case": (
                 ("case", self.beam, gb.Model("FOAM", z=1), {"flight": self.still}, self.settings),
                 {"tracks": {}, "stations": (0.1,), "accept": {}},
@@ -105,7 +114,8 @@ class Given:
                 {"yield_strength": 1e8, "fatigue_exponent": 5.0, "poissons_ratio": 0.3, "shear_modulus": 26e9},
             ),
             "Model": (("FOAM", 1, 1, 1), {"shapes": "clamped-free", "automatic": False}),
-            "PointMass": ((0.1, 0.1), {"inertia": (0.0, 0.0, 0.0), "offset": (0.0, 0.0, 0.0)}),
+            "Point": (("camera", 0.1), {}),
+            "PointMass": ((0.1, 0.1), {"inertia": (0.0, 0.0, 0.0), "offset": (0.0, 0.0, 0.0), "name": "body"}),
             "ResponseSettings": (
                 (1.0,),
                 {

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import gbeam
-from gbeam.report.study.summary_json import to_json
+from gbeam.report.facts import facts as to_json
 from gbeam.scenario import build, loads, template
 
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.toml"))

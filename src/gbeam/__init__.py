@@ -77,6 +77,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.scenario.build import read_scenario as read_scenario
     from gbeam.scenario.rerun import rerun as rerun
     from gbeam.structure.attachments import Load as Load
+    from gbeam.structure.attachments import Point as Point
     from gbeam.structure.attachments import PointMass as PointMass
     from gbeam.structure.attachments import Root as Root
     from gbeam.structure.beam import Beam as Beam
@@ -111,6 +112,7 @@ _HOME = {
     "Material": "structure.material",
     "Model": "mechanics.models",
     "Optimum": "results.searches",
+    "Point": "structure.attachments",
     "PointMass": "structure.attachments",
     "Response": "results.response",
     "ResponseSettings": "analysis.response.settings",

@@ -73,6 +73,17 @@ class Question:
     differentiable: bool = True
     words: str = ""
 
+    @property
+    def record(self) -> tuple[type, bool]:
+        """Kind of record that answers, and whether several do, by their motions."""
+        from gbeam.results.kinds import KINDS
+
+        written = self.answer.__annotations__["return"]
+        if isinstance(written, type):
+            return written, False
+        name = written.removeprefix("tuple[").partition(",")[0]
+        return self.answer.__globals__.get(name) or KINDS[name], name != written
+
 
 QUESTIONS: dict[str, Question] = {}
 _Answer = Callable[..., Any]
@@ -207,7 +218,7 @@ def critical_speed(
         return stability.critical_load(structure, held_base(base, time), upper=upper, progress=progress)
     if vary == "acceleration":
         return stability.buckling_acceleration(structure, upper=upper, progress=progress)
-    return stability.critical_speed(structure, base, upper=upper, name=name, progress=progress)
+    return replace(stability.critical_speed(structure, base, upper=upper, name=name, progress=progress), motion=name)
 
 
 @question("plan", "Plan the axis motions of a centrifuge within its limits; needs no beam.", motion=None)

@@ -11,7 +11,8 @@ from scipy.signal import find_peaks
 
 from gbeam import Comparison, InputError, Response, compare
 from gbeam.analysis.imitation.accounting import History, account
-from gbeam.report.machine.accounting import lines, to_json
+from gbeam.report.machine.accounting import lines
+from gbeam.results.facts import facts_of
 from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.response import BaseMotion
 
@@ -161,7 +162,7 @@ def test_limits_that_mean_nothing(accept: dict[str, float]) -> None:
 def test_the_tolerance_decides(pair: tuple[Response, Response]) -> None:
     wide = compare(*pair, tolerance=0.5).accounting
     assert wide.followed_share == pytest.approx(1.0) and not wide.missed and not wide.preloads
-    assert to_json(wide)["tolerance_load"] == pytest.approx(5 * G) and to_json(wide)["tolerance_of"] == "peak"
+    assert facts_of(wide)["tolerance_load"] == pytest.approx(5 * G) and facts_of(wide)["tolerance_of"] == "peak"
     with pytest.raises(InputError, match="tolerance_of"):
         compare(*pair, tolerance_of="time")
     with pytest.raises(InputError, match="tolerance"):
@@ -195,7 +196,7 @@ def test_the_error_of_a_peak_at_the_same_instant() -> None:
     peak = accounting.peaks[1]
     assert peak.error < 1e-3 and not peak.reason and peak.time_machine - peak.time == pytest.approx(0.04)
     assert peak.instant_error == pytest.approx(4 * (1 - np.cos(2 * np.pi * 0.04)) / 9, rel=1e-9)
-    assert to_json(accounting)["peaks"][1]["instant_error"] == peak.instant_error
+    assert facts_of(accounting)["peaks"][1]["instant_error"] == peak.instant_error
     assert "9 g (0.0 %, 40 ms later), 1.4 % off at the same instant" in "\n".join(lines(accounting))
 
 

@@ -10,7 +10,7 @@ from gbeam.analysis.steady.campbell import campbell
 from gbeam.analysis.steady.modal import modes
 from gbeam.analysis.steady.stability import critical_speed_map
 from gbeam.motion import Flight, Hub, constant
-from gbeam.results.declared import json_of
+from gbeam.results.facts import json_of
 
 from .beams import HUB, HUB_2009, beam_2009, slender
 

@@ -12,7 +12,8 @@ from gbeam.analysis.control.reduction import balanced_truncation, modal_truncati
 from gbeam.analysis.steady.modal import modes
 from gbeam.analysis.steady.operating_point import evaluated_at, linear_matrices, on_base, on_hub, operating_point
 from gbeam.motion import Base, Hub, constant
-from gbeam.report.steady.state_space import text, to_json
+from gbeam.report.steady.state_space import text
+from gbeam.results.facts import json_of
 from gbeam.results.state_space import Signal, StateSpace
 
 from .beams import ALUMINIUM, BOX, FREE_2009, HUB_2009, beam_2009, structure_2009
@@ -55,7 +56,7 @@ def test_a_free_hub_keeps_its_momentum():
 def test_state_space_of_a_free_hub():
     system = linearize(SOFT, FREE_2009, gauges=[Gauge(0.0, y=0.01)])
     assert [it.name for it in system.inputs] == ["torque"]
-    assert system.states[0] == ("hub_angle", "rad")
+    assert system.states[0] == Signal("hub_angle", "rad")
     # A slow torque turns hub and beam as one rigid body.
     angle = system.select(outputs=("hub_angle",))
     rho, length, radius = 2766.7 * 7.2968e-5, 8.0, 0.5
@@ -143,11 +144,11 @@ def test_truncations_state_what_they_leave_out():
         kept = small.select(outputs=("root_moment_z",))
         assert kept.truncation.share == pytest.approx(left_out.share[1:])
         assert f"{left_out.method} truncation" in repr(small) and f"{left_out.method} truncation" in text(small)
-        assert to_json(small)["truncation"]["states_left_out"] == left_out.states
+        assert json_of(small)["truncation"]["states_left_out"] == left_out.states
         held = small.to_xarray()
         assert held["truncation_error"].values == pytest.approx(left_out.error)
     assert left_out.bound == 2 * left_out.hankel[2:].sum()
-    assert damped.truncation is None and to_json(damped)["truncation"] is None
+    assert damped.truncation is None and json_of(damped)["truncation"] is None
 
 
 def test_exports(tmp_path):

@@ -175,7 +175,7 @@ def test_files(fast: Path, gbeam: Call) -> None:
     assert answer.status == 0
     assert "; tip: flight's peak 0.87" in " ".join(answer.out.split())
     folder = Path("out/fast")
-    pictures = ["tip", "tracking_spin", "comparison_spin", "shock_spin"]
+    pictures = ["tip", "sizes", "tracking_spin", "comparison_spin", "shock_spin"]
     pictures += [f"axes_{each}_spin" for each in ("rate", "acceleration", "jerk")]
     pictures += [f"{what}_{motion}" for what in ("base", "loads") for motion in ("flight", "spin")]
     expected = {"result.nc"} | {f"{name}.{kind}" for name in pictures for kind in ("png", "svg")}

@@ -76,7 +76,7 @@ def test_a_plan_has_a_page(scenario: Path, tmp_path: Path, capsys: pytest.Captur
     page = (tmp_path / "there" / "plan.html").read_text(encoding="utf-8")
     used = [each["used"] for each in limits if each["used"]]
     assert len(used) >= 7 and all(f"{each:#.4g}" in page for each in used)
-    assert "spin: load at the control point along z" in page and "spin: rate of the axes" in page
+    assert "spin: load at the control point" in page and "spin: rate of the machine's axes" in page
 
 
 def test_commands_are_the_axes_at_the_samples(scenario: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,14 +12,21 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
-from gbeam.plots.figures import DPI, save, signature
-from gbeam.plots.lines import BINS, COLUMNS, components, line, shade, stretches
-from gbeam.plots.style import ENVELOPE, STYLE, limits, panels, styled
-from gbeam.plots.units import unit_for
+from gbeam.figures.description import Figure as Described
+from gbeam.figures.description import Line, Panel, components, limit_levels, stretches
+from gbeam.figures.units import scale_of
+from gbeam.plots.draw import STYLE, draw
+from gbeam.plots.files import DPI, save, signature
+from gbeam.plots.lines import BINS, COLUMNS, ENVELOPE, line
+from gbeam.results.machine import AxesResult
 
 
 def _panel() -> Axes:
-    return panels("", 1)[1][0]
+    return Figure().add_subplot()
+
+
+def _figure(*panels: Panel, title: str = "a title") -> Figure:
+    return draw(Described(title, "", panels))
 
 
 def test_a_long_line_keeps_its_extremes() -> None:
@@ -84,47 +91,51 @@ def test_what_is_not_finite_is_a_gap() -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "size", "factor", "name"),
+    ("si", "size", "factor", "name"),
     [
-        ("length", 2.5, 1, "m"),
-        ("length", 0.3, 1e3, "mm"),
-        ("length", 2e-4, 1e3, "mm"),
-        ("length", 3e-5, 1e6, "µm"),
-        ("length", 0.0, 1e3, "mm"),
-        ("force", 5.0, 1, "N"),
-        ("force", 5e4, 1e-3, "kN"),
-        ("moment", 2e5, 1e-3, "kN m"),
-        ("moment", 1e-3, 1e3, "mN m"),
-        ("stress", 2e8, 1e-6, "MPa"),
-        ("acceleration", 80.0, 1 / 9.80665, "g0"),
-        ("acceleration", 0.2, 1, "m/s²"),
+        ("m", 2.5, 1, "m"),
+        ("m", 0.3, 1e3, "mm"),
+        ("m", 2e-4, 1e3, "mm"),
+        ("m", 3e-5, 1e6, "µm"),
+        ("m", 0.0, 1e3, "mm"),
+        ("N", 5.0, 1, "N"),
+        ("N", 5e4, 1e-3, "kN"),
+        ("N m", 2e5, 1e-3, "kN m"),
+        ("N m", 1e-3, 1e3, "mN m"),
+        ("Pa", 2e8, 1e-6, "MPa"),
+        ("m/s^2", 80.0, 1 / 9.80665, "g0"),
+        ("m/s^2", 0.2, 1, "m/s²"),
     ],
 )
-def test_units_suit_the_size(kind: str, size: float, factor: float, name: str) -> None:
-    unit = unit_for(kind, np.array([0.0, np.nan]), np.array([-size, np.inf, 0.1 * size]))
-    assert unit.factor == pytest.approx(factor) and unit.name == name
+def test_units_suit_the_size(si: str, size: float, factor: float, name: str) -> None:
+    scale, unit = scale_of(si, np.array([0.0, np.nan]), np.array([-size, np.inf, 0.1 * size]))
+    assert scale == pytest.approx(factor) and unit == name
 
 
 def test_components_that_hardly_count_are_named() -> None:
-    panel, t = _panel(), np.linspace(0, 1, 9)
-    components(panel, t, np.outer(t, [0.005, 1.0, 0.0]), ("N", "V_y", "V_z"))
-    assert [each.get_label() for each in panel.get_lines()] == ["V_y"]
-    assert panel.get_title(loc="left") == "N: below 1 %, not drawn"
+    t = np.linspace(0, 1, 9)
+    panel = components(t, np.outer(t, [0.005, 1.0, 0.0]), ("N", "V_y", "V_z"), Panel("force, N"))
+    assert [each.label for each in panel.lines] == ["V_y"] and panel.title == "N: below 1 %, not drawn"
+    (axes,) = _figure(panel).axes
+    assert [each.get_label() for each in axes.get_lines()] == ["V_y"] and axes.get_title(loc="left") == panel.title
 
 
 def test_limits() -> None:
     values = np.array([-0.001, 2.0, 3.0])
-    panel = _panel()
-    panel.plot(values)
-    assert limits(panel, 4.0, values)
+    levels = limit_levels(4.0, values)
+    (panel,) = _figure(Panel("", (Line(np.arange(3.0), values),), levels=levels)).axes
     assert [each.get_ydata()[0] for each in panel.get_lines()[1:]] == [4.0] and panel.get_ylim()[1] > 4
-    assert not limits(panel, 40.0, values) and not limits(panel, np.inf, values) and len(panel.get_lines()) == 2
+    assert limit_levels(40.0, values) == limit_levels(np.inf, values) == ()
+    assert [each.value for each in limit_levels(4.0, np.array([-3.0, 3.0]))] == [4.0, -4.0]
 
 
 def test_reasons_in_the_legend() -> None:
-    drawn = panels("", 2)[1]
-    assert stretches(None, np.zeros(3)) == []
-    shade(drawn, [(0, 1, "gimbals"), (2, 3, "axis 2 jerk"), (4, 5, "axis 3 rate, axis 2 jerk"), (6, 7, "gimbals")])
+    assert stretches(None, np.zeros(3)) == ()
+    held = ((0, 1, "gimbals"), (2, 3, "axis 2 jerk"), (4, 5, "axis 3 rate, axis 2 jerk"), (6, 7, "gimbals"))
+    none = np.zeros((2, 3))
+    axes = AxesResult(none, none, none, none, none, np.zeros(2, dtype=bool), held, span=(0, 8))
+    spans = stretches(axes, np.array([0.0, 8.0]))
+    drawn = _figure(Panel("", spans=spans), Panel("", spans=spans)).axes
     named = [each.get_label() for each in drawn[0].collections]
     assert named == ["gimbals", "axis 2 jerk", "limits of axis 2 and axis 3"]
     assert len(drawn[0].collections[0].get_paths()) == 2 and drawn[0].get_ylim() == (0, 1)
@@ -133,7 +144,7 @@ def test_reasons_in_the_legend() -> None:
 
 
 def test_signature(tmp_path: Path) -> None:
-    figure, _ = panels("", 1)
+    figure = _figure(Panel(""))
     for file in save(figure, tmp_path, "loads_<a> & b", "gbeam run"):
         assert signature(file) == "gbeam run"
         copy = file.with_stem("mine")
@@ -142,15 +153,11 @@ def test_signature(tmp_path: Path) -> None:
     assert [signature(file) for file in save(figure, tmp_path, "plain")] == ["", ""]
 
 
-@styled
 def _of_all_kinds() -> Figure:
-    figure, (linear, powers, larger) = panels("A title", 3)
-    linear.plot([0.0, 2.5], [-0.3, 0.7], label="rising")
-    powers.semilogy([0.0, 2.5], [1.0, 1e3])
-    powers.minorticks_off()
-    larger.plot([0.0, 2.5], [-3e7, 0.0])  # a power of ten above the axis
-    larger.set_ylabel("two\nlines")
-    return figure
+    x = np.array([0.0, 2.5])
+    rising = Panel("", (Line(x, np.array([-0.3, 0.7]), "rising"),))
+    larger = Panel("of two lines, because of its many words", (Line(x, np.array([-3e7, 0.0])),))  # a power of ten above
+    return _figure(rising, Panel("", (Line(x + 1, np.array([1.0, 1e3])),), x="f", logarithmic=True), larger)
 
 
 def test_a_saved_figure_is_as_matplotlib_draws_it(tmp_path: Path) -> None:

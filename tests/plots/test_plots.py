@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -15,19 +16,10 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from gbeam import InputError
-from gbeam.plots import (
-    plot_axes,
-    plot_base,
-    plot_comparison,
-    plot_hub,
-    plot_loads,
-    plot_shock,
-    plot_static,
-    plot_tip,
-    plot_tracking,
-    write_plots,
-)
-from gbeam.plots.lines import FLIGHT
+from gbeam.figures import imitation, response, steady
+from gbeam.figures.description import Figure as Described
+from gbeam.plots import draw, write_plots
+from gbeam.plots.draw import BROAD
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.measures import Mismatch, RootHistory, RootLoads, Shock
@@ -35,6 +27,19 @@ from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.machine import LimitUse
 from gbeam.results.parts import Loads
 from gbeam.results.study import Study
+
+
+def _drawing(describe: Callable[..., Described]) -> Callable[..., Figure]:
+    return lambda *args: draw(describe(*args))
+
+
+plot_axes, plot_base, plot_hub = map(_drawing, (response.axes_of, response.base, response.hub))
+plot_loads, plot_tip, plot_tracking = map(_drawing, (response.loads, response.tip, response.tracking))
+plot_shock, plot_static = map(_drawing, (imitation.shock, steady.static))
+
+
+def plot_comparison(compared: Comparison, title: str = "") -> Figure:
+    return draw(imitation.parts(compared, compared.main_axis, title))
 
 
 def _assert_labelled(figure: Figure) -> None:
@@ -121,7 +126,7 @@ def test_tip(study: Study) -> None:
     _assert_labelled(figure)
     z, z_off, y, _, x, x_off = figure.axes  # the largest first
     assert [panel.get_ylabel() for panel in (z, y, x)] == ["z, mm", "y, mm", "x, mm"]
-    assert z_off.get_ylabel() == "difference in z,\nmm" and x_off.get_ylabel() == "difference in x,\nµm"
+    assert z_off.get_ylabel() == "difference in z, mm" and x_off.get_ylabel() == "difference in x, µm"
     assert "not drawn" not in figure.get_suptitle()
     lines = _lines(z)
     assert list(lines) == ["flight", "spin", "slew"]
@@ -147,7 +152,7 @@ def test_flight_is_seen_below_what_imitates_it(study: Study) -> None:
     for figure in figures:
         by_name = {line.get_label(): line for line in figure.axes[0].get_lines()}
         flown, machine = by_name["flight"], by_name.get("spin", by_name.get("machine"))
-        assert flown.get_linewidth() == FLIGHT["lw"] >= 3 * machine.get_linewidth()
+        assert flown.get_linewidth() == BROAD >= 3 * machine.get_linewidth()
         assert flown.get_zorder() < machine.get_zorder() and flown.get_color() != machine.get_color()
 
 
@@ -202,7 +207,7 @@ def test_tracking(study: Study) -> None:
     size, z, error = figure.axes
     assert list(_lines(size)) == ["flight", "target", "machine", "idle"]
     np.testing.assert_allclose(_lines(size)["machine"], spin.axes.actual[:, 2] / 9.80665)
-    assert z.get_ylabel() == "z, g0" and error.get_ylabel() == "tracking error,\nm/s²"
+    assert z.get_ylabel() == "z, g0" and error.get_ylabel() == "tracking error, m/s²"
     # Scaled to what is followed: 0.6 m/s² at the end, not the 9 m/s² where the target is held.
     assert error.get_ylim()[1] == pytest.approx(0.63) and all(_shaded(panel) for panel in figure.axes)
 

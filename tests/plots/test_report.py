@@ -11,8 +11,8 @@ import pytest
 from rich.console import Console
 
 from gbeam.report import as_json
+from gbeam.report.facts import facts as to_json
 from gbeam.report.study.summary import table
-from gbeam.report.study.summary_json import to_json
 from gbeam.results.study import Study
 
 

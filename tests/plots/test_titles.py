@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 from matplotlib.figure import Figure
 
-from gbeam.plots import save
-from gbeam.plots.style import panels, styled
+from gbeam.figures.description import Figure as Described
+from gbeam.figures.description import Line, Panel
+from gbeam.plots import draw, save
 
 
-@styled
 def _titled(title: str) -> Figure:
-    figure, axes = panels(title, 1)
-    axes[0].plot([0, 1])
-    return figure
+    line = Line(np.arange(2.0), np.arange(2.0))
+    return draw(Described(title, "", (Panel("", (line,)),)))
 
 
 def test_dollars_and_control_characters(tmp_path: Path) -> None:

@@ -79,14 +79,16 @@ def plots_of(page: str) -> dict[str, dict[str, np.ndarray]]:
 
 
 def test_loads_are_shown_beside_the_flights(study: Study) -> None:
-    lines = plots_of(report_of(study))["spin: load at the control point along z"]
+    lines = plots_of(report_of(study))["spin: load at the control point: flight's, the target and the machine's: z"]
     assert [*lines] == ["flight", "target", "machine"]
     flight, axes = study.responses["flight"], study.responses["spin"].axes
     assert axes is not None
     for name, load in (("flight", flight.base.a_WO_B), ("target", axes.reference), ("machine", axes.actual)):
         np.testing.assert_allclose(lines[name], load[:, 2] / STANDARD_GRAVITY, rtol=1e-6)
     alone = plots_of(report_of(flight))  # without a machine that imitates it
-    np.testing.assert_allclose(alone["flight: load of the base"]["along z"], 60 / STANDARD_GRAVITY, rtol=1e-6)
+    np.testing.assert_allclose(
+        alone["flight: motion of the base, base axes: acceleration of the root"]["z"], 60 / STANDARD_GRAVITY, rtol=1e-6
+    )
 
 
 def test_nothing_from_outside_is_obeyed(study: Study) -> None:
@@ -140,8 +142,12 @@ def test_no_report_without_a_result(tmp_path: Path) -> None:
         report_of_file(tmp_path)
     with pytest.raises(InputError, match="no file"):
         report_of_file(tmp_path / "none.nc")
-    with pytest.raises(InputError, match="StateSpace has no report"):
-        report_of(gb.linearize(gb.assemble(BEAM, "FOAM", y=1), gb.Hub(radius=0.5)))
+
+
+def test_a_kind_without_a_page_of_its_own_shows_its_quantities() -> None:
+    system = gb.linearize(gb.assemble(BEAM, "FOAM", y=1), gb.Hub(radius=0.5))
+    page = report_of(system)
+    assert "<h3>states</h3>" in page and f"<td>{system.states[0].name}</td>" in page and "accurate to" in page
 
 
 @pytest.mark.parametrize("name", ["static", "critical", "load", "buckling", "map", "plan"])
@@ -278,7 +284,7 @@ def _shaped() -> gb.ShapedCommand:
     ("result", "said", "drawn"),
     [
         (_fit(), ["0.03210", "2.5 to 3.5", "on its bound", "0.4321", "0.1250", "2 of 3 searches"], 2),
-        (_optimum(), ["Least tip: 0.5000 m, was 1.000", "2.345", "0 to 9", "not kept", "limits exceeded"], 1),
+        (_optimum(), ["Least tip: 0.5000 m, was 1.000", "2.345", "0 to 9", "not kept", "limits exceeded"], 2),
         (_sensitivity(), ["tip = 2.000 m", "6.0 %", "difference kink", "-0.009000", "1.2 %", "Not varied: c: no"], 0),
         (_shaped(), ["Rate to 0.2500 rad/s in 2.000 s", "largest, rad/s²", "for frequencies wrong by up to 10 %"], 3),
     ],

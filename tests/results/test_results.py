@@ -13,51 +13,9 @@ import pytest
 import xarray as xr
 
 import gbeam as gb
-from gbeam.report.study import summary_json
-from gbeam.results.imitation.accounting import Accounting
-from gbeam.results.imitation.placement import Candidate, Placement
-from gbeam.results.imitation.plan import MachinePlan
-from gbeam.results.machine import AxesResult, LimitUse
-from gbeam.results.study import ModelRow, ModelStudy
+from gbeam.report.facts import facts as facts_of
 
-BEAM = gb.Beam(
-    0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700.0, 70e9), [gb.PointMass(0.3, 0.01)], damping_ratio=0.01
-)
-
-
-@pytest.fixture(scope="module")
-def every() -> dict[str, Any]:
-    """One result of each kind."""
-    structure, hub = (
-        gb.assemble(BEAM, "FOAM", y=1, z=1, stations=(0.1, 0.2)),
-        gb.Hub(radius=0.5, rate=gb.constant(10.0)),
-    )
-    time, x = np.linspace(0, 1, 5), np.ones((5, 3))
-    uses = tuple(LimitUse(f"axis {i}", "rate", "rad/s", 2.0, 1.0 if i == 1 else np.inf, 0.5) for i in (1, 2, 3))
-    axes = AxesResult(x, 2 * x, 3 * x, x, x + 0.1, np.zeros(5, bool), (), uses, (), 0.15)
-    options = tuple(Candidate("upright", 0.06, at, 0.1, 0.2, (1.0, 2.0, 3.0), 0.5, uses[:1]) for at in (0.2, 0.1))
-    values = {place: {"tip": 0.1} for place in ("best", "current", "middle")}
-    rows = (
-        ModelRow("exact", "slew", "done", "", (), 0.1, 0.5, 0.0, difference=0.0),
-        ModelRow("TLAM", "slew", "diverged", "too fast", ("a warning",)),
-    )
-    flight = gb.Flight(z=gb.constant(9.81))
-    return {
-        "static": gb.static(structure, flight),
-        "modes": gb.modes(structure, hub),
-        "campbell": gb.campbell(structure, hub, speeds=np.linspace(0, 20, 3)),
-        "critical": gb.critical_speed(structure, hub, upper=30.0),
-        "critical map": gb.critical_speed_map(BEAM, gb.Model("FOAM", 0, 1, 1), hub, [0.1], [0.1, 0.3], 30.0),
-        "system": gb.linearize(structure, hub),
-        "plan": MachinePlan(
-            "arm", "flight", 3.3, "limits exceeded", axes.exceeding, time, axes,
-            Accounting(0.05, 0.1, 0.0, (0.0, 1.0), 1.0, (), ()), 0.0, "upright",
-        ),
-        "placement": Placement("flight", "arm", {"tip": 1.0}, 0.3, options[0], options, 0.15, values),
-        "models": ModelStudy("title", "exact", {"slew": "z"}, rows),
-        "response": gb.simulate(structure, flight, duration=0.05, step=1e-3, name="flight"),
-    }  # fmt: skip
-
+from .conftest import BEAM
 
 KINDS = (
     "static", "modes", "campbell", "critical", "critical map", "system", "plan", "placement", "models", "response"
@@ -151,7 +109,7 @@ def test_a_study_prints_its_responses_and_comparisons(every: dict[str, Any]) -> 
 
 def test_a_response_states_its_errors(tmp_path: Path) -> None:
     flight = gb.simulate(gb.assemble(BEAM, "FOAM", z=2), gb.Flight(z=gb.constant(9.81)), duration=0.1, name="flight")
-    shown = summary_json.to_json(gb.Study("", {"flight": flight}, ()))["motions"]["flight"]
+    shown = facts_of(gb.Study("", {"flight": flight}, ()))["motions"]["flight"]
     assert shown["errors"]["displacement"]["total"] == shown["error_estimate"] == flight.error_estimate
     flight.save(tmp_path / "flight.nc")
     with xr.open_dataset(tmp_path / "flight.nc") as saved:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+import shutil
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from gbeam.cli.inputs import naming, signed
@@ -16,13 +18,14 @@ from gbeam.errors import InputError
 from gbeam.printable import printable
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
     from rich.console import RenderableType
 
+    from gbeam.figures import Describe
     from gbeam.results.cases import Sensitivity
     from gbeam.results.searches import Fit, Optimum, ShapedCommand
 
 Found = TypeVar("Found", "Fit", "Optimum", "Sensitivity", "ShapedCommand")
+LIST = "list"  # in place of a figure's name
 _PLAIN_WIDTH = 110  # columns of a table where stdout is a file
 
 
@@ -43,6 +46,25 @@ def show_table(table: RenderableType) -> None:
     console.print(Segments(drawn), end="")
 
 
+def list_figures(verb: str, json: bool) -> int:
+    """Print every figure of a question, with its unit and what it is."""
+    from gbeam.studies.answers import choices
+
+    units = {path: "" if each.unit == "unit" else each.unit for path, each in choices(verb).items()}
+    named = {path: f"{path} [{unit}]" if unit else path for path, unit in units.items()}
+    wide, room = max(map(len, named.values())), shutil.get_terminal_size((0, 0)).columns
+    lines = []
+    for path, each in choices(verb).items():
+        if 0 < room < wide + 40:
+            lines += [named[path], *wrap(each.words, room - 2, initial_indent="  ", subsequent_indent="  ")]
+        else:
+            lines.append(f"{named[path]:<{wide}}  {each.words}")
+    note = "* is a name, such as a motion's or an axis, [i] a place in a list, [0] the first. A path's end is enough."
+    facts = {path: {"unit": units[path], "words": each.words} for path, each in choices(verb).items()}
+    show("\n".join([*lines, *wrap(note, room or len(note))]), facts, json)
+    return 0
+
+
 def list_files(folder: Path | None, files: Sequence[Path]) -> None:
     """Print the names of the files written; a plot's two formats as one."""
     if folder is not None and files:
@@ -60,7 +82,7 @@ def write(
     folder: Path | None,
     name: str,
     facts: Mapping[str, Any],
-    figures: Callable[[], Mapping[str, Figure]] | None = None,
+    figures: Mapping[str, Describe] | None = None,
     *,
     report: bool = False,
 ) -> list[Path]:
@@ -73,12 +95,11 @@ def write(
         if report:
             from gbeam.report.page.document import html
 
-            (hidden / f"{name}.html").write_text(html(facts, {}), encoding="utf-8")
-        if figures is not None and figures_wanted():
-            from gbeam.plots import save
+            (hidden / f"{name}.html").write_text(html(facts, figures=figures), encoding="utf-8")
+        if figures and figures_wanted():
+            from gbeam.plots import write_figures
 
-            for stem, figure in figures().items():
-                save(figure, hidden, stem, f"gbeam {name}")
+            write_figures(figures, hidden, f"gbeam {name}")
 
     return publish(folder, make)
 
@@ -111,12 +132,15 @@ def show_found(
 ) -> None:
     """Print a study's answer, and write it, its plots, its page and what a verb has `more` into a folder."""
 
+    from gbeam.report.facts import facts
+
     def make(hidden: Path) -> None:
-        from gbeam.plots import figures, save
+        from gbeam.figures import figures_of
+        from gbeam.plots import write_figures
 
         answer.save(hidden / f"{stem}.nc")
-        for name, draw in figures(answer).items():
-            save(draw(), hidden, re.sub(r"[^\w.-]+", "", name), f"gbeam {verb}")
+        named = {re.sub(r"[^\w.-]+", "", name): each for name, each in figures_of(answer).items()}
+        write_figures(named, hidden, f"gbeam {verb}")
         if report:
             answer.report(hidden / f"{stem}.html")
         if more is not None:
@@ -124,7 +148,7 @@ def show_found(
 
     files = [] if folder is None else publish(folder, make)
     assert answer.provenance is not None  # it is of a scenario
-    show(words.text(answer), signed(words.to_json(answer, files), answer.provenance), json)
+    show(words.text(answer), signed(facts(answer, files=files), answer.provenance), json)
     if not json:
         if written is not None:
             print(f"\n{written} has these values")

@@ -40,7 +40,7 @@ def variable(dims: tuple[str, ...], values: Any, units: str, long_name: str, **m
     return Variable(dims, np.asarray(values), {"units": units, "long_name": long_name} | frame | more)
 
 
-def words(dims: tuple[str, ...], values: list[str] | tuple[str, ...], long_name: str) -> Variable:
+def words(dims: tuple[str, ...], values: Any, long_name: str) -> Variable:
     """Return a variable of text."""
     return Variable(dims, np.array(values, dtype=object), {"long_name": long_name})
 
@@ -59,17 +59,6 @@ def coordinate(name: str, values: Any, units: str, long_name: str) -> dict[str, 
 def labels(name: str, values: list[str] | tuple[str, ...]) -> dict[str, Variable]:
     """Return a coordinate of text along its own dimension, by name."""
     return {name: Variable((name,), np.array(values, dtype=object), {})}
-
-
-def whole_flight(whole: tuple[float, float] | None) -> dict[str, Variable]:
-    """First and last time of a whole flight, s, of which a result is a part; nothing where it is none."""
-    if whole is None:
-        return {}
-    first, last = whole
-    return {
-        "whole_from": variable((), first, "s", "first time of the whole flight"),
-        "whole_to": variable((), last, "s", "last time of the whole flight"),
-    }
 
 
 def thinned(group: Group, every: int) -> Group:
@@ -101,6 +90,3 @@ def known_attrs(attrs: dict[str, Any]) -> dict[str, Any]:
 
 def _unknown(values: Any) -> bool:
     return values.dtype.kind == "f" and values.size > 0 and bool(np.isnan(values).all())
-
-
-AXIS = labels("axis", ["x", "y", "z"])

@@ -9,50 +9,34 @@ without groups. Variables are SI and carry ``units``, ``long_name`` and, for vec
 from __future__ import annotations
 
 import os
+import shutil
+import tempfile
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from gbeam.io.groups import Group, Variable, thinned
 from gbeam.io.hdf5 import write_groups
-from gbeam.io.layout.comparisons import comparison_group
-from gbeam.io.layout.declared import whole_group
-from gbeam.io.layout.machine import plan_group
-from gbeam.io.layout.responses import response_group
-from gbeam.io.layout.studies import fit_group, optimum_group, sensitivity_group, shaping_group, sweep_group
-from gbeam.io.layout.tables import deflection_group, models_group, placement_group, state_space_group
+from gbeam.io.layout import whole_group
 from gbeam.io.provenance import provenance_attrs, provenance_variables
-from gbeam.results.cases import Sensitivity, Sweep
-from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
+from gbeam.io.special import deflection_group, plan_group, response_group, sweep_group
+from gbeam.results.cases import Sweep
+from gbeam.results.equilibrium import Deflection
 from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.placement import Placement
 from gbeam.results.imitation.plan import MachinePlan
-from gbeam.results.modal import Campbell, Modes
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
-from gbeam.results.searches import Fit, Optimum, ShapedCommand
-from gbeam.results.state_space import StateSpace
-from gbeam.results.study import ModelStudy, Study
+from gbeam.results.study import Study
 
 FACTS = "facts"  # the variable of the root with the figures as JSON
+# Of kinds whose file has more than their declared fields.
 _GROUPS: dict[type, Callable[[Any], Group]] = {
     Response: response_group,
-    Comparison: comparison_group,
     Deflection: deflection_group,
-    Modes: whole_group,
-    Campbell: whole_group,
-    Critical: whole_group,
-    CriticalMap: whole_group,
-    Fit: fit_group,
-    Optimum: optimum_group,
     MachinePlan: plan_group,
-    ModelStudy: models_group,
-    Placement: placement_group,
-    Sensitivity: sensitivity_group,
-    ShapedCommand: shaping_group,
-    StateSpace: state_space_group,
     Sweep: sweep_group,
 }
 
@@ -90,7 +74,7 @@ def to_xarray(result: Any) -> Any:
 
 
 def _group(result: Result, *, every: bool) -> Group:
-    group = _GROUPS[type(result)](result)
+    group = _GROUPS.get(type(result), whole_group)(result)
     return thinned(group, result.kept_every) if isinstance(result, (Response, Comparison)) and not every else group
 
 
@@ -106,3 +90,23 @@ def _study(study: Study, *, every: bool) -> dict[str, Group]:
     groups |= {f"motions/{name}": _group(response, every=every) for name, response in study.responses.items()}
     groups |= {f"comparisons/{each.centrifuge}": _group(each, every=every) for each in study.comparisons}
     return groups
+
+
+_ROOM = 3 * 2**26  # bytes: stack and heap of a thread of zarr
+
+
+def write_zarr(sweep: Sweep, path: str | os.PathLike[str]) -> None:
+    """Write a sweep as a Zarr store, which ``xarray.open_zarr`` opens, whole or not at all."""
+    import zarr  # noqa: F401  # xarray takes one that cannot be loaded for one that is not installed
+
+    bytearray(_ROOM)  # a thread that lacks it is waited for without end: a MemoryError comes first
+    final = Path(path)
+    hidden = Path(tempfile.mkdtemp(prefix=f".{final.name}-", dir=final.parent))
+    try:
+        # Format 2 has strings of any length that every reader knows.
+        sweep.to_xarray().to_zarr(hidden / final.name, mode="w", zarr_format=2, consolidated=True)
+        if final.exists():
+            os.rename(final, hidden / "replaced")
+        os.rename(hidden / final.name, final)
+    finally:
+        shutil.rmtree(hidden, ignore_errors=True)

@@ -24,6 +24,7 @@ from gbeam.mechanics.fields.rotation import Field, Strains
 from gbeam.mechanics.models import KINDS, Kind, Model
 from gbeam.mechanics.structure import Sections, Source, Structure
 from gbeam.motion.profiles.piecewise import constant
+from gbeam.structure.attachments import TIP
 from gbeam.structure.beam import Beam
 from gbeam.structure.plausibility import implausible_beam, refuse_disparate
 
@@ -183,6 +184,9 @@ def _stations(beam: Beam, stations: ArrayLike) -> Array:
     for i, x in enumerate(given):
         if not 0 <= x <= beam.length:
             raise InputError(f"stations[{i}]", f"is {x:g} m, off the beam", f"give 0 to {beam.length:g} m")
+    named = [at for name, at in beam.named_points.items() if name != TIP and at < beam.length]
+    if named:  # among the others, from root to tip
+        given = np.unique(np.concatenate([given, named]))
     return np.append(given[given < beam.length], beam.length)
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+import shutil
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 
 from gbeam.printable import json_printable
-from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
+from gbeam.results.errors import ErrorEstimate
 from gbeam.results.parts import yield_margin
 from gbeam.results.result import Result
 
@@ -33,8 +34,16 @@ def _plain(value: Any) -> Any:
 
 
 def columns(heads: list[str], rows: list[list[str]]) -> list[str]:
-    """Lines of a table, flush right but for its first column."""
+    """Lines of a table, flush right but for its first column; on a narrower terminal each row in lines of its own."""
     widths = [max(len(row[k]) for row in [heads, *rows]) for k in range(len(heads))]
+    room = shutil.get_terminal_size((0, 0)).columns  # zero where nobody says: a file takes any width
+    if 0 < room < sum(widths) + 2 * len(widths):
+        beside = max(map(len, heads))
+        folded: list[str] = []
+        for first, *others in rows:
+            named = zip(heads[1:], others, strict=True)
+            folded += [first, *(f"  {head:<{beside}}  {cell}" for head, cell in named if cell)]
+        return folded
     cells = [
         [row[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(row[1:], widths[1:], strict=True))]
         for row in [heads, *rows]
@@ -50,11 +59,6 @@ def xyz(values: Iterable[float]) -> dict[str, float]:
 def ends(span: tuple[float, float]) -> dict[str, float]:
     """First and last time of a stretch, s."""
     return dict(zip(("start", "end"), span, strict=True))
-
-
-def xyz_lists(values: Any) -> dict[str, list[float]]:
-    """The components of vectors (s, 3) by their axes, each a list."""
-    return dict(zip("xyz", values.T.tolist(), strict=True))
 
 
 def number(value: float, digits: int = 4) -> str:
@@ -77,13 +81,6 @@ def error_words(errors: ErrorEstimate) -> str:
     known = sorted(((size, name) for name, size in parts.items() if size > 0), reverse=True)
     made = ", ".join(f"{name} {number(100 * size, 2)}" for size, name in known)
     return f"{percent(errors.total)}{f' ({made})' if len(known) > 1 else ''}"
-
-
-def frequency_errors(errors: FrequencyErrors | None, count: int) -> list[dict[str, float]]:
-    """Errors of frequencies, mode by mode; NaN where there is no estimate."""
-    if errors is None:
-        return [dict.fromkeys(PARTS, math.nan) for _ in range(count)]
-    return [{name: float(values[i]) for name, values in errors.parts.items()} for i in range(count)]
 
 
 def tidy(values: Iterable[float], size: float) -> list[float]:

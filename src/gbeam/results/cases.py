@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.results.declared import BESIDE, declared, fact, labels, quantity, rows
 from gbeam.results.imitation.criteria import EXCEEDED, NOT_ACCEPTED
 from gbeam.results.result import Figured, Flags, Floats, Part
 
@@ -69,24 +70,22 @@ ANSWERED = (NOT_ACCEPTED, EXCEEDED, "limits exceeded")
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Parameter(Part):
-    """One value of the scenario that varies.
+    """One value of the scenario that varies."""
 
-    Parameters
-    ----------
-    path : str
-        Its key, such as ``motion.centrifuge.arm``.
-    values : (n,)
-        Numbers in `unit`, or words.
-    unit : str
-        As written, such as ``g/s``; the SI unit where none was; empty for words and plain numbers.
-    drawn : str
-        The distribution that the values are drawn from; empty for a grid.
-    """
+    path: str = quantity("", "its key, such as motion.centrifuge.arm")
+    values: NDArray[Any] = quantity("", "numbers in the unit, or words", "value")
+    unit: str = quantity(
+        "",
+        "unit as written, such as g/s; the SI unit where none was; empty for words and plain numbers",
+        default="",
+    )
+    drawn: str = quantity("", "distribution that the values are drawn from; empty for a grid", key=None, default="")
 
-    path: str
-    values: NDArray[Any]
-    unit: str = ""
-    drawn: str = ""
+    @property
+    @declared("", "distribution that the values are drawn from", role="fact")
+    def distribution(self) -> str | None:
+        """The distribution; None for a grid."""
+        return self.drawn or None
 
     @property
     def numeric(self) -> bool:
@@ -100,36 +99,20 @@ class Parameter(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
+class Measured(Part):
+    """A figure of every case."""
+
+    unit: str = quantity("", "its unit; empty where it has none")
+    values: Floats = quantity(BESIDE, "values along the parameters, in their order", "case")
+
+
+def _bounds(values: Floats) -> dict[str, Any]:
+    return dict(zip(BOUNDS, np.moveaxis(values, -1, 0), strict=True))
+
+
+@dataclass(frozen=True, repr=False, eq=False)
 class Sweep(Figured):
     """Figures of many cases of one scenario.
-
-    Parameters
-    ----------
-    title : str
-        Of the scenario.
-    verb : str
-        Whose figures they are: run, static, modes, critical-speed, plan, place.
-    parameters : tuple of Parameter
-        Those of a grid span one dimension each, in order; all that are drawn share the last, ``sample``.
-    measures : mapping of str to (...) array
-        By the measure's name; NaN where the case has none.
-    units : mapping of str to str
-        Of the measures; empty where there is none.
-    outcome : (...) array of str
-        Of each case: that of its verb (done, diverged, not converged), ``not accepted`` where limits of acceptance are
-        not kept, ``machine limits exceeded`` or, of plan and place, ``limits exceeded``, ``refused`` where the scenario
-        does not allow its values, ``failed`` where the computation broke down, ``pending`` where it has not been
-        computed.
-    message : (...) array of str
-        Why a case is not done, or which limits it does not keep.
-    histories : mapping of str to (..., t) array
-        At the times `time`, which all cases share; NaN where the case has no value. Units are in `units`.
-    time : (t,)
-        s.
-    statistics : mapping of str to Statistics
-        Of measures and, at every time, of histories, where something is drawn: at every point of the grid.
-    indices : mapping of str to Indices
-        Sobol indices of the measures, of what the sampler saltelli draws.
 
     Examples
     --------
@@ -140,24 +123,80 @@ class Sweep(Figured):
     [0.432 0.467 0.499] Hz
     """
 
-    title: str
-    verb: str
-    parameters: tuple[Parameter, ...]
-    measures: Mapping[str, Floats]
-    units: Mapping[str, str]
-    outcome: NDArray[Any]
-    message: NDArray[Any]
-    histories: Mapping[str, Floats] = field(default_factory=dict)
-    time: Floats = field(default_factory=lambda: np.empty(0))
-    statistics: Mapping[str, Statistics] = field(default_factory=dict)
-    indices: Mapping[str, Indices] = field(default_factory=dict)
+    title: str = fact("title of the scenario")
+    verb: str = fact("question that the figures answer")
+    parameters: tuple[Parameter, ...] = rows(
+        "values that vary", "parameter",
+        note="those of a grid span one dimension each, in order; all that are drawn share the last, sample",
+    )  # fmt: skip
+    measures: Mapping[str, Floats] = fact("figures by name", key=None, note="NaN where the case has none")
+    units: Mapping[str, str] = fact("units of measures and histories by name", key=None)
+    outcome: NDArray[Any] = quantity(
+        "",
+        "how each case ended",
+        "case",
+        key="outcomes",
+        note="as its verb: done, diverged, not converged; not accepted where limits of acceptance are not kept; "
+        "machine limits exceeded or, of plan and place, limits exceeded; refused where the scenario does not allow its "
+        "values; failed where the computation broke down; pending where it has not been computed",
+    )
+    message: NDArray[Any] = quantity(
+        "", "why a case is not done, or which limits it does not keep", "case", key="messages"
+    )
+    histories: Mapping[str, Floats] = fact(
+        "histories by name", key=None, note="at `time`, NaN where the case has no value", default_factory=dict
+    )
+    time: Floats = quantity("s", "times of the histories", "time", default_factory=lambda: np.empty(0))
+    statistics: Mapping[str, Statistics] = fact(
+        "statistics of measures and histories, where something is drawn: at every point of the grid",
+        key=None,
+        default_factory=dict,
+    )
+    indices: Mapping[str, Indices] = fact(
+        "Sobol indices of the measures, of what the sampler saltelli draws", key=None, default_factory=dict
+    )
 
     @property
+    @declared("", "figures by name", "measure", role="rows", key="measures")
+    def measured(self) -> Mapping[str, Measured]:
+        """The measures by name, with their units."""
+        return {name: Measured(self.units[name], values) for name, values in self.measures.items()}
+
+    @property
+    @declared("", "units of the histories by name", role="fact", key="histories")
+    def recorded(self) -> Mapping[str, Mapping[str, str]]:
+        """The histories' units by name; their values are in files only."""
+        return {name: {"unit": self.units[name]} for name in self.histories}
+
+    @property
+    @declared("", "estimates by name with their bounds; lists along the grid", role="fact", key="statistics")
+    def estimates(self) -> Mapping[str, Mapping[str, Any]]:
+        """Every estimate by name with its bounds; lists along the grid, and along the times of a history."""
+        return {
+            name: {"draws": each.count, **{of: _bounds(each[of]) for of in each.names}}
+            for name, each in self.statistics.items()
+        }
+
+    @property
+    @declared("", "Sobol indices by measure, parameter and order; lists along the grid", role="fact", key="indices")
+    def shares(self) -> Mapping[str, Mapping[str, Any]]:
+        """First and total index of every parameter with its bounds; lists along the grid."""
+        return {
+            name: {
+                path: {order: _bounds(each.values[..., k, i, :]) for i, order in enumerate(ORDERS)}
+                for k, path in enumerate(each.parameters)
+            }
+            for name, each in self.indices.items()
+        }
+
+    @property
+    @declared("", "dimensions of every list", role="fact")
     def dimensions(self) -> tuple[str, ...]:
         """Names of the dimensions of every array."""
         return tuple(dict.fromkeys(parameter.dimension for parameter in self.parameters))
 
     @property
+    @declared("", "how many cases ended how", role="fact")
     def counts(self) -> dict[str, int]:
         """How many cases ended how; ``done`` first."""
         names, numbers = np.unique(self.outcome.astype(str), return_counts=True)
@@ -189,40 +228,31 @@ class Sweep(Figured):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
+class Effect(Part):
+    """What a parameter does to a figure."""
+
+    path: str = quantity("", "path in the scenario")
+    value: float = quantity(BESIDE, "value of the parameter")
+    unit: str = quantity("", "its SI unit")
+    derivative: float = quantity("", "derivative, SI")
+    relative: float = quantity("", "relative change of the figure over that of the parameter")
+    error: float = quantity("", "how far differences of two orders are apart; none of an exact derivative")
+    method: str = quantity("", "exact or difference")
+    kink: bool = quantity("", "whether the slopes on either side differ")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Effects(Part):
+    """A figure, and what the parameters do to it."""
+
+    value: float = quantity(BESIDE, "value of the figure")
+    unit: str = quantity("", "its SI unit")
+    parameters: tuple[Effect, ...] = rows("effects of the parameters, the largest first", "parameter")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
 class Sensitivity(Figured):
     """Derivatives of figures of one scenario with respect to physical values in it.
-
-    Parameters
-    ----------
-    title : str
-        Of the scenario.
-    verb : str
-        Whose figures they are.
-    measures : tuple of str
-    units : tuple of str
-        SI, of the measures.
-    figures : (m,)
-        The measures' values.
-    parameters : tuple of str
-        Paths in the scenario.
-    parameter_units : tuple of str
-        SI.
-    values : (p,)
-        Of the parameters.
-    derivatives : (m, p)
-        SI.
-    errors : (m, p)
-        Of those derivatives that are differences: how far the formulas of second and fourth order are apart. NaN where
-        the derivative is exact.
-    methods : tuple of str
-        Of each parameter: ``exact``, the derivative of the discrete solution, or ``difference``.
-    kinks : (m, p) of bool
-        Whether the slopes on either side differ, so that the derivative is their mean.
-    run_error : float
-        Estimated error of the runs that the figures are read from, the largest of displacement and loads, relative to
-        their largest; NaN of other verbs. Exact derivatives are those of these runs and have no error of their own.
-    not_varied : tuple of str
-        Values of the scenario that may not be a little more or less, and why; they have no derivative.
 
     Examples
     --------
@@ -232,22 +262,70 @@ class Sensitivity(Figured):
     [[-2.]]
     """
 
-    title: str
-    verb: str
-    measures: tuple[str, ...]
-    units: tuple[str, ...]
-    figures: Floats
-    parameters: tuple[str, ...]
-    parameter_units: tuple[str, ...]
-    values: Floats
-    derivatives: Floats
-    errors: Floats
-    methods: tuple[str, ...]
-    kinks: Flags
-    run_error: float = np.nan
-    not_varied: tuple[str, ...] = ()
+    title: str = fact("title of the scenario")
+    verb: str = fact("question that the figures answer")
+    measures: tuple[str, ...] = labels("names of the figures", "measure")
+    units: tuple[str, ...] = quantity("", "SI unit of the measure", "measure", name="figure_unit", key=None)
+    figures: Floats = quantity("", "value of the measure, in its unit", "measure", name="figure", key=None)
+    parameters: tuple[str, ...] = labels("paths in the scenario", "parameter")
+    parameter_units: tuple[str, ...] = quantity(
+        "", "SI unit of the parameter", "parameter", name="value_unit", key=None
+    )
+    values: Floats = quantity("", "value of the parameter, in its unit", "parameter", name="value", key=None)
+    derivatives: Floats = quantity(
+        "",
+        "derivative, in the measure's unit over the parameter's",
+        "measure",
+        "parameter",
+        name="derivative",
+        key=None,
+    )
+    errors: Floats = quantity(
+        "",
+        "how far differences of two orders are apart; none of an exact derivative",
+        "measure",
+        "parameter",
+        name="error",
+        key=None,
+    )
+    methods: tuple[str, ...] = quantity("", "exact derivative, or difference", "parameter", name="method", key=None)
+    kinks: Flags = quantity(
+        "",
+        "whether the slopes on either side differ",
+        "measure",
+        "parameter",
+        name="kink",
+        key=None,
+        flags=("smooth", "kink"),
+        note="the derivative is then their mean",
+    )
+    run_error: float = fact(
+        "estimated error of the runs that the figures are read from",
+        note="the largest of displacement and loads, relative to their largest; NaN of other verbs. Exact derivatives "
+        "are those of these runs and have no error of their own",
+        default=np.nan,
+    )
+    not_varied: tuple[str, ...] = fact(
+        "values of the scenario that may not be a little more or less, and why; they have no derivative", default=()
+    )
 
     @property
+    @declared("", "figures, and the parameters that matter most to each first", "measure", role="rows", name=None,
+              key="measures")  # fmt: skip
+    def effects(self) -> Mapping[str, Effects]:
+        """Every figure by its name, with the parameters' effects on it, the largest first."""
+        return {
+            name: Effects(float(self.figures[k]), self.units[k], tuple(self._effect(k, j) for j in self.ranked(name)))
+            for k, name in enumerate(self.measures)
+        }
+
+    def _effect(self, k: int, j: int) -> Effect:
+        path, value, unit, method = self.parameters[j], self.values[j], self.parameter_units[j], self.methods[j]
+        slope, relative, error = (float(each[k, j]) for each in (self.derivatives, self.relative, self.errors))
+        return Effect(path, float(value), unit, slope, relative, error, method, bool(self.kinks[k, j]))
+
+    @property
+    @declared("", "relative change of the measure over that of the parameter", "measure", "parameter", key=None)
     def relative(self) -> Floats:
         """Relative change of each figure over that of each parameter, p/f ∂f/∂p, (m, p); NaN where a figure is zero."""
         size = np.where(self.figures == 0, np.nan, self.figures)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from gbeam.results.declared import declared, fact, part, quantity
+from gbeam.results.declared import INSIDE, declared, fact, part, quantity
 from gbeam.results.declared import quantity as entry  # a critical value has a field of that name
 from gbeam.results.errors import MODEL, SHAPES, THEORY, TOTAL, ErrorEstimate, Errors
+from gbeam.results.facts import at_place
 from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Figured, Floats, Part, Result, brief
@@ -42,6 +43,12 @@ class Deflection(Figured):
     errors: Errors = part("of displacement, root loads and stress", name=None, default_factory=Errors)
 
     @property
+    @declared("", "forces, moments and stresses of the sections", role="part", name=None, key="loads", optional=True)
+    def carried(self) -> Loads | None:
+        """Loads of the sections, without a dimension of time."""
+        return None if self.loads is None else replace(at_place(self.loads, 0), stations=self.loads.stations)
+
+    @property
     @declared("m", "displacement of the tip relative to the base axes", "axis", name=None)
     def tip(self) -> Floats:
         """Displacement of the tip, (3,) m."""
@@ -56,6 +63,9 @@ class Deflection(Figured):
         return self._with_warnings(f"Deflection{of} ({self.model}) at {self.time:.4g} s: tip ({tip}) mm{error}; {rest}")
 
 
+LOST = {"critical_speed": "rad/s", "critical_acceleration": "m/s^2", "critical_load_factor": ""}
+
+
 @dataclass(frozen=True, repr=False, eq=False)
 class Critical(Result):
     """Where the stiffness about the relative equilibrium stops being positive definite, or something grows."""
@@ -68,12 +78,20 @@ class Critical(Result):
     direction: str = fact("direction of the mode that is lost", note="empty where there is none")
     reason: str = fact("the answer as a sentence")
     model: str = fact("kind of the model")
+    motion: str = fact("name of the motion, where one is meant", name=None, default="")
     errors: ErrorEstimate = part(
         "errors of the value",
         name="error_",
         default_factory=ErrorEstimate,
         note="that of the model is infinite where the exact one keeps its equilibrium to three times the value",
     )
+
+    @property
+    @declared(LOST, "critical value by what is raised", role="fact", name=None, key=INSIDE)
+    def by_name(self) -> dict[str, float | None]:
+        """The critical value by what is raised."""
+        names = dict(zip(("hub rate", "acceleration along x", "load factor"), LOST, strict=True))
+        return {names[self.quantity]: self.value}
 
     @property
     @declared("", "estimated error from too few shapes", name=None)

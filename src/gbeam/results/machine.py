@@ -3,46 +3,35 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from gbeam.results.declared import BESIDE, declared, fact, part, rows
+from gbeam.results.declared import quantity as entry  # a limit has a field of that name
 from gbeam.results.result import Flags, Floats, Part
 
 
 @dataclass(frozen=True)
 class LimitUse:
-    """How much of one of its limits a machine uses.
+    """How much of one of its limits a machine uses."""
 
-    Parameters
-    ----------
-    axis : str
-        axis 1, axis 2, axis 3 or arm.
-    quantity : str
-        rate, acceleration, jerk or power.
-    unit : str
-        Of `used` and `allowed`.
-    used : float
-        Largest size.
-    allowed : float
-        Infinite where no limit is given.
-    time : float
-        When it is used, s.
-    """
-
-    axis: str
-    quantity: str
-    unit: str
-    used: float
-    allowed: float
-    time: float
+    axis: str = entry("", "axis 1, axis 2, axis 3 or arm")
+    quantity: str = entry("", "rate, acceleration, jerk or power")
+    unit: str = entry("", "unit of both")
+    used: float = entry(BESIDE, "largest size")
+    allowed: float = entry(BESIDE, "limit", note="infinite where none is given")
+    time: float = entry("s", "time of its use")
 
     @property
+    @declared("", "used over allowed")
     def share(self) -> float:
         """Used over allowed; zero where no limit is given."""
         return self.used / self.allowed
 
     @property
+    @declared("", "whether more is used than allowed")
     def exceeded(self) -> bool:
         """Whether more is used than allowed, beyond rounding."""
         return self.share > 1 + 1e-9
@@ -56,32 +45,16 @@ class LimitUse:
 
 @dataclass(frozen=True)
 class Shortfall:
-    """A stretch of time in which a machine cannot make the load of the flight.
+    """A stretch of time in which a machine cannot make the load of the flight."""
 
-    Parameters
-    ----------
-    start, end : float
-        s.
-    reason : str
-        below idle, below gravity, across below gravity, too sharp for the arm.
-    time : float
-        When it is worst, s.
-    reference, possible : float
-        At that time: the flight's load, and the nearest that the machine can make.
-    unit : str
-        Of both; m/s^4 where the load's second derivative is what cannot be made.
-    remedy : str
-        The smallest change that would make it reachable.
-    """
-
-    start: float
-    end: float
-    reason: str
-    time: float
-    reference: float
-    possible: float
-    unit: str
-    remedy: str
+    start: float = entry("s", "start of a stretch in which the flight's load cannot be made", name="from")
+    end: float = entry("s", "its end", name="to")
+    reason: str = entry("", "why it cannot", note="below idle, below gravity, across below gravity, too sharp")
+    time: float = entry("s", "when it is worst")
+    reference: float = entry(BESIDE, "load of the flight then")
+    possible: float = entry(BESIDE, "the nearest that the machine can make then")
+    unit: str = entry("", "unit of reference and possible", note="m/s^4 of a load's second derivative")
+    remedy: str = entry("", "smallest change that would help")
 
     def __str__(self) -> str:
         if self.unit == "m/s^4":  # it may yet be made: axis 2 pays for it
@@ -93,56 +66,81 @@ class Shortfall:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
+class Held(Part):
+    """A stretch in which a target is held instead of the flight's load."""
+
+    start: float = entry("s", "start of a stretch in which the target is held", name="from")
+    end: float = entry("s", "its end", name="to")
+    reason: str = entry("", "why it is held")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
 class AxesResult(Part):
-    """A three-axis centrifuge over time.
+    """A three-axis centrifuge over time."""
 
-    Parameters
-    ----------
-    angle, rate, acceleration : (t, 3)
-        Of axes 1, 2, 3; rad, rad/s, rad/s².
-    reference, actual : (t, 3)
-        Load at the control point, base axes, m/s²: the target, and what the axes make.
-    not_followed : (t,) bool
-        Where the target is not the flight's load, spin-up and spin-down among them.
-    episodes : tuple of (start s, end s, reason)
-        The stretches of the flight's time in which it is not.
-    limits : tuple of LimitUse
-        Rate, acceleration and jerk of every axis, used and allowed.
-    shortfalls : tuple of Shortfall
-        Where the machine cannot make the flight's load, by how much, and what would help.
-    control_point : float
-        From the root along the beam, m.
-    warnings : tuple of str
-        Where the inverse does not keep what it promises, by how much and why.
-    idle : float
-        Least load that the target is held up to, m/s²; zero where there is none.
-    jerk : (t, 3) or None
-        Of axes 1, 2, 3, rad/s³.
-    span : tuple of float
-        First and last time of the flight, s; before it the machine spins up, and after it it spins down.
-    start : str
-        How the machine begins: rest, pre-yawed or idle.
-    flight : (t, 3) or None
-        The flight's own load, base axes, m/s², which the target rounds off; before and after the flight that of its
-        first and last time.
-    """
+    angle: Floats = entry("rad", "angle of the centrifuge's axes", "time", "machine_axis", name="axis_angle", key=None)
+    rate: Floats = entry("rad/s", "rate of the centrifuge's axes", "time", "machine_axis", name="axis_rate", key=None)
+    acceleration: Floats = entry(
+        "rad/s^2", "acceleration of the centrifuge's axes", "time", "machine_axis", name="axis_acceleration", key=None
+    )
+    reference: Floats = entry(
+        "m/s^2", "load of the target at the control point", "time", "axis", name="load_reference", key=None
+    )
+    actual: Floats = entry(
+        "m/s^2", "load that the axes make at the control point", "time", "axis", name="load_actual", key=None
+    )
+    not_followed: Flags = entry(
+        "",
+        "whether the target is held instead of the flight's load",
+        "time",
+        key=None,
+        flags=("follows_flight", "held"),
+        note="spin-up and spin-down among them",
+    )
+    episodes: tuple[tuple[float, float, str], ...] = entry(
+        "", "stretches in which it is: start s, end s, reason", "episode", name=None, key=None
+    )
+    limits: tuple[LimitUse, ...] = rows("limits of every axis, used and allowed", "limit", name=None, default=())
+    shortfalls: tuple[Shortfall, ...] = rows(
+        "where the machine cannot make the flight's load", "shortfall", name="shortfall_", default=()
+    )
+    control_point: float = entry("m", "control point, from the root along the beam", default=math.nan)
+    warnings: tuple[str, ...] = entry(
+        "", "where the inverse does not keep what it promises", "warning", name=None, key=None, default=()
+    )
+    idle: float = entry(
+        "m/s^2", "least load that the target is held up to; 0 where there is none", key=None, default=0.0
+    )
+    jerk: Floats | None = entry(
+        "rad/s^3", "jerk of the centrifuge's axes", "time", "machine_axis", name="axis_jerk", key=None, default=None
+    )
+    span: tuple[float, float] = entry(
+        "s",
+        "time of the flight, between spin-up and spin-down",
+        "ends",
+        name="flight",
+        key=None,
+        default=(-math.inf, math.inf),
+    )
+    start: str = fact("how the machine begins", name=None, note="rest, pre-yawed or idle", default="idle")
+    flight: Floats | None = entry(
+        "m/s^2",
+        "load of the flight itself",
+        "time",
+        "axis",
+        name="load_flight",
+        key=None,
+        note="which the target rounds off; before and after the flight that of its first and last time",
+        default=None,
+    )
 
-    angle: Floats
-    rate: Floats
-    acceleration: Floats
-    reference: Floats
-    actual: Floats
-    not_followed: Flags
-    episodes: tuple[tuple[float, float, str], ...]
-    limits: tuple[LimitUse, ...] = ()
-    shortfalls: tuple[Shortfall, ...] = ()
-    control_point: float = math.nan
-    warnings: tuple[str, ...] = ()
-    idle: float = 0.0
-    jerk: Floats | None = None
-    span: tuple[float, float] = (-math.inf, math.inf)
-    start: str = "idle"
-    flight: Floats | None = None
+    @property
+    @declared(
+        "", "stretches in which the target is held", "episode", role="rows", name="not_followed_", key="not_followed"
+    )
+    def held(self) -> tuple[Held, ...]:
+        """The episodes as records."""
+        return tuple(Held(*each) for each in self.episodes)
 
     @property
     def within_limits(self) -> bool:
@@ -178,6 +176,85 @@ class AxesResult(Part):
     def tracking_error(self) -> Floats:
         """Size of actual − reference, (t,) m/s²."""
         return np.asarray(np.linalg.norm(self.actual - self.reference, axis=1))
+
+
+@dataclass(frozen=True)
+class Peak:
+    """Largest size of a history of a rotation about an axis."""
+
+    max_abs: float = entry(BESIDE, "largest size")
+    time_of_max: float = entry("s", "its time")
+
+
+@dataclass(frozen=True)
+class AxisPeaks:
+    """Largest rate and acceleration of an axis."""
+
+    rate: Peak = part("largest rate", unit="rad/s")
+    acceleration: Peak = part("largest acceleration", unit="rad/s^2")
+
+
+@dataclass(frozen=True)
+class Tracking:
+    """Largest error of the load while the target is the flight's; NaN where the load was followed at no time."""
+
+    max: float = entry("m/s^2", "largest error")
+    time_of_max: float = entry("s", "its time")
+    fraction: float = entry("", "that of the load then")
+
+
+class Driven:
+    """A result with the motion of a centrifuge's axes, if any, over its times."""
+
+    time: Floats
+    axes: AxesResult | None
+
+    @property
+    @declared("s", "time from the start to the flight", role="fact", name=None, optional=True)
+    def spin_up(self) -> float:
+        """Time from the start to the flight, s; zero at idle, NaN without a machine."""
+        return math.nan if self.axes is None else max(float(self.axes.span[0] - self.time[0]), 0.0)
+
+    @property
+    @declared("s", "time from the flight to the end", role="fact", name=None, optional=True)
+    def spin_down(self) -> float:
+        """Time from the flight to the end, s; zero at idle, NaN without a machine."""
+        return math.nan if self.axes is None else max(float(self.time[-1] - self.axes.span[1]), 0.0)
+
+    @property
+    @declared(
+        "", "largest rate and acceleration of every axis", "axis", role="rows", name=None, key="axes", optional=True
+    )
+    def axis_peaks(self) -> Mapping[str, AxisPeaks]:
+        """Largest rate and acceleration of every axis, by its number."""
+        if self.axes is None:
+            return {}
+        histories = zip(self.axes.rate.T, self.axes.acceleration.T, strict=True)
+        return {str(i): AxisPeaks(*(self._peak(each) for each in both)) for i, both in enumerate(histories, 1)}
+
+    @property
+    @declared("", "largest error of the load against the target", role="part", name=None, optional=True)
+    def tracking_error(self) -> Tracking | None:
+        """Largest error of the load against the target, whose corners are rounded; None without a machine."""
+        return None if self.axes is None else self._tracking(self.axes, self.axes.reference)
+
+    @property
+    @declared("", "largest error of the load against the flight's own", role="part", name=None, optional=True)
+    def flight_error(self) -> Tracking | None:
+        """Largest error of the load against the flight's own; None where that is not known."""
+        return None if self.axes is None or self.axes.flight is None else self._tracking(self.axes, self.axes.flight)
+
+    def _peak(self, values: Floats) -> Peak:
+        i = int(np.argmax(np.abs(values)))
+        return Peak(float(abs(values[i])), float(self.time[i]))
+
+    def _tracking(self, axes: AxesResult, aim: Floats) -> Tracking:
+        if axes.not_followed.all():
+            return Tracking(math.nan, math.nan, math.nan)
+        error = np.where(axes.not_followed, -1.0, np.linalg.norm(axes.actual - aim, axis=1))
+        i = int(np.argmax(error))
+        size = float(np.linalg.norm(aim[i]))
+        return Tracking(float(error[i]), float(self.time[i]), float(error[i]) / size if size > 0 else math.nan)
 
 
 @dataclass(frozen=True, repr=False, eq=False)

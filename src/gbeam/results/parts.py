@@ -3,85 +3,88 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, fields, replace
+from typing import ClassVar
 
 import numpy as np
 
+from gbeam.results.declared import BESIDE, INSIDE, declared, fact, part, quantity
 from gbeam.results.result import Floats, Part
+
+_SECTION_AXES = "S: axes of the deformed section"
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Outline(Part):
     """The beam's axis from root to tip over time, its size, and that of the machine or hub that carries it.
 
-    Parameters
-    ----------
-    points : (p,)
-        Positions along the straight beam, the first 0, the last the tip, m.
-    width, thickness : (p,)
-        Extent of the section along y and z, m.
-    round : bool
-        Whether the section is round.
-    bodies : (b, 2)
-        Position m and mass kg of each body on the beam.
-    time : (u,)
-        Some of the response's times, s.
-    displacement : (u, p, 3)
-        Of the points, relative to the base axes, m.
-    arm : float
-        Of a centrifuge, m; NaN where there is none.
-    radius : float
-        From a hub's axis to the root, m; NaN where there is none.
-    R_HB : (3, 3)
-        Rotation from base to hub axes.
-    attitude : (u, 4) or None
-        Of base axes that turn in flight: quaternions w, x, y, z of the rotation to the axes at the first time, by the
-        angular velocity given. The attitude at the first time, heading too, is not known. None without rates.
+    The attitude at the first time, heading too, is not known.
     """
 
-    points: Floats
-    width: Floats
-    thickness: Floats
-    round: bool
-    bodies: Floats
-    time: Floats
-    displacement: Floats
-    arm: float = math.nan
-    radius: float = math.nan
-    R_HB: Floats = field(default_factory=lambda: np.eye(3))
-    attitude: Floats | None = None
+    points: Floats = quantity(
+        "m",
+        "position of the point along the beam from the root",
+        "point",
+        role="coordinate",
+        note="the first 0, the last the tip",
+    )
+    width: Floats = quantity("m", "extent of the section along y", "point", name="outline_width")
+    thickness: Floats = quantity("m", "extent of the section along z", "point", name="outline_thickness")
+    round: bool = quantity("", "whether the section is round", name="outline_round")
+    bodies: Floats = quantity("", "position, m, and mass, kg, of each body", "body", "of", name=None)
+    time: Floats = quantity("s", "some of the times", "outline_time", role="coordinate")
+    displacement: Floats = quantity(
+        "m", "displacement of the beam's axis", "outline_time", "point", "axis", name="outline"
+    )
+    arm: float = quantity("m", "from axis 1 of the centrifuge to the control point", optional=True, default=math.nan)
+    radius: float = quantity("m", "from the hub's axis to the root", name="hub_radius", optional=True, default=math.nan)
+    R_HB: Floats = quantity(
+        "", "rotation from base axes to hub axes", "hub_axis", "axis", name=None, default_factory=lambda: np.eye(3)
+    )
+    attitude: Floats | None = quantity(
+        "",
+        "rotation (w, x, y, z) of the base axes since the first time, by the angular velocity given",
+        "outline_time",
+        "quaternion",
+        note="None without rates",
+        default=None,
+    )
+
+    @property
+    @declared("m", "position of the body from the root", "body")
+    def body_position(self) -> Floats:
+        """Positions of the bodies from the root, (b,) m."""
+        return self.bodies[:, 0]
+
+    @property
+    @declared("kg", "mass of the body", "body")
+    def body_mass(self) -> Floats:
+        """Masses of the bodies, (b,) kg."""
+        return self.bodies[:, 1]
+
+    @property
+    @declared("", "rotation from base axes (columns) to hub axes (rows)", "hub_axis", "axis")
+    def hub_mounting(self) -> Floats | None:
+        """Rotation from base to hub axes, (3, 3); None without a hub."""
+        return self.R_HB if np.isfinite(self.radius) else None
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Extremes(Part):
-    """Extreme values of histories and their times.
+    """Extreme values of histories and their times."""
 
-    Parameters
-    ----------
-    value : (...)
-        Unit of the history.
-    time : (...)
-        s.
-    """
-
-    value: Floats
-    time: Floats
+    value: Floats = quantity(BESIDE, "largest size, between steps", name=".", key="max_abs")
+    time: Floats = quantity("s", "time of that", name="time", key="time_of_max")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class VectorPeaks(Part):
-    """Largest sizes of histories of vectors.
+    """Largest sizes of histories of vectors."""
 
-    Parameters
-    ----------
-    components : Extremes
-        Of each component, (..., 3).
-    size : Extremes
-        Of the vector, (...).
-    """
+    json_rows: ClassVar[dict[str, str]] = {"axis": ""}
 
-    components: Extremes
-    size: Extremes
+    components: Extremes = part("of each component", "axis", name=None, key=INSIDE)
+    size: Extremes = part("of the vector")
 
     def __getitem__(self, place: int | slice) -> VectorPeaks:
         """The peaks at one place, or at some."""
@@ -90,25 +93,121 @@ class VectorPeaks(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
+class Highest(Part):
+    """Largest value along the beam."""
+
+    value: float = quantity(BESIDE, "largest value", key="max")
+    time: float = quantity("s", "its time", key="time_of_max")
+    station: float = quantity("m", "its place, from the root")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Lowest(Part):
+    """Smallest value along the beam."""
+
+    value: float = quantity(BESIDE, "smallest value", key="min")
+    time: float = quantity("s", "its time", key="time_of_min")
+    station: float = quantity("m", "its place, from the root")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class StressPeak(Highest):
+    """Largest size of the normal stress along the beam, and its extremes."""
+
+    tension: Highest = part("largest normal stress", unit="Pa")
+    compression: Lowest = part("smallest normal stress", unit="Pa")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
 class LoadPeaks(Part):
     """Peaks of what the sections of the beam carry, at the root (first) and the stations.
 
-    Parameters
-    ----------
-    force, moment : VectorPeaks
-        N, V_y, V_z, N, and torque, M_y, M_z, N m, axes of the sections, (s,). At the root their sizes are those of the
-        base's force and moment on the beam.
-    tension, compression : Extremes
-        Largest and smallest normal stress over the section, (s,) Pa; NaN where the extreme fibres are unknown.
-    beam_torque : Extremes or None
-        Largest size of the torque that the beam takes from a hub, () N m.
+    At the root the sizes of force and moment are those of the base's force and moment on the beam.
     """
 
-    force: VectorPeaks
-    moment: VectorPeaks
-    tension: Extremes
-    compression: Extremes
-    beam_torque: Extremes | None = None
+    json_rows: ClassVar[dict[str, str]] = {"section": "sections"}
+
+    force: VectorPeaks = part(
+        "N, V_y, V_z, axes of the sections", "section", unit="N", name="section_force_max_", key="force"
+    )
+    moment: VectorPeaks = part(
+        "torque, M_y, M_z, axes of the sections", "section", unit="N m", name="section_moment_max_", key="moment"
+    )
+    tension: Extremes = part(
+        "largest normal stress over the section", "section", unit="Pa", name="stress_tension_max_", key=None,
+        note="NaN where fibres are unknown",
+    )  # fmt: skip
+    compression: Extremes = part(
+        "smallest normal stress over the section", "section", unit="Pa", name="stress_compression_min_", key=None
+    )
+    beam_torque: Extremes | None = part(
+        "largest size of the torque that the beam takes from a hub", unit="N m", name=None, optional=True, default=None
+    )
+    stations: Floats = quantity(
+        "m", "position of the section along the beam from the root", "section", name=None, key="at",
+        default_factory=lambda: np.empty(0),
+    )  # fmt: skip
+    yield_strength: float | None = fact("yield strength of the material", "Pa", name=None, optional=True, default=None)
+
+    @property
+    @declared("N", "largest force that the base gives the root", role="part", name=None)
+    def root_force(self) -> VectorPeaks:
+        """Largest force of the base on the beam, N."""
+        return self.force[0]
+
+    @property
+    @declared("N m", "largest moment that the base gives the root", role="part", name=None)
+    def root_moment(self) -> VectorPeaks:
+        """Largest moment of the base on the beam, N m."""
+        return self.moment[0]
+
+    @property
+    @declared("Pa", "largest normal stress of the section", "section", name=None, key="tension", optional=True)
+    def section_tension(self) -> Floats:
+        """Largest normal stress of each section, (s,) Pa."""
+        return self.tension.value
+
+    @property
+    @declared("Pa", "smallest normal stress of the section", "section", name=None, key="compression", optional=True)
+    def section_compression(self) -> Floats:
+        """Smallest normal stress of each section, (s,) Pa."""
+        return self.compression.value
+
+    @property
+    @declared("", "least margin on yield of the section", "section", name=None, key="margin", optional=True)
+    def section_margin(self) -> Floats | None:
+        """Least margin on yield of each section, (s,); None where the strength is not known."""
+        return None if self.yield_strength is None else yield_margin(self.yield_strength, self.stress.value)
+
+    @property
+    @declared("Pa", "largest size of the normal stress", role="part", name=None, key="stress", optional=True)
+    def largest_stress(self) -> StressPeak | None:
+        """Largest size of the normal stress along the beam; None where fibres are unknown."""
+        if not np.isfinite(self.tension.value).all():
+            return None
+        tension, compression = self.tension.value.argmax(), self.compression.value.argmin()
+        k = self._stressed
+        return StressPeak(
+            *self._place(self.stress, k),
+            Highest(*self._place(self.tension, int(tension))),
+            Lowest(*self._place(self.compression, int(compression))),
+        )
+
+    @property
+    @declared("1", "least margin on yield", role="part", name=None, key="margin", optional=True)
+    def least_margin(self) -> Lowest | None:
+        """Least margin on yield, where the stress is largest; None where the strength or fibres are unknown."""
+        margin, k = self.section_margin, self._stressed
+        if margin is None or not np.isfinite(self.tension.value).all():
+            return None
+        return Lowest(float(margin[k]), float(self.stress.time[k]), float(self.stations[k]))
+
+    @property
+    def _stressed(self) -> int:
+        return int(self.stress.value.argmax())
+
+    def _place(self, extremes: Extremes, k: int) -> tuple[float, float, float]:
+        return float(extremes.value[k]), float(extremes.time[k]), float(self.stations[k])
 
     @property
     def stress(self) -> Extremes:
@@ -129,27 +228,41 @@ class Peaks(Part):
     accelerations, and the displacement is that of the model there. Loads and stress have no derivatives: near a peak
     they are the polynomial of sixth degree through seven steps. Where JAX traces a run, its peaks are the tip's
     largest samples.
-
-    Parameters
-    ----------
-    max_abs, time_of_max : (3,)
-        Of the tip's displacement along x, y, z, m, s.
-    residual_amplitude : (3,)
-        Half peak-to-peak of the same from the residual's start to the end, m; NaN where there is no such time.
-    max_size, time_of_max_size : float
-        Largest length of the tip's displacement, m, s.
-    displacement : VectorPeaks or None
-        Of all stations, (s,), m.
-    loads : LoadPeaks or None
     """
 
-    max_abs: Floats
-    time_of_max: Floats
-    residual_amplitude: Floats
-    max_size: float = math.nan
-    time_of_max_size: float = math.nan
-    displacement: VectorPeaks | None = None
-    loads: LoadPeaks | None = None
+    json_rows: ClassVar[dict[str, str]] = {"axis": "tip", "station": "stations"}
+
+    max_abs: Floats = quantity("m", "largest displacement of the tip, between steps", "axis", name="tip_max_abs")
+    time_of_max: Floats = quantity("s", "time of that displacement", "axis", name="tip_time_of_max")
+    residual_amplitude: Floats = quantity(
+        "m",
+        "half peak-to-peak of the tip from residual_from on",
+        "axis",
+        name="tip_residual_amplitude",
+        note="NaN where there is no such time",
+    )
+    max_size: float = quantity(
+        "m", "largest length of the tip's displacement", name="tip_max_size", key="tip.size.max_abs", default=math.nan
+    )
+    time_of_max_size: float = quantity(
+        "s", "time of that displacement", name="tip_time_of_max_size", key="tip.size.time_of_max", default=math.nan
+    )
+    displacement: VectorPeaks | None = part(
+        "of all stations", "station", unit="m", name=None, key=INSIDE, optional=True, default=None
+    )
+    loads: LoadPeaks | None = part("of the sections", name=".", optional=True, default=None)
+
+    @property
+    @declared("m", "largest length of the displacement", "station", key=None)
+    def station_max_size(self) -> Floats | None:
+        """Largest length of every station's displacement, (s,) m."""
+        return None if self.displacement is None else self.displacement.size.value
+
+    @property
+    @declared("s", "time of that displacement", "station", key=None)
+    def station_time_of_max_size(self) -> Floats | None:
+        """Time of that, (s,) s."""
+        return None if self.displacement is None else self.displacement.size.time
 
 
 def yield_margin(yield_strength: float, stress: Floats) -> Floats:
@@ -164,48 +277,52 @@ class Loads(Part):
 
     The outboard part of the beam acts on the inboard part with `force` and `moment` at the section's deformed
     position: a positive axial force is tension, a positive M_z bends towards +y, a positive M_y towards −z. A body
-    fixed to the beam at a station counts as outboard of it.
+    fixed to the beam at a station counts as outboard of it. The first of the sections is the root, the last the tip.
 
-    Parameters
-    ----------
-    stations : (s,)
-        From the root, m; the first is the root, the last the tip.
-    force, moment : (t, s, 3)
-        Base axes, N and N m.
-    section_force : (t, s, 3)
-        N, V_y, V_z in the axes of the deformed section, N.
-    section_moment : (t, s, 3)
-        Torque, M_y, M_z in the same axes, N m.
-    stress_tension, stress_compression : (t, s)
-        Largest and smallest normal stress over the section, N/A ± (|M_y| c_z/I_y + |M_z| c_y/I_z), of a round section
-        N/A ± √(M_y² + M_z²) c/I, Pa, with the section's extreme fibres c_y and c_z; NaN where these are unknown.
-    acceleration : (t, s, 3)
-        Of the stations in the world, base axes, m/s²; specific force where gravity acts.
-    beam_torque : (t,) or None
-        Torque about the hub's axis that the beam takes from the hub, N m.
-    drive_torque : (t,) or None
-        The same with the hub's own inertia, N m: what its drive supplies; None where the inertia is unknown.
-    root_fibre : (t,) or None
-        Normal stress at that extreme fibre of the root where it ranges most, Pa; None where a run is traced.
-    yield_strength : float or None
-        Of the material, Pa; None where it is not given.
-    fatigue_exponent : float
-        Of the material's Wöhler curve.
+    Stresses over the section are N/A ± (|M_y| c_z/I_y + |M_z| c_y/I_z), of a round section N/A ± √(M_y² + M_z²) c/I,
+    with the section's extreme fibres c_y and c_z; NaN where these are unknown.
     """
 
-    stations: Floats
-    force: Floats
-    moment: Floats
-    section_force: Floats
-    section_moment: Floats
-    stress_tension: Floats
-    stress_compression: Floats
-    acceleration: Floats
-    beam_torque: Floats | None = None
-    drive_torque: Floats | None = None
-    root_fibre: Floats | None = None
-    yield_strength: float | None = None
-    fatigue_exponent: float = math.nan
+    stations: Floats = quantity("m", "position of the section along the beam from the root", "section",
+                                role="coordinate", key="stations")  # fmt: skip
+    force: Floats = quantity("N", "force, base axes", "time", "section", "axis", name=None, key=None)
+    moment: Floats = quantity("N m", "moment, base axes", "time", "section", "axis", name=None, key=None)
+    section_force: Floats = quantity("N", "axial force and shear", "time", "section", "axis", frame=_SECTION_AXES)
+    section_moment: Floats = quantity(
+        "N m", "torque and bending moments", "time", "section", "axis", frame=_SECTION_AXES
+    )
+    stress_tension: Floats = quantity("Pa", "largest normal stress over the section", "time", "section")
+    stress_compression: Floats = quantity("Pa", "smallest normal stress over the section", "time", "section")
+    acceleration: Floats = quantity(
+        "m/s^2",
+        "acceleration in the world, base axes; specific force with gravity",
+        "time",
+        "section",
+        "axis",
+        key=None,
+    )
+    beam_torque: Floats | None = quantity(
+        "N m", "torque about the hub's axis that the beam takes", "time", optional=True, default=None
+    )
+    drive_torque: Floats | None = quantity(
+        "N m",
+        "the same with the hub's own inertia: the drive's",
+        "time",
+        key=None,
+        note="None where the inertia is unknown",
+        default=None,
+    )
+    root_fibre: Floats | None = quantity(
+        "Pa",
+        "normal stress at the extreme fibre of the root where it ranges most",
+        "time",
+        name="root_fibre_stress",
+        key=None,
+        note="None where a run is traced",
+        default=None,
+    )
+    yield_strength: float | None = fact("yield strength of the material", "Pa", name=None, optional=True, default=None)
+    fatigue_exponent: float = fact("exponent of the material's Wöhler curve", name=None, key=None, default=math.nan)
 
     def during(self, part: slice) -> Loads:
         """The same at some of the times."""
@@ -215,6 +332,7 @@ class Loads(Part):
         return replace(self, **{name: getattr(self, name)[part] for name in over_time})
 
     @property
+    @declared("Pa", "largest size of the normal stress over the section", "time", "section")
     def stress(self) -> Floats:
         """Largest size of the normal stress over the section, in tension or compression, (t, s) Pa."""
         # They are N/A ± the bending stress: the larger size without a choice, and with NumPy's or JAX's arrays.
@@ -222,19 +340,22 @@ class Loads(Part):
         return abs(middle) + (self.stress_tension - self.stress_compression) / 2
 
     @property
+    @declared("", "yield strength over stress less one", "time", "section", name="yield_margin", optional=True)
     def margin(self) -> Floats | None:
         """Margin on yield, yield strength over stress less one, (t, s); None where the strength is not given."""
         return None if self.yield_strength is None else yield_margin(self.yield_strength, self.stress)
 
     @property
+    @declared("N", "force of the base on the beam", "time", "axis", name=None)
     def root_force(self) -> Floats:
         """Force of the base on the beam, base axes, (t, 3) N."""
-        return -self.force[:, 0]
+        return -self.force[..., 0, :]
 
     @property
+    @declared("N m", "moment of the base on the beam about the root", "time", "axis", name=None)
     def root_moment(self) -> Floats:
         """Moment of the base on the beam about the root, base axes, (t, 3) N m."""
-        return -self.moment[:, 0]
+        return -self.moment[..., 0, :]
 
 
 @dataclass(frozen=True, repr=False, eq=False)

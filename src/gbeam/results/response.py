@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from typing import Protocol
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar, Protocol
 
 import numpy as np
 
 from gbeam.arrays.namespace import is_traced
-from gbeam.results.declared import quantity
+from gbeam.errors import InputError
+from gbeam.results.declared import INSIDE, declared, fact, part, quantity
 from gbeam.results.errors import Errors
-from gbeam.results.machine import AxesResult
-from gbeam.results.parts import Influence, Loads, Outline, Peaks
+from gbeam.results.machine import AxesResult, Driven
+from gbeam.results.parts import Influence, Loads, Outline, Peaks, VectorPeaks
 from gbeam.results.result import Figured, Floats, Part, brief
 
 
@@ -37,23 +39,38 @@ class BaseMotion(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class HubResult(Part):
-    """A hub turning about z.
+    """A hub turning about z."""
 
-    Parameters
-    ----------
-    angle, rate, acceleration : (t,)
-        rad, rad/s, rad/s².
-    drive_torque : (t,) or None
-        Torque of the hub's drive, N m; None where the rate is prescribed and the hub's inertia not known.
-    free : bool
-        Whether the hub's motion is a result: its rate is not prescribed.
-    """
+    angle: Floats = quantity("rad", "hub angle about z", "time", name="hub_angle", key=None)
+    rate: Floats = quantity("rad/s", "hub rate about z", "time", name="hub_rate", key=None)
+    acceleration: Floats = quantity("rad/s^2", "hub acceleration about z", "time", name="hub_acceleration", key=None)
+    drive_torque: Floats | None = quantity(
+        "N m",
+        "torque of the hub's drive about z",
+        "time",
+        key=None,
+        note="None where the rate is prescribed and the hub's inertia not known",
+        default=None,
+    )
+    free: bool = fact("whether the hub's motion is a result, not prescribed", name=None, key=None, default=False)
 
-    angle: Floats
-    rate: Floats
-    acceleration: Floats
-    drive_torque: Floats | None = None
-    free: bool = False
+    @property
+    @declared("rad", "angle at the end", name=None)
+    def angle_end(self) -> float:
+        """Angle at the end, rad."""
+        return float(self.angle[-1])
+
+    @property
+    @declared("rad/s", "largest size of the rate", name=None)
+    def rate_max(self) -> float:
+        """Largest size of the rate, rad/s."""
+        return float(abs(self.rate).max())
+
+    @property
+    @declared("rad/s", "rate at the end", name=None)
+    def rate_end(self) -> float:
+        """Rate at the end, rad/s."""
+        return float(self.rate[-1])
 
 
 class PlotHeading(Protocol):
@@ -68,64 +85,8 @@ class PlotHeading(Protocol):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Response(Figured):
+class Response(Driven, Figured):
     """Response of the beam in one environment.
-
-    Parameters
-    ----------
-    name : str
-        The motion's name.
-    environment : str
-        flight, centrifuge or hub.
-    model : str
-        The model's kind.
-    outcome : str
-        done, diverged (the displacement left what the model can mean, or the beam lost its stability for so long that
-        whatever deviates grows a thousandfold) or not converged.
-    message : str
-        What happened and what to try, where the outcome is not done.
-    time : (t,) s
-    stations : (s,) m, the last is the tip
-    displacement : (t, s, 3)
-        Relative to the base axes, m.
-    q, qd : (t, n)
-        Coordinates and their rates.
-    base : BaseMotion
-        Over time, (t, 3).
-    peaks : Peaks
-    integrator : str
-    step : float
-        s.
-    steps : int
-    error_estimate : float
-        Total error of the tip's displacement, as a fraction of its largest size: that of `errors`; NaN where there is
-        no estimate.
-    residual_from : float
-        s; NaN where not given.
-    hub : HubResult or None
-    axes : AxesResult or None
-    qdd : (t, n)
-        Accelerations of the coordinates.
-    frequencies : (n,)
-        Natural frequencies at rest, rad/s, ascending.
-    loads : Loads or None
-        Internal loads at the root and the stations.
-    influence : Influence or None
-        Static answer of the beam to acceleration fields.
-    errors : Errors
-        Of displacement, loads and stress, with what they are made of.
-    damping_ratio : float or tuple of float
-        Modal, of the modes of the beam on a base at rest.
-    initial : str
-        How it begins, in words.
-    outline : Outline or None
-        The beam's shape at some of the times, and what carries it; None where there is no beam.
-    bodies : (b, 3)
-        Centres of mass of the bodies on the undeformed beam, from the root, base axes, m.
-    whole : tuple of float or None
-        First and last time of the whole flight, s, of which this is a part; None where it is all of it.
-    kept_every : int
-        How many samples of the histories make one in a file.
 
     Examples
     --------
@@ -140,36 +101,154 @@ class Response(Figured):
     2.302 mm at 2.5 s
     """
 
-    name: str
-    environment: str
-    model: str
-    outcome: str
-    message: str
-    time: Floats
-    stations: Floats
-    displacement: Floats
-    q: Floats
-    qd: Floats
-    base: BaseMotion
-    peaks: Peaks
-    integrator: str
-    step: float
-    steps: int
-    error_estimate: float
-    residual_from: float
-    hub: HubResult | None = None
-    axes: AxesResult | None = None
-    qdd: Floats = field(default_factory=lambda: np.empty((0, 0)))
-    frequencies: Floats = field(default_factory=lambda: np.empty(0))
-    loads: Loads | None = None
-    influence: Influence | None = None
-    errors: Errors = field(default_factory=Errors)
-    damping_ratio: float | tuple[float, ...] = math.nan
-    initial: str = ""
-    outline: Outline | None = None
-    bodies: Floats = field(default_factory=lambda: np.empty((0, 3)))
-    whole: tuple[float, float] | None = None
-    kept_every: int = 1
+    json_rows: ClassVar[dict[str, str]] = {"station": "stations"}
+
+    name: str = fact("name of the motion", name=None, key=None)
+    environment: str = fact("flight, centrifuge or hub")
+    model: str = fact("kind of the model")
+    outcome: str = fact(
+        "how it ended",
+        note="done, diverged (the displacement left what the model can mean, or the beam lost its stability for so "
+        "long that whatever deviates grows a thousandfold) or not converged",
+    )
+    message: str = fact("what happened and what to try, where the outcome is not done")
+    time: Floats = quantity("s", "time", "time", role="coordinate", key=None)
+    stations: Floats = quantity(
+        "m", "position along the beam from the root", "station", role="coordinate", key="at", note="the last is the tip"
+    )
+    displacement: Floats = quantity("m", "displacement relative to the base axes", "time", "station", "axis", key=None)
+    q: Floats = quantity(
+        lambda self: "" if self.model == "exact" else "m",
+        "generalised coordinates of the beam",
+        "time",
+        "coordinate",
+        name="coordinates",
+        key=None,
+        note="of the exact model angles and strains",
+    )
+    qd: Floats = quantity(
+        lambda self: "1/s" if self.model == "exact" else "m/s",
+        "rates of the generalised coordinates",
+        "time",
+        "coordinate",
+        name="coordinate_rates",
+        key=None,
+    )
+    base: BaseMotion = part("motion of the base", "time", key=None)
+    peaks: Peaks = part("largest values between all steps", key=INSIDE)
+    integrator: str = fact("integrator")
+    step: float = fact("time step", "s")
+    steps: int = fact("number of steps")
+    error_estimate: float = fact(
+        "total error of the tip's displacement, as a fraction of its largest size",
+        note="that of `errors`; NaN where there is no estimate",
+    )
+    residual_from: float = fact("start of the residual", "s", key=None, note="NaN where not given")
+    qdd: Floats = quantity(
+        "",
+        "accelerations of the coordinates",
+        "time",
+        "coordinate",
+        name=None,
+        key=None,
+        default_factory=lambda: np.empty((0, 0)),
+    )
+    frequencies: Floats = quantity(
+        "rad/s",
+        "natural frequencies at rest",
+        "mode",
+        name=None,
+        key=None,
+        note="ascending",
+        default_factory=lambda: np.empty(0),
+    )
+    loads: Loads | None = part("internal loads at the root and the stations", key=None, default=None)
+    hub: HubResult | None = part("motion of a hub", optional=True, default=None)
+    axes: AxesResult | None = part("motion of a centrifuge", key=INSIDE, optional=True, default=None)
+    influence: Influence | None = part(
+        "static answer of the beam to acceleration fields", name=None, key=None, default=None
+    )
+    errors: Errors = part(
+        "of displacement, loads and stress, with what they are made of", name=None, default_factory=Errors
+    )
+    damping_ratio: float | tuple[float, ...] = fact(
+        "modal damping ratio", note="of the modes of the beam on a base at rest", default=math.nan
+    )
+    initial: str = fact("how it begins, in words", default="")
+    outline: Outline | None = part(
+        "the beam's shape at some of the times, and what carries it",
+        key=None,
+        note="None where there is no beam",
+        default=None,
+    )
+    bodies: Floats = quantity(
+        "m",
+        "centres of mass of the bodies on the undeformed beam, from the root",
+        "body",
+        "axis",
+        name=None,
+        key=None,
+        default_factory=lambda: np.empty((0, 3)),
+    )
+    whole: tuple[float, float] | None = quantity(
+        "s",
+        "time of the whole flight",
+        "ends",
+        optional=True,
+        note="of which this is a part; None where it is all of it",
+        default=None,
+    )
+    points: tuple[str, ...] = quantity(
+        "",
+        "name of the station",
+        "station",
+        name="station_name",
+        key="name",
+        optional=True,
+        note="tip, that of a point of the beam, or its position",
+        default=(),
+    )
+    kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
+
+    @property
+    @declared("s", "time of the part of the flight", "ends", name=None, key="span", optional=True)
+    def part_span(self) -> tuple[float, float] | None:
+        """First and last time of the part of a flight, s; None where it is all of it."""
+        return None if self.whole is None else self.flight_span
+
+    @property
+    @declared("", "samples of the histories, and those in files", role="fact", name=None)
+    def histories(self) -> dict[str, int]:
+        """Number of samples of the histories, and how many a file has."""
+        return {"samples": len(self.time), "written": len(self.time[:: self.kept_every])}
+
+    @property
+    @declared("m", "largest displacement of every named point", "point", role="rows", name=None, key="points",
+              optional=True)  # fmt: skip
+    def point_peaks(self) -> Mapping[str, VectorPeaks]:
+        """Largest displacement of every point beside the tip that has a name, by it."""
+        peaks = self.peaks.displacement
+        if peaks is None:
+            return {}
+        named = [(k, name) for k, name in enumerate(self.points) if name.isidentifier() and name != "tip"]
+        return {name: peaks[k] for k, name in named}
+
+    def at(self, point: str) -> Floats:
+        """Return the displacement of a named point relative to the base axes, (t, 3) m.
+
+        Parameters
+        ----------
+        point : str
+            tip, or the name of another point of the beam.
+
+        Raises
+        ------
+        InputError
+            If there is no such point.
+        """
+        if point not in self.points:
+            raise InputError("point", f"is {point!r}", f"choose from {', '.join(self.points)}")
+        return self.displacement[:, self.points.index(point)]
 
     @property
     def tip(self) -> Floats:

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.arrays.tree import Value
-from gbeam.results.declared import document
+from gbeam.results.declared import document, fact
 
 if TYPE_CHECKING:
-    from gbeam.plots.figures import Panels
+    from gbeam.plots.files import Panels
     from gbeam.results.provenance import Provenance
 
 Floats = NDArray[np.float64]
@@ -78,7 +78,7 @@ class Result(Value):
         The scenario, the records and the command that it comes from, where there is a scenario.
     """
 
-    warnings: tuple[str, ...] = field(default=(), repr=False)
+    warnings: tuple[str, ...] = fact("why it may not be what it seems", default=(), repr=False)
     provenance: Provenance | None = field(default=None, repr=False)
 
     def __init_subclass__(cls, **options: Any) -> None:
@@ -172,8 +172,8 @@ class Figured(Result):
         ----------
         what : str
             Which of its figures; the first that the result has by default. Of a response: tip, base, loads, tracking,
-            axes_rate, axes_acceleration, axes_jerk, hub; of a study: tip, or any other followed by a space and a
-            motion's name; of a comparison: parts, parts x, parts y, parts z but for the main axis, shock; of a
+            axes_rate, axes_acceleration, axes_jerk, hub; of a study: tip, sizes, or any other followed by a space and
+            a motion's name; of a comparison: parts, parts x, parts y, parts z but for the main axis, shock; of a
             deflection: shape, loads; of a plan: those of its axes and tracking. Other results have one.
         title : str
             First line above the figure.
@@ -189,6 +189,6 @@ class Figured(Result):
         InputError
             If it has no such figure.
         """
-        from gbeam.plots.figures import plot
+        from gbeam.plots.files import plot
 
         return plot(self, what, title)

@@ -4,35 +4,35 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
+from gbeam.results.declared import BESIDE, declared, fact, labels, quantity, rows
 from gbeam.results.result import Figured, Flags, Floats, Part
+
+ON_BOUND = ("inside", "at_bound")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class FittedColumn(Part):
-    """One column of the data, and what the fitted scenario says of it.
+    """One column of the data, and the fitted scenario's values of the same quantity."""
 
-    Parameters
-    ----------
-    name, unit : str
-        SI.
-    measured, fitted, before : (t,)
-        `before` is of the scenario as it was.
-    noise : float
-        Standard deviation of the residual, with the degrees of freedom that the fit leaves.
-    correlation : float
-        Of each residual with the next one; NaN where the data are no history. Noise has none.
-    """
-
-    name: str
-    unit: str
-    measured: Floats
-    fitted: Floats
-    before: Floats
-    noise: float
-    correlation: float
+    name: str = labels("name of the column")
+    unit: str = quantity("", "SI unit of the column", name="column_unit")
+    measured: Floats = quantity("", "data, in the column's unit", "at", key=None)
+    fitted: Floats = quantity("", "the same of the fitted scenario", "at", key=None)
+    before: Floats = quantity("", "the same of the scenario as it was", "at", name="computed_before", key=None)
+    noise: float = quantity(
+        BESIDE, "standard deviation of the residual", note="with the degrees of freedom that the fit leaves"
+    )
+    correlation: float = quantity(
+        "",
+        "correlation of each residual with the next one",
+        name=None,
+        key="correlation_of_residuals",
+        note="NaN where the data are no history; noise has none",
+    )
 
     @property
     def residual(self) -> Floats:
@@ -43,35 +43,6 @@ class FittedColumn(Part):
 @dataclass(frozen=True, repr=False, eq=False)
 class Fit(Figured):
     """Values of a scenario at which it is nearest to a measurement, in the sense of least squares.
-
-    Parameters
-    ----------
-    title : str
-        Of the scenario.
-    data : str
-        The measurement's file.
-    parameters, units : tuple of str
-        Paths, and SI units.
-    before, values : (p,)
-        The scenario's values, and those found.
-    errors : (p,)
-        Standard deviations, one sigma, of the values, if the residuals are noise.
-    intervals : (p, 2)
-        That hold each value with a probability of 95 %, by Student's t.
-    covariance, correlation : (p, p)
-    bounds : (p, 2)
-    at_bound : (p,) of bool
-        Whether a value lies on its bound: then it has no error.
-    columns : tuple of FittedColumn
-    at : (t,)
-        Times, s, or numbers of the modes.
-    modal : bool
-    evaluations : int
-        Of the scenario.
-    starts, agreed : int
-        Searches, and how many of them ended at these values.
-    condition : float
-        Of the derivatives, each parameter's of unit length: 1 where the data tell them apart perfectly.
 
     Examples
     --------
@@ -87,25 +58,60 @@ class Fit(Figured):
     6.788e+10 ± 6e+08 Pa
     """
 
-    title: str
-    data: str
-    parameters: tuple[str, ...]
-    units: tuple[str, ...]
-    before: Floats
-    values: Floats
-    errors: Floats
-    intervals: Floats
-    covariance: Floats
-    correlation: Floats
-    bounds: Floats
-    at_bound: Flags
-    columns: tuple[FittedColumn, ...]
-    at: Floats
-    modal: bool
-    evaluations: int
-    condition: float
-    starts: int = 1
-    agreed: int = 1
+    json_rows: ClassVar[dict[str, str]] = {"parameter": "parameters"}
+
+    title: str = fact("title of the scenario")
+    data: str = fact("file of the measurement")
+    parameters: tuple[str, ...] = labels("paths of the values", "parameter")
+    units: tuple[str, ...] = quantity("", "SI unit of the value", "parameter", name="value_unit", key="unit")
+    before: Floats = quantity("", "value of the scenario, in its unit", "parameter")
+    values: Floats = quantity("", "value of the best fit, in its unit", "parameter", name="value", key="value")
+    errors: Floats = quantity(
+        "",
+        "standard deviation of the value, in its unit",
+        "parameter",
+        name="error",
+        key="error",
+        note="if the residuals are noise",
+    )
+    intervals: Floats = quantity(
+        "",
+        "interval that holds it with a probability of 95 %",
+        "parameter",
+        "side",
+        name="interval",
+        key="interval",
+        note="by Student's t",
+    )
+    covariance: Floats = quantity("", "covariance of the values", "parameter", "other", key="/covariance")
+    correlation: Floats = quantity("", "correlation of their errors", "parameter", "other", key="/correlation")
+    bounds: Floats = quantity("", "bounds of the search", "parameter", "side")
+    at_bound: Flags = quantity(
+        "", "whether the value lies on its bound", "parameter", flags=ON_BOUND, note="then it has no error"
+    )
+    columns: tuple[FittedColumn, ...] = rows("columns of the data", "column")
+    at: Floats = quantity(
+        lambda self: "" if self.modal else "s", "time, or number of the mode", "at", role="coordinate", key=None
+    )
+    modal: bool = fact("whether the data are of modes", name=None, key=None)
+    evaluations: int = fact("evaluations of the scenario", name=None)
+    condition: float = fact(
+        "condition of the derivatives, each parameter's of unit length",
+        note="1 where the data tell them apart perfectly",
+    )
+    starts: int = fact("searches", key="starts.tried", default=1)
+    agreed: int = fact("searches that ended at these values", key="starts.agreed", default=1)
+
+    @property
+    def file_dims(self) -> dict[str, str]:
+        """Names that dimensions have in files."""
+        return {"at": "mode" if self.modal else "time"}
+
+    @property
+    @declared("", "paths of the values", "other", role="labels", key=None)
+    def other(self) -> tuple[str, ...]:
+        """Paths of the values, along the other dimension of their covariance."""
+        return self.parameters
 
     def __repr__(self) -> str:
         rows = [
@@ -121,37 +127,30 @@ _TIGHT = 1e-3  # of a bound: nearer, it decides
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Requirement(Part):
-    """A bound on a figure.
+    """A bound on a figure."""
 
-    Parameters
-    ----------
-    name, unit : str
-        Of the figure, SI.
-    low, high : float
-        Infinite where there is none.
-    before, value : float
-        Of the figure in the scenario as it was, and at the optimum.
-    """
-
-    name: str
-    unit: str
-    low: float
-    high: float
-    before: float
-    value: float
+    name: str = labels("name of the figure", key="")
+    unit: str = quantity("", "SI unit of the figure", name=None)
+    low: float = quantity(BESIDE, "least value", name=None, note="minus infinity where there is none")
+    high: float = quantity(BESIDE, "largest value", name=None, note="infinite where there is none")
+    before: float = quantity(BESIDE, "figure in the scenario as it was", name=None)
+    value: float = quantity("", "figure at the best values", name="required")
 
     @property
+    @declared("", "bound of the figure", key=None)
     def bound(self) -> float:
         """The one that is nearer to the value."""
         return self.high if abs(self.high - self.value) <= abs(self.value - self.low) else self.low
 
     @property
+    @declared("", "whether the value lies within", name=None)
     def kept(self) -> bool:
         """Whether the value lies within, but for a thousandth of the bound."""
         slack = _TIGHT * abs(self.bound)
         return self.low - slack <= self.value <= self.high + slack
 
     @property
+    @declared("", "whether the value lies on the bound", name=None)
     def active(self) -> bool:
         """Whether it decides: the value lies on the bound."""
         return math.isfinite(self.bound) and abs(self.value - self.bound) <= _TIGHT * max(abs(self.bound), 1e-300)
@@ -160,34 +159,6 @@ class Requirement(Part):
 @dataclass(frozen=True, repr=False, eq=False)
 class Optimum(Figured):
     """Values of a scenario at which a figure is least, within bounds and requirements.
-
-    Parameters
-    ----------
-    title : str
-        Of the scenario.
-    minimise, unit : str
-        The figure, SI; of what has no unit, such as a verdict, the size is minimised.
-    parameters, units : tuple of str
-        Paths, and SI units.
-    before, values : (p,)
-        The scenario's values, and the best.
-    bounds : (p, 2)
-    at_bound : (p,) of bool
-        Whether the best value lies on its bound.
-    figure_before, figure : float
-        By runs with steps of their own.
-    error : float
-        Estimated total error of the tip's displacement in the run at the optimum; NaN where there is no run.
-    requirements : tuple of Requirement
-    path : (k, p)
-        The values tried that were better than those before.
-    history : (k,)
-        The figure there.
-    evaluations : int
-    starts, agreed : int
-        Searches, and how many of them ended at these values.
-    outcome : str
-        done, or ``limits exceeded`` where no values within the bounds keep the requirements.
 
     Examples
     --------
@@ -198,25 +169,35 @@ class Optimum(Figured):
     ('done', 'verdict.tip')
     """
 
-    title: str
-    minimise: str
-    unit: str
-    parameters: tuple[str, ...]
-    units: tuple[str, ...]
-    before: Floats
-    values: Floats
-    bounds: Floats
-    at_bound: Flags
-    figure_before: float
-    figure: float
-    error: float
-    requirements: tuple[Requirement, ...]
-    path: Floats
-    history: Floats
-    evaluations: int
-    outcome: str = "done"
-    starts: int = 1
-    agreed: int = 1
+    json_rows: ClassVar[dict[str, str]] = {"parameter": "parameters"}
+
+    title: str = fact("title of the scenario")
+    minimise: str = fact("the figure", key="minimise.name", note="of what has no unit, such as a verdict, its size")
+    unit: str = fact("SI unit of the figure", name=None, key="minimise.unit")
+    parameters: tuple[str, ...] = labels("paths of the values", "parameter")
+    units: tuple[str, ...] = quantity("", "SI unit of the value", "parameter", name="value_unit", key="unit")
+    before: Floats = quantity("", "value of the scenario, in its unit", "parameter")
+    values: Floats = quantity("", "best value, in its unit", "parameter", name="value", key="value")
+    bounds: Floats = quantity("", "bounds of the search", "parameter", "side")
+    at_bound: Flags = quantity("", "whether the value lies on its bound", "parameter", flags=ON_BOUND)
+    figure_before: float = fact("the figure of the scenario, by a run with steps of its own", key="minimise.before")
+    figure: float = fact("the figure at the best values, by a run with steps of its own", key="minimise.value")
+    error: float = fact(
+        "estimated total error of the tip's displacement in the run at the optimum",
+        name=None,
+        key="error_estimate",
+        note="NaN where there is no run",
+    )
+    requirements: tuple[Requirement, ...] = rows("bounds on other figures", "requirement", key="subject_to")
+    path: Floats = quantity("", "values tried that were better than those before", "better", "parameter", key=None)
+    history: Floats = quantity(BESIDE, "the figure there", "better", key=None)
+    evaluations: int = fact("evaluations of the scenario", name=None)
+    outcome: str = fact(
+        "how it ended", note="done, or limits exceeded where no values within the bounds keep the requirements",
+        default="done",
+    )  # fmt: skip
+    starts: int = fact("searches", key="starts.tried", default=1)
+    agreed: int = fact("searches that ended at these values", key="starts.agreed", default=1)
 
     def __repr__(self) -> str:
         rows = [
@@ -230,68 +211,27 @@ class Optimum(Figured):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class CommandRun(Part):
-    """One command, and what it leaves.
+    """One command, and the vibration that it leaves."""
 
-    Parameters
-    ----------
-    name : str
-        shaped, ZVD or smooth-step.
-    command : (t,)
-        Torque, N m, or rate, rad/s.
-    largest : float
-        Torque, N m, or angular acceleration, rad/s².
-    by_ratio : (r,)
-        Amplitude left by the design's modes, m, where all their frequencies are so many times as high.
-    time, tip : (k,), (k, 3)
-        Of the check's run, s and m.
-    residual : float
-        Amplitude of the tip's vibration in that run after the command, m.
-    outcome : str
-        Of that run.
-    """
-
-    name: str
-    command: Floats
-    largest: float
-    by_ratio: Floats
-    time: Floats
-    tip: Floats
-    residual: float
-    outcome: str
+    name: str = labels("shaped, ZVD or smooth-step")
+    command: Floats = quantity("", "torque, N m, or rate, rad/s, of the hub", "time", name=None, key=None)
+    largest: float = quantity("", "largest torque, N m, or angular acceleration, rad/s^2")
+    by_ratio: Floats = quantity(
+        "m",
+        "amplitude left by the design's modes",
+        "ratio",
+        key=None,
+        note="where all their frequencies are so many times as high",
+    )
+    time: Floats = quantity("s", "times of the check's run", "run_time", name=None, key=None)
+    tip: Floats = quantity("m", "displacement of the tip", "run_time", "axis", name=None, key=None)
+    residual: float = quantity("m", "amplitude of the tip after the command", key="residual_amplitude")
+    outcome: str = quantity("", "how the run ended")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class ShapedCommand(Figured):
     """A torque or rate of a hub that leaves the least vibration of its beam.
-
-    Parameters
-    ----------
-    kind : str
-        torque or rate.
-    goal : float
-        Angle turned, rad, or rate reached, rad/s.
-    to_rate : bool
-        Whether `goal` is a rate.
-    duration : float
-        Of the command, s.
-    coefficients : (k,)
-        Of :class:`gbeam.SplineProfile`, which is the command.
-    time : (t,)
-        Of the commands, s.
-    limit : float
-        On the torque, N m, or the angular acceleration, rad/s²; infinite where there is none.
-    robust : float
-        Share by which all frequencies may be wrong.
-    frequency : (f,)
-        Of the modes that the design knows, Hz.
-    ratio : (r,)
-        At which `by_ratio` of each run is given.
-    runs : tuple of CommandRun
-        The shaped command's first.
-    design, check : str
-        Models that it was designed on, and that the runs are of.
-    motion : str
-        Name of the scenario's hub, where there is one.
 
     Examples
     --------
@@ -304,25 +244,54 @@ class ShapedCommand(Figured):
     ('done', 'rad/s')
     """
 
-    kind: str
-    goal: float
-    to_rate: bool
-    duration: float
-    coefficients: Floats
-    time: Floats
-    limit: float
-    robust: float
-    frequency: Floats
-    ratio: Floats
-    runs: tuple[CommandRun, ...]
-    design: str
-    check: str
-    motion: str = ""
+    kind: str = fact("torque or rate")
+    goal: float = fact("angle turned, rad, or rate reached, rad/s", key=None)
+    to_rate: bool = fact("whether the goal is a rate", name=None, key=None)
+    duration: float = fact("duration of the command", "s")
+    coefficients: Floats = quantity(BESIDE, "coefficients of the command, a gbeam.SplineProfile", "spline")
+    time: Floats = quantity("s", "time", "time", role="coordinate", key=None, note="of the commands")
+    limit: float = fact(
+        "limit of the torque, N m, or the angular acceleration, rad/s^2", name=None, note="infinite where there is none"
+    )
+    robust: float = fact("share by which all frequencies may be wrong")
+    frequency: Floats = quantity("Hz", "frequencies that the design knows", "mode", key="frequencies")
+    ratio: Floats = quantity("", "frequencies over those of the design", "ratio", role="coordinate", key=None)
+    runs: tuple[CommandRun, ...] = rows("commands, the shaped one first", "run", key="commands")
+    design: str = fact("model that it was designed on")
+    check: str = fact("model of the runs")
+    motion: str = fact("name of the scenario's hub, where there is one", name=None, default="")
 
     @property
+    @declared("", "unit of the command", role="fact", name=None)
     def unit(self) -> str:
-        """Of the command."""
+        """Unit of the command, SI."""
         return "N m" if self.kind == "torque" else "rad/s"
+
+    @property
+    @declared("", "angle turned, rad, or rate reached, rad/s", role="fact", name=None, key="goal")
+    def aim(self) -> dict[str, float]:
+        """The goal by its name, angle or rate."""
+        return {"rate" if self.to_rate else "angle": self.goal}
+
+    @property
+    @declared(BESIDE, "torque or rate of the hub", "run", "time", name="command", key=None)
+    def command(self) -> Floats:
+        """Every run's command, (runs, t)."""
+        return np.stack([run.command for run in self.runs])
+
+    @property
+    @declared("s", "time", "run_time", role="coordinate", key=None)
+    def run_time(self) -> Floats:
+        """Times of the first run, (k,) s."""
+        return self.runs[0].time
+
+    @property
+    @declared("m", "displacement of the tip", "run", "run_time", "axis", name="tip", key=None)
+    def tip(self) -> Floats:
+        """Displacement of every run's tip at the times of the first, (runs, k, 3) m."""
+        return np.stack(
+            [np.stack([np.interp(self.run_time, r.time, r.tip[:, i]) for i in range(3)], axis=1) for r in self.runs]
+        )
 
     @property
     def outcome(self) -> str:

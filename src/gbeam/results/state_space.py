@@ -4,24 +4,26 @@ from __future__ import annotations
 
 import math
 import os
-from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
+from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity, rows
 from gbeam.results.errors import FrequencyErrors
 from gbeam.results.result import Floats, Part, Result
 
 ACCURATE = 0.01  # error of a frequency that is within what a design takes for accurate
 
 
-class Signal(NamedTuple):
-    """A state, input or output: its name and unit."""
+@dataclass(frozen=True, repr=False, eq=False)
+class Signal(Part):
+    """A state, input or output."""
 
-    name: str
-    unit: str
+    name: str = labels("name of the signal", key="")
+    unit: str = quantity("", "unit of the signal")
 
 
 @typed
@@ -51,40 +53,36 @@ class Gauge:
 class Truncation(Part):
     """What a smaller model leaves out of the one that it is made from.
 
-    Gains are those from an input to an output, (p, m) in the unit of the output by that of the input.
-
-    Parameters
-    ----------
-    method : str
-        ``modal`` or ``balanced``.
-    states : int
-        How many are left out.
-    hankel : (k,)
-        Hankel singular values of what decays, of a balanced truncation; they tell how much each state matters.
-    start, end : float
-        Frequencies between which gains are compared, Hz: from half the lowest that oscillates to the highest that is
-        kept; of a balanced truncation to twice the highest there is.
-    error : (p, m)
-        Largest gain of the difference up to `end`.
-    gain : (p, m)
-        Largest gain of the larger model from `start` to `end`, among the inputs and outputs of the same units.
+    Gains are those from an input to an output, (p, m) in the unit of the output by that of the input. They are compared
+    from half the lowest frequency that oscillates to the highest that is kept; of a balanced truncation to twice the
+    highest there is.
     """
 
-    method: str
-    states: int
-    hankel: Floats
-    start: float
-    end: float
-    error: Floats
-    gain: Floats
+    method: str = fact("modal or balanced", name=INSIDE)
+    states: int = fact("number of states that are left out", name="/states_left_out", key="states_left_out")
+    hankel: Floats = quantity(
+        "mixed", "Hankel singular values of what decays", "hankel", name=None, key=None, note="of a balanced truncation"
+    )
+    start: float = fact("lowest frequency at which gains are compared", "Hz", name=None, key="from")
+    end: float = fact("highest frequency at which gains are compared", "Hz", name="to", key="to")
+    error: Floats = quantity("mixed", "largest gain of what is left out", "output", "input", note="up to `end`")
+    gain: Floats = quantity(
+        "mixed",
+        "largest gain of the larger model",
+        "output",
+        "input",
+        note="from `start` to `end`, among the inputs and outputs of the same units",
+    )
 
     @property
+    @declared("mixed", "bound of the error", role="fact")
     def bound(self) -> float:
         """Twice the sum of the Hankel singular values left out, which the difference's largest singular value never
         exceeds at any frequency (Glover 1984); NaN of a modal truncation."""
         return float(2 * self.hankel[len(self.hankel) - self.states :].sum()) if self.method == "balanced" else math.nan
 
     @property
+    @declared("", "the error over the gain", "output", "input", name=None)
     def share(self) -> Floats:
         """The error over the gain, (p, m); zero where there is no gain at all."""
         return np.divide(self.error, self.gain, out=np.zeros_like(self.error), where=self.gain > 0)
@@ -93,22 +91,6 @@ class Truncation(Part):
 @dataclass(frozen=True, repr=False, eq=False)
 class StateSpace(Result):
     """ẋ = Ax + Bu, y = Cx + Du; all are departures from the operating point.
-
-    Parameters
-    ----------
-    a, b, c, d : (n, n), (n, m), (p, n), (p, m)
-    states, inputs, outputs : tuples of Signal
-    state, input, output : (n,), (m,), (p,)
-        Values at the operating point.
-    model, motion : str
-    time : float
-        s.
-    frequency : (k,) Hz
-        |λ|/2π of the poles that oscillate, ascending; none of a balanced truncation, whose poles are no beam's.
-    errors : FrequencyErrors or None
-        Of these frequencies; None where there is no estimate.
-    truncation : Truncation or None
-        What a smaller model leaves out.
 
     Examples
     --------
@@ -121,24 +103,54 @@ class StateSpace(Result):
     ((10, 10), 'base_acceleration_z')
     """
 
-    a: Floats
-    b: Floats
-    c: Floats
-    d: Floats
-    states: tuple[Signal, ...]
-    inputs: tuple[Signal, ...]
-    outputs: tuple[Signal, ...]
-    state: Floats
-    input: Floats
-    output: Floats
-    model: str = ""
-    motion: str = ""
-    time: float = float("nan")
-    frequency: Floats = field(default_factory=lambda: np.zeros(0))
-    errors: FrequencyErrors | None = None
-    truncation: Truncation | None = None
+    json_rows: ClassVar[dict[str, str]] = {kind: f"{kind}s" for kind in ("state", "input", "output", "pole")}
+
+    a: Floats = quantity("mixed", "rates of the states from the states", "state", "state_of", name="A", key="/A")
+    b: Floats = quantity("mixed", "rates of the states from the inputs", "state", "input", name="B", key="/B")
+    c: Floats = quantity("mixed", "outputs from the states", "output", "state", name="C", key="/C")
+    d: Floats = quantity("mixed", "outputs from the inputs", "output", "input", name="D", key="/D")
+    states: tuple[Signal, ...] = rows("states", "state", name="state_")
+    inputs: tuple[Signal, ...] = rows("inputs", "input", name="input_")
+    outputs: tuple[Signal, ...] = rows("outputs", "output", name="output_")
+    state: Floats = quantity("mixed", "state at the operating point", "state", name="state_value", key="value")
+    input: Floats = quantity("mixed", "input at the operating point", "input", name="input_value", key="value")
+    output: Floats = quantity("mixed", "output at the operating point", "output", name="output_value", key="value")
+    model: str = fact("kind of the model", default="")
+    motion: str = fact("name of the motion", default="")
+    time: float = fact("time of the operating point", "s", default=float("nan"))
+    frequency: Floats = quantity(
+        "Hz",
+        "frequency of a pole that oscillates",
+        "pole",
+        name="pole_frequency",
+        note="|λ|/2π, ascending; none of a balanced truncation, whose poles are no beam's",
+        default_factory=lambda: np.zeros(0),
+    )
+    errors: FrequencyErrors | None = part(
+        "errors of these frequencies", "pole", name=None, note="None where there is no estimate", default=None
+    )
+    truncation: Truncation | None = part("what a smaller model leaves out", name="truncation_", default=None)
 
     @property
+    @declared("", "names of the states", "state_of", role="labels", key=None)
+    def state_of(self) -> tuple[str, ...]:
+        """Names of the states, along the other dimension of A."""
+        return tuple(each.name for each in self.states)
+
+    @property
+    @declared("", "estimated error of the frequency, a fraction", "pole", key=None, optional=True)
+    def pole_error(self) -> Floats:
+        """Total errors of the poles' frequencies, (k,); empty where there is no estimate."""
+        return np.zeros(0) if self.errors is None else self.errors.total
+
+    @property
+    @declared("mixed", "of what decays", "hankel", name="hankel_singular_value", key="hankel_singular_values")
+    def hankel(self) -> Floats:
+        """Hankel singular values of a balanced truncation, (k,); else empty."""
+        return np.zeros(0) if self.truncation is None else self.truncation.hankel
+
+    @property
+    @declared("Hz", "frequency up to which every pole is accurate", role="fact", name=None)
     def accurate_to(self) -> float:
         """Frequency up to which every pole's is within one in a hundred of the exact model's, Hz; NaN if not known.
 

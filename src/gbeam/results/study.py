@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from math import isnan
+from math import nan as NAN
 
+from gbeam.results.declared import declared, fact, quantity, rows
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.criteria import state_of
 from gbeam.results.response import Response
@@ -16,22 +18,13 @@ from gbeam.results.result import Figured, Part, Result
 class Failure:
     """Why there is no whole response in an environment: the outcome, such as diverged, and what happened."""
 
-    outcome: str
-    message: str
+    outcome: str = fact("the outcome, such as diverged")
+    message: str = fact("what happened")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Study(Figured):
     """The responses of one beam in all environments of a scenario, and their comparisons.
-
-    Parameters
-    ----------
-    title : str
-    responses : dict of str to Response
-        By the motion's name.
-    comparisons : tuple of Comparison
-    failures : mapping of str to Failure
-        Where a response has no state to start from.
 
     Examples
     --------
@@ -40,10 +33,12 @@ class Study(Figured):
     ('done', ['flight', 'centrifuge'])
     """
 
-    title: str
-    responses: dict[str, Response]
-    comparisons: tuple[Comparison, ...]
-    failures: Mapping[str, Failure] = field(default_factory=dict)
+    title: str = fact("title of the scenario")
+    responses: Mapping[str, Response] = rows("responses by the motion's name", "motion", key="motions")
+    comparisons: tuple[Comparison, ...] = rows("comparisons of centrifuges with flight", "comparison")
+    failures: Mapping[str, Failure] = rows(
+        "where a response has no state to start from", "motion", key="motions", default_factory=dict
+    )
 
     @property
     def unfinished(self) -> Mapping[str, Failure]:
@@ -67,6 +62,7 @@ class Study(Figured):
         }
 
     @property
+    @declared("", "the outcome, with what limits make of it", role="fact")
     def state(self) -> str:
         """The outcome, with what limits of the machines and of acceptance make of it."""
         exceeded = any(each.axes is not None and not each.axes.within_limits for each in self.responses.values())
@@ -81,80 +77,72 @@ class Study(Figured):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class ModelRow(Part):
-    """One model's answer to a scenario, beside the reference's.
+    """One model's answer to a scenario, beside the reference's."""
 
-    Parameters
-    ----------
-    model : str
-    motion : str
-    outcome : str
-        done, diverged, not converged, or cannot: the model is not made for this.
-    message : str
-        Why it is not done; what follows is then NaN.
-    warnings : tuple of str
-        Why the row may not be what it seems.
-    peak, time_of_peak : float
-        Of the tip in the direction in which the reference moves most, m, s.
-    peak_error : float
-        Peak over the reference's, less one.
-    residual : float
-        Amplitude of the vibration left, m; NaN where the scenario has no time from which it is measured.
-    residual_error : float
-        Over the reference's, less one.
-    phase : float
-        Of the vibration left, at the reference's dominant frequency, ahead of the reference's, rad.
-    difference : float
-        Largest distance between the two histories over the reference's peak.
-    hub_angle : float
-        At the end, of a free hub, rad; else NaN.
-    error_estimate : float
-        Of the steps, over the largest displacement.
-    steps : int
-    seconds : float
-        To compute it, once compiled.
-    """
+    model: str = quantity("", "kind of the model")
+    motion: str = quantity("", "name of the motion")
+    outcome: str = quantity(
+        "", "how it ended", note="done, diverged, not converged, or cannot: the model is not made for this"
+    )
+    message: str = quantity("", "why it is not done", note="what follows is then NaN")
+    warnings: tuple[str, ...] = quantity("", "why the row may not be what it seems", name=None)
+    peak: float = quantity(
+        "m", "peak of the tip's displacement", note="in the direction in which the reference moves most", default=NAN
+    )
+    time_of_peak: float = quantity("s", "time of the peak", default=NAN)
+    peak_error: float = quantity("", "peak over the reference's, less one", default=NAN)
+    residual: float = quantity(
+        "m",
+        "amplitude of the vibration left",
+        note="NaN where the scenario has no time from which it is measured",
+        default=NAN,
+    )
+    residual_error: float = quantity("", "the same over the reference's, less one", default=NAN)
+    phase: float = quantity(
+        "rad",
+        "phase of the vibration left, ahead of the reference's",
+        note="at the reference's dominant frequency",
+        default=NAN,
+    )
+    difference: float = quantity("", "largest distance of the histories over the reference's peak", default=NAN)
+    hub_angle: float = quantity("rad", "angle of a free hub at the end", default=NAN)
+    error_estimate: float = quantity("", "total estimated error over the largest displacement", default=NAN)
+    steps: int = quantity("", "number of steps", default=0)
+    seconds: float = quantity("s", "time to compute it", note="once compiled", default=NAN)
 
-    model: str
-    motion: str
-    outcome: str
-    message: str
-    warnings: tuple[str, ...]
-    peak: float = math.nan
-    time_of_peak: float = math.nan
-    peak_error: float = math.nan
-    residual: float = math.nan
-    residual_error: float = math.nan
-    phase: float = math.nan
-    difference: float = math.nan
-    hub_angle: float = math.nan
-    error_estimate: float = math.nan
-    steps: int = 0
-    seconds: float = math.nan
+    @property
+    @declared("", "warnings", name="warnings", key=None)
+    def doubts(self) -> str:
+        """The warnings, one on each line."""
+        return "\n".join(self.warnings)
 
     def __str__(self) -> str:
         if self.outcome != "done":
             return f"{self.model} on {self.motion}: {self.outcome}; {self.message}"
-        error = "" if math.isnan(self.difference) else f", differs by up to {self.difference:.2g} of the peak"
+        error = "" if isnan(self.difference) else f", differs by up to {self.difference:.2g} of the peak"
         return f"{self.model} on {self.motion}: peak {1e3 * self.peak:.4g} mm at {self.time_of_peak:.4g} s{error}"
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class ModelStudy(Result):
-    """The same scenario by every model; rows by motion, then model.
+    """The same scenario by every model; rows by motion, then model."""
 
-    Parameters
-    ----------
-    title, reference : str
-        The reference is the model that the others are compared with.
-    direction : dict of str to str
-        Per motion, the direction compared.
-    rows : tuple of ModelRow
-    """
+    title: str = fact("title of the scenario")
+    reference: str = fact("model that the others are compared with")
+    direction: dict[str, str] = fact("direction compared, by motion", name=None)
+    rows: tuple[ModelRow, ...] = rows("a row for each motion and model", "row")
 
-    title: str
-    reference: str
-    direction: dict[str, str]
-    rows: tuple[ModelRow, ...]
+    @property
+    @declared("", "direction compared", "row", name="direction", key=None)
+    def directions(self) -> tuple[str, ...]:
+        """Direction compared in every row."""
+        return tuple(self.direction[row.motion] for row in self.rows)
+
+    @property
+    @declared("", "how it ended", role="fact", name=None)
+    def outcome(self) -> str:
+        """``done``, or ``not compared`` where the reference has no answer in some environment."""
+        return "done" if self.compared else "not compared"
 
     @property
     def compared(self) -> bool:

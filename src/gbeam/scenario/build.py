@@ -136,7 +136,7 @@ def _acceptance(parts: Collector, scenario: schema.Environments) -> dict[str, di
 
 
 def _beam(parts: Collector, table: schema.Beam) -> Beam | None:
-    from gbeam.structure.attachments import PointMass, Root
+    from gbeam.structure.attachments import Point, PointMass, Root
     from gbeam.structure.beam import Beam
     from gbeam.structure.material import Material
     from gbeam.structure.section import Section
@@ -148,12 +148,16 @@ def _beam(parts: Collector, table: schema.Beam) -> Beam | None:
     for i, body in enumerate(table.masses):
         moments = (body.inertia.x, body.inertia.y, body.inertia.z) if body.inertia else (0.0, 0.0, 0.0)
         offset = body.offset or (0.0, 0.0, 0.0)
-        masses.append(parts.attempt(f"beam.masses[{i}]", PointMass, body.at, body.mass, moments, offset))
+        named = body.name or ""
+        masses.append(parts.attempt(f"beam.masses[{i}]", PointMass, body.at, body.mass, moments, offset, named))
     root = parts.attempt("beam.root", Root, **table.root.model_dump())
     loads = [_load(parts, f"beam.loads[{i}]", entry) for i, entry in enumerate(table.loads)]
-    if section is None or material is None or root is None or None in masses or None in loads:
+    points = [parts.attempt(f"beam.points[{i}]", Point, each.name, each.at) for i, each in enumerate(table.points)]
+    if section is None or material is None or root is None or None in [*masses, *loads, *points]:
         return None
-    return parts.attempt("beam", Beam, table.length, section, material, masses, table.damping_ratio, root, loads)
+    return parts.attempt(
+        "beam", Beam, table.length, section, material, masses, table.damping_ratio, root, loads, points
+    )
 
 
 def _load(parts: Collector, where: str, table: schema.Load) -> Load | None:

@@ -87,13 +87,15 @@ def rerun(path: str | os.PathLike[str]) -> Reproduction:
 def reproduction(file: str, then: Mapping[str, Any], now: Mapping[str, Any], origin: Provenance) -> Reproduction:
     """Compare what a file holds with what has been computed again."""
     assert origin.environment is not None
-    names = [*then, *(name for name in now if name not in then)]
+    changed = origin.environment.changes(present())
+    # A later version may hold more. Of another one's file, what both hold is compared.
+    names = [name for name in then if "gbeam" not in changed or name in now]
     differences = [each for name in names if (each := _difference(name, then.get(name), now.get(name))) is not None]
     return Reproduction(
         file=file,
         compared=len(names),
         differences=tuple(sorted(differences, key=lambda each: -each.size)),
-        changed=origin.environment.changes(present()),
+        changed=changed,
     )
 
 
@@ -132,7 +134,7 @@ def _facts(of: Stored) -> dict[str, Any]:
     apart = ("scenario", FACTS)  # the facts are the other variables once more
     made = {name: each for name, each in of.variables.items() if name not in apart and not name.startswith(RECORD)}
     for place, attrs in of.attrs.items():
-        if place not in apart and not place.startswith(RECORD):
+        if place not in of.variables:  # whose attributes are words about them
             made |= {f"{place}@{name}": each for name, each in attrs.items() if place or name not in _ABOUT}
     return made
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
@@ -20,6 +21,55 @@ if TYPE_CHECKING:
     from gbeam.motion import Profile
 
 
+TIP = "tip"
+_NAME = re.compile(r"[A-Za-z_]\w*")
+# Of quantities that stand where a point's name may stand.
+_TAKEN = (TIP, "root_force", "root_moment", "hub", "strain", "size")
+
+
+def checked_name(name: str) -> None:
+    """Refuse a name that is no word, or that of a quantity."""
+    if not _NAME.fullmatch(name) or name in _TAKEN:
+        fix = f"give letters, digits and underscores, and none of {', '.join(_TAKEN)}"
+        raise InputError("name", f"is {name!r}", fix)
+
+
+@typed
+@dataclass(frozen=True, eq=False)
+class Point(Value):
+    """A named point of output.
+
+    Parameters
+    ----------
+    name : str
+        Letters, digits and underscores.
+    at : float
+        Position from the root, m.
+
+    Raises
+    ------
+    InputError
+        If the name is no word, or that of another quantity, such as tip; or the position is impossible.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> camera = gb.Point("camera", at=0.12)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01, points=[camera])
+    >>> turn = gb.Flight(z=gb.trapezoid(78.5, jerk=39.2, start=0.5, hold=1.0))
+    >>> response = gb.simulate(gb.assemble(beam, "FOAM", z=2), turn, duration=6.0)
+    >>> response.points, response.at("camera").shape[1:]
+    (('camera', 'tip'), (3,))
+    """
+
+    name: str
+    at: float
+
+    def __post_init__(self) -> None:
+        checked_name(self.name)
+        positive("at", self.at, "m", zero=True)
+
+
 @typed
 @dataclass(frozen=True, eq=False)
 class PointMass(Value):
@@ -35,6 +85,8 @@ class PointMass(Value):
         Principal moments of inertia about its centre, axes of the section (x, y, z), kg m²; zero for a point.
     offset : tuple of float
         Centre of mass from the beam's axis, in axes of the section, m.
+    name : str
+        Of the point of the beam at `at`, where output is then given.
 
     Raises
     ------
@@ -54,8 +106,11 @@ class PointMass(Value):
     mass: float
     inertia: tuple[float, float, float] = (0.0, 0.0, 0.0)
     offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    name: str = ""
 
     def __post_init__(self) -> None:
+        if self.name:
+            checked_name(self.name)
         positive("at", self.at, "m", zero=True)
         positive("mass", self.mass, "kg", zero=True)
         for name, values in (("inertia", self.inertia), ("offset", self.offset)):

@@ -15,7 +15,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.guards.plausibility import possible
-from gbeam.structure.attachments import Load, PointMass, Root
+from gbeam.structure.attachments import TIP, Load, Point, PointMass, Root
 from gbeam.structure.material import ASSUMED_RATIO, Material
 from gbeam.structure.section import Section
 from gbeam.structure.shapes import ASSUMED_SHEAR
@@ -42,11 +42,14 @@ class Beam(Value):
     root : Root
         Springs that hold the root; clamped where there is none.
     loads : sequence of Load
+    points : sequence of Point
+        Named points of output; a mass with a name is one at its place. The tip is ``tip``.
 
     Raises
     ------
     InputError
-        If a value is impossible, a mass or a load lies off the beam, or the section's stations do not cover it.
+        If a value is impossible, a mass, a load or a point lies off the beam, a name is no word or stands twice, or
+        the section's stations do not cover the beam.
 
     Examples
     --------
@@ -63,13 +66,17 @@ class Beam(Value):
     damping_ratio: float | Sequence[float] | None = None
     root: Root = field(default_factory=Root)
     loads: Sequence[Load] = field(default=())
+    points: Sequence[Point] = field(default=())
 
     def __post_init__(self) -> None:
         possible("length", "length", positive("length", self.length, "m"))
         object.__setattr__(self, "masses", tuple(self.masses))
         object.__setattr__(self, "loads", tuple(self.loads))
+        object.__setattr__(self, "points", tuple(self.points))
         places = [(f"masses[{i}].at", mass.at) for i, mass in enumerate(self.masses)]
         places += [(f"loads[{i}].at", load.at) for i, load in enumerate(self.loads) if load.at is not None]
+        places += [(f"points[{i}].at", point.at) for i, point in enumerate(self.points)]
+        self._refuse_names_twice()
         for place, at in places:
             if at > self.length * (1 + 1e-12):
                 raise InputError(
@@ -100,6 +107,19 @@ class Beam(Value):
                     place, f"is {ratio:g}", "give a ratio of critical damping from 0 up to 1, such as 0.01"
                 )
 
+    def _refuse_names_twice(self) -> None:
+        named = [(f"points[{i}].name", point.name) for i, point in enumerate(self.points)]
+        named += [(f"masses[{i}].name", mass.name) for i, mass in enumerate(self.masses) if mass.name]
+        for k, (place, name) in enumerate(named):
+            if any(name == other for _, other in named[:k]):
+                raise InputError(place, f"is {name!r} a second time", "give every point its own")
+
+    @property
+    def named_points(self) -> dict[str, float]:
+        """Positions of the named points, bodies among them, and of the tip, from the root, m."""
+        bodies = {mass.name: mass.at for mass in self.masses if mass.name}
+        return {point.name: point.at for point in self.points} | bodies | {TIP: self.length}
+
     @property
     def body_centres(self) -> NDArray[np.float64]:
         """Centres of mass of the bodies on the undeformed beam, from the root, axes of the section, (b, 3) m."""
@@ -129,3 +149,12 @@ def fibre_strain(beam: Beam, at: Any, force: Any, moment: Any, y: Any, z: Any) -
     """Normal strain, (..., s), at places (y, z) m in a beam's sections `at` (s,) m, by what these carry."""
     axial, along_z, along_y = beam.rigidities(at)
     return force[..., 0] / axial + moment[..., 1] * z / along_z - moment[..., 2] * y / along_y
+
+
+def names_at(beam: Beam, stations: ArrayLike) -> tuple[str, ...]:
+    """Names of points at positions (s,), m; of one without a name its position, such as 100 mm."""
+    slack, names = 1e-9 * beam.length, []
+    for x in np.asarray(stations, dtype=float):
+        near = (name for name, at in beam.named_points.items() if abs(at - x) <= slack)
+        names.append(next(near, f"{1e3 * x:g} mm"))
+    return tuple(names)

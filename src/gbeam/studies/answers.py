@@ -1,95 +1,96 @@
-"""Answers of questions to one case as the JSON that the command line prints, from which figures are taken."""
+"""Answers of questions to one case as records of numbers, from which figures of merit are taken by their paths."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from gbeam.questions import QUESTIONS, Needs, motion_of
+from gbeam.questions import QUESTIONS, Needs
 
 if TYPE_CHECKING:
     from gbeam.analysis.case import Case
-    from gbeam.results.imitation.plan import MachinePlan
-    from gbeam.results.study import Study
+    from gbeam.results.facts import Figure
 
 Facts = Mapping[str, Any]
-DECLARED = ""  # key of the units of a record that declares them; no figure's path begins so
+KIND = ""  # key of the kind of answers in facts; no figure's path begins so
+
+
+@dataclass(frozen=True)
+class Answers:
+    """Kind of record that answers, and whether several do, by their motions."""
+
+    kind: type
+    several: bool
 
 
 def answered(verb: str, case: Case, motion: str | None, at: float | None, needs: Needs) -> Facts:
     """The facts of a question's answer."""
-    from gbeam.results.declared import json_of, units_of
-
-    question = QUESTIONS[verb]
-    answer = question.answer(case, motion, at, needs)
-    facts = _FACTS.get(verb)
-    return {**json_of(answer), DECLARED: units_of(type(answer))} if facts is None else facts(case, motion, answer)
+    return answer_facts(QUESTIONS[verb].answer(case, motion, at, needs), case.title)
 
 
-def study_facts(answer: Study) -> Facts:
-    """The facts of ``run``, with the comparisons by the centrifuge's name, and the figures of each verdict."""
-    from gbeam.report.study.summary_json import to_json
+def answer_facts(answer: Any, title: str = "") -> Facts:
+    """The facts of an answer with what has a name by its name: comparisons, and the limits of machines."""
+    from gbeam.results.facts import json_of
+    from gbeam.results.kinds import by_motion
 
-    facts = to_json(answer)
-    # By name, not by number; and what may be accepted stands under the verdict whether or not a limit is given.
-    facts["comparisons"] = {
-        each.centrifuge: {**found, "verdict": {**each.figures, **_accepted(found.pop("accepted"))}}
-        for each, found in zip(answer.comparisons, facts["comparisons"], strict=True)
-    }
-    facts["motions"] = {name: _limits_by_name(each) for name, each in facts["motions"].items()}
-    facts["study"] = answer  # for histories
-    reasons = {name: failure.message for name, failure in answer.unfinished.items()} or answer.refusals
-    facts["message"] = "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
-    return facts
+    several = isinstance(answer, tuple)
+    facts = by_motion(answer, title) if several else json_of(answer)
+    for motion in facts.get("motions", {}).values():
+        if "limits" in motion:
+            motion["limits"] = _by_axis(motion["limits"])
+    if "comparisons" in facts:
+        # By name, not by number; and what may be accepted stands under the verdict whether or not a limit is given.
+        facts["comparisons"] = {
+            each.centrifuge: {**compared, "verdict": each.figures | _accepted(compared.pop("accepted"))}
+            for each, compared in zip(answer.comparisons, facts["comparisons"], strict=True)
+        }
+        facts["study"] = answer  # for histories
+    kind = type(answer[0]) if several else type(answer)
+    return {**facts, KIND: Answers(kind, several), "message": _message(answer) or facts.get("message", "")}
 
 
-def _limits_by_name(motion: Facts) -> Facts:
-    """The facts of a motion with a machine's limits by axis and quantity, as scenarios name them."""
-    if "limits" not in motion:
-        return motion
+def tree_of_answers(answers: Answers) -> dict[str, Any]:
+    """The figures of answers, each at its place in the facts."""
+    from gbeam.results.facts import ANY, Figure, tree_of
+    from gbeam.results.imitation.criteria import RULES
+
+    tree = {"motions": {ANY: tree_of(answers.kind)}} if answers.several else tree_of(answers.kind)
+    for motion in tree.get("motions", {}).values():
+        if "limits" in motion:
+            motion["limits"] = {ANY: {ANY: dict(motion["limits"])}}
+    if "comparisons" in tree:
+        kept = {"accepted": Figure("", "whether every limit is kept")}
+        judged = {rule.name: Figure("", f"value that the limit `{rule.name}` is on") for rule in RULES.values()}
+        tree["comparisons"] = {ANY: {**tree["comparisons"], "verdict": judged | kept}}
+    return tree
+
+
+def choices(verb: str) -> dict[str, Figure]:
+    """Every figure of a question's answers by its path, in which ``*`` is a name and ``[i]`` a place in a list."""
+    from gbeam.results.facts import paths_of
+
+    return dict(paths_of(tree_of_answers(Answers(*QUESTIONS[verb].record))))
+
+
+def _message(answer: Any) -> str:
+    """Why an answer in some motions is none, or which limits it does not keep."""
+    if isinstance(answer, tuple):
+        reasons = {each.name: each.message or each.refusal for each in answer if hasattr(each, "refusal")}
+    elif hasattr(answer, "unfinished"):
+        reasons = {name: failure.message for name, failure in answer.unfinished.items()} or answer.refusals
+    else:
+        reasons = {}
+    return "; ".join(f"{name}: {reason}" for name, reason in reasons.items() if reason)
+
+
+def _by_axis(limits: list[Facts]) -> Facts:
+    """Limits of a machine by axis and quantity, as scenarios name them."""
     axes: dict[str, dict[str, Facts]] = {}
-    for each in motion["limits"]:
+    for each in limits:
         axes.setdefault(each["axis"].replace(" ", ""), {})[each["quantity"]] = each
-    return {**motion, "limits": axes}
+    return axes
 
 
 def _accepted(accepted: bool | None) -> Facts:
     return {} if accepted is None else {"accepted": accepted}
-
-
-def _static(case: Case, motion: str | None, answer: Any) -> Facts:
-    from gbeam.report.steady import deflection
-
-    return deflection.to_json(case.title, answer)
-
-
-def _critical_speed(case: Case, motion: str | None, answer: Any) -> Facts:
-    from gbeam.report.steady import critical
-
-    return critical.to_json(answer, motion_of(case.motions, motion, "hub"))
-
-
-def _plan(case: Case, motion: str | None, answer: tuple[MachinePlan, ...]) -> Facts:
-    from gbeam.report.machine import plan as report
-
-    facts = report.to_json(case.title, answer, [])
-    reasons = "; ".join(
-        f"{each.name}: {each.message or each.refusal}" for each in answer if each.message or each.refusal
-    )
-    motions = {name: _limits_by_name(each) for name, each in facts["motions"].items()}
-    return {**facts, "motions": motions, "message": reasons}
-
-
-def _place(case: Case, motion: str | None, answer: Any) -> Facts:
-    from gbeam.report.machine import placement
-
-    return placement.to_json(answer)
-
-
-_FACTS: Mapping[str, Callable[[Case, str | None, Any], Facts]] = {
-    "run": lambda case, motion, answer: study_facts(answer),
-    "static": _static,
-    "critical-speed": _critical_speed,
-    "plan": _plan,
-    "place": _place,
-}

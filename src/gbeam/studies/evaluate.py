@@ -29,7 +29,7 @@ from gbeam.scenario.load import change
 from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.text.source import Source
 from gbeam.scenario.values.paths import advise
-from gbeam.studies.answers import Facts, answered, study_facts
+from gbeam.studies.answers import Facts, answer_facts, answered
 from gbeam.studies.figures import History, Keys, own_keys, value_at
 
 Function = Callable[[Case], float]
@@ -268,7 +268,7 @@ def _row(question: Question, number: int, case: Case, answers: Mapping[str, Resp
                 raise answer
             else:
                 responses[name] = answer
-        facts = study_facts(study_of(case, responses, failures))
+        facts = answer_facts(study_of(case, responses, failures))
     except Exception as error:
         return without_figures(number, question.width, error)
     return question.measured(number, case, facts)

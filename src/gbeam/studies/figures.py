@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.results.declared import units_of
-from gbeam.results.equilibrium import Deflection
+from gbeam.questions import QUESTIONS
 from gbeam.results.result import Floats
 from gbeam.scenario.schema import Centrifuge
 from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.values.paths import advise, closest, path_text
-from gbeam.studies.answers import DECLARED, Facts
+from gbeam.structure.attachments import TIP
+from gbeam.studies.answers import KIND, Facts, choices, tree_of_answers
 
 if TYPE_CHECKING:
     from gbeam.results.study import Study
@@ -36,7 +36,7 @@ def find(facts: Facts, name: str) -> Keys:
     if not fits:
         ends = {path[at:] for path in every for at in _starts(path)}
         near = closest(name, sorted(ends, key=lambda end: (abs(end.count(".") - name.count(".")), end)))
-        fix = f"did you mean {near!r}?" if near else "take one from what the verb prints with --json"
+        fix = f"did you mean {near!r}?" if near else "list names every figure, with its unit"
         if name.endswith("verdict.accepted"):
             fix = "a verdict is accepted or not by limits: set them in [motion.NAME.accept]"
         raise InputError(OPTION, f"{name!r} is no figure of this", fix)
@@ -44,6 +44,29 @@ def find(facts: Facts, name: str) -> Keys:
         shown = ", ".join(fits[:_MANY]) + (", …" if len(fits) > _MANY else "")
         raise InputError(OPTION, f"{name!r} could be any of {len(fits)} figures", f"name one of {shown}")
     return every[name if name in fits else fits[0]]
+
+
+def offered(verb: str, names: Iterable[str], option: str = OPTION) -> None:
+    """Refuse a name that no figure of a question can have, before anything is computed."""
+    every = [_segments(path) for path in choices(verb)] if verb in QUESTIONS else []
+    for name in names:
+        ends = _segments(name)
+        if every and '"' not in name and not any(_fits(ends, path) for path in every):
+            near = closest(name, [".".join(path[-len(ends) :]) for path in every])
+            fix = f"did you mean {near!r}?" if near else "list names every figure, with its unit"
+            raise InputError(option, f"{name!r} is no figure of {verb}", fix)
+
+
+def _segments(path: str) -> list[str]:
+    return re.sub(r"\[(?:i|\d+)\]", "[i]", path).split(".")
+
+
+def _fits(ends: Sequence[str], path: Sequence[str]) -> bool:
+    """Whether a path can end so."""
+    if len(ends) > len(path):
+        # A name may have dots of its own.
+        return any(each.startswith("*") for each in path)
+    return all(own in ("*", end) for end, own in zip(reversed(ends), reversed(path), strict=False))
 
 
 def usual(scenario: Scenario, verb: str) -> tuple[str, ...]:
@@ -81,6 +104,13 @@ def is_truth(facts: Facts, keys: Keys) -> bool:
     return isinstance(node, bool)
 
 
+def declared(facts: Facts, keys: Keys) -> str | None:
+    """Unit of the figure at `keys`, empty where it has none; None where no unit is declared for its place."""
+    from gbeam.results.facts import unit_at
+
+    return unit_at(facts, tree_of_answers(facts[KIND]), keys)
+
+
 def unit_at(facts: Facts, keys: Keys) -> str:
     """SI unit of the figure there; empty where it has none."""
     return declared(facts, keys) or ""
@@ -112,148 +142,17 @@ def _starts(path: str) -> list[int]:
     return [0, *(match.end() for match in re.finditer(r"\.", path))]
 
 
-ANY = "*"  # any key that has no entry of its own
-NUMBER = ""  # a share, a ratio, a count, true or false
-_NAMED = "unit"  # the unit is the one that the facts name beside the figure
-
-# A text is the unit of all that stands below; that under "" is a figure's that is no mapping. Indices of lists are
-# left out.
-Tree = Mapping[str, Any]
-
-
-def _all(unit: str, keys: str) -> Tree:
-    return dict.fromkeys(keys.split(), unit)
-
-
-def _peak(unit: str) -> Tree:
-    """Units of the largest size of a history; a deflection, which has no history, is a figure itself."""
-    return {"": unit, "max_abs": unit, "residual_amplitude": unit, "time_of_max": "s"}
-
-
-def _vector(unit: str) -> Tree:
-    return {ANY: _peak(unit)}
-
-
-def _extreme(unit: str) -> Tree:
-    return {"": unit, "max": unit, "min": unit, "station": "m", "time_of_max": "s", "time_of_min": "s"}
-
-
-def _pair(unit: str) -> Tree:
-    return {**_all(unit, "flight machine"), "ratio": NUMBER, **_all("s", "time_flight time_machine")}
-
-
-_USE = {**_all(_NAMED, "used allowed"), **_all(NUMBER, "share exceeded"), "time": "s"}
-_STRETCH = _all("s", "start end time")
-_SPANS = {"span": _STRETCH, "whole": _STRETCH}
-_SECTION = {"at": "m", "force": _vector("N"), "moment": _vector("N m"), **_all("Pa", "tension compression")}
-_LOADS = {
-    "root_force": _vector("N"),
-    "root_moment": _vector("N m"),
-    "beam_torque": _peak("N m"),
-    "sections": {**_SECTION, "margin": NUMBER},
-    "stress": {**_extreme("Pa"), "tension": _extreme("Pa"), "compression": _extreme("Pa")},
-    "margin": _extreme(NUMBER),
-    **{"stations": "m", "section_force": "N", "section_moment": "N m"},
-    **_all("Pa", "yield_strength stress_tension stress_compression"),
-}
-_LOAD_PEAK = {**_all("s", "time time_machine"), **_all("m/s^2", "load reproduced")}
-_ACCOUNTING = {
-    "peaks": {**_LOAD_PEAK, **_all(NUMBER, "ratio error instant_error spread spread_flight")},
-    "not_followed": {**_STRETCH, "flight_peak": "m/s^2"},
-    "preload": {**_STRETCH, **_all("m/s^2", "load flight")},
-    **_all("m/s^2", "tolerance_load idle"),
-    **_all(NUMBER, "tolerance followed_share not_followed_share"),
-}
-_PEAKS = {
-    "largest_load": _pair("m/s^2"),
-    "tip": _pair("m"),
-    "root_force": _pair("N"),
-    "root_moment": _pair("N m"),
-    "stress": _pair("Pa"),
-}
-_JUDGED = {"peaks": _PEAKS, "accounting": _ACCOUNTING, **_all(NUMBER, "verdict accepted criteria")}
-_ERROR = {"max": "m/s^2", "fraction": NUMBER, "time_of_max": "s"}
-_MOTION = {
-    **_JUDGED,
-    **_SPANS,
-    **units_of(Deflection),
-    "tip": _vector("m"),
-    "stations": {"": "m", "at": "m", **_vector("m")},
-    "loads": _LOADS,
-    "hub": {"angle_end": "rad", **_all("rad/s", "rate_end rate_max")},
-    "axes": {ANY: {"rate": _peak("rad/s"), "acceleration": _peak("rad/s^2")}},
-    "limits": {ANY: {ANY: _USE}},
-    **dict.fromkeys(("tracking_error", "flight_error"), _ERROR),
-    "not_followed": _STRETCH,
-    "shortfalls": {**_STRETCH, **_all(_NAMED, "reference possible")},
-    "histories": {"samples": NUMBER},
-    "gravity": "m/s^2",
-    **_all("m", "arm control_point"),
-    **_all("s", "time step spin_up spin_down"),
-    **_all(NUMBER, "error_estimate steps damping_ratio"),
-}
-_CYCLES = {"cycles": NUMBER, **_all("Pa", "largest_range equivalent_range")}
-_MISMATCH = {"max_gradient": "1/s^2", "max_acceleration": "m/s^2", "force_bound": "N", "moment_bound": "N m"}
-_COMPARISON = {
-    **_JUDGED,
-    **_SPANS,
-    "mismatch": {**_MISMATCH, **_all("m", "control_point tip_bound")},
-    "root": {"force": "N", "moment": "N m", "stress": "Pa"},
-    "fatigue": {**_all(NUMBER, "exponent damage_ratio"), "flight": _CYCLES, "machine": _CYCLES},
-    "shock": {
-        **{"quality": NUMBER, "frequency": "Hz", **_all("m/s^2", "flight centrifuge")},
-        "extremes": {"ratio": NUMBER, "frequency": "Hz"},
-    },
-    "cutoff": "Hz",
-    **_all("m", "stations max_difference rms_difference peak_flight peak_centrifuge"),
-    **_all(NUMBER, "margin covered relative"),
-}
-_CANDIDATE = {
-    "most_used": _USE,
-    "exceeded": _USE,
-    "largest_load": _pair("m/s^2"),
-    "accelerations": "rad/s^2",
-    "control_point": "m",
-    "smoothing": "s",
-    **_all(NUMBER, "share mismatch total_error tracking"),
-}
-# Of all verbs: no two have one place for different things.
-_FIGURES: Tree = {
-    "motions": {ANY: _MOTION},
-    "comparisons": {ANY: _COMPARISON},
-    "options": _CANDIDATE,
-    "before": _CANDIDATE,
-    **_all("m", "control_point current_control_point"),
-    **_all("s", "smoothing smoothing_range"),
-    **_all("rad/s", "critical_speed searched_to"),
-    **_all(NUMBER, "error_estimate errors"),
-    **_all(NUMBER, "measure mismatch total_error fraction_of_length vibration_gain_over_middle"),
-}
-
-
-def declared(facts: Any, keys: tuple[str | int, ...]) -> str | None:
-    """Unit of the figure at `keys`, empty where it has none; None where no unit is declared for its place."""
-    tree: Any = facts.get(DECLARED, _FIGURES)
-    for word in (key for key in keys if isinstance(key, str)):
-        tree = tree if isinstance(tree, str) else tree.get(word, tree.get(ANY))
-        if tree is None:
-            return None
-    unit = tree if isinstance(tree, str) else tree.get("")
-    if unit != _NAMED:
-        return unit
-    for key in keys[:-1]:
-        facts = facts[key]
-    return str(facts[_NAMED])
-
-
 HISTORY = "--history"
 TIMES = 501  # by default
-UNITS = {"tip": "m", "root_force": "N", "root_moment": "N m"}
+_LOADS = {"root_force": "N", "root_moment": "N m"}  # of the root
 
 
 @dataclass(frozen=True)
 class History:
-    """One component over time: of `quantity` along `axis` (0, 1, 2) of base axes, in the motion of that name."""
+    """One component over time along `axis` (0, 1, 2) of base axes, in the motion of that name.
+
+    Its `quantity` is the root's force or moment, or the displacement of the point of that name, such as tip.
+    """
 
     name: str
     motion: str
@@ -263,7 +162,7 @@ class History:
     @property
     def unit(self) -> str:
         """SI."""
-        return UNITS[self.quantity]
+        return _LOADS.get(self.quantity, "m")
 
     def at(self, study: Study, times: Floats) -> Floats:
         """Values at times (t,); NaN where the response has none."""
@@ -272,8 +171,8 @@ class History:
         if response is None:
             return nothing
         loads = response.loads
-        if self.quantity == "tip":
-            values = response.tip
+        if self.quantity not in _LOADS:
+            values = response.at(self.quantity)
         elif loads is None:
             return nothing
         else:
@@ -287,12 +186,13 @@ class History:
         return np.where(inside, spline(times), math.nan)
 
 
-def read_history(text: str, motions: Collection[str]) -> History:
-    """Read ``flight.tip.z``; the motion may be left out where there is one."""
+def read_history(text: str, motions: Collection[str], points: Collection[str] = (TIP,)) -> History:
+    """Read ``flight.tip.z``, or that of another point; the motion may be left out where there is one."""
     *before, quantity, axis = ["", "", *text.split(".")]
     motion = ".".join(part for part in before if part)
-    if axis not in ("x", "y", "z") or quantity not in UNITS:
-        raise InputError(HISTORY, f"{text!r} is no history", f"write MOTION.QUANTITY.AXIS of {', '.join(UNITS)}")
+    if axis not in ("x", "y", "z") or quantity not in (*points, *_LOADS):
+        fix = f"write MOTION.QUANTITY.AXIS of {', '.join((*points, *_LOADS))}"
+        raise InputError(HISTORY, f"{text!r} is no history", fix)
     if not motion:
         if len(motions) > 1:
             raise InputError(HISTORY, f"{text!r} leaves the motion out", f"write {next(iter(motions))}.{text}")

@@ -79,7 +79,7 @@ class Measurement:
     @property
     def parts(self) -> dict[str, bool]:
         """Which parts of a response the columns are of."""
-        return {"loads": any(not each.quantity.startswith(("tip", "hub")) for each in self.columns), "axes": False}
+        return {"loads": any(each.quantity.startswith(("root_", "strain")) for each in self.columns), "axes": False}
 
     def weights(self, residuals: Floats | None, freed: int) -> Floats:
         """One over the noise of every datum, (m,), that residuals (m,) show; before there are any, a usual one.
@@ -181,6 +181,9 @@ def _column(table: Table, name: str, unit: str, modal: bool, case: Case, motion:
     if strain is not None:
         factor = _MICROSTRAIN.get(unit) or _factor(unit, "ratio", name)
         return Measured(name, of, "strain", values * factor, "", _position(strain[2], strain[1], case), strain[1])
+    point, _, axis = quantity.partition(".")
+    if axis in tuple("xyz") and point in case.beam.named_points:
+        return Measured(name, of, quantity, values * _factor(unit, "length", name), _si("length"))
     if quantity not in _KINDS:
         raise InputError(OPTION, f"has the column {name!r}", advise(quantity, [*_KINDS, "strain.z@10 mm"]))
     if quantity.startswith("hub.") and case.motions[of].kind != "hub":
@@ -208,7 +211,8 @@ def _factor(unit: str, kind: str, name: str) -> float:
 def _position(text: str, face: str, case: Case) -> float:
     """Where a gauge on a face of the beam is, m."""
     try:
-        at = argument(text.strip(), "length")
+        at = case.beam.named_points.get(text.strip())
+        at = argument(text.strip(), "length") if at is None else at
         surface_gauge(case.beam, at, face)
     except UnitError as error:
         raise InputError(OPTION, f"has a gauge at {text!r}: {error.problem}", error.hint) from None
@@ -233,8 +237,8 @@ def _modal(facts: Mapping[str, Any], quantity: str, mode: int) -> float:
 
 def _values(case: Case, response: Response, column: Measured) -> Floats:
     kind, _, axis = column.quantity.partition(".")
-    if kind == "tip":
-        return response.tip[:, "xyz".index(axis)]
+    if kind in response.points:
+        return response.at(kind)[:, "xyz".index(axis)]
     if kind == "hub":
         assert response.hub is not None
         return np.asarray(getattr(response.hub, axis))

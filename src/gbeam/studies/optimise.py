@@ -27,7 +27,7 @@ from gbeam.scenario.values.units import UnitError, argument
 from gbeam.studies.answers import Facts
 from gbeam.studies.derivatives import Neighbourhood
 from gbeam.studies.evaluate import Question
-from gbeam.studies.figures import Keys, unit_at
+from gbeam.studies.figures import Keys, offered, unit_at
 from gbeam.studies.parameters import Bounds, PhysicalValue, agreeing, bounds_of, named, starting_points
 from gbeam.studies.sensitivity import facts_of, figure, needed, values_at
 
@@ -105,6 +105,7 @@ def optimise(
     if not over:
         raise InputError("--over", "is missing", 'name values: --over "motion.centrifuge.control_point"')
     parameters = named(base, over, "--over")
+    offered(verb, [minimise], OPTION)
     limits = np.array([bounds_of(each, bounds or {}, "--over") for each in parameters])
     question = Question(base.source, verb, motion, at)
     first = Neighbourhood(question, parameters, progress=progress)

@@ -21,10 +21,10 @@ from gbeam.results.study import Study
 from gbeam.scenario.build import scenario_of
 from gbeam.scenario.origin import provenance
 from gbeam.scenario.values.paths import path_text
-from gbeam.studies.answers import Facts, study_facts
+from gbeam.studies.answers import Facts, answer_facts
 from gbeam.studies.derivatives import Neighbourhood, Slopes
 from gbeam.studies.evaluate import Question
-from gbeam.studies.figures import Keys, find, own_keys, unit_at, usual, value_at
+from gbeam.studies.figures import Keys, find, offered, own_keys, unit_at, usual, value_at
 from gbeam.studies.parameters import PhysicalValue, physical_values
 
 OPTION = "--of"
@@ -96,6 +96,7 @@ def sensitivity(
     of = of or usual(base, verb)
     if not of:
         raise InputError(OPTION, "is missing", 'name figures: --of "tip.z.max_abs, verdict.tip"')
+    offered(verb, of, OPTION)
     question = Question(base.source, verb, motion, at)
     chosen, refused = _possible(question, physical_values(base, parameters), strict=bool(parameters))
     if not chosen:
@@ -184,7 +185,7 @@ def needed(keys: Sequence[Keys], tracks: Mapping[str, str]) -> tuple[list[str], 
 
 
 def facts_of(answer: Any) -> Facts:
-    return study_facts(answer) if isinstance(answer, Study) else answer
+    return answer_facts(answer) if isinstance(answer, Study) else answer
 
 
 def values_at(facts: Facts, keys: Sequence[Keys]) -> Floats:

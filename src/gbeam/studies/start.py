@@ -42,7 +42,9 @@ class OverTime:
             return question
         first = case.response.start
         times = np.linspace(first, first + case.response.duration, self.count)
-        return replace(question, histories=tuple(read_history(each, case.motions) for each in self.names), times=times)
+        points = list(case.beam.named_points)
+        histories = tuple(read_history(each, case.motions, points) for each in self.names)
+        return replace(question, histories=histories, times=times)
 
 
 NO_HISTORIES = OverTime()

@@ -27,7 +27,7 @@ from gbeam.scenario.values.paths import parse_path
 from gbeam.studies.cases import Cases, read_cases
 from gbeam.studies.cluster import on_scheduler
 from gbeam.studies.evaluate import Function, Question, Row, Task, may_share, width
-from gbeam.studies.figures import HISTORY, TIMES, judged, usual
+from gbeam.studies.figures import HISTORY, TIMES, judged, offered, usual
 from gbeam.studies.journal import Journal, identity, opened
 from gbeam.studies.start import NO_HISTORIES, OverTime, Start, go_on, start
 from gbeam.studies.statistics import indices, statistics
@@ -149,6 +149,8 @@ def sweep(
     cases = read_cases(_texts(over), samples, sampler or "sobol", seed := seed or 0, base.source.distributions)
     size = len(over_time.names) * over_time.count * len(cases)
     refuse_more("--times", "values of histories", size, HISTORY_BYTES // 8, 8.0, "give fewer times, or fewer cases")
+    if not isinstance(measure, Mapping):
+        offered(verb, names)
     functions = tuple(measure.values()) if isinstance(measure, Mapping) else ()
     share = not functions and may_share(verb, [each.path for each in cases.variations])
     question = Question(base.source, verb, motion, at, functions=functions, together=share)

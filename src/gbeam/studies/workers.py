@@ -211,7 +211,7 @@ def _work(pipe: Connection, functions: bytes) -> None:
 
 def _import() -> None:
     """Import what is imported where a case needs it."""
-    import gbeam.report.study.summary_json  # noqa: F401
+    import gbeam.results.facts  # noqa: F401
     import gbeam.scenario.build_motion  # noqa: F401
 
 

@@ -97,6 +97,8 @@ def load_peaks(loads: Loads, loads_at: Callable[[Indices], Loads | None], time: 
         tension=Extremes(v[:s], w[:s]),
         compression=Extremes(-v[s : 2 * s], w[s : 2 * s]),
         beam_torque=None if loads.beam_torque is None else Extremes(v[-1], w[-1]),
+        stations=loads.stations,
+        yield_strength=loads.yield_strength,
     )
 
 

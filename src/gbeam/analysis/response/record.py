@@ -32,6 +32,7 @@ from gbeam.results.machine import AxesResult
 from gbeam.results.parts import Influence, Loads, Outline, Peaks
 from gbeam.results.response import BaseMotion, HubResult, Response
 from gbeam.results.result import Floats
+from gbeam.structure.beam import names_at
 
 POINTS = 16  # along the beam, at most
 TIMES = 1500
@@ -194,6 +195,7 @@ def response_of(
         warnings=warnings,
         time=time,
         stations=np.asarray(structure.stations),
+        points=() if traced or structure.source is None else names_at(structure.source.beam, structure.stations),
         displacement=displacement,
         q=q[:, beam],
         qd=qd[:, beam],

@@ -82,6 +82,7 @@ def schema(
     *,
     json: Json = False,
     markdown: Annotated[bool, option("--markdown", "The keys as a page to read instead.")] = False,
+    results: Annotated[bool, option("--results", "Of the JSON that verbs print, instead of scenario files.")] = False,
 ) -> int:
     """Print the JSON schema of scenario files, for editors; or every key, with unit, default and meaning.
 
@@ -90,6 +91,11 @@ def schema(
     json
         As every verb takes it: the schema is one JSON object anyway.
     """
+    if results:
+        from gbeam.report.reference import json_schema_of_results, reference_of_results
+
+        print(reference_of_results() if markdown and not json else json_schema_of_results(), end="")
+        return 0
     from gbeam.scenario import json_schema
 
     if markdown and not json:

@@ -70,6 +70,7 @@ def plan(
         raise InputError("--sample", f"is {sample}", 'give a positive time, such as "5 ms"')
 
     from gbeam.analysis.imitation import plan as analysis
+    from gbeam.report.facts import facts
     from gbeam.report.machine import plan as words
     from gbeam.results.imitation.criteria import judging
 
@@ -94,22 +95,24 @@ def plan(
             time = every or (own.sample if own else SAMPLE)
             write_commands(each, analysis.axis_commands(machines[name], time), hidden)
             if figures_wanted():
-                from gbeam.plots import figures, save
+                from gbeam.figures import figures_of
+                from gbeam.plots import write_figures
 
-                for kind, draw in figures(each, given.title).items():
-                    save(draw(), hidden, f"{kind}_{name}", "gbeam plan")
+                described = figures_of(each, given.title).items()
+                write_figures({f"{kind}_{name}": figure for kind, figure in described}, hidden, "gbeam plan")
 
         if report:
-            from gbeam.report.page.result import report_of_plans
+            from gbeam.report.page.document import html
+            from gbeam.report.page.records import of_plans
 
-            facts = signed(words.to_json(given.title, plans.values()), origin)
-            (hidden / "plan.html").write_text(report_of_plans(facts, plans), encoding="utf-8")
+            known = signed(facts(*plans.values(), title=given.title), origin)
+            (hidden / "plan.html").write_text(html(known, figures=of_plans(plans)), encoding="utf-8")
 
     if not json:
         show_table(words.table(given.title, plans.values()))
     files = [] if folder is None else publish(folder, make)
     if json:
-        show("", signed(words.to_json(given.title, plans.values(), files), origin), json)
+        show("", signed(facts(*plans.values(), title=given.title, files=files), origin), json)
     list_files(None if json else folder, files)
     broken = [each for each in plans.values() if each.outcome != "done"]
     for each in broken:
@@ -154,6 +157,7 @@ def place(
 
     from gbeam.analysis.imitation import place as analysis
     from gbeam.analysis.imitation.place_measures import choice_of
+    from gbeam.report.facts import facts as facts_of
     from gbeam.report.machine import placement as words
 
     analysis.check_weights(weights, "--measure")
@@ -171,9 +175,9 @@ def place(
             check=check,
         )
     written = _apply(given, scenario, name, placement.changes) if write_back and placement.changes else None
-    facts = given.signed(words.to_json(placement, written))
-    write(folder, "place", facts, report=report)
-    show(words.text(placement, written), facts, json)
+    known = given.signed(facts_of(placement) | {"written": written})
+    write(folder, "place", known, report=report)
+    show(words.text(placement, written), known, json)
     if placement.outcome != "done":
         complain(f"{placement.outcome}: motion.{name}: {placement.message}")
         return FAILED

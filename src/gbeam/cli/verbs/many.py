@@ -13,7 +13,7 @@ from gbeam.cli.console import Watch
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import names, number, signed
 from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile, SmoothVerb, Verb, option
-from gbeam.cli.outputs import commanded, folder_of, list_files, show, show_found, write_json
+from gbeam.cli.outputs import LIST, commanded, folder_of, list_figures, list_files, show, show_found, write_json
 from gbeam.cli.process import command, figures_wanted
 from gbeam.cli.publication import publish, refuse_unwritable
 
@@ -35,7 +35,8 @@ def sweep(
         option(
             "--measure",
             'Figures of the verb by the end of their path in its JSON, "tip.size.max_abs"; of run by default the '
-            "largest of tip and root moment, the share of the flight that is followed, and whether it is accepted.",
+            "largest of tip and root moment, the share of the flight that is followed, and whether it is accepted; "
+            "list prints all there are, with units.",
         ),
     ] = (),
     history: Annotated[
@@ -75,6 +76,8 @@ def sweep(
     measure, and with --report report.html. A case that fails is recorded as such. Exit status: 0 all cases computed,
     those too that do not keep limits, which are counted as not accepted, 1 some are not done, 2 the input is wrong.
     """
+    if LIST in measure:
+        return list_figures(verb or "run", json)
     folder = out if out is not None else Path("out") / f"{scenario.stem}-sweep"
     refuse_unwritable(folder)
 
@@ -105,26 +108,29 @@ def sweep(
     assert answer.provenance is not None  # it is of a scenario
     answer = replace(answer, provenance=replace(answer.provenance, command=command()))
 
+    from gbeam.report.facts import facts
     from gbeam.report.studies import sweep as words
 
     def make(hidden: Path) -> None:
         if figures_wanted():
-            from gbeam.plots import figures, save
+            from gbeam.figures import figures_of
+            from gbeam.plots import write_figures
 
-            for name, draw in figures(answer).items():
-                save(draw(), hidden, re.sub(r"[^\w.-]+", "_", re.sub(r"[\[\]]", "", name)), "gbeam sweep")
-        write_json(hidden / "sweep.json", signed(words.to_json(answer), answer.provenance))
+            described = figures_of(answer).items()
+            named = {re.sub(r"[^\w.-]+", "_", re.sub(r"[\[\]]", "", name)): figure for name, figure in described}
+            write_figures(named, hidden, "gbeam sweep")
+        write_json(hidden / "sweep.json", signed(facts(answer), answer.provenance))
         if netcdf:
             answer.save(hidden / "sweep.nc")
         if report:
             answer.report(hidden / "report.html")
 
-    from gbeam.io.layout.studies import write_zarr
+    from gbeam.io.netcdf import write_zarr
 
     files = publish(folder, make)
     write_zarr(answer, folder / "sweep.zarr")
     files = sorted([*files, folder / "sweep.zarr"])
-    show(words.text(answer), signed(words.to_json(answer, files), answer.provenance), json)
+    show(words.text(answer), signed(facts(answer, files=files), answer.provenance), json)
     if not json:
         list_files(folder, files)
     if answer.lost:
@@ -141,7 +147,7 @@ def sensitivity(
         option(
             "--of",
             'Figures of the verb by the end of their path in its JSON, "tip.z.max_abs, verdict.tip"; of run by default '
-            "the largest of tip and root moment in every motion.",
+            "the largest of tip and root moment in every motion; list prints all there are, with units.",
         ),
     ] = (),
     by: Annotated[
@@ -164,6 +170,8 @@ def sensitivity(
     sensitivity.nc and a plot of each figure, with --report sensitivity.html. Exit status: 0 done, 1 the run is not
     done, 2 the input is wrong.
     """
+    if LIST in of:
+        return list_figures(verb, json)
     folder = folder_of(out, scenario, default=report)
     if folder is not None:
         refuse_unwritable(folder)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
-from functools import partial
 from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
@@ -88,12 +87,12 @@ def _answer(
     with Watch(), given.placing(**places):
         answer = question.answer(given.case, chosen, time, Needs(shapes=True), **options)
 
-    from gbeam.results.declared import json_of, units_of
+    from gbeam.figures import figures_of
+    from gbeam.report.facts import facts as facts_of
 
-    of_kind = {} if question.words else {"kind": question.name, "units": units_of(type(answer))}
-    facts = given.signed(json_of(answer) | of_kind)
-    plot = partial(answer.plot, title=given.case.title) if hasattr(answer, "plot") else None
-    write(folder, name, facts, None if plot is None else lambda: {name: plot().figure}, report=report)
+    facts = given.signed(facts_of(answer))
+    described = figures_of(answer, given.case.title)
+    write(folder, name, facts, dict(zip([name], described.values(), strict=False)), report=report)
     show(_words(question, answer), facts, json)
     return 0
 
@@ -107,7 +106,7 @@ def _words(question: Question, answer: Any) -> str:
 
     lines = [question.about]
     for name, each in declarations(type(answer)):
-        value, unit = getattr(answer, name), each.unit if isinstance(each.unit, str) else each.unit(answer)
+        value, unit = getattr(answer, name), each.unit(answer) if callable(each.unit) else str(each.unit)
         if isinstance(value, (bool, str)):
             lines.append(f"  {each.words}: {value}")
         elif getattr(value, "ndim", 0) == 0 and isinstance(value, (int, float)):

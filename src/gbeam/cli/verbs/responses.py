@@ -77,9 +77,9 @@ def run(
             watch("writing results and plots", 0.0)
             files = publish(folder, make)
     if json:
-        from gbeam.report.study.summary_json import to_json
+        from gbeam.report.facts import facts
 
-        show("", given.signed(to_json(answer, files)), json)
+        show("", given.signed(facts(answer, files=files)), json)
     list_files(None if json else folder, files)
     for name, failure in answer.unfinished.items():
         complain(f"motion.{name} {failure.outcome}: {failure.message}")
@@ -110,11 +110,12 @@ def models(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = N
     given = read("models", scenario, overrides, out)
 
     from gbeam.analysis.model_study import compare_models
+    from gbeam.report.facts import facts as facts_of
     from gbeam.report.study import models as report
 
     with Watch() as watch, given.placing():
         study = compare_models(given.case, progress=watch)
-    facts = given.signed(report.to_json(study))
+    facts = given.signed(facts_of(study))
     write(out, "models", facts)
     if json:
         show("", facts, json)

@@ -24,7 +24,7 @@ from gbeam.cli.options import (
     WriteTo,
     option,
 )
-from gbeam.cli.outputs import commanded, folder_of, refuse_changes, show_found, write_found
+from gbeam.cli.outputs import LIST, commanded, folder_of, list_figures, refuse_changes, show_found, write_found
 from gbeam.cli.publication import refuse_unwritable
 
 
@@ -93,7 +93,11 @@ def optimize(
     /,
     *,
     minimise: Annotated[
-        str, Parameter(name=["--minimise", "--minimize"], help='A figure of the verb, "tip.y.residual_amplitude".')
+        str,
+        Parameter(
+            name=["--minimise", "--minimize"],
+            help='A figure of the verb, "tip.y.residual_amplitude"; list prints all, with units.',
+        ),
     ],
     over: Annotated[
         tuple[str, ...],
@@ -123,6 +127,8 @@ def optimize(
     optimum.nc and a plot of the way, with --report optimum.html. Exit status: 0 done, 1 no values within the bounds
     keep the requirements, 2 the input is wrong.
     """
+    if minimise == LIST:
+        return list_figures(verb, json)
     folder = folder_of(out, scenario, default=report)
     if folder is not None:
         refuse_unwritable(folder)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import asdict, replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from cyclopts import Parameter
 
@@ -37,9 +38,6 @@ from gbeam.cli.publication import publish
 from gbeam.errors import InputError
 from gbeam.questions import Needs
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 def static(
     scenario: ScenarioFile,
@@ -63,19 +61,17 @@ def static(
         given.motion(motion)
     time = given.time(at)
 
+    from gbeam.report.facts import facts as facts_of
     from gbeam.report.steady import deflection as words
 
     with Watch(), given.placing():
         deflections = questions.static(given.case, motion, time, Needs(shapes=True))
     title = given.case.title
-    facts = given.signed(words.to_json(title, deflections))
+    facts = given.signed(facts_of(*deflections, title=title))
 
-    def figures() -> dict[str, Figure]:
-        from gbeam.plots import plot_static
+    from gbeam.figures import of_deflections
 
-        loads = {f"loads_{each.motion}": each.plot("loads", title=title).figure for each in deflections}
-        return {"static": plot_static(deflections, title), **loads}
-
+    figures = of_deflections(deflections, title)
     write(folder, "static", facts, figures, report=report)
     show(words.text(deflections), facts, json)
     return 0
@@ -112,23 +108,21 @@ def campbell(
         fix = 'give the largest speed, such as "5 rad/s"'
         raise InputError("--to", "is missing: the hub is driven by a torque", fix)
 
+    from gbeam.report.facts import facts as facts_of
     from gbeam.report.steady import campbell as words
-    from gbeam.results.declared import json_of
 
     with Watch(), given.placing(to="--to", modes="--modes"):
         diagram = questions.campbell(given.case, name, start=low, end=high, modes=modes, orders=orders)
-    facts = given.signed(json_of(diagram))
+    facts = given.signed(facts_of(diagram))
 
     from gbeam.scenario.values.units import unit_of
 
     # In words and in the diagram speeds are in the unit in which they are given.
     unit, size = unit_of(end or start or "0", "angular rate")
 
-    def figures() -> dict[str, Figure]:
-        from gbeam.plots import plot_campbell
+    from gbeam.figures import steady
 
-        return {"campbell": plot_campbell(diagram, given.case.title, (1 / size, unit))}
-
+    figures = {"campbell": partial(steady.campbell, diagram, given.case.title, (1 / size, unit))}
     files = write(folder, "campbell", facts, figures, report=report)
     show(words.text(diagram, unit, size), facts, json)
     if not json:
@@ -174,11 +168,12 @@ def critical_speed(
     name, _ = given.motion(motion, kind="hub")
     time = given.time(at)
 
+    from gbeam.report.facts import facts as facts_of
     from gbeam.report.steady import critical as words
 
     with Watch() as watch, given.placing():
         critical = questions.critical_speed(given.case, name, time, vary=vary, upper=upper, progress=watch)
-    facts = given.signed(words.to_json(critical, name))
+    facts = given.signed(facts_of(critical))
     write(folder, "critical_speed", facts, report=report)
     show(words.text(critical, name), facts, json)
     return 0
@@ -204,14 +199,16 @@ def critical_map(
         raise InputError("--positions", f"has {max(places):g} m, off the beam", f"give 0 to {length:g} m")
 
     from gbeam.analysis.steady.stability import critical_speed_map
+    from gbeam.figures import steady
+    from gbeam.report.facts import facts as facts_of
     from gbeam.report.steady import critical as words
-    from gbeam.results.declared import json_of
 
     with Watch() as watch, given.placing():
         critical = critical_speed_map(
             case.beam, case.model, chosen, kilograms, places, upper, name=name, progress=watch
         )
-    facts = given.signed(json_of(critical))
+    facts = given.signed(facts_of(critical))
+    figures = {"critical_speed": partial(steady.critical_map, critical, case.title)}
 
     def make(hidden: Path) -> None:
         write_json(hidden / "critical_speed.json", facts)
@@ -219,11 +216,11 @@ def critical_map(
         if report:
             from gbeam.report.page.document import html
 
-            (hidden / "critical_speed.html").write_text(html(facts, {}), encoding="utf-8")
+            (hidden / "critical_speed.html").write_text(html(facts, figures=figures), encoding="utf-8")
         if figures_wanted():
-            from gbeam.plots import save
+            from gbeam.plots import write_figures
 
-            save(critical.plot(title=case.title).figure, hidden, "critical_speed", "gbeam critical-speed")
+            write_figures(figures, hidden, "gbeam critical-speed")
 
     if out is not None:
         publish(out, make)
@@ -255,7 +252,8 @@ def linearize(
     name, chosen = given.motion(motion, kind="" if rate is None else "hub")
     time = given.time(at)
     steady = None if rate is None else number("--rate", rate, "angular rate")
-    stations = [number("--strain-at", text, "length") for text in strain_at]
+    points = given.case.beam.named_points
+    stations = [points[text] if text in points else number("--strain-at", text, "length") for text in strain_at]
     for option, beside, both in (
         ("--balanced", "--modes", modes is not None and balanced is not None),
         ("--rate", "--at", rate is not None and at is not None),
@@ -264,6 +262,7 @@ def linearize(
             raise InputError(option, f"stands beside {beside}", "give one of them")
 
     from gbeam.analysis.control.linearization import linearize, surface_gauges
+    from gbeam.report.facts import facts as facts_of
     from gbeam.report.steady import state_space as report
 
     with naming("--strain-at"):
@@ -280,7 +279,7 @@ def linearize(
             elif balanced is not None:
                 system, _ = reduction.balanced_truncation(system, balanced)
     system = replace(system, provenance=given.case.provenance)
-    facts = given.signed(report.to_json(system, gauges))
+    facts = given.signed(facts_of(system) | {"gauges": [asdict(gauge) for gauge in gauges]})
 
     def make(hidden: Path) -> None:
         system.to_mat(hidden / "linear.mat")

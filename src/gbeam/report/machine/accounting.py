@@ -1,36 +1,18 @@
-"""What a machine makes of a flight, and what is accepted of it: as JSON, and as lines below the verdict."""
+"""What a machine makes of a flight, and what is accepted of it, as lines below the verdict."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict
-from typing import Any
 
-from gbeam.report.words import ends
-from gbeam.results.imitation.accounting import Accounting, LoadPeak, PeakPair
+from gbeam.results.imitation.accounting import Accounting, PeakPair
 from gbeam.results.imitation.criteria import Judged
 from gbeam.results.imitation.verdict import change, in_g, percent
 
-UNITS = {"largest_load": "m/s^2", "tip": "m", "root_force": "N", "root_moment": "N m", "stress": "Pa"}
-_PLACES = ("place_flight", "place_machine")
 SHORTEST = 0.005  # s, of a stretch that is listed
 _APART = 5e-4  # s: two peaks are at different times
 _NONE = 5e-5  # a smaller error is none
 SHOWN = 8  # peaks and stretches listed; a rough record has hundreds
-
-
-def judged_json(judged: Judged) -> dict[str, Any]:
-    """What is accepted, the largest sizes and the accounting of an imitation as JSON."""
-    return {
-        "accepted": judged.accepted,
-        "span": ends(judged.accounting.span),
-        "whole": ends(judged.whole or judged.accounting.span),
-        "criteria": [asdict(each) | {"passed": each.passed} for each in judged.criteria],
-        "not_judged": list(judged.not_judged),
-        "peaks": peaks_to_json(judged.peaks),
-        "accounting": to_json(judged.accounting),
-    }
 
 
 def judged_lines(judged: Judged) -> Iterator[str]:
@@ -42,53 +24,6 @@ def judged_lines(judged: Judged) -> Iterator[str]:
     if judged.not_judged:
         yield f"not judged, as it needs the response, which `gbeam run` has: {', '.join(judged.not_judged)}"
     yield from lines(judged.accounting)
-
-
-def to_json(accounting: Accounting) -> dict[str, Any]:
-    """Accounting as JSON: loads m/s², times s, the rest shares; a reason is null where there is none."""
-    return {
-        "units": {"load": "m/s^2", "time": "s"},
-        "tolerance": accounting.tolerance,
-        "tolerance_of": accounting.tolerance_of,
-        "tolerance_load": accounting.allowed,
-        "idle": accounting.idle,
-        "followed_share": accounting.followed_share,
-        "peaks": [_peak(each) for each in accounting.peaks],
-        "not_followed": [
-            {"start": each.start, "end": each.end, "reason": each.reason, "flight_peak": each.flight_peak}
-            for each in accounting.not_followed
-        ],
-        "not_followed_share": accounting.shares,
-        "preload": [
-            {"start": each.start, "end": each.end, "time": each.time, "load": each.load, "flight": each.flight}
-            for each in accounting.preloads
-        ],
-    }
-
-
-def _peak(peak: LoadPeak) -> dict[str, Any]:
-    ends = ("root", "tip")
-    return {
-        "time": peak.time,
-        "load": peak.load,
-        "reproduced": peak.reproduced,
-        "ratio": peak.ratio,
-        "reason": peak.reason or None,
-        "time_machine": peak.time_machine,
-        "error": peak.error,
-        "instant_error": peak.instant_error,
-        "spread": dict(zip(ends, peak.spread, strict=True)),
-        "spread_flight": dict(zip(ends, peak.spread_flight, strict=True)),
-    }
-
-
-def peaks_to_json(peaks: Mapping[str, PeakPair]) -> dict[str, Any]:
-    """Largest sizes over the flight: m/s², m, N, N m, Pa, s; a place where it is one of the specimen."""
-    made = {}
-    for name, pair in peaks.items():
-        values = asdict(pair) | {"ratio": pair.ratio, "unit": UNITS[name]}
-        made[name] = {key: value for key, value in values.items() if key not in _PLACES or name == "largest_load"}
-    return made
 
 
 def lines(accounting: Accounting) -> Iterator[str]:

@@ -1,13 +1,12 @@
-"""What a machine uses of its limits: a table for people, objects for programs."""
+"""What a machine uses of its limits, a table for people."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from gbeam.results.machine import AxesResult, LimitUse
+from gbeam.results.machine import LimitUse
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -35,8 +34,3 @@ def table(uses: Iterable[LimitUse]) -> Table:
             style=style,
         )
     return rows
-
-
-def to_json(axes: AxesResult) -> list[dict[str, Any]]:
-    """Return the limits as objects; null is allowed where there is none."""
-    return [asdict(use) | {"share": use.share, "exceeded": use.exceeded} for use in axes.limits]

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from dataclasses import asdict
-from typing import Any
 
-from gbeam.report.machine.accounting import peaks_to_json
 from gbeam.report.words import sentence, warning_lines
 from gbeam.results.imitation.accounting import PeakPair
 from gbeam.results.imitation.placement import Candidate, Placement
@@ -16,43 +13,6 @@ from gbeam.results.imitation.verdict import change, in_g
 _PLACES = ("current", "best", "middle")
 _LISTED = 6  # candidates of either kind
 _WIDTH = 110  # columns
-
-
-def settings(placement: Placement) -> list[str]:
-    """The answer as ``KEY=VALUE`` of ``--set``."""
-    return [f"motion.{placement.centrifuge}.{key}={value}" for key, value in placement.changes.items()]
-
-
-def to_json(placement: Placement, written: str | None = None) -> dict[str, Any]:
-    """Placement as JSON: SI units; fractions are of flight's peaks."""
-    best = placement.best
-    return {
-        "outcome": placement.outcome,
-        "message": placement.message,
-        "flight": placement.flight,
-        "centrifuge": placement.centrifuge,
-        "measure": dict(placement.weights),
-        "control_point": best.control_point,
-        "fraction_of_length": placement.fraction,
-        "mounting": best.mounting,
-        "smoothing": best.smoothing,
-        "smoothing_range": list(placement.widths),
-        "current_control_point": placement.current,
-        "set": settings(placement),
-        "written": written,
-        "mismatch": {place: dict(values) for place, values in placement.values.items()},
-        "total_error": {place: dict(values) for place, values in placement.totals.items()},
-        "options": [_option(candidate) for candidate in placement.options],
-        "before": None if placement.before is None else _option(placement.before),
-        "verifications": {check.name: asdict(check) for check in placement.verifications},
-        "vibration_gain_over_middle": placement.vibration_gain,
-        "refused": list(placement.refused),
-        "warnings": list(placement.warnings),
-    }
-
-
-def _option(candidate: Candidate) -> dict[str, Any]:
-    return asdict(candidate) | peaks_to_json({"largest_load": candidate.largest_load})
 
 
 def text(placement: Placement, written: str | None = None) -> str:
@@ -72,7 +32,7 @@ def text(placement: Placement, written: str | None = None) -> str:
         f"  smoothing      {1e3 * best.smoothing:.4g} ms{_range(placement)}",
     ]
     if placement.changes:
-        flags = " ".join(f'--set "{each}"' for each in settings(placement))
+        flags = " ".join(f'--set "{each}"' for each in placement.settings)
         lines.append(f"  to apply it    {flags}")
         lines.append(f"                 {f'written to {written}' if written else 'or place again with --write'}")
     lines += warning_lines(placement)
@@ -124,7 +84,7 @@ def _range(placement: Placement) -> str:
 def _verified(placement: Placement) -> list[str]:
     if not placement.verifications:
         return []
-    checks = {check.name: check for check in placement.verifications}
+    checks = placement.checks
     lines = [
         "",
         "By simulation, largest difference from flight",

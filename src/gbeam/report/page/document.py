@@ -12,13 +12,18 @@ from importlib.resources import files
 from typing import Any
 
 from gbeam.errors import InputError
+from gbeam.figures import Describe
+from gbeam.figures.units import raised
 from gbeam.guards.json_files import parse_json
 from gbeam.printable import json_printable
 from gbeam.report.facts import facts_text
-from gbeam.report.page.bodies import cases, machine, searches, steady, study
-from gbeam.report.page.bodies.steady import crossings_table, modes_table, tracks_table
+from gbeam.report.page import cases, machine, searches, steady, study
+from gbeam.report.page.curves import drawn
 from gbeam.report.page.parts import Value, badge, escaped, folded, heading, listed, paragraph, table, verbatim
-from gbeam.report.page.series import Numbers, Plots
+from gbeam.report.page.records import figures_in, modes_in
+from gbeam.report.page.scene import scene, shapes
+from gbeam.report.page.series import Numbers
+from gbeam.report.page.steady import crossings_table, modes_table, tracks_table
 from gbeam.report.words import as_json
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.modal import Campbell, Modes
@@ -26,7 +31,7 @@ from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.study import Study
 
-Body = Callable[[Mapping[str, Any], Mapping[str, Any], Numbers, Plots, dict[str, Any]], str]
+Body = Callable[[Mapping[str, Any], str, str], str]  # of the JSON, the viewer's place, and the figures
 # By verb: keys that its facts have, keys that each of their motions has, and what makes the page's inside.
 KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...], Body]] = {
     "run": (("motions", "comparisons"), (), study.body),
@@ -50,17 +55,50 @@ def _kind(facts: Mapping[str, Any]) -> str | None:
         motions = facts["motions"].values() if each and "motions" in facts else ()
         if all(key in facts for key in keys) and all(key in motion for motion in motions for key in each):
             return name
-    # Of a question without a page of its own: its figures, each with its unit.
-    return str(facts["kind"]) if "kind" in facts and "units" in facts else None
+    return str(facts["form"]["kind"]) if "form" in facts else None
 
 
-def _figures(facts: Mapping[str, Any], *_: Any) -> str:
-    """The inside of the page of a question that has none of its own."""
-    return table(("", "", ""), [(key, facts[key], unit) for key, unit in facts["units"].items()], words=(0, 2))
+_APART = ("form", "units", "provenance", "warnings", "files", "title", "outcome", "state")
 
 
-def html(facts: Mapping[str, Any], variables: Mapping[str, Any], origin: Mapping[str, Any] | None = None) -> str:
-    """Return a whole page."""
+def _figures(facts: Mapping[str, Any], _: str, plots: str) -> str:
+    """The inside of the page of a kind that has none of its own: its quantities, and a table for each list of them."""
+    units = facts.get("units", {})
+    known = {key: value for key, value in facts.items() if key not in _APART}
+    single = {key: value for key, value in known.items() if not isinstance(value, (dict, list))}
+    told = {key: value for key, value in single.items() if value not in (None, "")}
+    rows = [(key.replace("_", " "), _shown(value), raised(units.get(key, ""))) for key, value in told.items()]
+    parts = [table(("", "", ""), rows, words=(0, 2))]
+    for key, value in known.items():
+        place = f"{key}[i]."
+        if isinstance(value, dict):
+            place = f"{key}.*."
+            value = [{"": name, **each} for name, each in value.items() if isinstance(each, dict)]
+        if isinstance(value, list) and value and all(isinstance(each, dict) for each in value):
+            parts += [heading(key.replace("_", " "), 3), _rows_table(value, units, place)]
+    return "".join([*parts, heading("Figures") + plots if plots else ""])
+
+
+def _rows_table(rows: list[Mapping[str, Any]], units: Mapping[str, str], place: str) -> str:
+    """A table of records: a column for each of their single values."""
+    names = [key for key in rows[0] if not isinstance(rows[0][key], (dict, list))]
+    words = [k for k, key in enumerate(names) if any(isinstance(row.get(key), str) for row in rows)]
+    cells = [[_shown(row.get(key)) for key in names] for row in rows]
+    heads = [", ".join(filter(None, (name.replace("_", " "), raised(units.get(place + name, ""))))) for name in names]
+    return table(heads, cells, words=words)
+
+
+def _shown(value: Any) -> Value:
+    return {True: "yes", False: "no"}[value] if isinstance(value, bool) else value
+
+
+def html(
+    facts: Mapping[str, Any],
+    variables: Mapping[str, Any] | None = None,
+    origin: Mapping[str, Any] | None = None,
+    figures: Mapping[str, Describe] | None = None,
+) -> str:
+    """Return a whole page; `figures` are read from `facts` and `variables` where they are not given."""
     facts = json.loads(as_json(facts))  # what is not finite is null, as in a file
     kind = _kind(facts)
     if kind is None:
@@ -68,11 +106,12 @@ def html(facts: Mapping[str, Any], variables: Mapping[str, Any], origin: Mapping
         raise InputError("result", "is of a kind that has no report", fix)
     origin = facts.get("provenance") or origin or {}
     numbers = Numbers()
-    plots = Plots(numbers)
-    header: dict[str, Any] = {"maps": []}
+    header: dict[str, Any] = {"plots": [], "maps": []}
+    described = figures_in(kind, facts, variables or {}) if figures is None else figures
+    plots = drawn((each() for each in described.values()), numbers, header)
     make = KINDS[kind][2] if kind in KINDS else _figures
-    body = make(facts, variables, numbers, plots, header)
-    header["plots"] = plots.specs
+    header |= _viewer(kind, facts, variables or {}, numbers)
+    body = make(facts, '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else "", plots)
     title = facts.get("title") or _title(origin) or f"gbeam {kind}"
     warnings = study.warnings(facts) if "motions" in facts else facts.get("warnings", [])
     if warnings:
@@ -85,6 +124,18 @@ def html(facts: Mapping[str, Any], variables: Mapping[str, Any], origin: Mapping
         header,
         numbers,
     )
+
+
+def _viewer(
+    kind: str, facts: Mapping[str, Any], variables: Mapping[str, Any], numbers: Numbers
+) -> dict[str, dict[str, Any]]:
+    """What the viewer shows of a kind, if anything."""
+    if kind == "modes" and facts["modes"]:
+        return {"modes": shapes(modes_in(facts), numbers)}
+    motions = facts["motions"] if kind == "run" else {}
+    environments = {name: each["environment"] for name, each in motions.items() if "environment" in each}
+    shown = scene(environments, variables, numbers)
+    return {} if shown is None else {"scene": shown}
 
 
 def _subject(kind: str, origin: Mapping[str, Any]) -> str:

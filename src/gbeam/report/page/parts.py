@@ -62,7 +62,6 @@ def verbatim(text: str) -> str:
     return f"<pre>{escaped(text)}</pre>"
 
 
-_EXPONENTS = str.maketrans("234", "²³⁴")
 Value = Cell | str | float | None  # of a cell
 
 
@@ -104,11 +103,6 @@ def plot_places(drawn: Iterable[tuple[str, str]]) -> str:
         for name, title in drawn
     )
     return f'<div class="gbeam-plots">{places}</div>' if places else ""
-
-
-def raised(unit: str) -> str:
-    """A unit with its exponents as they are printed, rad/s² for rad/s^2."""
-    return unit.translate(_EXPONENTS).replace("^", "") if "^" in unit else unit
 
 
 def known(value: float | None) -> float:

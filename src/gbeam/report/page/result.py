@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-import json
 import os
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from gbeam.errors import InputError
+from gbeam.figures import figures_of
 from gbeam.guards.json_files import parse_json, read_json
 from gbeam.io.netcdf import FACTS, groups_of
 from gbeam.io.stored import read_stored
-from gbeam.report.facts import facts, facts_text, whole
-from gbeam.report.page.bodies.steady import shapes
+from gbeam.report.facts import facts, whole
 from gbeam.report.page.document import html
-from gbeam.report.page.scene import scene
+from gbeam.report.page.scene import scene, shapes
 from gbeam.report.page.series import Numbers
 from gbeam.report.provenance import to_json as origin_json
-from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.modal import Modes
 from gbeam.results.provenance import Provenance
 from gbeam.results.result import Result
@@ -34,15 +31,8 @@ def report_of(result: Result) -> str:
     found = facts(result)
     if found is None:
         raise InputError("result", f"{type(result).__name__} has no report", "print it, or plot it")
-    return html(found, variables_of(result), origin_json(result.provenance or Provenance()))
-
-
-def report_of_plans(facts: Mapping[str, Any], plans: Mapping[str, MachinePlan]) -> str:
-    """Return the page of the plans of a scenario's machines, by motion; `facts` as `gbeam plan --json` prints them."""
-    variables = {
-        f"motions/{name}/{key}": values for name, plan in plans.items() for key, values in variables_of(plan).items()
-    }
-    return html(facts, variables)
+    origin = origin_json(result.provenance or Provenance())
+    return html(found, variables_of(result), origin, figures_of(whole(result)))
 
 
 def variables_of(result: Result) -> dict[str, Any]:
@@ -59,7 +49,7 @@ def shown(result: Result) -> tuple[dict[str, Any], Numbers]:
     numbers = Numbers()
     header: dict[str, Any] = {"plots": [], "maps": []}
     if isinstance(result, Modes):
-        header["modes"] = shapes(json.loads(facts_text(result)), numbers)
+        header["modes"] = shapes(result, numbers)
         return header, numbers
     of = whole(result)
     if isinstance(of, Study):
@@ -90,12 +80,15 @@ def report_of_file(path: Path) -> str:
 
 def _page_of(file: Path) -> str:
     if file.suffix == ".json":
-        return html(read_json(file, _FIX), {})
+        return html(read_json(file, _FIX))
     stored = read_stored(file)
     text = stored.variables.get(FACTS)
     if not isinstance(text, str):
         raise InputError(str(file), "holds no figures of a result that has a report", _FIX)
-    return html(parse_json(text), stored.variables, origin_json(stored.provenance))
+    facts, variables = parse_json(text), stored.variables
+    if "time" in variables and len(facts.get("motions", ())) == 1:  # of one motion, which is the file's root
+        variables = {f"motions/{name}/{key}": each for name in facts["motions"] for key, each in variables.items()}
+    return html(facts, variables, origin_json(stored.provenance))
 
 
 def file_in(folder: Path) -> Path:

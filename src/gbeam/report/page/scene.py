@@ -8,9 +8,13 @@ from typing import Any
 import numpy as np
 
 from gbeam.report.page.series import Numbers
+from gbeam.report.words import number
+from gbeam.results.modal import Modes
 from gbeam.results.result import Floats
 
 Variables = Mapping[str, Any]
+SHOWN = 33  # points of a mode shape
+WIDE, THICK = 0.03, 0.012  # of the length: of a beam whose section a result does not hold
 
 
 def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) -> dict[str, Any] | None:
@@ -72,6 +76,23 @@ def shape(points: Floats, width: Floats, thickness: Floats, is_round: Any) -> di
         "width": np.asarray(width).tolist(),
         "thickness": np.asarray(thickness).tolist(),
         "round": bool(is_round),
+    }
+
+
+def shapes(modes: Modes, numbers: Numbers) -> dict[str, Any]:
+    """Shapes of every mode at some of the stations."""
+    x = modes.stations
+    some = np.unique(np.linspace(0, len(x) - 1, SHOWN).round().astype(int))
+    sizes = [
+        (each if each.size else x[-1] * part * np.ones(len(x)))[some]
+        for each, part in ((modes.width, WIDE), (modes.thickness, THICK))
+    ]
+    ways = zip(modes.frequency, modes.direction, strict=True)
+    return {
+        **shape(x[some], sizes[0], sizes[1], modes.round),
+        "labels": [f"{i}: {number(frequency)} Hz, {way}" for i, (frequency, way) in enumerate(ways, 1)],
+        "real": numbers.add(modes.shape.real[:, some]),
+        "imaginary": numbers.add(modes.shape.imag[:, some]),
     }
 
 

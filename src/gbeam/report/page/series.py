@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import hashlib
-from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -61,28 +60,3 @@ def thinned(time: Floats, values: Floats) -> tuple[Floats, Floats]:
     begin, end = time[index[:, 0]], time[index[:, -1]]
     places = np.stack([begin + 0.25 * (end - begin), begin + 0.75 * (end - begin)], axis=1)
     return places.ravel(), kept.reshape(2 * whole, *values.shape[1:])
-
-
-class Plots:
-    """The plots of a page: what each shows, and where its numbers are."""
-
-    def __init__(self, numbers: Numbers) -> None:
-        self.specs: list[dict[str, Any]] = []
-        self._numbers = numbers
-
-    def add(
-        self,
-        title: str,
-        y: str,
-        lines: Sequence[Mapping[str, Any]],
-        *,
-        x: str = "time, s",
-        **more: Any,
-    ) -> str:
-        """Add a plot and return the id of its place."""
-        name = f"plot-{len(self.specs)}"
-        series = [{**line, "x": self._numbers.add(line["x"]), "y": self._numbers.add(line["y"])} for line in lines]
-        self.specs.append(
-            {"id": name, "title": title, "x": x, "y": y, "time": x == "time, s", "series": series, **more}
-        )
-        return name

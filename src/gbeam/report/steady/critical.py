@@ -3,25 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 from gbeam.report.words import error_words, percent, warning_lines
-from gbeam.results.declared import json_of
 from gbeam.results.equilibrium import Critical, CriticalMap
-
-# By what was raised.
-KEYS = {
-    "hub rate": "critical_speed",
-    "load factor": "critical_load_factor",
-    "acceleration along x": "critical_acceleration",
-}
-
-
-def to_json(critical: Critical, motion: str = "") -> dict[str, Any]:
-    """Critical value as JSON; rad/s, m/s² or a factor, null where there is none; with the name of the motion."""
-    return {"motion": motion, KEYS[critical.quantity]: critical.value} | json_of(critical)
 
 
 def text(critical: Critical, motion: str) -> str:

@@ -4,42 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 
-from gbeam.report.words import error_words, percent, stress_words, tidy, warning_lines, xyz, xyz_lists
-from gbeam.results.declared import json_of
+from gbeam.report.words import error_words, percent, stress_words, tidy, warning_lines
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.errors import Errors
 from gbeam.results.parts import Loads
-
-
-def to_json(title: str, deflections: Iterable[Deflection]) -> dict[str, Any]:
-    """Deflections by motion as JSON; m, J, N, N m, Pa."""
-    return {"title": title, "outcome": "done", "motions": {each.motion: _deflection(each) for each in deflections}}
-
-
-def _deflection(deflection: Deflection) -> dict[str, Any]:
-    values = json_of(deflection)
-    return values if deflection.loads is None else values | {"loads": loads_json(deflection.loads)}
-
-
-def loads_json(loads: Loads) -> dict[str, Any]:
-    """Loads of one time as JSON: of the base on the root, base axes; along the beam, section axes."""
-    values: dict[str, Any] = {
-        "root_force": xyz(loads.root_force[0]),
-        "root_moment": xyz(loads.root_moment[0]),
-        "stations": loads.stations.tolist(),
-        "section_force": xyz_lists(loads.section_force[0]),
-        "section_moment": xyz_lists(loads.section_moment[0]),
-        **{name: getattr(loads, name)[0].tolist() for name in ("stress", "stress_tension", "stress_compression")},
-    }
-    if loads.margin is not None:
-        values |= {"yield_strength": loads.yield_strength, "margin": loads.margin[0].tolist()}
-    if loads.beam_torque is not None:
-        values["beam_torque"] = float(loads.beam_torque[0])
-    return values
 
 
 def text(deflections: Iterable[Deflection]) -> str:

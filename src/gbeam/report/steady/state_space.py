@@ -3,51 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import asdict
 from textwrap import wrap
-from typing import Any
 
 import numpy as np
 
-from gbeam.report.words import frequency_errors, percent, warning_lines
+from gbeam.report.words import percent, warning_lines
 from gbeam.results.state_space import ACCURATE, Gauge, StateSpace, Truncation
 
 WIDTH = 100  # columns of the text
 
 
-def to_json(system: StateSpace, gauges: Iterable[Gauge] = ()) -> dict[str, Any]:
-    """State space as JSON."""
-
-    def signals(listed: Any, values: Any) -> list[dict[str, Any]]:
-        pairs = zip(listed, values, strict=True)
-        return [{"name": signal.name, "unit": signal.unit, "value": float(value)} for signal, value in pairs]
-
-    left_out = system.truncation
-    return {
-        "outcome": "done",
-        "motion": system.motion,
-        "time": system.time,
-        "model": system.model,
-        "states": signals(system.states, system.state),
-        "inputs": signals(system.inputs, system.input),
-        "outputs": signals(system.outputs, system.output),
-        **{key: getattr(system, key.lower()).tolist() for key in "ABCD"},
-        "gauges": [asdict(gauge) for gauge in gauges],
-        "hankel_singular_values": [] if left_out is None else left_out.hankel.tolist(),
-        "truncation": None if left_out is None else _truncation_json(left_out),
-        "poles": [
-            {"frequency": float(frequency), "errors": error}
-            for frequency, error in zip(
-                system.frequency, frequency_errors(system.errors, len(system.frequency)), strict=True
-            )
-        ],
-        "accurate_to": system.accurate_to,
-        "warnings": list(system.warnings),
-    }
-
-
 def text(system: StateSpace, gauges: Iterable[Gauge] = ()) -> str:
-    """Names and units of the signals; the arguments are those of :func:`to_json`."""
+    """Names and units of the signals."""
     lines = [f"{system.motion}: {system.model}, {len(system.a)} states"]
     for what in ("states", "inputs", "outputs"):
         # No line ends between a name and its unit.
@@ -65,18 +32,6 @@ def text(system: StateSpace, gauges: Iterable[Gauge] = ()) -> str:
     if system.truncation is not None:
         lines += _left_out(system, system.truncation)
     return "\n".join([*lines, *warning_lines(system), "--json prints the matrices, --out writes them for MATLAB too."])
-
-
-def _truncation_json(left_out: Truncation) -> dict[str, Any]:
-    """What a smaller model leaves out; gains by output and input."""
-    return {
-        "method": left_out.method,
-        "states_left_out": left_out.states,
-        "bound": left_out.bound,
-        "from": left_out.start,
-        "to": left_out.end,
-        **{name: getattr(left_out, name).tolist() for name in ("error", "gain", "share")},
-    }
 
 
 def _left_out(system: StateSpace, left_out: Truncation) -> list[str]:

@@ -1,45 +1,9 @@
-"""A fit in words, and as one JSON object."""
+"""A fit in words."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from pathlib import Path
-from typing import Any
-
 from gbeam.report.words import columns, number, warning_lines
 from gbeam.results.searches import Fit
-
-
-def to_json(fit: Fit, files: Iterable[Path] = ()) -> dict[str, Any]:
-    """Fit as JSON; SI."""
-    return {
-        "title": fit.title,
-        "outcome": "done",
-        "data": fit.data,
-        "parameters": {
-            path: {
-                "unit": fit.units[k],
-                "before": float(fit.before[k]),
-                "value": float(fit.values[k]),
-                "error": float(fit.errors[k]),
-                "interval": fit.intervals[k].tolist(),
-                "bounds": fit.bounds[k].tolist(),
-                "at_bound": bool(fit.at_bound[k]),
-            }
-            for k, path in enumerate(fit.parameters)
-        },
-        "covariance": fit.covariance.tolist(),
-        "correlation": fit.correlation.tolist(),
-        "condition": fit.condition,
-        "columns": {
-            each.name: {"unit": each.unit, "noise": each.noise, "correlation_of_residuals": each.correlation}
-            for each in fit.columns
-        },
-        "evaluations": fit.evaluations,
-        "starts": {"tried": fit.starts, "agreed": fit.agreed},
-        "warnings": list(fit.warnings),
-        "files": [str(file) for file in files],
-    }
 
 
 def text(fit: Fit) -> str:

@@ -1,46 +1,11 @@
-"""An optimum in words, and as one JSON object."""
+"""An optimum in words."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from pathlib import Path
-from typing import Any
 
 from gbeam.report.words import columns, number, percent, warning_lines
 from gbeam.results.searches import Optimum, Requirement
-
-
-def to_json(optimum: Optimum, files: Iterable[Path] = ()) -> dict[str, Any]:
-    """Optimum as JSON; SI."""
-    o = optimum
-    return {
-        "title": o.title,
-        "outcome": o.outcome,
-        "minimise": {"name": o.minimise, "unit": o.unit, "before": o.figure_before, "value": o.figure},
-        "parameters": {
-            path: {
-                "unit": o.units[k],
-                "before": float(o.before[k]),
-                "value": float(o.values[k]),
-                "bounds": o.bounds[k].tolist(),
-                "at_bound": bool(o.at_bound[k]),
-            }
-            for k, path in enumerate(o.parameters)
-        },
-        "subject_to": [
-            {
-                "name": each.name, "unit": each.unit, "low": each.low, "high": each.high, "before": each.before,
-                "value": each.value, "kept": each.kept, "active": each.active,
-            }
-            for each in o.requirements
-        ],
-        "error_estimate": o.error,
-        "evaluations": o.evaluations,
-        "starts": {"tried": o.starts, "agreed": o.agreed},
-        "warnings": list(o.warnings),
-        "files": [str(file) for file in files],
-    }  # fmt: skip
 
 
 def text(optimum: Optimum) -> str:

@@ -1,49 +1,11 @@
-"""Sensitivities in words, and as one JSON object."""
+"""Sensitivities in words."""
 
 from __future__ import annotations
-
-from collections.abc import Iterable
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from gbeam.report.words import columns, number, percent, warning_lines
 from gbeam.results.cases import Sensitivity
-
-
-def to_json(sensitivity: Sensitivity, files: Iterable[Path] = ()) -> dict[str, Any]:
-    """Sensitivities as JSON: of each measure the parameters, those that matter most first."""
-    s = sensitivity
-    return {
-        "title": s.title,
-        "outcome": "done",
-        "verb": s.verb,
-        "measures": {
-            name: {
-                "value": float(s.figures[k]),
-                "unit": s.units[k],
-                "parameters": [
-                    {
-                        "path": s.parameters[j],
-                        "value": float(s.values[j]),
-                        "unit": s.parameter_units[j],
-                        "derivative": float(s.derivatives[k, j]),
-                        "relative": float(s.relative[k, j]),
-                        "method": s.methods[j],
-                        "error": float(s.errors[k, j]),
-                        "kink": bool(s.kinks[k, j]),
-                    }
-                    for j in s.ranked(name)
-                ],
-            }
-            for k, name in enumerate(s.measures)
-        },
-        "run_error": s.run_error,
-        "not_varied": list(s.not_varied),
-        "warnings": list(s.warnings),
-        "files": [str(file) for file in files],
-    }
 
 
 def text(sensitivity: Sensitivity) -> str:

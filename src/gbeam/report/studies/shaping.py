@@ -1,39 +1,9 @@
-"""A shaped command in words, and as one JSON object."""
+"""A shaped command in words."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable
-from pathlib import Path
-from typing import Any
-
 from gbeam.report.words import columns, number, percent, warning_lines
 from gbeam.results.searches import ShapedCommand
-
-
-def to_json(command: ShapedCommand, files: Iterable[Path] = ()) -> dict[str, Any]:
-    """Shaped command as JSON; SI."""
-    c = command
-    return {
-        "outcome": c.outcome,
-        "motion": c.motion,
-        "kind": c.kind,
-        "unit": c.unit,
-        "goal": {"rate" if c.to_rate else "angle": c.goal},
-        "duration": c.duration,
-        "limit": c.limit if math.isfinite(c.limit) else None,
-        "robust": c.robust,
-        "frequencies": c.frequency.tolist(),
-        "design": c.design,
-        "check": c.check,
-        "commands": {
-            run.name: {"residual_amplitude": run.residual, "largest": run.largest, "outcome": run.outcome}
-            for run in c.runs
-        },
-        "coefficients": c.coefficients.tolist(),
-        "warnings": list(c.warnings),
-        "files": [str(file) for file in files],
-    }
 
 
 def text(command: ShapedCommand) -> str:

@@ -1,66 +1,18 @@
-"""A sweep in words, and as one JSON object."""
+"""A sweep in words."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from gbeam.report.studies.estimates import estimates
 from gbeam.report.words import columns, number, warning_lines
-from gbeam.results.cases import BOUNDS, ORDERS, Indices, Statistics, Sweep
+from gbeam.results.cases import Sweep
 from gbeam.results.result import Floats
 
 _ROWS = 40  # of the table on the screen
 _FAILURES = 5  # that are named
-
-
-def to_json(sweep: Sweep, files: Iterable[Path] = ()) -> dict[str, Any]:
-    """Sweep as JSON: nested lists along the parameters, in their order."""
-    return {
-        "title": sweep.title,
-        "outcome": sweep.state,
-        "verb": sweep.verb,
-        "parameters": [
-            {"path": each.path, "unit": each.unit, "distribution": each.drawn or None, "values": each.values.tolist()}
-            for each in sweep.parameters
-        ],
-        "dimensions": list(sweep.dimensions),
-        "measures": {
-            name: {"unit": sweep.units[name], "values": values.tolist()} for name, values in sweep.measures.items()
-        },
-        "statistics": {name: _statistics(each) for name, each in sweep.statistics.items()},
-        "indices": {name: _indices(each) for name, each in sweep.indices.items()},
-        "time": sweep.time.tolist(),
-        "outcomes": sweep.outcome.tolist(),
-        "messages": sweep.message.tolist(),
-        "counts": sweep.counts,
-        "warnings": list(sweep.warnings),
-        "files": [str(file) for file in files],
-    }
-
-
-def _statistics(statistics: Statistics) -> dict[str, Any]:
-    """Every estimate by name with its bounds; lists along the grid, and along the times of a history."""
-    return {
-        "draws": statistics.count.tolist(),
-        **{name: _bounds(statistics[name]) for name in statistics.names},
-    }
-
-
-def _bounds(values: Floats) -> dict[str, Any]:
-    """Estimate, low and high; lists along the grid."""
-    return dict(zip(BOUNDS, np.moveaxis(values, -1, 0).tolist(), strict=True))
-
-
-def _indices(indices: Indices) -> dict[str, Any]:
-    """First and total index of every parameter with its bounds; lists along the grid."""
-    return {
-        parameter: {order: _bounds(indices.values[..., k, i, :]) for i, order in enumerate(ORDERS)}
-        for k, parameter in enumerate(indices.parameters)
-    }
 
 
 def text(sweep: Sweep) -> str:

@@ -1,92 +1,17 @@
-"""A comparison of a centrifuge's response with flight's: as JSON, and as lines below its verdict."""
+"""A comparison of a centrifuge's response with flight's, as lines below its verdict."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import asdict
-from typing import Any
 
 from gbeam.report.machine import accounting
-from gbeam.report.words import number, xyz
+from gbeam.report.words import number
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.criteria import RULES
-from gbeam.results.imitation.measures import Fatigue, Mismatch, RootLoads, Sizes, StressCycles
 from gbeam.results.imitation.verdict import metres, percent
 
-_PLACES = ("flight", "centrifuge", "difference")
 _FELT = 0.01  # of flight's peak: a mismatch that bends the tip by less is no reason to move the specimen
-
-
-def to_json(comparison: Comparison) -> dict[str, Any]:
-    """Comparison as JSON, SI: ``stations``, ``mismatch``, ``root``, ``fatigue``, ``shock`` where it has them."""
-    values = {
-        "flight": comparison.flight,
-        "centrifuge": comparison.centrifuge,
-        "verdict": comparison.verdict,
-        **accounting.judged_json(comparison),
-        "margin": None
-        if comparison.margins is None
-        else dict(zip(("flight", "machine"), comparison.margins, strict=True)),
-        "covered": float(comparison.covered.mean()),
-        "max_difference": xyz(comparison.max_difference),
-        "rms_difference": xyz(comparison.rms_difference),
-        "peak_flight": xyz(comparison.peak_flight),
-        "peak_centrifuge": xyz(comparison.peak_centrifuge),
-        "relative": xyz(comparison.relative),
-        "lines": list(lines(comparison)),
-    }
-    if comparison.stations is not None:
-        values["cutoff"] = comparison.stations.cutoff
-        values["stations"] = [
-            {"at": float(x), **{place: _sizes(getattr(comparison.stations, place), k) for place in _PLACES}}
-            for k, x in enumerate(comparison.stations.stations)
-        ]
-    if comparison.mismatch is not None:
-        values["mismatch"] = _mismatch(comparison.mismatch)
-    if comparison.root is not None:
-        values["root"] = _root(comparison.root)
-    if comparison.fatigue is not None:
-        values["fatigue"] = _fatigue(comparison.fatigue)
-    if comparison.shock is not None:
-        values["shock"] = {
-            "quality": comparison.shock.quality,
-            "frequency": comparison.shock.frequency.tolist(),
-            "flight": comparison.shock.flight.tolist(),
-            "centrifuge": comparison.shock.centrifuge.tolist(),
-            "extremes": [asdict(each) for each in comparison.shock.extremes],
-        }
-    return values
-
-
-def _sizes(sizes: Sizes, station: int) -> dict[str, Any]:
-    return {name: xyz(getattr(sizes, name)[station]) for name in ("peak", "rms", "residual")}
-
-
-def _mismatch(mismatch: Mismatch) -> dict[str, Any]:
-    names = ("max_gradient", "max_acceleration", "tip_bound", "force_bound", "moment_bound")
-    return {"control_point": mismatch.control_point, **{name: xyz(getattr(mismatch, name)) for name in names}}
-
-
-def _root(root: RootLoads) -> dict[str, Any]:
-    return {
-        "force": {place: xyz(getattr(root, f"force_{place}")) for place in _PLACES},
-        "moment": {place: xyz(getattr(root, f"moment_{place}")) for place in _PLACES},
-        "stress": {place: getattr(root, f"stress_{place}") for place in _PLACES},
-    }
-
-
-def _fatigue(fatigue: Fatigue) -> dict[str, Any]:
-    """Numbers of cycles and their ranges, Pa."""
-    values: dict[str, Any] = {"exponent": fatigue.exponent, "damage_ratio": fatigue.damage_ratio}
-    for place in ("flight", "machine"):
-        cycles: StressCycles = getattr(fatigue, place)
-        values[place] = {
-            "cycles": cycles.total,
-            "largest_range": cycles.largest,
-            "equivalent_range": cycles.equivalent_range(fatigue.exponent),
-        }
-    return values
 
 
 def lines(comparison: Comparison) -> Iterator[str]:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from gbeam.results.study import ModelStudy
 
@@ -12,17 +11,6 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
 HEADINGS = ("motion", "model", "outcome", "peak, mm", "error", "residual, mm", "error", "phase, rad", "seconds")
-
-
-def to_json(study: ModelStudy) -> dict[str, Any]:
-    """Study as JSON; m, s, rad."""
-    return {
-        "title": study.title,
-        "outcome": "done" if study.compared else "not compared",
-        "reference": study.reference,
-        "direction": study.direction,
-        "rows": [asdict(row) for row in study.rows],
-    }
 
 
 def table(study: ModelStudy) -> RenderableType:

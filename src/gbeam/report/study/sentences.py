@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gbeam.report.machine.tracking import ends_line, followed, not_followed_stretches, tracking_json
+from gbeam.report.machine.tracking import ends_line, not_followed_stretches, tracked
 from gbeam.report.words import error_words, number, percent, stress_words
 from gbeam.results.parts import LoadPeaks, Loads
 from gbeam.results.response import HubResult, Response
@@ -81,7 +81,7 @@ def of_machine(response: Response) -> Iterator[str]:
     if axes is None:
         return
     yield ends_line(response.time, axes)
-    yield followed(tracking_json(response.time, axes))
+    yield tracked(response)
     stretches = not_followed_stretches(axes)
     for start, end, reason in stretches[:EPISODES]:
         yield f"target held {start:.3f} to {end:.3f} s: {reason}"

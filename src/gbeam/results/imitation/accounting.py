@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from gbeam.results.declared import BESIDE, declared, fact, quantity, rows
 from gbeam.results.result import Part
 
 TOLERANCE = 0.05  # of a load of the flight
@@ -13,44 +14,50 @@ TOLERANCE_OF = ("peak", "instant")  # the flight's largest load, or its load at 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class LoadPeak(Part):
-    """A peak of the flight's load above idle, and what the machine makes of it.
+    """A peak of the flight's load above idle, and the machine's load there.
 
     Maxima of the size of the load are one peak unless it falls below nine tenths of the lower of them, or to idle,
     in between.
-
-    Parameters
-    ----------
-    time : float
-        Of the flight's peak, s.
-    load : float
-        Its size, m/s².
-    time_machine : float
-        Of the machine's largest load while the flight's is above nine tenths of its peak, s.
-    reproduced : float
-        That load, at the control point, m/s².
-    error : float
-        Size of the difference of the two as vectors over `load`, their directions compared at `time_machine`.
-    spread, spread_flight : tuple of float
-        Size of the load at the root, and at the tip, over that at the control point, less one: of the rigid specimen on
-        the machine at `time_machine`, and in flight at `time`.
-    reason : str
-        Why it is not reproduced within the tolerance: gimbals, left out, a limit of the machine that is used up there,
-        such as ``axis 2 acceleration``, or corner (smoothing, or the inverse's own error). Empty where it is.
-    instant_error : float
-        Size of the difference of both loads as vectors at `time`, over `load`.
     """
 
-    time: float
-    load: float
-    time_machine: float
-    reproduced: float
-    error: float
-    spread: tuple[float, float]
-    spread_flight: tuple[float, float]
-    reason: str = ""
-    instant_error: float = math.nan
+    time: float = quantity("s", "peak of the flight's load above idle")
+    load: float = quantity("m/s^2", "its size", name="flight")
+    time_machine: float = quantity(
+        "s",
+        "time of the machine's largest load",
+        note="while the flight's is above nine tenths of its peak",
+    )
+    reproduced: float = quantity("m/s^2", "load of the machine then", name="machine", note="at the control point")
+    error: float = quantity(
+        "", "difference as vectors over its size", note="their directions compared at `time_machine`"
+    )
+    spread: tuple[float, float] = quantity(
+        "",
+        "load at root and tip over that at the control point, less one",
+        "end",
+        note="of the rigid specimen on the machine at `time_machine`",
+    )
+    spread_flight: tuple[float, float] = quantity(
+        "", "the same in flight", "end", name=None, note="of the rigid specimen at `time`"
+    )
+    reason: str = quantity(
+        "",
+        "why it is not reproduced; empty where it is",
+        key=None,
+        note="gimbals, left out, a limit of the machine that is used up there, such as axis 2 acceleration, or corner "
+        "(smoothing, or the inverse's own error)",
+        default="",
+    )
+    instant_error: float = quantity("", "difference at the time of the flight's peak over its size", default=math.nan)
 
     @property
+    @declared("", "why it is not reproduced", name=None, key="reason")
+    def reason_or_none(self) -> str | None:
+        """The reason; None where there is none."""
+        return self.reason or None
+
+    @property
+    @declared("", "reproduced over the flight's", name=None)
     def ratio(self) -> float:
         """Reproduced over the flight's."""
         return self.reproduced / self.load
@@ -58,79 +65,60 @@ class LoadPeak(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class NotFollowed(Part):
-    """A stretch of the flight in which the machine's load is not the flight's, within the tolerance.
+    """A stretch of the flight in which the machine's load is not the flight's, within the tolerance."""
 
-    Parameters
-    ----------
-    start, end : float
-        s.
-    reason : str
-        ``below idle``, or those of :class:`LoadPeak`.
-    flight_peak : float
-        Largest load of the flight in it, m/s².
-    """
-
-    start: float
-    end: float
-    reason: str
-    flight_peak: float
+    start: float = quantity("s", "start of a stretch that is not followed", name="from")
+    end: float = quantity("s", "its end", name="to")
+    reason: str = quantity("", "why it is not followed", note="below idle, or a reason of a :class:`LoadPeak`")
+    flight_peak: float = quantity("m/s^2", "largest load of the flight in it", name="peak")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Preload(Part):
-    """A stretch in which the machine loads the specimen beyond both the flight and idle, by more than the tolerance.
+    """A stretch in which the machine loads the specimen beyond both the flight and idle, by more than the tolerance."""
 
-    Parameters
-    ----------
-    start, end : float
-        s.
-    time : float
-        When it is worst, s.
-    load, flight : float
-        Machine's and flight's load then, m/s².
-    """
-
-    start: float
-    end: float
-    time: float
-    load: float
-    flight: float
+    start: float = quantity("s", "its start")
+    end: float = quantity("s", "its end")
+    time: float = quantity("s", "when it is worst")
+    load: float = quantity("m/s^2", "load of the machine then")
+    flight: float = quantity("m/s^2", "load of the flight then")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Accounting(Part):
-    """Every part of a flight accounted for.
+    """Every part of a flight accounted for."""
 
-    Parameters
-    ----------
-    tolerance : float
-        Share of the flight's load by which the machine's may differ and count as following.
-    allowed : float
-        That difference at the flight's largest load, m/s².
-    idle : float
-        Least load of the machine, m/s²; zero if there is none.
-    span : tuple of float
-        First and last time of the flight, s.
-    followed_share : float
-        Of that time.
-    peaks : tuple of LoadPeak
-        All above idle, in order of time.
-    not_followed : tuple of NotFollowed
-        In order of time; with the time followed they make up the flight.
-    preloads : tuple of Preload
-    tolerance_of : str
-        ``peak``: `tolerance` is a share of the flight's largest load; ``instant``: of its load at each time.
-    """
+    tolerance: float = quantity(
+        "",
+        "share of the flight's load by which the machine's may differ and count as following",
+        name=None,
+    )
+    allowed: float = quantity(
+        "m/s^2", "error of the load that counts as following", name="tolerance_load", key="tolerance_load",
+        note="at the flight's largest load",
+    )  # fmt: skip
+    idle: float = quantity("m/s^2", "least load of the machine; zero if there is none", name=None)
+    span: tuple[float, float] = quantity("s", "time of the flight that is judged", "ends", name="flight", key=None)
+    followed_share: float = quantity("", "share of the flight's time that is followed")
+    peaks: tuple[LoadPeak, ...] = rows("all above idle, in order of time", "load_peak", name="load_peak_")
+    not_followed: tuple[NotFollowed, ...] = rows(
+        "stretches not followed, in order of time", "stretch", name="not_followed_",
+        note="with the time followed they make up the flight",
+    )  # fmt: skip
+    preloads: tuple[Preload, ...] = rows(
+        "stretches that load the specimen beyond", "preload", name=None, key="preload", default=()
+    )
+    tolerance_of: str = fact(
+        "the load that `tolerance` is a share of",
+        note="peak: the flight's largest; instant: the flight's at each time",
+        default="peak",
+    )
 
-    tolerance: float
-    allowed: float
-    idle: float
-    span: tuple[float, float]
-    followed_share: float
-    peaks: tuple[LoadPeak, ...]
-    not_followed: tuple[NotFollowed, ...]
-    preloads: tuple[Preload, ...] = ()
-    tolerance_of: str = "peak"
+    @property
+    @declared("", "units of what follows", role="fact", name=None)
+    def units(self) -> dict[str, str]:
+        """Units of loads and times."""
+        return {"load": "m/s^2", "time": "s"}
 
     @property
     def main(self) -> LoadPeak | None:
@@ -143,6 +131,8 @@ class Accounting(Part):
         return tuple(peak for peak in self.peaks if peak.reason)
 
     @property
+    @declared("", "share of the flight's time that is not followed, by reason", role="fact", name=None,
+              key="not_followed_share")  # fmt: skip
     def shares(self) -> dict[str, float]:
         """Share of the flight's time that is not followed, by reason, the largest first."""
         total: dict[str, float] = {}
@@ -152,28 +142,22 @@ class Accounting(Part):
         return {reason: total[reason] / duration for reason in sorted(total, key=lambda reason: -total[reason])}
 
 
+UNITS = {"largest_load": "m/s^2", "tip": "m", "root_force": "N", "root_moment": "N m", "stress": "Pa"}
+
+
 @dataclass(frozen=True, repr=False, eq=False)
 class PeakPair(Part):
-    """Largest size of a quantity in flight and on the machine; NaN where it is unknown.
+    """Largest size of a quantity in flight and on the machine, in one of :data:`UNITS`; NaN where it is unknown."""
 
-    Parameters
-    ----------
-    flight, machine : float
-        m, N, N m, Pa or m/s².
-    time_flight, time_machine : float
-        s.
-    place_flight, place_machine : str
-        Where on the specimen; empty where that is no question.
-    """
-
-    flight: float = math.nan
-    machine: float = math.nan
-    time_flight: float = math.nan
-    time_machine: float = math.nan
-    place_flight: str = ""
-    place_machine: str = ""
+    flight: float = quantity(BESIDE, "largest in flight", default=math.nan)
+    machine: float = quantity(BESIDE, "largest on the machine", default=math.nan)
+    time_flight: float = quantity("s", "when that is in flight", default=math.nan)
+    time_machine: float = quantity("s", "when that is on the machine", default=math.nan)
+    place_flight: str = quantity("", "where on the specimen that is in flight", optional=True, default="")
+    place_machine: str = quantity("", "where on the specimen that is on the machine", optional=True, default="")
 
     @property
+    @declared("", "machine over flight", name=None)
     def ratio(self) -> float:
         """Machine over flight; NaN where there is none in flight."""
         return self.machine / self.flight if self.flight > 0 else math.nan

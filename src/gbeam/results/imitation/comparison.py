@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
-from gbeam.results.imitation.accounting import Accounting, PeakPair
+from gbeam.results.declared import INSIDE, declared, fact, part, quantity, rows
+from gbeam.results.imitation.accounting import UNITS, Accounting, PeakPair
 from gbeam.results.imitation.criteria import Judged, Limit
 from gbeam.results.imitation.measures import Fatigue, Mismatch, RootLoads, Shock, Statistics
 from gbeam.results.imitation.verdict import verdict
 from gbeam.results.parts import yield_margin
 from gbeam.results.result import Figured, Flags, Floats
+
+_ACROSS = "over the times at which the target was not held"
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -20,44 +23,6 @@ class Comparison(Judged, Figured):
     """Differences of a centrifuge's response from the flight's that it imitates.
 
     Peaks and accounting are those of the whole flight; differences are taken where the target is the flight's load.
-
-    Parameters
-    ----------
-    flight, centrifuge : str
-        Names of the motions.
-    time : (t,) s
-    difference : (t, 3)
-        Tip displacement on the centrifuge less in flight, m.
-    covered : (t,) bool
-        Times compared: those at which the target was not held.
-    max_difference, rms_difference : (3,)
-        Over the covered times, m.
-    peak_flight, peak_centrifuge : (3,)
-        Largest displacement over the covered times, m.
-    peaks : mapping of str to PeakPair
-        Largest sizes over the whole flight of the vectors ``tip``, ``root_force`` and ``root_moment``, and of the
-        ``stress`` anywhere; ``largest_load`` is the base's load anywhere on the rigid specimen, on the machine from the
-        beginning of its spin-up to the end of its spin-down.
-    accounting : Accounting
-        Which parts of the flight's load the machine reproduces, and why not the others.
-    accept : mapping of str to float or tuple of float
-        Limits by name: docs/verdict.md, Pass or fail.
-    stations : Statistics or None
-        Displacement of every station, with trend and elastic vibration apart; None where the record is too short.
-    mismatch : Mismatch or None
-        Acceleration that the centrifuge gives the beam's points and the flight does not, and what it implies.
-    root : RootLoads or None
-        What the root carries in both environments.
-    shock : Shock or None
-        Shock response spectra of the tip's acceleration.
-    fatigue : Fatigue or None
-        Cycles of the stress at the root in both runs, and their damage.
-    yield_strength : float or None
-        Of the material, Pa, where it is given.
-    whole : tuple of float or None
-        First and last time of the whole flight, s, where only a part of it was run, and is judged.
-    kept_every : int
-        How many samples of the histories make one in a file.
 
     Examples
     --------
@@ -77,28 +42,66 @@ class Comparison(Judged, Figured):
     2.052 mm, 2.051 mm
     """
 
-    flight: str
-    centrifuge: str
-    time: Floats
-    difference: Floats
-    covered: Flags
-    max_difference: Floats
-    rms_difference: Floats
-    peak_flight: Floats
-    peak_centrifuge: Floats
-    peaks: Mapping[str, PeakPair]
-    accounting: Accounting
-    accept: Mapping[str, Limit] = field(default_factory=dict)
-    stations: Statistics | None = None
-    mismatch: Mismatch | None = None
-    root: RootLoads | None = None
-    shock: Shock | None = None
-    fatigue: Fatigue | None = None
-    yield_strength: float | None = None
-    whole: tuple[float, float] | None = None
-    kept_every: int = 1
+    flight: str = fact("name of the flight")
+    centrifuge: str = fact("name of the centrifuge")
+    time: Floats = quantity("s", "time", "time", role="coordinate", key=None)
+    difference: Floats = quantity("m", "tip displacement on the centrifuge less in flight", "time", "axis", key=None)
+    covered: Flags = quantity(
+        "",
+        "whether the time is compared",
+        "time",
+        key=None,
+        flags=("held", "compared"),
+        note="times at which the target was not held",
+    )
+    max_difference: Floats = quantity("m", f"largest difference {_ACROSS}", "axis")
+    rms_difference: Floats = quantity("m", f"root mean square difference {_ACROSS}", "axis")
+    peak_flight: Floats = quantity("m", f"largest displacement in flight {_ACROSS}", "axis")
+    peak_centrifuge: Floats = quantity("m", f"largest displacement on the centrifuge {_ACROSS}", "axis")
+    peaks: Mapping[str, PeakPair] = rows(
+        "largest sizes over the whole flight", "peak", UNITS, name=".",
+        note="of the vectors tip, root_force and root_moment, and of the stress anywhere; largest_load is the base's "
+        "load anywhere on the rigid specimen, on the machine from the beginning of its spin-up to the end of its "
+        "spin-down",
+    )  # fmt: skip
+    accounting: Accounting = part(
+        "which parts of the flight's load the machine reproduces, and why not the others", name="."
+    )
+    accept: Mapping[str, Limit] = fact(
+        "limits by name", name=None, key=None, note="docs/verdict.md, Pass or fail", default_factory=dict
+    )
+    stations: Statistics | None = part(
+        "displacement of every station, with trend and elastic vibration apart", name=".", key=INSIDE, optional=True,
+        note="None where the record is too short", default=None,
+    )  # fmt: skip
+    mismatch: Mismatch | None = part(
+        "acceleration that the centrifuge gives the beam's points and the flight does not, and what it implies",
+        name="mismatch_", optional=True, default=None,
+    )  # fmt: skip
+    root: RootLoads | None = part("loads of the root in both environments", name=".", optional=True, default=None)
+    shock: Shock | None = part(
+        "shock response spectra of the tip's acceleration", name=".", optional=True, default=None
+    )
+    fatigue: Fatigue | None = part(
+        "cycles of the stress at the root in both runs, and their damage", name=".", optional=True, default=None
+    )
+    yield_strength: float | None = fact(
+        "yield strength of the material, where it is given", "Pa", name=None, key=None, default=None
+    )
+    whole: tuple[float, float] | None = fact(
+        "first and last time of the whole flight, where only a part of it was run, and is judged",
+        "s", name=None, key=None, default=None,
+    )  # fmt: skip
+    kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
 
     @property
+    @declared("", "share of the times that are compared", role="fact", name=None, key="covered")
+    def covered_share(self) -> float:
+        """Share of the times that are compared."""
+        return float(self.covered.mean())
+
+    @property
+    @declared("", "largest difference over the flight's largest displacement", "axis", name=None)
     def relative(self) -> Floats:
         """Largest difference over the flight's largest displacement, per axis, (3,); NaN without displacement."""
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -109,12 +112,17 @@ class Comparison(Judged, Figured):
         """Axis (0, 1, 2) along which the tip moves most in flight; z where no time is compared."""
         return int(np.argmax(self.peak_flight)) if self.covered.any() else 2
 
-    @property
-    def verdict(self) -> str:
-        """One sentence about the whole flight that a person can quote."""
+    def sentence(self) -> str:
+        """Return one sentence about the whole flight that a person can quote."""
         tip = self.accept.get("tip")
         within = tip if isinstance(tip, float) else None
         return verdict(self.flight, self.centrifuge, self.peaks, self.accounting, within, self.margins, self.whole)
+
+    @property
+    @declared("", "least margin on yield in flight and on the machine", role="fact", name=None, key="margin")
+    def margin(self) -> dict[str, float] | None:
+        """Least margin on yield in flight and on the machine; None without a yield strength."""
+        return None if self.margins is None else dict(zip(("flight", "machine"), self.margins, strict=True))
 
     @property
     def margins(self) -> tuple[float, float] | None:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from gbeam.errors import InputError
+from gbeam.results.declared import declared, quantity
 
 if TYPE_CHECKING:
     from gbeam.results.imitation.accounting import Accounting, PeakPair
@@ -35,9 +36,26 @@ class Judged:
     with_response = True
 
     @property
+    @declared("", "one sentence about the whole flight", role="fact")
     def verdict(self) -> str:
         """One sentence about the whole flight that a person can quote."""
+        return self.sentence()
+
+    def sentence(self) -> str:
+        """Return the verdict."""
         raise NotImplementedError
+
+    @property
+    @declared("s", "time of the flight that is judged", "ends", name=None)
+    def span(self) -> tuple[float, float]:
+        """First and last time of the flight that is judged, s."""
+        return self.accounting.span
+
+    @property
+    @declared("s", "time of the whole flight", "ends", name="whole", key="whole")
+    def whole_span(self) -> tuple[float, float]:
+        """First and last time of the whole flight, s."""
+        return self.whole or self.accounting.span
 
     @property
     def part(self) -> str:
@@ -53,6 +71,7 @@ class Judged:
         return {rule.name: rule.worst(self, rule.bounds(rule.usual))[0] for rule in rules}
 
     @property
+    @declared("", "limits that can be judged", "criterion", role="rows", name="criterion_")
     def criteria(self) -> tuple[Criterion, ...]:
         """The limits of `accept` that can be judged, with the values that are held against them."""
         return tuple(
@@ -62,11 +81,20 @@ class Judged:
         )
 
     @property
+    @declared("", "limits that need a response, where there is none", role="fact", name=None)
     def not_judged(self) -> tuple[str, ...]:
         """The limits of `accept` that need a response, where there is none."""
         return tuple(name for name in self.accept if RULES[name].response and not self.with_response)
 
     @property
+    @declared("", "whether every limit is kept: true, false, or empty where there is none", role="fact", key=None,
+              name="accepted")  # fmt: skip
+    def acceptance(self) -> str:
+        """Whether every limit is kept, in a word; empty where there is none."""
+        return {None: "", True: "true", False: "false"}[self.accepted]
+
+    @property
+    @declared("", "whether every limit that can be judged is kept", role="fact", name=None)
     def accepted(self) -> bool | None:
         """Whether every limit that can be judged is kept; None where there is none."""
         return all(each.passed for each in self.criteria) if self.criteria else None
@@ -205,24 +233,24 @@ class Rule:
 
 @dataclass(frozen=True)
 class Criterion:
-    """One of the limits that decide whether a machine's imitation is accepted.
+    """One of the limits that decide whether a machine's imitation is accepted."""
 
-    Parameters
-    ----------
-    name : str
-        Key of the limit; docs/verdict.md, Pass or fail.
-    limit : float or tuple of float
-        As given.
-    value : float
-        NaN where it is not known, which does not pass.
-    where : str
-        When, and at which place or frequency, the value occurs; empty where it belongs to the whole flight.
-    """
+    name: str = quantity("", "what a limit of acceptance is on", note="docs/verdict.md, Pass or fail")
+    limit: Limit = quantity("", "the limit, as given", name=None)
+    value: float = quantity("", "its value", note="NaN where it is not known, which does not pass")
+    where: str = quantity("", "where and when that is", note="empty where it belongs to the whole flight", default="")
 
-    name: str
-    limit: Limit
-    value: float
-    where: str = ""
+    @property
+    @declared("", "least value that is accepted", name="least_allowed", key=None)
+    def least(self) -> float:
+        """Least value that is accepted."""
+        return self.bounds[0]
+
+    @property
+    @declared("", "largest value that is accepted; infinite where any is", name="most_allowed", key=None)
+    def most(self) -> float:
+        """Largest value that is accepted."""
+        return self.bounds[1]
 
     @property
     def bounds(self) -> tuple[float, float]:
@@ -230,6 +258,7 @@ class Criterion:
         return RULES[self.name].bounds(self.limit)
 
     @property
+    @declared("", "whether the value is within its bounds", name=None)
     def passed(self) -> bool:
         """Whether the value is within its bounds."""
         low, high = self.bounds

@@ -4,34 +4,30 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 
+from gbeam.results.declared import declared, fact, part, quantity
 from gbeam.results.result import Floats, Part
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class StressCycles(Part):
-    """Rainflow cycles of a stress (ASTM E1049-85, 5.4.4).
+    """Rainflow cycles of a stress (ASTM E1049-85, 5.4.4)."""
 
-    Parameters
-    ----------
-    range, mean : (k,)
-        Pa; largest range first.
-    count : (k,)
-        1 of a full cycle, 0.5 of a half.
-    """
-
-    range: Floats
-    mean: Floats
-    count: Floats
+    range: Floats = quantity("Pa", "range of the root's stress cycle", "cycle_", key=None, note="largest range first")
+    mean: Floats = quantity("Pa", "its mean", "cycle_", key=None)
+    count: Floats = quantity("", "1 of a full cycle, 0.5 of a half", "cycle_", key=None)
 
     @property
+    @declared("", "number of cycles", name=None, key="cycles")
     def total(self) -> float:
         """Number of cycles."""
         return float(self.count.sum())
 
     @property
+    @declared("Pa", "largest range", name=None, key="largest_range")
     def largest(self) -> float:
         """Largest range, Pa; zero without cycles."""
         return float(self.range.max(initial=0.0))
@@ -44,28 +40,35 @@ class StressCycles(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Fatigue(Part):
-    """Stress cycles at the root in both environments, each at that extreme fibre where the stress ranges most.
+    """Stress cycles at the root in both environments, each at that extreme fibre where the stress ranges most."""
 
-    Parameters
-    ----------
-    exponent : float
-        m of Wöhler's curve, N Δσᵐ = constant.
-    flight, machine : StressCycles
-        Of each whole run, spin-up and spin-down included.
-    """
-
-    exponent: float
-    flight: StressCycles
-    machine: StressCycles
+    exponent: float = fact("m of Wöhler's curve, N Δσᵐ = constant")
+    flight: StressCycles = part("cycles of the whole run", name="stress_*_flight")
+    machine: StressCycles = part("cycles of the whole run, spin-up and spin-down included", name="stress_*_machine")
 
     @property
+    @declared("Pa", "range of the one cycle that does the same damage in flight", role="fact", name=None,
+              key="flight.equivalent_range")  # fmt: skip
+    def equivalent_flight(self) -> float:
+        """Range of the one cycle that does the same damage in flight, Pa."""
+        return self.flight.equivalent_range(self.exponent)
+
+    @property
+    @declared("Pa", "range of the one cycle that does the same damage on the machine", role="fact", name=None,
+              key="machine.equivalent_range")  # fmt: skip
+    def equivalent_machine(self) -> float:
+        """Range of the one cycle that does the same damage on the machine, Pa."""
+        return self.machine.equivalent_range(self.exponent)
+
+    @property
+    @declared("", "damage of the machine over flight's")
     def damage_ratio(self) -> float:
         """Damage on the machine over that in flight by Palmgren and Miner, Σ n Δσᵐ; means count for nothing.
 
         NaN without cycles in flight.
         """
-        flight, machine = (each.equivalent_range(self.exponent) for each in (self.flight, self.machine))
-        return (machine / flight) ** self.exponent if flight > 0 else math.nan
+        flight = self.equivalent_flight
+        return (self.equivalent_machine / flight) ** self.exponent if flight > 0 else math.nan
 
 
 _FELT = 0.1  # of the flight's largest spectrum: an axis with less is no part of the shock
@@ -73,19 +76,19 @@ _FELT = 0.1  # of the flight's largest spectrum: an axis with less is no part of
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Sizes(Part):
-    """How large a quantity is over the times compared, per station and direction.
+    """How large displacements are over the times compared, per station and direction."""
 
-    Parameters
-    ----------
-    peak, rms : (s, 3)
-        Largest and root mean square size, unit of the quantity.
-    residual : (s, 3)
-        Residual vibration: half peak-to-peak of the elastic vibration, from the residual's start on where one is given.
-    """
+    peak: Floats = quantity("m", "largest displacement", "axis")
+    rms: Floats = quantity("m", "root mean square displacement", "axis")
+    residual: Floats = quantity(
+        "m",
+        "residual vibration",
+        "axis",
+        note="half peak-to-peak of the elastic vibration, from the residual's start on where one is given",
+    )
 
-    peak: Floats
-    rms: Floats
-    residual: Floats
+
+_FILTER = "Butterworth 4th order, zero phase"
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -96,28 +99,25 @@ class Statistics(Part):
     at the cut-off; vibration: the rest (2020, section 4.3). Where the slope of a displacement jumps by k m/s, a false
     vibration of up to 0.12 k/cutoff appears within one period of the cut-off; the ends are continued by their point
     reflection, and the first and last half period of the cut-off are less certain.
-
-    Parameters
-    ----------
-    stations : (s,)
-        From the root, m; the last is the tip.
-    cutoff : float
-        Hz: half the lowest natural frequency at rest.
-    flight, centrifuge, difference : Sizes
-        m.
-    trend_flight, trend_centrifuge, vibration_flight, vibration_centrifuge : (t, 3)
-        Of the tip, m.
     """
 
-    stations: Floats
-    cutoff: float
-    flight: Sizes
-    centrifuge: Sizes
-    difference: Sizes
-    trend_flight: Floats
-    trend_centrifuge: Floats
-    vibration_flight: Floats
-    vibration_centrifuge: Floats
+    json_rows: ClassVar[dict[str, str]] = {"station": "stations"}
+
+    stations: Floats = quantity(
+        "m", "position along the beam from the root", "station", role="coordinate", key="at", note="the last is the tip"
+    )
+    cutoff: float = fact("half the lowest natural frequency at rest", "Hz")
+    flight: Sizes = part("in flight", "station", name="station_*_flight")
+    centrifuge: Sizes = part("on the centrifuge", "station", name="station_*_centrifuge")
+    difference: Sizes = part("of the difference", "station", name="station_*_difference")
+    trend_flight: Floats = quantity("m", f"tip in flight below the cut-off, {_FILTER}", "time", "axis", key=None)
+    trend_centrifuge: Floats = quantity(
+        "m", f"tip on the centrifuge below the cut-off, {_FILTER}", "time", "axis", key=None
+    )
+    vibration_flight: Floats = quantity("m", f"tip in flight above the cut-off, {_FILTER}", "time", "axis", key=None)
+    vibration_centrifuge: Floats = quantity(
+        "m", f"tip on the centrifuge above the cut-off, {_FILTER}", "time", "axis", key=None
+    )
 
     @property
     def trend_difference(self) -> Floats:
@@ -127,41 +127,47 @@ class Statistics(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Mismatch(Part):
-    """Acceleration that grows with the distance from the control point: Δa(x, t) = gradient(t) (x − x_c).
+    """Acceleration that grows with the distance from the control point: Δa(x, t) = gradient(t) (x − x_c)."""
 
-    Parameters
-    ----------
-    control_point : float
-        x_c, from the root, m.
-    gradient : (t, 3)
-        Centrifuge less flight of [−(ω_y² + ω_z²), ω_x ω_y + α_z, ω_x ω_z − α_y], base axes, 1/s².
-    max_gradient : (3,)
-        Largest size over the times compared, 1/s².
-    max_acceleration : (3,)
-        Largest size of Δa at the end of the beam where it is larger, m/s².
-    tip_bound : (3,)
-        Quasi-static displacement of the tip under the largest gradient, m: for a uniform cantilever
-        (m L⁵/EI) |11/120 − ξ/8| max|gradient|, ξ = x_c/L.
-    force_bound : (3,)
-        The same of the force at the root, N: m L² |1/2 − ξ| max|gradient|.
-    moment_bound : (3,)
-        The same of the moment at the root, in the plane of x and the axis, N m: m L³ |1/3 − ξ/2| max|gradient|.
-    length : float
-        Of the beam, L, m.
-    best : tuple of float
-        From the control point with the least moment at the root to that with the least displacement of the tip, m;
-        that with the least vibration of a uniform cantilever lies between.
-    """
-
-    control_point: float
-    gradient: Floats
-    max_gradient: Floats
-    max_acceleration: Floats
-    tip_bound: Floats
-    force_bound: Floats
-    moment_bound: Floats
-    length: float
-    best: tuple[float, float] = (-np.inf, np.inf)
+    control_point: float = fact("x_c, from the root", "m", name=None)
+    gradient: Floats = quantity(
+        "1/s^2",
+        "mismatch acceleration per distance from the control point",
+        "time",
+        "axis",
+        key=None,
+        note="centrifuge less flight of [−(ω_y² + ω_z²), ω_x ω_y + α_z, ω_x ω_z − α_y]",
+    )
+    max_gradient: Floats = quantity("1/s^2", "largest size over the times compared", "axis", name=None)
+    max_acceleration: Floats = quantity(
+        "m/s^2", "largest size of Δa at the end of the beam where it is larger", "axis", name=None
+    )
+    tip_bound: Floats = quantity(
+        "m",
+        "quasi-static displacement of the tip under the largest gradient",
+        "axis",
+        name=None,
+        note="of a uniform cantilever (m L⁵/EI) |11/120 − ξ/8| max|gradient|, ξ = x_c/L",
+    )
+    force_bound: Floats = quantity(
+        "N", "the same of the force at the root", "axis", name=None, note="m L² |1/2 − ξ| max|gradient|"
+    )
+    moment_bound: Floats = quantity(
+        "N m",
+        "the same of the moment at the root, in the plane of x and the axis",
+        "axis",
+        name=None,
+        note="m L³ |1/3 − ξ/2| max|gradient|",
+    )
+    length: float = fact("length of the beam, L", "m", name=None, key=None)
+    best: tuple[float, float] = fact(
+        "control points with the least moment at the root, and the least displacement of the tip",
+        "m",
+        name=None,
+        key=None,
+        note="that with the least vibration of a uniform cantilever lies between",
+        default=(-np.inf, np.inf),
+    )
 
     @property
     def placed(self) -> bool:
@@ -181,50 +187,51 @@ class Mismatch(Part):
         return self.gradient[:, None, :] * (np.asarray(x)[:, None] - self.control_point)
 
 
+_HISTORY: dict[str, Any] = {"key": None, "frame": "S: axes of the deformed root section"}
+
+
 @dataclass(frozen=True, repr=False, eq=False)
 class RootHistory(Part):
-    """What the root carries at the comparison's times, axes of its section.
+    """Loads of the root at the comparison's times, axes of its section."""
 
-    Parameters
-    ----------
-    force_flight, force_centrifuge : (t, 3)
-        N, V_y, V_z, N.
-    moment_flight, moment_centrifuge : (t, 3)
-        Torque, M_y, M_z, N m.
-    """
-
-    force_flight: Floats
-    force_centrifuge: Floats
-    moment_flight: Floats
-    moment_centrifuge: Floats
+    force_flight: Floats = quantity(
+        "N", "N, V_y, V_z at the root in flight", "time", "axis", name="force_history_flight", **_HISTORY
+    )
+    force_centrifuge: Floats = quantity("N", "N, V_y, V_z at the root on the centrifuge", "time", "axis", **_HISTORY)
+    moment_flight: Floats = quantity(
+        "N m", "torque, M_y, M_z at the root in flight", "time", "axis", name="moment_history_flight", **_HISTORY
+    )
+    moment_centrifuge: Floats = quantity(
+        "N m", "torque, M_y, M_z at the root on the centrifuge", "time", "axis", **_HISTORY
+    )
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class RootLoads(Part):
-    """What the root carries in both environments, over the times compared.
+    """Loads of the root in both environments, over the times compared; stress is NaN without outer fibres."""
 
-    Parameters
-    ----------
-    force_flight, force_centrifuge, force_difference : (3,)
-        Largest size of N, V_y, V_z at the root and of their difference, N.
-    moment_flight, moment_centrifuge, moment_difference : (3,)
-        Largest size of the torque, M_y, M_z, N m.
-    stress_flight, stress_centrifuge, stress_difference : float
-        Largest normal stress at the root's outer fibre, Pa; NaN where the outer fibres are unknown.
-    history : RootHistory
-        Force and moment over time.
-    """
-
-    force_flight: Floats
-    force_centrifuge: Floats
-    force_difference: Floats
-    moment_flight: Floats
-    moment_centrifuge: Floats
-    moment_difference: Floats
-    stress_flight: float
-    stress_centrifuge: float
-    stress_difference: float
-    history: RootHistory
+    force_flight: Floats = quantity("N", "largest size of N, V_y, V_z in flight", "axis", name=None, key="force.flight")
+    force_centrifuge: Floats = quantity(
+        "N", "largest size of N, V_y, V_z on the centrifuge", "axis", name=None, key="force.centrifuge"
+    )
+    force_difference: Floats = quantity(
+        "N", "largest size of their difference", "axis", name=None, key="force.difference"
+    )
+    moment_flight: Floats = quantity(
+        "N m", "largest size of torque, M_y, M_z in flight", "axis", name=None, key="moment.flight"
+    )
+    moment_centrifuge: Floats = quantity(
+        "N m", "largest size of torque, M_y, M_z on the centrifuge", "axis", name=None, key="moment.centrifuge"
+    )
+    moment_difference: Floats = quantity(
+        "N m", "largest size of their difference", "axis", name=None, key="moment.difference"
+    )
+    stress_flight: float = quantity("Pa", "largest normal stress, in flight", name=None, key="stress.flight")
+    stress_centrifuge: float = quantity(
+        "Pa", "largest normal stress, on the centrifuge", name=None, key="stress.centrifuge"
+    )
+    stress_difference: float = quantity("Pa", "largest normal stress, difference", name=None, key="stress.difference")
+    history: RootHistory = part("force and moment over time", name="root_", key=None)
 
     @property
     def main(self) -> int:
@@ -240,11 +247,11 @@ class RootLoads(Part):
 
 @dataclass(frozen=True)
 class SpectrumRatio:
-    """Ratio of two shock response spectra, machine over flight, at one frequency (Hz) along one axis."""
+    """Ratio of two shock response spectra, machine over flight, at one frequency along one axis."""
 
-    ratio: float
-    frequency: float
-    axis: str
+    ratio: float = quantity("", "machine over flight")
+    frequency: float = quantity("Hz", "frequency")
+    axis: str = quantity("", "axis")
 
     def __str__(self) -> str:
         return f"at {self.frequency:.3g} Hz along {self.axis}"
@@ -256,21 +263,30 @@ class Shock(Part):
 
     Smallwood's ramp-invariant filter (absolute acceleration, maximax over the times compared); the oscillators begin at
     rest relative to the first sample.
-
-    Parameters
-    ----------
-    quality : float
-        Q of the oscillators.
-    frequency : (f,)
-        Hz.
-    flight, centrifuge : (f, 3)
-        m/s², base axes; specific force where gravity acts.
     """
 
-    quality: float
-    frequency: Floats
-    flight: Floats
-    centrifuge: Floats
+    quality: float = fact("Q of the oscillators", name=None)
+    frequency: Floats = quantity("Hz", "frequency of the oscillators", "frequency", role="coordinate")
+    flight: Floats = quantity(
+        "m/s^2", "shock response spectrum of the tip in flight", "frequency", "axis", name="shock_flight", key=None,
+        note="specific force where gravity acts",
+    )  # fmt: skip
+    centrifuge: Floats = quantity(
+        "m/s^2", "the same on the centrifuge", "frequency", "axis", name="shock_centrifuge", key=None
+    )
+
+    @property
+    @declared("m/s^2", "spectrum in flight, by frequency", "frequency", "direction", name=None, key="flight")
+    def rows_flight(self) -> Floats:
+        """Spectrum in flight, (f, 3) m/s²."""
+        return self.flight
+
+    @property
+    @declared("m/s^2", "spectrum on the centrifuge, by frequency", "frequency", "direction", name=None,
+              key="centrifuge")  # fmt: skip
+    def rows_centrifuge(self) -> Floats:
+        """Spectrum on the centrifuge, (f, 3) m/s²."""
+        return self.centrifuge
 
     @property
     def ratio(self) -> Floats:
@@ -280,6 +296,7 @@ class Shock(Part):
             return np.asarray(np.maximum(self.centrifuge, least) / np.maximum(self.flight, least))
 
     @property
+    @declared("", "largest and smallest ratio", "extreme", role="rows", name=None)
     def extremes(self) -> tuple[SpectrumRatio, ...]:
         """The largest and the smallest ratio; empty where none is known."""
         ratio = self.ratio

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
+from gbeam.results.declared import INSIDE, declared, fact, part, quantity, rows
 from gbeam.results.imitation.accounting import PeakPair
 from gbeam.results.machine import LimitUse
 from gbeam.results.result import Part, Result
@@ -19,125 +20,135 @@ _SAME = 1e-3  # of the length: control points nearer than this are one
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Candidate(Part):
-    """One way of mounting and smoothing, with the control point that is best for it.
+    """One way of mounting and smoothing, with the control point that is best for it."""
 
-    Parameters
-    ----------
-    mounting : str
-        upright or inverted.
-    smoothing : float
-        Width of the target's kernel, s.
-    control_point : float
-        Best for this candidate, from the root, m.
-    mismatch : float
-        Weighted measure of what the mismatch field alone does there, as a fraction of flight's peak.
-    total_error : float
-        The same with what smoothing and tracking change of the load: what candidates are chosen by.
-    accelerations : tuple of float
-        Largest accelerations of axes 1, 2, 3, rad/s².
-    share : float
-        Largest share of a limit of the machine that is used; zero where it has none.
-    exceeded : tuple of LimitUse
-        The limits that it breaks.
-    most_used : LimitUse or None
-        The limit of which the largest share is used.
-    tracking : float
-        Weighted measure of what smoothing and tracking alone change of the load, which no control point changes.
-    largest_load : PeakPair
-        Of the base anywhere on the rigid specimen, m/s², on the machine from the beginning of its spin-up to the end of
-        its spin-down.
-    """
+    mounting: str = quantity("", "which way up the specimen is mounted", note="upright or inverted")
+    smoothing: float = quantity("s", "width of the target's kernel")
+    control_point: float = quantity("m", "control point, from the root", note="best for this candidate")
+    mismatch: float = quantity("", "weighted measure of the mismatch field", note="as a fraction of flight's peak")
+    total_error: float = quantity(
+        "", "the same with what smoothing and tracking change", note="what candidates are chosen by"
+    )
+    accelerations: tuple[float, float, float] = quantity(
+        "rad/s^2", "largest acceleration of each axis", "machine_axis", name="acceleration"
+    )
+    share: float = quantity(
+        "", "largest share of a limit that is used", note="zero where the machine has none", default=0.0
+    )
+    exceeded: tuple[LimitUse, ...] = rows("limits that it breaks", "limit", name=None, default=())
+    most_used: LimitUse | None = part("limit of which the largest share is used", name=None, default=None)
+    tracking: float = quantity(
+        "",
+        "weighted measure of what smoothing and tracking alone change of the load",
+        name=None,
+        note="which no control point changes",
+        default=math.nan,
+    )
+    largest_load: PeakPair = part(
+        "largest load of the base anywhere on the rigid specimen",
+        unit="m/s^2",
+        name=None,
+        note="on the machine from the beginning of its spin-up to the end of its spin-down",
+        default_factory=PeakPair,
+    )
 
-    mounting: str
-    smoothing: float
-    control_point: float
-    mismatch: float
-    total_error: float
-    accelerations: tuple[float, float, float]
-    share: float = 0.0
-    exceeded: tuple[LimitUse, ...] = ()
-    most_used: LimitUse | None = None
-    tracking: float = math.nan
-    largest_load: PeakPair = field(default_factory=PeakPair)
+    @property
+    @declared("m/s^2", "largest load anywhere on the specimen", name="largest_load", key=None)
+    def load(self) -> float:
+        """Largest load anywhere on the specimen, on the machine, m/s²."""
+        return self.largest_load.machine
+
+    @property
+    @declared("", "where that is", name="largest_load_place", key=None)
+    def load_place(self) -> str:
+        """Where on the specimen that is."""
+        return self.largest_load.place_machine
+
+    @property
+    @declared("", "limits exceeded", name="exceeded", key=None)
+    def exceeding(self) -> str:
+        """The limits that it breaks, in words."""
+        return "; ".join(map(str, self.exceeded))
 
 
 @dataclass(frozen=True)
 class Verification:
-    """What the full model says of a control point, over the times at which the target was not held.
+    """Simulation of the full model at a control point, over the times at which the target was not held."""
 
-    Parameters
-    ----------
-    name : str
-        best, current or middle.
-    control_point : float
-        m.
-    tip_difference : float
-        Largest difference of the tip from flight across the beam, m.
-    vibration : float
-        Largest elastic vibration of the tip that the mismatch field causes, m: across the beam, against a base that
-        carries the same load at the control point without turning.
-    moment_difference : float
-        Largest difference of the bending moment at the root, N m.
-    force_difference : float
-        Largest difference of the shear force at the root, N.
-    """
+    name: str = quantity("", "best, current or middle")
+    control_point: float = quantity("m", "control point, from the root")
+    tip_difference: float = quantity("m", "largest difference of the tip from flight across the beam")
+    vibration: float = quantity(
+        "m",
+        "largest elastic vibration of the tip that the mismatch field causes",
+        note="across the beam, against a base that carries the same load at the control point without turning",
+    )
+    moment_difference: float = quantity("N m", "largest difference of the bending moment at the root")
+    force_difference: float = quantity("N", "largest difference of the shear force at the root", default=math.nan)
 
-    name: str
-    control_point: float
-    tip_difference: float
-    vibration: float
-    moment_difference: float
-    force_difference: float = math.nan
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Setting(Part):
+    """How a specimen is put on a centrifuge."""
+
+    control_point: float = quantity("m", "control point, from the root")
+    mounting: str = fact("upright or inverted")
+    smoothing: float = quantity("s", "width of the target's kernel")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Placement(Result):
-    """The best control point, mounting and smoothing for a measure.
+    """The best control point, mounting and smoothing for a measure."""
 
-    Parameters
-    ----------
-    flight, centrifuge : str
-        Names of the motions.
-    weights : mapping of str to float
-        Of the measures.
-    length : float
-        Of the beam, m.
-    best : Candidate
-    options : tuple of Candidate
-        All that were tried, the best first, those that break limits last.
-    current : float
-        The scenario's control point, m.
-    values : mapping of str to (mapping of str to float)
-        For ``best``, ``current`` (the scenario's own mounting, smoothing and control point) and ``middle`` of the beam:
-        each measure of the mismatch field, as a fraction of flight's peak.
-    verifications : tuple of Verification
-        Empty where there was none.
-    refused : tuple of str
-        Candidates that could not be built, and why.
-    widths : tuple of float
-        First and last width of smoothing that was tried, s.
-    totals : mapping of str to (mapping of str to float)
-        As `values`, with what smoothing and tracking change of the load.
-    before : Candidate or None
-        The scenario's own.
-    outcome : str
-        done, or limits exceeded where every candidate breaks a limit: the best is then the nearest.
-    """
+    flight: str = fact("name of the flight")
+    centrifuge: str = fact("name of the centrifuge")
+    weights: Mapping[str, float] = fact("weights of the measures", name="weight_", key="measure")
+    length: float = fact("length of the beam", "m", key=None)
+    best: Candidate = part("the best", name=None, key=None)
+    options: tuple[Candidate, ...] = rows("all that were tried, the best first, those that break limits last", "option")
+    current: float = fact(
+        "the scenario's control point", "m", name="current_control_point", key="current_control_point"
+    )
+    values: Mapping[str, Mapping[str, float]] = fact(
+        "each measure of the mismatch field, as a fraction of flight's peak",
+        name=None,
+        key="mismatch",
+        note="for best, current (the scenario's own mounting, smoothing and control point) and middle of the beam",
+    )
+    verifications: tuple[Verification, ...] = rows("simulations", "check", name=None, key=None, default=())
+    refused: tuple[str, ...] = fact("candidates that could not be built, and why", default=())
+    widths: tuple[float, float] = fact(
+        "first and last width of smoothing that was tried", "s", name=None, key="smoothing_range", default=(0.0, 0.0)
+    )
+    totals: Mapping[str, Mapping[str, float]] = fact(
+        "as `values`, with what smoothing and tracking change of the load",
+        name=None,
+        key="total_error",
+        default_factory=dict,
+    )
+    before: Candidate | None = part("the scenario's own", name=None, default=None)
+    outcome: str = fact(
+        "how it ended", note="done, or limits exceeded where every candidate breaks one: the best is then the nearest",
+        default="done",
+    )  # fmt: skip
 
-    flight: str
-    centrifuge: str
-    weights: Mapping[str, float]
-    length: float
-    best: Candidate
-    options: tuple[Candidate, ...]
-    current: float
-    values: Mapping[str, Mapping[str, float]]
-    verifications: tuple[Verification, ...] = field(default=())
-    refused: tuple[str, ...] = ()
-    widths: tuple[float, float] = (0.0, 0.0)
-    totals: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    before: Candidate | None = None
-    outcome: str = "done"
+    @property
+    @declared("", "simulations by name", "check", role="rows", name=None, key="verifications")
+    def checks(self) -> Mapping[str, Verification]:
+        """The simulations by name."""
+        return {each.name: each for each in self.verifications}
+
+    @property
+    @declared("", "control point, mounting and smoothing of the best", role="part", name=None, key=INSIDE)
+    def placed(self) -> Setting:
+        """Control point, mounting and smoothing of the best."""
+        return Setting(self.best.control_point, self.best.mounting, self.best.smoothing)
+
+    @property
+    @declared("", "the changes as KEY=VALUE of --set", role="fact", name=None, key="set")
+    def settings(self) -> tuple[str, ...]:
+        """The changes as ``KEY=VALUE`` of ``--set``."""
+        return tuple(f"motion.{self.centrifuge}.{key}={value}" for key, value in self.changes.items())
 
     @property
     def changes(self) -> dict[str, str]:
@@ -145,17 +156,18 @@ class Placement(Result):
         best, before = self.best, self.before
         if self.outcome != "done":
             return {}
-        found = {}
+        changes = {}
         if abs(best.control_point - self.current) > _SAME * self.length:
-            found["control_point"] = f"{1e3 * best.control_point:.6g} mm"
+            changes["control_point"] = f"{1e3 * best.control_point:.6g} mm"
         if before is not None and best.mounting != before.mounting:
-            found["mounting"] = best.mounting
+            changes["mounting"] = best.mounting
         if before is not None and abs(best.smoothing - before.smoothing) > 1e-3 * before.smoothing:
             # Upwards: rounding must not sharpen the corners of a machine at its limit.
-            found["smoothing"] = f"{math.ceil(1e5 * best.smoothing - 1e-6) / 100:g} ms"
-        return found
+            changes["smoothing"] = f"{math.ceil(1e5 * best.smoothing - 1e-6) / 100:g} ms"
+        return changes
 
     @property
+    @declared("", "why none is allowed, or why placing saves little", role="fact")
     def message(self) -> str:
         """Why none is allowed and which comes nearest; or why placing saves little, and what dominates."""
         best, before = self.best, self.before
@@ -178,11 +190,19 @@ class Placement(Result):
         )
 
     @property
+    @declared("", "best control point over the length", role="fact", name=None, key="fraction_of_length")
     def fraction(self) -> float:
         """Best control point over the length."""
         return self.best.control_point / self.length
 
     @property
+    @declared(
+        "",
+        "vibration with the control point at mid-span over that with the best",
+        role="fact",
+        name="vibration_gain_over_middle",
+        key="vibration_gain_over_middle",
+    )
     def vibration_gain(self) -> float:
         """Vibration with the control point at mid-span over that with the best, simulated; NaN where it was not."""
         vibration = {check.name: check.vibration for check in self.verifications}

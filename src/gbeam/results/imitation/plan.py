@@ -4,72 +4,54 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
-from gbeam.results.imitation.accounting import Accounting, PeakPair
+from gbeam.results.declared import INSIDE, fact, part, quantity, rows
+from gbeam.results.imitation.accounting import UNITS, Accounting, PeakPair
 from gbeam.results.imitation.criteria import Judged, Limit, state_of
 from gbeam.results.imitation.verdict import verdict
-from gbeam.results.machine import AxesResult
+from gbeam.results.machine import AxesResult, Driven
 from gbeam.results.result import Figured, Floats
 
 _WIDTH = 110  # columns
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class MachinePlan(Judged, Figured):
-    """What a centrifuge does to imitate a flight, without the response of a beam.
+class MachinePlan(Judged, Driven, Figured):
+    """What a centrifuge does to imitate a flight, without the response of a beam."""
 
-    Parameters
-    ----------
-    name, tracks : str
-        Of the motion, and of the flight.
-    arm : float
-        m.
-    outcome : str
-        done or limits exceeded.
-    message : str
-        Which limits, where the outcome is not done.
-    time : (t,) s
-    axes : AxesResult
-        At these times.
-    accounting : Accounting
-        Which parts of the flight's load the machine reproduces, and why not the others.
-    gravity : float
-        On the machine, a part of the load, m/s²; zero where the load is acceleration.
-    mounting : str
-        upright or inverted.
-    peaks : mapping of str to PeakPair
-        ``largest_load``, that of the base anywhere on the rigid specimen over all of the run; NaN where no beam says
-        how long the specimen is.
-    accept : mapping of str to float or tuple of float
-        Limits by name; those that need a response are not judged.
-    title : str
-        Of the scenario.
-    whole : tuple of float or None
-        First and last time of the whole flight, s, where only a part of it is imitated.
-    """
-
-    name: str
-    tracks: str
-    arm: float
-    outcome: str
-    message: str
-    time: Floats
-    axes: AxesResult
-    accounting: Accounting
-    gravity: float
-    mounting: str
-    peaks: Mapping[str, PeakPair] = field(default_factory=dict)
-    accept: Mapping[str, Limit] = field(default_factory=dict)
-    title: str = ""
-    whole: tuple[float, float] | None = None
+    name: str = fact("name of the motion", key=None)
+    tracks: str = fact("name of the flight")
+    arm: float = fact("arm of the centrifuge", "m")
+    outcome: str = fact("how it ended", note="done or limits exceeded")
+    message: str = fact("which limits, where the outcome is not done")
+    time: Floats = quantity("s", "time", "time", role="coordinate", key=None)
+    axes: AxesResult = part("the axes at these times", name=None, key=INSIDE)
+    accounting: Accounting = part(
+        "which parts of the flight's load the machine reproduces, and why not the others", name=None
+    )
+    gravity: float = fact(
+        "gravity on the machine, a part of the load", "m/s^2", note="zero where the load is acceleration"
+    )
+    mounting: str = fact("upright or inverted")
+    peaks: Mapping[str, PeakPair] = rows(
+        "largest_load, that of the base anywhere on the rigid specimen over all of the run", "peak", UNITS,
+        note="NaN where no beam says how long the specimen is", name=".", default_factory=dict,
+    )  # fmt: skip
+    accept: Mapping[str, Limit] = fact(
+        "limits by name; those that need a response are not judged", name=None, key=None, default_factory=dict
+    )
+    title: str = fact("title of the scenario", key=None, default="")
+    whole: tuple[float, float] | None = fact(
+        "first and last time of the whole flight, where only a part of it is imitated", "s", name=None, key=None,
+        default=None,
+    )  # fmt: skip
     with_response = False
 
-    @property
-    def verdict(self) -> str:
-        """One sentence about the load over the whole flight."""
+    def sentence(self) -> str:
+        """Return one sentence about the load over the whole flight."""
         return verdict(
             self.tracks or "flight", self.name or "centrifuge", self.peaks, self.accounting, whole=self.whole
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, StrictBool, Tag, model_validator
+from pydantic import Discriminator, Field, StrictBool, StringConstraints, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
 from gbeam.guards.limits import ENTRIES
@@ -31,6 +31,8 @@ from gbeam.scenario.schema.fields import (
     wrong,
 )
 from gbeam.scenario.schema.profile import ForceOverTime, MomentOverTime, SpreadForceOverTime
+
+PointName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z_]\w*$", max_length=64)]
 
 
 class _Vector(Table):
@@ -214,6 +216,14 @@ class PointMass(Table):
     offset: tuple[Offset, Offset, Offset] | None = Field(
         default=None, description="centre of mass from the beam's axis: [x, y, z] in axes of the section"
     )
+    name: PointName | None = Field(default=None, description="name of the point of output at its place")
+
+
+class Point(Table):
+    """A named point of output."""
+
+    name: PointName = Field(description="letters, digits and underscores")
+    at: Position = Field(description="position from the root, along the beam")
 
 
 class Root(Table):
@@ -246,4 +256,7 @@ class Beam(Table):
         default=(),
         max_length=ENTRIES,
         description="forces and moments on the beam: [ { at, force, moment, distributed, follower } ]",
+    )
+    points: tuple[Point, ...] = Field(
+        default=(), max_length=ENTRIES, description="points of output beside the tip: [ { name, at } ]"
     )

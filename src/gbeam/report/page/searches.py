@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, plot_places, raised, table
-from gbeam.report.page.series import Numbers, Plots
+from gbeam.figures.units import raised
+from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, table
 from gbeam.report.words import number, percent
-from gbeam.results.result import Floats
 
 Facts = Mapping[str, Any]
-_REFERENCE = 6  # the colour of data
 
 
-def fit_body(facts: Facts, variables: Facts, _: Numbers, plots: Plots, header: dict[str, Any]) -> str:
+def fit_body(facts: Facts, viewer: str, drawn: str) -> str:
     """Values with their intervals, what the data leave, and both over time or the modes."""
 
     def row(path: str, each: Facts) -> list[Value]:
@@ -26,7 +24,6 @@ def fit_body(facts: Facts, variables: Facts, _: Numbers, plots: Plots, header: d
     paths, columns = list(facts["parameters"]), facts["columns"]
     pairs = [[f"{paths[j]} and {path}", facts["correlation"][k][j]] for k, path in enumerate(paths) for j in range(k)]
     left = [[name, each["noise"], Cell(raised(each["unit"]))] for name, each in columns.items()]
-    drawn = _data(columns, variables, plots)
     return "".join(
         [
             heading("Values"),
@@ -39,33 +36,12 @@ def fit_body(facts: Facts, variables: Facts, _: Numbers, plots: Plots, header: d
             table(("correlation of the errors of", ""), pairs),
             table(("column", "standard deviation of the residual", "unit"), left, words=(0, 2)),
             _searches(facts),
-            heading("Data and fit") + plot_places(drawn) if drawn else "",
+            heading("Data and fit") + drawn if drawn else "",
         ]
     )
 
 
-def _data(columns: Facts, variables: Facts, plots: Plots) -> list[tuple[str, str]]:
-    """Plots of each column and of its residual; none without the arrays of a file."""
-    if "measured" not in variables:
-        return []
-    axis = "time, s" if "time" in variables else "mode"
-    at = variables[axis.partition(",")[0]]
-    drawn = []
-    for k, (name, each) in enumerate(columns.items()):
-        before, fitted, measured = (variables[key][k] for key in ("computed_before", "fitted", "measured"))
-        label = _labelled(name, each["unit"])
-        lines = [
-            {"label": "scenario as it was", "x": at, "y": before, "colour": 5},
-            {"label": "measured", "x": at, "y": measured, "colour": _REFERENCE, "points": True},
-            {"label": "fitted", "x": at, "y": fitted, "colour": 0},
-        ]
-        rest = {"label": "measured less fitted", "x": at, "y": measured - fitted, "colour": _REFERENCE, "points": True}
-        drawn.append((plots.add(name, label, lines, x=axis), name))
-        drawn.append((plots.add(f"{name}: residual", label, [rest], x=axis), f"{name}: measured less fitted"))
-    return drawn
-
-
-def optimum_body(facts: Facts, variables: Facts, _: Numbers, plots: Plots, header: dict[str, Any]) -> str:
+def optimum_body(facts: Facts, viewer: str, drawn: str) -> str:
     """The figure before and after, the values, the requirements, and the way to them."""
     goal = facts["minimise"]
     unit = raised(goal["unit"])
@@ -103,40 +79,34 @@ def optimum_body(facts: Facts, variables: Facts, _: Numbers, plots: Plots, heade
         ),
         _searches(facts),
     ]
-    if "history" in variables:
-        line = {"label": goal["name"], "x": np.arange(len(variables["history"])), "y": variables["history"]}
-        place = plots.add(goal["name"], _labelled(goal["name"], goal["unit"]), [line | {"colour": 0}], x="better try")
-        parts.append(heading("Way to the optimum") + plot_places([(place, goal["name"])]))
-    return "".join(parts)
+    return "".join([*parts, heading("Way to the optimum") + drawn if drawn else ""])
 
 
-def sensitivity_body(facts: Facts, variables: Facts, _: Numbers, plots: Plots, header: dict[str, Any]) -> str:
+def sensitivity_body(facts: Facts, viewer: str, drawn: str) -> str:
     """Of each figure the values that it depends on, those that matter most first."""
     parts = []
     for name, each in facts["measures"].items():
         value = f"{number(known(each['value']))} {raised(each['unit'])}".rstrip()
-        changes = [0.01 * known(one["derivative"]) * known(one["value"]) for one in each["parameters"]]
-        largest = max(map(abs, changes), default=0.0) or 1.0
         rows: list[list[Value]] = [
             [
                 one["path"],
                 Cell(f"{known(one['value']):.6g} {raised(one['unit'])}".rstrip()),
-                Cell(_change(change, each), share=abs(change) / largest),
+                Cell(_change(0.01 * known(one["derivative"]) * known(one["value"]), each)),
                 one["derivative"],
                 one["error"],
                 Cell(" ".join([one["method"], "kink" if one["kink"] else ""]).strip()),
             ]
-            for one, change in zip(each["parameters"], changes, strict=True)
+            for one in each["parameters"]
         ]
         head = ("of", "value", "+1 % changes the figure by", "derivative, SI", "±", "by")
         parts += [heading(f"{name} = {value}"), table(head, rows, words=(0, 1, 5))]
     error = known(facts["run_error"])
     if np.isfinite(error):
         parts.append(paragraph(f"the run's own estimated error is {percent(error)}"))
-    return "".join([*parts, listed(f"not varied: {each}" for each in facts["not_varied"])])
+    return "".join([*parts, drawn, listed(f"not varied: {each}" for each in facts["not_varied"])])
 
 
-def shaping_body(facts: Facts, variables: Facts, _: Numbers, plots: Plots, header: dict[str, Any]) -> str:
+def shaping_body(facts: Facts, viewer: str, drawn: str) -> str:
     """What each command leaves, the commands, the tip, and what is left where the frequencies are others."""
     ((goal, size),) = facts["goal"].items()
     aim = f"to {number(size)} rad/s" if goal == "rate" else f"by {number(size)} rad"
@@ -152,25 +122,7 @@ def shaping_body(facts: Facts, variables: Facts, _: Numbers, plots: Plots, heade
         heading("Commands"),
         table(("command", "leaves, mm", f"largest, {unit}", "run"), rows, words=(0, 3)),
     ]
-    if "command" in variables:
-        parts.append(plot_places(_commands(list(facts["commands"]), facts, variables, plots)))
-    return "".join(parts)
-
-
-def _commands(names: list[str], facts: Facts, variables: Facts, plots: Plots) -> Iterable[tuple[str, str]]:
-    def add(title: str, y: str, over: str, values: Floats, x: str) -> tuple[str, str]:
-        lines = [
-            {"label": name, "x": variables[over], "y": each, "colour": k}
-            for k, (name, each) in enumerate(zip(names, values, strict=True))
-        ]
-        return plots.add(title, y, lines, x=x), title
-
-    tip = 1e3 * variables["tip"]
-    axis = int(np.nan_to_num(np.abs(tip[-1])).max(axis=0).argmax())
-    yield add("Commands", f"{facts['kind']}, {raised(facts['unit'])}", "time", variables["command"], "time, s")
-    yield add(f"Tip along {'xyz'[axis]}", "displacement, mm", "run_time", tip[:, :, axis], "time, s")
-    robust = 1e3 * variables["by_ratio"]
-    yield add("Left if all frequencies were others", "amplitude, mm", "ratio", robust, "frequencies over the design's")
+    return "".join([*parts, drawn])
 
 
 def _searches(facts: Facts) -> str:
@@ -192,7 +144,3 @@ def _between(ends: tuple[float, float]) -> str:
 def _six(value: float | None) -> Cell:
     """A value that is to be copied, with six digits."""
     return Cell("–" if value is None else f"{value:.6g}")
-
-
-def _labelled(name: str, unit: str) -> str:
-    return f"{name}, {raised(unit)}" if unit else name

@@ -7,29 +7,18 @@ from collections.abc import Mapping
 from typing import Any
 
 from gbeam.report import words
-from gbeam.report.page import curves
-from gbeam.report.page.bodies.machine import machine_section, verdict
-from gbeam.report.page.parts import folded, heading, known, listed, paragraph, plot_places, table
-from gbeam.report.page.scene import scene
-from gbeam.report.page.series import Numbers, Plots
+from gbeam.report.page.machine import machine_section, verdict
+from gbeam.report.page.parts import folded, heading, known, listed, paragraph, table
 
 Facts = Mapping[str, Any]
 
 
-def body(facts: Facts, variables: Mapping[str, Any], numbers: Numbers, plots: Plots, header: dict[str, Any]) -> str:
-    """The page's inside; what the viewer shows goes into `header`."""
+def body(facts: Facts, viewer: str, drawn: str) -> str:
+    """The page's inside."""
     motions = {name: each for name, each in facts["motions"].items() if "environment" in each}
-    shown = scene({name: each["environment"] for name, each in motions.items()}, variables, numbers)
-    if shown is not None:
-        header["scene"] = shown
-    parts = [_verdict(facts)]
-    if shown is not None:
-        parts += [heading("Motion"), '<div id="gbeam-viewer"></div>']
-    drawn = curves.of_run(facts, motions, variables, plots)
+    parts = [_verdict(facts), heading("Motion") + viewer if viewer else ""]
     if drawn:
-        grey = any(each["accounting"]["not_followed"] for each in facts["comparisons"])
-        parts += [heading("Histories"), paragraph(_HINT, "faint gbeam-screen")]
-        parts += [paragraph(_GREY, "faint") if grey else "", plot_places(drawn)]
+        parts += [heading("Histories"), paragraph(_HINT, "faint gbeam-screen"), drawn]
     parts += [heading("Response"), tips_table(motions), loads_table(motions)]
     parts += [machine_section(name, each) for name, each in motions.items() if "limits" in each]
     parts += [heading("Accuracy"), _errors(motions)]
@@ -38,7 +27,6 @@ def body(facts: Facts, variables: Mapping[str, Any], numbers: Numbers, plots: Pl
 
 
 _HINT = "Drag across a plot to zoom all of them, double-click to see all again, click to take the viewer to that time."
-_GREY = "Grey: the machine does not follow the flight."
 
 
 def warnings(facts: Facts) -> list[str]:

@@ -7,10 +7,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from gbeam.constants import STANDARD_GRAVITY
+from gbeam.figures.units import raised
 from gbeam.report.machine.tracking import followed
-from gbeam.report.page import curves
-from gbeam.report.page.parts import Cell, Value, folded, heading, known, listed, paragraph, plot_places, raised, table
-from gbeam.report.page.series import Numbers, Plots
+from gbeam.report.page.parts import Cell, Value, folded, heading, known, listed, paragraph, table
 from gbeam.results.imitation.criteria import RULES
 from gbeam.results.imitation.verdict import change, percent
 
@@ -103,11 +102,9 @@ def _percent(value: float | None) -> str:
     return percent(share if abs(share) > 5e-5 else 0.0) if math.isfinite(share) else "–"
 
 
-def plan_body(facts: Facts, variables: Mapping[str, Any], _: Numbers, plots: Plots, header: dict[str, Any]) -> str:
+def plan_body(facts: Facts, viewer: str, drawn: str) -> str:
     """The verdict, what the axes do, what that uses of the limits, and where the target is held."""
     parts = []
-    if "time" in variables:  # of the file of one plan
-        variables = {f"motions/{name}/{key}": each for name in facts["motions"] for key, each in variables.items()}
     for name, each in facts["motions"].items():
         if each["outcome"] != "done":
             parts.append(paragraph(f"motion {name} {each['outcome']}: {each['message']}", "bad"))
@@ -118,10 +115,7 @@ def plan_body(facts: Facts, variables: Mapping[str, Any], _: Numbers, plots: Plo
         parts.append(held if len(rows) <= 12 else folded(f"{len(rows)} stretches in which the target is held", held))
         lacks = [f"{part['reason']} at {part['time']:.3f} s: {part['remedy']}" for part in each["shortfalls"]]
         parts.append(listed(lacks[:12], "warning"))
-    drawn = curves.of_plan(facts["motions"], variables, plots)
-    if drawn:
-        parts += [heading("Histories"), plot_places(drawn)]
-    return "".join(parts)
+    return "".join([*parts, heading("Histories") + drawn if drawn else ""])
 
 
 def machine_section(name: str, motion: Facts) -> str:

@@ -9,8 +9,7 @@ import numpy as np
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.report.machine.placement import largest
-from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, plot_places, table, verbatim
-from gbeam.report.page.series import Numbers, Plots
+from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, table, verbatim
 from gbeam.report.words import number
 from gbeam.results.cases import BOUNDS
 from gbeam.results.imitation.accounting import PeakPair
@@ -20,7 +19,7 @@ _PLACES = {"current": "now", "best": "placed", "middle": "at mid-span"}
 _CASES = 400  # listed
 
 
-def placement_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plots, header: dict[str, Any]) -> str:
+def placement_body(facts: Facts, viewer: str, drawn: str) -> str:
     """Where to put the specimen, what that changes, and the other options."""
     best = f"{1e3 * facts['control_point']:.2f} mm from the root, {facts['fraction_of_length']:.4f} of the length"
     now = f"{1e3 * facts['current_control_point']:.2f} mm"
@@ -62,7 +61,7 @@ _CHECKS = {
 def _pair(candidate: Facts) -> PeakPair:
     """A candidate's largest load, from its JSON."""
     load = candidate["largest_load"]
-    return PeakPair(known(load["flight"]), known(load["machine"]), place_machine=load["place_machine"])
+    return PeakPair(known(load["flight"]), known(load["machine"]), place_machine=load.get("place_machine", ""))
 
 
 def _options(options: list[Facts]) -> str:
@@ -72,7 +71,7 @@ def _options(options: list[Facts]) -> str:
         limits = Cell(f"exceeds {words}", "bad") if words else share
         point = 1e3 * each["control_point"]
         largest = each["largest_load"]
-        load = [known(largest["machine"]) / STANDARD_GRAVITY, largest["place_machine"].removeprefix("the ")]
+        load = [known(largest["machine"]) / STANDARD_GRAVITY, largest.get("place_machine", "").removeprefix("the ")]
         return [each["mounting"], 1e3 * each["smoothing"], point, _percent(each["total_error"]), *load, limits]
 
     head = ("mounting", "smoothing, ms", "control point, mm", "error", "largest load, g", "at", "limits")
@@ -83,7 +82,7 @@ def _use(use: Facts) -> str:
     return f"{use['axis']} {use['quantity']} {number(use['used'])} of {number(use['allowed'])} {use['unit']}"
 
 
-def sweep_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plots, header: dict[str, Any]) -> str:
+def sweep_body(facts: Facts, viewer: str, drawn: str) -> str:
     """How many cases ended how, a plot or a map of each measure, and every case."""
     counts = ", ".join(f"{count} {name}" for name, count in facts["counts"].items())
     outcomes = np.array(facts["outcomes"], dtype=object)
@@ -91,14 +90,16 @@ def sweep_body(facts: Facts, _: Mapping[str, Any], numbers: Numbers, plots: Plot
     parts = [paragraph(f"figures of gbeam {facts['verb']}: {outcomes.size} cases: {counts}", kind), _varied(facts)]
     parts += [_estimates(facts)]
     values = {name: np.array(each["values"], dtype=float) for name, each in facts["measures"].items()}
-    drawn = any(each["distribution"] for each in facts["parameters"])
-    for name, each in values.items():
-        label = _labelled(name, facts["measures"][name]["unit"])
-        if each.ndim == 2 and not drawn:
-            parts.append(heading(name) + _map(facts, name, each, outcomes, numbers, header))
-        elif (each.ndim == 1 and _numeric(facts["parameters"][0])) or drawn:
-            parts.append(_scatter(facts, name, label, each, plots))
-    return "".join([*parts, heading("Cases"), _cases(facts, values, outcomes), _failures(facts, outcomes)])
+    return "".join(
+        [
+            *parts,
+            heading("Figures"),
+            drawn,
+            heading("Cases"),
+            _cases(facts, values, outcomes),
+            _failures(facts, outcomes),
+        ]
+    )
 
 
 def _estimates(facts: Facts) -> str:
@@ -126,34 +127,6 @@ def _varied(facts: Facts) -> str:
     return table(("varies", "unit", "values"), rows, words=(0, 1, 2))
 
 
-def _map(facts: Facts, name: str, values: Any, outcomes: Any, numbers: Numbers, header: dict[str, Any]) -> str:
-    place = f"map-{len(header['maps'])}"
-    axes = [
-        {"label": _labelled(each["path"], each["unit"]), "ticks": [_tick(value) for value in each["values"]]}
-        for each in facts["parameters"]
-    ]
-    unit = facts["measures"][name]["unit"]
-    header["maps"].append(
-        {"id": place, "title": name, "x": axes[0], "y": axes[1], "unit": unit, "values": numbers.add(values),
-         "outcomes": outcomes.ravel().tolist()}
-    )  # fmt: skip
-    return f'<div id="{place}"></div>'
-
-
-def _scatter(facts: Facts, name: str, label: str, values: Any, plots: Plots) -> str:
-    """Over the one parameter of a grid a line; over each parameter that is drawn, points."""
-    drawn = []
-    for parameter in facts["parameters"]:
-        if not _numeric(parameter) or values.ndim > 1:
-            continue
-        x = np.array(parameter["values"], dtype=float)
-        order = np.argsort(x)
-        line = {"label": name, "x": x[order], "y": values[order], "colour": 0}
-        line |= {"points": True} if parameter["distribution"] else {}
-        drawn.append((plots.add(name, label, [line], x=_labelled(parameter["path"], parameter["unit"])), name))
-    return plot_places(drawn)
-
-
 def _cases(facts: Facts, values: Mapping[str, Any], outcomes: Any) -> str:
     parameters, dimensions = facts["parameters"], facts["dimensions"]
     rows: list[list[Value]] = []
@@ -179,10 +152,6 @@ def _failures(facts: Facts, outcomes: Any) -> str:
 
 def _labelled(name: str, unit: str) -> str:
     return f"{name}, {unit}" if unit else name
-
-
-def _numeric(parameter: Facts) -> bool:
-    return all(isinstance(value, (int, float)) for value in parameter["values"])
 
 
 def _tick(value: Any) -> str:

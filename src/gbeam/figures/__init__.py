@@ -1,0 +1,139 @@
+"""Figures of results, each described once: `plots` draws them with Matplotlib, and a report's page shows the same.
+
+`figures_of` knows which figures a result has. A figure reads results only, never a model, and draws nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+from gbeam.errors import InputError
+from gbeam.figures import imitation, response, steady, studies
+from gbeam.figures.description import Figure
+from gbeam.results.cases import PROBABILITY, Sensitivity, Sweep
+from gbeam.results.equilibrium import CriticalMap, Deflection
+from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.imitation.plan import MachinePlan
+from gbeam.results.machine import AxesResult
+from gbeam.results.modal import Campbell, Modes
+from gbeam.results.response import Response
+from gbeam.results.searches import Fit, Optimum, ShapedCommand
+from gbeam.results.study import Study
+
+Describe = Callable[[], Figure]
+
+
+def figure_of(result: Any, what: str = "", title: str = "") -> Figure:
+    """Describe one figure of a result, the first that it has or the one of that name."""
+    every = figures_of(result, title)
+    if what and what not in every:
+        raise InputError("what", f"is {what!r}, which this result does not have", f"choose from {', '.join(every)}")
+    return every[what or next(iter(every))]()
+
+
+def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
+    """Return what describes each figure of a result, by name; nothing of a kind without figures."""
+    match result:
+        case Study():
+            return _of_study(result, title or result.title)
+        case Response():
+            tip = partial(response.tip, Study(title, {result.name or result.environment: result}, ()))
+            return {"tip": tip, **_of_response(result, title)}
+        case Comparison():
+            return _of_comparison(result, title, "parts", "parts ")
+        case Deflection():
+            along = result.loads and {"loads": partial(response.loads_along, result, result.loads, title)}
+            return {"shape": partial(steady.static, [result], title), **(along or {})}
+        case MachinePlan():
+            return _of_machine(result, result.axes, title)
+        case Modes():
+            return {"modes": partial(steady.modes, result, title)}
+        case Campbell():
+            return {"campbell": partial(steady.campbell, result, title)}
+        case CriticalMap():
+            return {"critical": partial(steady.critical_map, result, title)}
+        case Sweep():
+            return _of_sweep(result, title)
+        case Fit():
+            return {"fit": partial(studies.fit, result, title)}
+        case Optimum():
+            return {"optimum": partial(studies.optimum, result, title)}
+        case ShapedCommand():
+            return {
+                "shaping": partial(studies.shaping, result, title),
+                "robustness": partial(studies.robustness, result, title),
+            }
+        case Sensitivity():
+            return {name: partial(studies.sensitivity, result, name, title) for name in result.measures}
+    return {}
+
+
+def of_deflections(deflections: Sequence[Deflection], title: str = "") -> dict[str, Describe]:
+    """Return what describes the figures of a beam's rest in several motions: all together, then the loads of each."""
+    every: dict[str, Describe] = {"static": partial(steady.static, deflections, title)}
+    for each in deflections:
+        if each.loads is not None:
+            every[f"loads_{each.motion}"] = partial(response.loads_along, each, each.loads, title)
+    return every
+
+
+def _of_sweep(result: Sweep, title: str) -> dict[str, Describe]:
+    """Measures over two dimensions at most, a probability over one parameter, indices and histories."""
+    every: dict[str, Describe] = {}
+    few = len(result.dimensions) <= 2
+    for name in result.measures:
+        likely = name in result.statistics and PROBABILITY in result.statistics[name].names
+        if likely and len(result.dimensions) == 2:
+            every[name] = partial(studies.probability, result, name, title)
+        elif few and not likely:
+            every[name] = partial(studies.sweep, result, name, title)
+    every |= {f"{name} indices": partial(studies.indices, result, name, title) for name in result.indices}
+    return every | {f"{name} history": partial(studies.history, result, name, title) for name in result.histories}
+
+
+def _of_machine(
+    result: Response | MachinePlan, axes: AxesResult, title: str, flight: Response | None = None
+) -> dict[str, Describe]:
+    quantities = ("rate", "acceleration", *(["jerk"] if axes.jerk is not None else []))
+    return {
+        "tracking": partial(response.tracking, result, axes, title, flight),
+        **{f"axes_{each}": partial(response.axes_of, result, axes, each, title) for each in quantities},
+    }
+
+
+def _of_response(result: Response, title: str, flight: Response | None = None) -> dict[str, Describe]:
+    every: dict[str, Describe] = {"base": partial(response.base, result, title)}
+    if result.loads is not None:
+        every["loads"] = partial(response.loads, result, result.loads, title)
+    if result.axes is not None:
+        every |= _of_machine(result, result.axes, title, flight)
+    if result.hub is not None:
+        every["hub"] = partial(response.hub, result, result.hub, title)
+    return every
+
+
+def _of_comparison(result: Comparison, title: str, main: str, other: str, end: str = "") -> dict[str, Describe]:
+    first, *others = imitation.moved(result)
+    every: dict[str, Describe] = {f"{main}{end}": partial(imitation.parts, result, first, title)}
+    every |= {f"{other}{'xyz'[i]}{end}": partial(imitation.parts, result, i, title) for i in others}
+    if result.shock is not None:
+        every[f"shock{end}"] = partial(imitation.shock, result, result.shock, title)
+    return every
+
+
+def _of_study(study: Study, title: str) -> dict[str, Describe]:
+    every: dict[str, Describe] = {"tip": partial(response.tip, study)}
+    if sum(each.loads is not None for each in study.responses.values()) > 1:
+        every["sizes"] = partial(response.sizes, study)
+    flights = {each.centrifuge: study.responses.get(each.flight) for each in study.comparisons}
+    for name, each in study.responses.items():
+        of_each = _of_response(each, title, flights.get(name))
+        every |= {f"{kind} {name}": describe for kind, describe in of_each.items()}
+    for compared in study.comparisons:
+        of_pair = _of_comparison(compared, title, "comparison", "comparison_", f" {compared.centrifuge}")
+        parts = compared.root or compared.stations or compared.mismatch
+        # Without parts a comparison is the difference that the tip's figure has.
+        every |= {name: each for name, each in of_pair.items() if parts or name.startswith("shock")}
+    return every

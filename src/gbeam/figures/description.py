@@ -1,0 +1,220 @@
+"""What a figure shows: panels of lines, areas, levels and bars, in the units in which they are drawn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from gbeam.figures.units import largest, scale_of
+from gbeam.results.declared import declarations
+from gbeam.results.imitation.accounting import Accounting
+from gbeam.results.machine import AxesResult
+from gbeam.results.result import Flags, Floats
+
+REFERENCE, GREY = 6, 7  # numbers of colours: what others are compared with, what was before
+SMALL = 0.01  # of the largest: a smaller component is named and not drawn
+NEAR = 5.0  # times what is used: a limit beyond would press the lines to the ground, and is named only
+_SPAN = 1e-6  # s: shorter is rounding
+_DASHES: tuple[Dash, ...] = ("dotted", "dashed", "solid")  # of x, y and z
+
+Dash = Literal["solid", "dashed", "dotted"]
+Marks = Literal["", "joined", "dots", "rings"]
+Span = tuple[float, float, str]  # start, end s, reason
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """Values over a quantity, (n,) each; broad is flight, below what imitates it: where they agree both are seen."""
+
+    x: Floats
+    y: Floats
+    label: str = ""
+    colour: int = 0
+    dash: Dash = "solid"
+    broad: bool = False
+    marks: Marks = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Area:
+    """What lies between two lines, (n,) each."""
+
+    x: Floats
+    low: Floats
+    high: Floats
+    label: str
+    colour: int = 0
+
+
+@dataclass(frozen=True)
+class Level:
+    """One value of the vertical quantity."""
+
+    value: float
+    label: str
+    dash: Dash = "dashed"
+
+
+@dataclass(frozen=True)
+class Mark:
+    """One value of the horizontal quantity."""
+
+    value: float
+    label: str
+
+
+@dataclass(frozen=True, eq=False)
+class Bars:
+    """Groups of horizontal bars beside the same names, (n,) each, with intervals where these are known."""
+
+    names: tuple[str, ...]
+    values: Mapping[str, Floats]
+    low: Mapping[str, Floats] = field(default_factory=dict)
+    high: Mapping[str, Floats] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Map:
+    """Values (n, m) over two quantities, with how the case of each ended."""
+
+    x: Sequence[Any]
+    y: Sequence[Any]
+    values: Floats
+    label: str
+    outcome: Sequence[str] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Panel:
+    """One pair of axes.
+
+    Lines over time have ``time, s`` as `x`; `limits` are the ends of the vertical axis where the data do not say them,
+    `named` is whether a legend names the lines, `ticks` the words at 0, 1, 2 … along x, `height` a share of the usual.
+    """
+
+    y: str
+    lines: tuple[Line, ...] = ()
+    title: str = ""
+    x: str = "time, s"
+    areas: tuple[Area, ...] = ()
+    levels: tuple[Level, ...] = ()
+    marks: tuple[Mark, ...] = ()
+    spans: tuple[Span, ...] = ()
+    bars: Bars | None = None
+    map: Map | None = None
+    texts: tuple[tuple[float, float, str], ...] = ()
+    ticks: tuple[str, ...] = ()
+    limits: tuple[float, float] | None = None
+    logarithmic: bool = False
+    zero: bool = False
+    named: bool = True
+    height: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Figure:
+    """Panels one above the other over one quantity, with what is to be said above them."""
+
+    title: str
+    subject: str
+    panels: tuple[Panel, ...]
+    notes: tuple[str, ...] = ()
+    outcomes: tuple[str, ...] = ("done",)
+
+    @property
+    def heading(self) -> str:
+        """Title, in capitals what must not be overlooked, the subject, and the notes, on lines of their own."""
+        failed = sorted({each.upper() for each in self.outcomes if each != "done"})
+        first, *others = [each for each in (self.title, self.subject) if each]
+        return "\n".join([" – ".join([*failed, first]), *others, *self.notes])
+
+
+def declared(kind: type, name: str) -> tuple[str, str]:
+    """Words and unit of a field of a result, as they are declared."""
+    each = dict(declarations(kind))[name]
+    return each.words.partition(";")[0], each.unit if isinstance(each.unit, str) else ""
+
+
+def of_motion(name: str, subject: str) -> str:
+    """What is shown, after the motion's name if it has one."""
+    return f"{name}: {subject}" if name else subject
+
+
+def estimated(errors: Mapping[str, float]) -> tuple[str, ...]:
+    """The estimated errors, as fractions by name, of those that are known."""
+    known = [f"{name} {100 * error:.2g} %".strip() for name, error in errors.items() if math.isfinite(error)]
+    return (f"estimated error: {', '.join(known)}",) if known else ()
+
+
+def moving(*values: Floats) -> list[int]:
+    """Components (of the last axis) that are more than a hundredth of the largest; the largest where none is."""
+    finite = [np.nan_to_num(each, nan=0.0, posinf=0.0, neginf=0.0) for each in values]
+    size = np.max([np.abs(each).reshape(-1, each.shape[-1]).max(axis=0) for each in finite], axis=0)
+    return [i for i in range(len(size)) if size[i] > SMALL * size.max()] or [int(size.argmax())]
+
+
+def not_drawn(shown: Sequence[int], *lengths: Floats) -> tuple[str, ...]:
+    """How large those components (of the last axis) of lengths are that are not shown."""
+    sizes = [max(largest(each[..., i]) for each in lengths) for i in range(3)]
+    hidden = [i for i in range(3) if i not in shown and sizes[i] > 1e-9 * max(sizes)]
+    units = {i: scale_of("m", sizes[i]) for i in hidden}
+    words = [f"{'xyz'[i]} by {scale * sizes[i]:.2g} {unit}" for i, (scale, unit) in units.items()]
+    return (f"(not drawn: {' and '.join(words)} at most)",) if words else ()
+
+
+def components(x: Floats, values: Floats, names: Sequence[str], panel: Panel) -> Panel:
+    """Put the components (n, 3) that are more than a hundredth of the largest into a panel, and name the others."""
+    shown, sizes = moving(values), np.abs(values).max(axis=0)
+    left = [names[i] for i in range(3) if i not in shown and sizes[i] > 1e-9 * sizes.max()]
+    lines = tuple(Line(x, values[:, i], names[i], colour=i, dash=_DASHES[i]) for i in shown)
+    return replace(panel, lines=lines, title=f"{' and '.join(left)}: below 1 %, not drawn" if left else panel.title)
+
+
+def imitating(index: int) -> dict[str, Any]:
+    """Look of the `index`-th line that is compared with flight's; from the second on dashed, on top of the first."""
+    return {"colour": (index + 1) % 6, "dash": ("solid", "dashed", "dotted")[min(index, 2)]}
+
+
+FLIGHT: dict[str, Any] = {"colour": 5, "broad": True}
+
+
+def limit_levels(allowed: float, values: Floats, label: str = "limit") -> tuple[Level, ...]:
+    """A limit on the size of some values, on the sides to which they go; none where it is far beyond."""
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    used = max(-low, high)
+    sides = [(1.0, high), (-1.0, -low)] if allowed <= NEAR * used else []
+    return tuple(Level(side * allowed, label) for side, reached in sides if reached > SMALL * used)
+
+
+def ends_of(covered: Flags, *values: Floats) -> tuple[float, float] | None:
+    """Zero and what happens while the target is not held, with a margin; None where it never or always is."""
+    if covered.all() or not covered.any():
+        return None
+    low = min(0.0, *(float(each[covered].min()) for each in values))
+    high = max(0.0, *(float(each[covered].max()) for each in values))
+    margin = 0.05 * (high - low) or 1.0
+    return low - margin, high + margin
+
+
+def stretches(axes: AxesResult | None, time: Floats, accounting: Accounting | None = None) -> tuple[Span, ...]:
+    """Return the spin-up, what is not followed and why, and the spin-down, in order of `time` (t,) s."""
+    if axes is None and accounting is None:
+        return ()
+    held: Iterable[Span] = axes.episodes if axes is not None else ()
+    if accounting is not None:
+        held = [(each.start, each.end, each.reason) for each in accounting.not_followed]
+    first, last = (float(time[0]), float(time[-1])) if axes is None else axes.span
+    ends = [(float(time[0]), first, "spin-up"), *held, (last, float(time[-1]), "spin-down")]
+    return tuple((start, end, _short(reason)) for start, end, reason in ends if end - start > _SPAN)
+
+
+def _short(reason: str) -> str:
+    """A reason as a legend has it: of several limits that are used up, ``axis 2 jerk, axis 3 jerk``, the axes only."""
+    limits = reason.split(", ")
+    if len(limits) == 1:
+        return reason
+    return f"limits of {' and '.join(sorted({each.rpartition(' ')[0] for each in limits}))}"

@@ -1,0 +1,96 @@
+"""Why a centrifuge's response differs from the flight's: root loads, slow and fast parts, the mismatch, the spectra."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from gbeam.figures.description import FLIGHT, Figure, Line, Panel, ends_of, imitating, moving, stretches
+from gbeam.figures.units import scale_of
+from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.imitation.measures import Shock
+from gbeam.results.result import Floats
+
+# Of a bending beam, by the axis along which it moves: force and moment of the root's section, and the latter's index.
+_FORCES = ("axial force N", "shear V_y", "shear V_z")
+_MOMENTS = (("torque", 0), ("moment M_z", 2), ("moment M_y", 1))
+_Part = tuple[str, str, str, dict[str, Floats]]  # what it shows, SI unit, quantity, values by name
+
+
+def parts(comparison: Comparison, axis: int, title: str = "") -> Figure:
+    """Describe those parts of a comparison over time that it has, of one axis."""
+    c = comparison
+    shown = [*_root(c, axis), *_tip(c, axis), *_mismatch(c, axis)]
+    shown = shown or [("tip displacement", "m", "difference", {_less(c): c.difference[:, axis]})]
+    height = 0.85 if len(shown) > 1 else 1.6
+    spans = stretches(None, c.time, c.accounting)
+    panels = tuple(replace(_panel(c, *each), spans=spans, height=height) for each in shown)
+    return Figure(title, f"{c.centrifuge} and {c.flight}, along {'xyz'[axis]}", panels)
+
+
+def _panel(c: Comparison, about: str, si: str, quantity: str, lines: dict[str, Floats]) -> Panel:
+    covered = c.covered if c.covered.any() else ~c.covered
+    scale, unit = scale_of(si, *(each[covered] for each in lines.values()))
+    others = [name for name in lines if name != c.flight]
+    looks = {name: imitating(min(k, 1)) for k, name in enumerate(others)} | {c.flight: FLIGHT}
+    values = {name: scale * each for name, each in lines.items()}
+    drawn = tuple(Line(c.time, each, name, **looks[name]) for name, each in values.items())
+    limits = ends_of(c.covered, *values.values())
+    return Panel(f"{quantity}, {unit}", drawn, about, limits=limits, zero=limits is None)
+
+
+def moved(comparison: Comparison) -> list[int]:
+    """Axes (0, 1, 2) along which the tip moves in flight or on the machine, the one along which it moves most first."""
+    main = comparison.main_axis
+    return [main, *(i for i in moving(comparison.peak_flight, comparison.peak_centrifuge) if i != main)]
+
+
+def _less(c: Comparison) -> str:
+    return f"{c.centrifuge} − {c.flight}"
+
+
+def _root(c: Comparison, axis: int) -> Iterator[_Part]:
+    if c.root is None:
+        return
+    history, (bent, k) = c.root.history, _MOMENTS[axis]
+    for si, name, flight, centrifuge, i in (
+        ("N", _FORCES[axis], history.force_flight, history.force_centrifuge, axis),
+        ("N m", bent, history.moment_flight, history.moment_centrifuge, k),
+    ):
+        yield "root's section", si, name, {c.flight: flight[:, i], c.centrifuge: centrifuge[:, i]}
+
+
+def _tip(c: Comparison, axis: int) -> Iterator[_Part]:
+    apart = c.stations
+    if apart is None:
+        return
+    lines = {_less(c): apart.trend_difference[:, axis]}
+    if c.mismatch is not None and np.isfinite(c.mismatch.tip_bound[axis]):
+        envelope = c.mismatch.tip_envelope[:, axis]
+        lines |= {"what a slow mismatch implies": envelope, "and its negative": -envelope}
+    yield f"tip's trend, below {apart.cutoff:.3g} Hz", "m", "difference", lines
+    lines = {c.flight: apart.vibration_flight[:, axis], c.centrifuge: apart.vibration_centrifuge[:, axis]}
+    yield f"tip's elastic vibration, above {apart.cutoff:.3g} Hz", "m", "displacement", lines
+
+
+def _mismatch(c: Comparison, axis: int) -> Iterator[_Part]:
+    if c.mismatch is not None:
+        field = c.mismatch.field(np.array([0.0, c.mismatch.length]))[:, :, axis]
+        lines = {"at the root": field[:, 0], "at the tip": field[:, 1]}
+        yield "load on the machine less in flight", "m/s^2", "mismatch", lines
+
+
+def shock(comparison: Comparison, spectra: Shock, title: str = "") -> Figure:
+    """Describe the shock response spectra of the tip's acceleration, along the axes in which the tip moves."""
+    panels = []
+    for axis in moved(comparison):
+        lines = (
+            Line(spectra.frequency, spectra.flight[:, axis], comparison.flight, **FLIGHT),
+            Line(spectra.frequency, spectra.centrifuge[:, axis], comparison.centrifuge, **imitating(0)),
+        )
+        label = f"largest acceleration along {'xyz'[axis]}, m/s²"
+        panels.append(Panel(label, lines, x="frequency of the oscillator, Hz", logarithmic=True, height=1.6))
+    about = f"shock response of the tip's acceleration, Q = {spectra.quality:g}"
+    return Figure(title, about, tuple(panels))

@@ -1,0 +1,271 @@
+"""A response: its tip, what its sections carry, the motion of its base, and the machine or the hub that moves it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from gbeam.figures.description import (
+    FLIGHT,
+    REFERENCE,
+    Figure,
+    Level,
+    Line,
+    Panel,
+    Span,
+    components,
+    declared,
+    ends_of,
+    estimated,
+    imitating,
+    limit_levels,
+    moving,
+    not_drawn,
+    of_motion,
+    stretches,
+)
+from gbeam.figures.units import largest, raised, scale_of
+from gbeam.results.equilibrium import Deflection
+from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.machine import AxesResult
+from gbeam.results.parts import Loads
+from gbeam.results.response import BaseMotion, HubResult, PlotHeading, Response
+from gbeam.results.result import Floats
+from gbeam.results.study import Study
+
+AXES = ("axis 1, the arm", "axis 2, yaw", "axis 3, roll")
+FORCES = ("axial N", "shear V_y", "shear V_z")
+MOMENTS = ("torque", "bending M_y", "bending M_z")
+
+
+def looks(study: Study) -> dict[str, dict[str, Any]]:
+    """How the lines of every environment look: broad of a flight that another imitates."""
+    flights = {each.flight for each in study.comparisons}
+    others = [name for name in study.responses if name not in flights]
+    plain: dict[str, dict[str, Any]] = {name: {"colour": k % 6} for k, name in enumerate(others)}
+    compared = {name: imitating(k) for k, name in enumerate(others)} if flights else plain
+    return {name: compared.get(name, FLIGHT) for name in study.responses}
+
+
+def tip(study: Study) -> Figure:
+    """Describe the tip's displacement along every axis in which it moves."""
+    responses, compared = study.responses, study.comparisons
+    sizes = [each.peaks.max_abs for each in responses.values()]
+    shown = sorted(moving(*sizes), key=lambda axis: -max(each[axis] for each in sizes))
+    spans = [_spans(responses, each) for each in compared]
+    common = spans[0] if len(compared) == 1 else ()
+    if not compared and len(responses) == 1:
+        common = tuple(span for each in responses.values() for span in stretches(each.axes, each.time))
+    panels = []
+    for axis in shown:
+        panel = _displacement(study, axis, named=len(responses) > 1 and axis == shown[0])
+        panels.append(replace(panel, spans=common, height=1.6 if len(shown) == 1 else 1.2))
+        panels += [_difference(study, each, axis, span) for each, span in zip(compared, spans, strict=True)]
+    if len(panels) == 1:
+        panels[0] = replace(panels[0], height=2.0)
+    errors = {name if len(responses) > 1 else "": each.error_estimate for name, each in responses.items()}
+    notes = (*not_drawn(shown, *sizes), *estimated(errors))
+    outcomes = tuple(each.outcome for each in responses.values())
+    return Figure(study.title, "tip displacement relative to the base", tuple(panels), notes, outcomes)
+
+
+def _displacement(study: Study, axis: int, *, named: bool) -> Panel:
+    scale, unit = scale_of("m", *(each.tip[:, axis] for each in study.responses.values()))
+    lines = [
+        # What diverged at once is no line.
+        Line(each.time, scale * each.tip[:, axis], name, marks="joined" if len(each.time) == 1 else "", **look)
+        for (name, each), look in zip(study.responses.items(), looks(study).values(), strict=True)
+    ]
+    return Panel(f"{'xyz'[axis]}, {unit}", tuple(lines), zero=True, named=named)
+
+
+def _difference(study: Study, compared: Comparison, axis: int, spans: tuple[Span, ...]) -> Panel:
+    difference, covered = compared.difference[:, axis], compared.covered
+    held = difference[covered] if covered.any() else difference
+    scale, unit = scale_of("m", held)
+    # What happens while the target is held is no difference from flight: it must not set the scale.
+    limits = ends_of(covered, scale * difference)
+    beyond = limits is not None and largest(difference) > 1.05 * largest(held)
+    title = f"{compared.centrifuge} − {compared.flight}" + (", scaled to the times compared" if beyond else "")
+    line = Line(compared.time, scale * difference, title, **looks(study).get(compared.centrifuge, imitating(0)))
+    label = f"difference in {'xyz'[axis]}, {unit}"
+    return Panel(label, (line,), title, spans=spans, limits=limits, zero=limits is None, named=False, height=0.9)
+
+
+def _spans(responses: Mapping[str, Response], compared: Comparison) -> tuple[Span, ...]:
+    response = responses.get(compared.centrifuge)
+    if response is None:
+        return stretches(None, compared.time, compared.accounting)
+    return stretches(response.axes, response.time, compared.accounting)
+
+
+def sizes(study: Study) -> Figure:
+    """Describe the sizes of stress, root force and root moment of all environments together."""
+    every = {name: (each.time, each.loads) for name, each in study.responses.items() if each.loads is not None}
+    kinds = (
+        ("largest stress", "Pa", lambda loads: loads.stress.max(axis=1)),
+        ("root force", "N", lambda loads: np.linalg.norm(loads.section_force[:, 0], axis=1)),
+        ("root moment", "N m", lambda loads: np.linalg.norm(loads.section_moment[:, 0], axis=1)),
+    )
+    panels: list[Panel] = []
+    for words, si, size in kinds:
+        values = {name: (time, size(loads)) for name, (time, loads) in every.items()}
+        known = {name: each for name, each in values.items() if np.isfinite(each[1]).any()}
+        scale, unit = scale_of(si, *(each for _, each in known.values()))
+        look = looks(study)
+        lines = tuple(Line(time, scale * each, name, **look[name]) for name, (time, each) in known.items())
+        if lines:
+            panels.append(Panel(f"{words}, {unit}", lines, zero=True, named=not panels))
+    return Figure(study.title, "sizes of the loads, root and largest stress anywhere", tuple(panels))
+
+
+def loads_along(deflection: Deflection, loads: Loads, title: str = "") -> Figure:
+    """Describe, along the beam at rest, the sections' force and moment and the largest and smallest stress."""
+    scale, unit = scale_of("m", loads.stations)
+    stress = (loads.stress_tension[0], loads.stress_compression[0])
+    panels = _carried(scale * loads.stations, loads.section_force[0], loads.section_moment[0], stress, loads)
+    about = of_motion(deflection.motion, f"internal loads at rest, {deflection.model}, t = {deflection.time:.4g} s")
+    over = f"position from the root, {unit}"
+    return Figure(title, about, tuple(replace(each, x=over) for each in panels), _judged(deflection.errors, loads))
+
+
+def loads(response: Response, carried: Loads, title: str = "") -> Figure:
+    """Describe over time what the root's section carries, the extreme stresses along the beam, a hub's torque."""
+    stress = (carried.stress_tension.max(axis=1), carried.stress_compression.min(axis=1))
+    force, moment = carried.section_force[:, 0], carried.section_moment[:, 0]
+    panels = [*_carried(response.time, force, moment, stress, carried)]
+    if carried.beam_torque is not None:
+        scale, unit = scale_of("N m", carried.beam_torque)
+        panels.append(Panel(f"torque for the beam, {unit}", (Line(response.time, scale * carried.beam_torque),)))
+    spans = stretches(response.axes, response.time)
+    about = of_motion(response.name, "loads in the root's section, and stress anywhere along the beam")
+    shaded = tuple(replace(each, spans=spans) for each in panels)
+    return Figure(title, about, shaded, _judged(response.errors, carried), (response.outcome,))
+
+
+def _judged(errors: Any, carried: Loads) -> tuple[str, ...]:
+    known = bool(np.isfinite(carried.stress).all())
+    return estimated({"loads": errors.loads.total, "stress": errors.stress.total if known else math.nan})
+
+
+def _carried(
+    where: Floats, force: Floats, moment: Floats, stress: tuple[Floats, Floats], carried: Loads
+) -> Iterator[Panel]:
+    """Forces and moments (k, 3) and, where they are known, the largest and the smallest stress (k,)."""
+    for kind, si, values, names in (("force", "N", force, FORCES), ("moment", "N m", moment, MOMENTS)):
+        scale, unit = scale_of(si, values)
+        yield components(where, scale * values, names, Panel(f"{kind}, {unit}", zero=True))
+    if np.isfinite(carried.stress).all():
+        scale, unit = scale_of("Pa", *stress)
+        lines = [Line(where, scale * stress[k], name, colour=k) for k, name in enumerate(("largest", "smallest"))]
+        strength = math.inf if carried.yield_strength is None else carried.yield_strength
+        levels = limit_levels(scale * strength, scale * np.concatenate(stress), "yield strength")
+        yield Panel(f"stress, {unit}", tuple(lines), levels=levels)
+
+
+def base(response: Response, title: str = "") -> Figure:
+    """Describe the motion of the root."""
+    motion, spans, panels = response.base, stretches(response.axes, response.time), []
+    turning = bool(np.any(motion.w_WB_B) or np.any(motion.alpha_WB_B))
+    for name in ("a_WO_B", "w_WB_B", "alpha_WB_B") if turning else ("a_WO_B",):
+        values, (words, si) = getattr(motion, name), declared(BaseMotion, name)
+        scale, unit = scale_of(si, values) if name == "a_WO_B" else (1.0, raised(si))
+        panel = Panel(f"{words}, {unit}", spans=spans, height=1.0 if turning else 1.6)
+        panels.append(components(response.time, scale * values, "xyz", panel))
+    about = of_motion(response.name, "motion of the base, base axes")
+    return Figure(title, about, tuple(panels), outcomes=(response.outcome,))
+
+
+def hub(response: Response, turned: HubResult, title: str = "") -> Figure:
+    """Describe the turning of a hub about z."""
+    shown = [(f"{of}, {declared(HubResult, of)[1]}", getattr(turned, of)) for of in ("angle", "rate")]
+    torque = turned.drive_torque
+    if torque is None and response.loads is not None:
+        torque = response.loads.drive_torque
+    if torque is not None:
+        scale, unit = scale_of("N m", torque)
+        shown.append((f"drive torque, {unit}", scale * torque))
+    panels = tuple(Panel(label, (Line(response.time, values),)) for label, values in shown)
+    return Figure(title, of_motion(response.name, "the hub, about z"), panels, outcomes=(response.outcome,))
+
+
+def axes_of(response: PlotHeading, axes: AxesResult, quantity: str, title: str = "") -> Figure:
+    """Describe one quantity of a centrifuge's axes, a panel for each axis, with its limits."""
+    history: Floats = getattr(axes, quantity)
+    unit = raised(declared(AxesResult, quantity)[1])
+    allowed = {use.axis: use.allowed for use in axes.limits if use.quantity == quantity}
+    spans, panels = stretches(axes, response.time), []
+    for i in range(3):
+        limit = allowed.get(f"axis {i + 1}", math.inf)
+        levels = limit_levels(limit, history[:, i])
+        beyond = ", beyond the panel" if math.isfinite(limit) and not levels else ""
+        title_of = f"{AXES[i]}: {_used(history[:, i], limit, unit)}{beyond}"
+        lines = (Line(response.time, history[:, i], **imitating(0)),)
+        panels.append(Panel(f"{quantity}, {unit}", lines, title_of, levels=levels, spans=spans, zero=True))
+    if quantity == "acceleration":
+        panels[0] = _with_power(panels[0], axes)
+    about = of_motion(response.name, f"{quantity} of the machine's axes")
+    return Figure(title, about, tuple(panels), outcomes=(response.outcome,))
+
+
+def _with_power(panel: Panel, axes: AxesResult) -> Panel:
+    """Add the arm's acceleration that a limit on its power leaves at its rate."""
+    (line,) = panel.lines
+    rate, size = np.abs(axes.rate[:, 0]), np.abs(line.y)
+    most = max([float(size.max()), *(abs(each.value) for each in panel.levels)])
+    for use in axes.limits:
+        if use.quantity == "power" and math.isfinite(use.allowed) and use.used > 0:
+            left = float((rate * size).max()) / use.share / np.maximum(rate, 1e-12)
+            bound = np.where(left < 1.3 * most, left, np.nan)
+            power = Line(line.x, bound, "limit of the power", colour=REFERENCE, dash="dotted")
+            panel = replace(panel, lines=(*panel.lines, power, replace(power, y=-bound, label=f"_{power.label}")))
+    return panel
+
+
+def _used(history: Floats, limit: float, unit: str) -> str:
+    """How much of a limit is used, in words."""
+    used = float(np.nanmax(np.abs(history)))
+    return f"{_plain(used)} of {_plain(limit)} {unit}" if math.isfinite(limit) else f"up to {_plain(used)} {unit}"
+
+
+def _plain(value: float) -> str:
+    """Three digits, below a million without an exponent."""
+    rounded = float(f"{value:.3g}")
+    return f"{rounded:.0f}" if 1000 <= rounded < 1e6 else f"{rounded:g}"
+
+
+def tracking(response: PlotHeading, axes: AxesResult, title: str = "", flight: Response | None = None) -> Figure:
+    """Describe the load that a centrifuge makes at the control point beside the one that it should make."""
+    shown, time = moving(axes.actual, axes.reference), response.time
+    scale, unit = scale_of("m/s^2", axes.reference)
+    loads: list[tuple[Floats, Floats, str, dict[str, Any]]] = [
+        (time, axes.reference, "target", {"colour": REFERENCE, "dash": "dashed"}),
+        (time, axes.actual, "machine", imitating(0)),
+    ]
+    if flight is not None:
+        loads.insert(0, (flight.time, flight.base.a_WO_B, "flight", FLIGHT))
+    size = tuple(Line(at, scale * np.linalg.norm(load, axis=1), name, **look) for at, load, name, look in loads)
+    idle = (Level(scale * axes.idle, "idle", "dotted"),) if axes.idle > 0 else ()
+    panels = [Panel(f"size, {unit}", size, levels=idle, zero=True)]
+    for i in shown:
+        lines = tuple(Line(at, scale * load[:, i], name, **look) for at, load, name, look in loads)
+        panels.append(Panel(f"{'xyz'[i]}, {unit}", lines, named=False, height=0.8))
+    panels.append(_error(time, axes))
+    spans = stretches(axes, time)
+    about = of_motion(response.name, "load at the control point: flight's, the target and the machine's")
+    return Figure(title, about, tuple(replace(each, spans=spans) for each in panels), outcomes=(response.outcome,))
+
+
+def _error(time: Floats, axes: AxesResult) -> Panel:
+    error, followed = axes.tracking_error, ~axes.not_followed
+    scale, unit = scale_of("m/s^2", error[followed])
+    ends = ends_of(followed, scale * error)
+    # Below a millionth of the load it is rounding, and shown as none.
+    top = max(ends[1] if ends else 1.05 * scale * float(error.max()), 1e-6 * scale * largest(axes.reference)) or 1.0
+    title = f"size of machine − target{', scaled to the times that are followed' if ends else ''}"
+    line = Line(time, scale * error, "machine − target", **imitating(0))
+    return Panel(f"tracking error, {unit}", (line,), title, limits=(0.0, top), named=False, height=0.8)

@@ -1,0 +1,129 @@
+"""One steady state: where the beam rests, the shapes of its modes, the Campbell diagram, critical speeds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from gbeam.figures.description import (
+    FLIGHT,
+    GREY,
+    REFERENCE,
+    Dash,
+    Figure,
+    Line,
+    Mark,
+    Marks,
+    Panel,
+    declared,
+    estimated,
+    imitating,
+    moving,
+    not_drawn,
+    of_motion,
+)
+from gbeam.figures.units import scale_of
+from gbeam.results.equilibrium import CriticalMap, Deflection
+from gbeam.results.modal import Campbell, Modes, near_multiples
+from gbeam.results.result import Floats
+
+_DASHES: dict[str, Dash] = {"x": "dotted", "y": "solid", "z": "dashed"}
+SHOWN = 6  # shapes drawn
+
+
+def _few(stations: Floats) -> Marks:
+    """Dots where there are too few places for a line."""
+    return "joined" if len(stations) < 3 else ""
+
+
+def static(deflections: Sequence[Deflection], title: str = "") -> Figure:
+    """Describe where the beam rests, one panel for each direction in which it moves."""
+    moved = [each.displacement for each in deflections]
+    axes, (_, si) = moving(*moved), declared(Deflection, "displacement")
+    along, at = scale_of("m", *(each.stations for each in deflections))
+    errors = [each.errors.displacement.total for each in deflections]
+    panels = []
+    for i in axes:
+        scale, unit = scale_of(si, *(each[:, i] for each in moved))
+        looks = [FLIGHT, *(imitating(k) for k in range(len(moved) - 1))] if len(moved) > 1 else [imitating(0)]
+        lines = tuple(
+            Line(along * d.stations, scale * d.displacement[:, i], d.motion, marks=_few(d.stations), **look)
+            for d, look in zip(deflections, looks, strict=True)
+        )
+        named = len(moved) > 1 and i == axes[0]
+        panels.append(Panel(f"{'xyz'[i]}, {unit}", lines, x=f"position from the root, {at}", zero=True, named=named))
+    about = f"displacement at rest relative to the base, {deflections[0].model}, t = {deflections[0].time:.4g} s"
+    known = {"": max((each for each in errors if math.isfinite(each)), default=math.nan)}
+    return Figure(title, about, tuple(panels), (*not_drawn(axes, *moved), *estimated(known)))
+
+
+def modes(result: Modes, title: str = "") -> Figure:
+    """Describe the lowest modes, each in the direction in which it moves most."""
+    along, at = scale_of("m", result.stations)
+    lines = []
+    for k in range(min(SHOWN, len(result.frequency))):
+        shape = result.shape[k, :, "xyz".index(result.direction[k])]
+        label = f"{result.frequency[k]:.4g} Hz, {result.direction[k]}"
+        real = Line(along * result.stations, shape.real, label, colour=k, marks=_few(result.stations))
+        lines.append(real)
+        if np.abs(shape.imag).max() > 1e-6:
+            lines.append(replace(real, y=shape.imag, label=f"{label}, a quarter later", dash="dotted", marks=""))
+    about = of_motion(result.motion, f"modes about the equilibrium at {result.time:.4g} s, {result.model}")
+    words = declared(Modes, "shape")[0]
+    panel = Panel(words, tuple(lines), x=f"position from the root, {at}", height=2.0)
+    errors = {"": math.nan if result.errors is None else result.errors.largest}
+    return Figure(title, about, (panel,), estimated(errors))
+
+
+def campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = (1.0, "rad/s")) -> Figure:
+    """Describe a Campbell diagram; `unit` is that of the speed: how many of it are 1 rad/s, and its name."""
+    shown = near_multiples(diagram.frequency.T, diagram.speed, diagram.orders)
+    left = len(diagram.direction) - len(shown)
+    factor, name = unit
+    speed, top = factor * diagram.speed, 1.05 * float(np.nanmax(diagram.frequency[:, shown]))
+    lines, texts = [], []
+    for order in diagram.orders:
+        multiple = order * diagram.speed / (2 * np.pi)
+        lines.append(Line(speed, np.where(multiple <= top, multiple, np.nan), f"_{order}P", colour=GREY))
+        # Where the line leaves the panel, and a little before.
+        end = min(1.0, top / multiple[-1]) * 0.96 if multiple[-1] > 0 else 0.0
+        if end * diagram.speed[-1] > diagram.speed[0]:
+            texts.append((end * speed[-1], end * multiple[-1], f"{order}P"))
+    for k in shown:
+        way = diagram.direction[k]
+        lines.append(Line(speed, diagram.frequency[:, k], f"mode {k + 1}, {way}", colour=k % 6, dash=_DASHES[way]))
+    if diagram.crossings:
+        met = sorted((factor * each.speed, each.frequency) for each in diagram.crossings)
+        at, frequency = np.array(met).T
+        lines.append(Line(at, frequency, "crossings", colour=REFERENCE, marks="rings"))
+    marks: tuple[Mark, ...] = ()
+    if diagram.critical is not None and diagram.critical.value is not None:
+        marks = (Mark(factor * diagram.critical.value, diagram.critical.kind),)
+    words, unit_name = declared(Campbell, "frequency")
+    over = f"{declared(Campbell, 'speed')[0]}, {name}"
+    panel = Panel(
+        f"{words}, {unit_name}", tuple(lines), x=over, marks=marks, texts=tuple(texts), limits=(0.0, top), height=2.4
+    )
+    about = of_motion(diagram.motion, f"frequencies about the equilibrium, {diagram.model}")
+    about += f"; {left} higher mode{'s' if left > 1 else ''} not drawn" if left else ""
+    errors = {"": math.nan if diagram.errors is None else diagram.errors.largest}
+    return Figure(title, about, (panel,), estimated(errors))
+
+
+def critical_map(critical: CriticalMap, title: str = "") -> Figure:
+    """Describe a map of critical speeds, one line per mass (2009 Fig. 9 shows the stiffness at one speed instead)."""
+    along, at = scale_of("m", critical.position)
+    lines = tuple(
+        Line(along * critical.position, speed, f"{mass:g} kg", colour=k % 6, marks="joined")
+        for k, (mass, speed) in enumerate(zip(critical.mass, critical.speed, strict=True))
+    )
+    panel = Panel("hub rate, rad/s", lines, x=f"position of the mass from the root, {at}", zero=True, height=2.0)
+    if np.isnan(critical.speed).all():
+        none = f"no loss of equilibrium up to {critical.searched_to:.4g} rad/s"
+        middle = along * float(np.mean(critical.position)), critical.searched_to / 2
+        panel = replace(panel, texts=((*middle, none),), limits=(0.0, critical.searched_to))
+    about = of_motion(critical.motion, f"critical hub rate with one more mass, {critical.model}")
+    return Figure(title, about, (panel,))

@@ -1,1 +1,0 @@
-"""Which groups, variables and attributes of a file hold each result."""

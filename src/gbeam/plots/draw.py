@@ -1,0 +1,234 @@
+"""A described figure drawn with Matplotlib."""
+
+from __future__ import annotations
+
+import io
+import textwrap
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+from matplotlib import figure as matplotlib_figure
+from matplotlib import rc_context, rcParams
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import PolyCollection
+from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
+
+from gbeam.figures.description import Area, Bars, Figure, Line, Map, Panel, Span
+from gbeam.plots.lines import ENVELOPE, line
+from gbeam.printable import printable
+
+WIDTH = 8.0  # inches
+PANEL = 2.1  # inches of height per panel
+# Okabe and Ito (2008): distinct with any colour vision. Black is left for what the others are compared with.
+PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "black", "0.6")
+BROAD = 3.4  # points: of flight, light and below what imitates it
+_DASHES: dict[str, Any] = {"solid": "-", "dashed": (0, (4, 3)), "dotted": (0, (1.5, 1.5))}
+_MARKS: dict[str, dict[str, Any]] = {
+    "": {},
+    "joined": {"marker": "o", "ms": 3.5},
+    "dots": {"marker": ".", "ms": 3.5, "ls": ""},
+    "rings": {"marker": "o", "ms": 4, "mfc": "none", "mec": "black", "mew": 0.8, "ls": ""},
+}
+_SCREEN = 100  # dots per inch
+_ROW = 110  # letters in a row of a legend
+_LABEL = 15  # letters of a label in an inch of a panel's height
+# Colour and hatch of what is shaded, which tells them apart in print; of a machine's limit by its name.
+_PATTERNS = {
+    "spin-up": ("#F8F8F8", "///"),
+    "spin-down": ("#F8F8F8", "\\\\\\"),
+    "below idle": ("#DEDEDE", None),
+    "gimbals": ("#F5E3BE", "..."),
+    "left out": ("#EFD3E4", "xxx"),
+    "corner": ("#CFE8DE", "---"),
+    "designed for": ("#EDEDED", None),
+}
+_LIMIT = ("#F7CDB8", "+++")
+STYLE: dict[Any, Any] = {
+    "font.size": 9.0,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.axisbelow": True,
+    "axes.xmargin": 0.01,
+    "axes.formatter.useoffset": False,
+    "axes.formatter.limits": (-4, 5),
+    "axes.grid": True,
+    "axes.titlesize": 9,
+    "axes.titlelocation": "left",
+    "axes.titley": 1.0,  # or matplotlib measures all ticks to place it
+    "figure.constrained_layout.h_pad": 0.03,
+    "grid.color": "#E4E4E4",
+    "grid.linewidth": 0.6,
+    "xtick.bottom": False,  # the grid shows where
+    "ytick.left": False,
+    "text.hinting": "none",
+    "text.parse_math": False,  # a dollar sign in a title is one
+    "lines.linewidth": 1.1,
+    "legend.fontsize": 8.5,
+    "legend.frameon": False,
+    "hatch.color": "#CCCCCC",
+    "svg.fonttype": "path",  # the same letters on every computer
+    "path.simplify_threshold": 0.3,
+}
+
+
+class Shown(matplotlib_figure.Figure):
+    """A figure that a notebook shows, which it does of pyplot's own only."""
+
+    def _repr_png_(self) -> bytes:
+        picture = io.BytesIO()
+        self.savefig(picture, format="png", dpi=_SCREEN)
+        return picture.getvalue()
+
+
+@contextmanager
+def style() -> Iterator[None]:
+    """Set gbeam's style, and leave matplotlib's settings as they were; within itself it does nothing, in no time."""
+    if all(rcParams[name] == value for name, value in STYLE.items()):
+        yield
+        return
+    with rc_context(STYLE):
+        yield
+
+
+def draw(described: Figure) -> Shown:
+    """Draw a figure."""
+    with style():
+        heights = [panel.height for panel in described.panels]
+        title = printable(described.heading)
+        size = WIDTH, PANEL * sum(heights) + 0.15 * len(heights) + 0.4 + 0.18 * title.count("\n")
+        figure = Shown(figsize=size, layout="constrained")
+        FigureCanvasAgg(figure)
+        figure.suptitle(title, x=0.01, ha="left", fontsize=10.5, fontweight="bold")
+        linked = len({panel.x for panel in described.panels}) == 1
+        every: list[Axes] = list(
+            figure.subplots(len(heights), squeeze=False, sharex=linked, height_ratios=heights)[:, 0]
+        )
+        for k, (axes, panel) in enumerate(zip(every, described.panels, strict=True)):
+            _fill(axes, panel, first=k == 0)
+            if not linked or k == len(every) - 1:
+                axes.set_xlabel(panel.x)
+    return figure
+
+
+def _fill(axes: Axes, panel: Panel, *, first: bool) -> None:
+    if panel.logarithmic:
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        for scale in (axes.xaxis, axes.yaxis):
+            scale.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            scale.set_minor_locator(NullLocator())
+            scale.set_major_formatter("{x:g}")
+    for each in panel.areas:
+        _area(axes, each)
+    for one in panel.lines:
+        _line(axes, one, named=panel.named)
+    named = ""
+    for level in panel.levels:
+        label = level.label if level.label != named else None  # both sides of a limit have one name
+        axes.axhline(level.value, color="black", lw=0.9, ls=_DASHES[level.dash], zorder=2.4, label=label)
+        named = level.label
+    for mark in panel.marks:
+        axes.axvline(mark.value, color="black", lw=0.9, ls=_DASHES["dashed"], label=mark.label if panel.named else None)
+    if panel.bars is not None:
+        _bars(axes, panel.bars)
+    if panel.map is not None:
+        _map(axes, panel.map)
+    for x, y, words in panel.texts:
+        white = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
+        axes.text(x, y, words, ha="center", va="center", color="0.35", fontsize=8, zorder=1.2, bbox=white)
+    if panel.lines and all(
+        one.marks == "joined" and not np.any(one.x % 1) for one in panel.lines
+    ):  # counted, as tries are
+        axes.xaxis.set_major_locator(MaxNLocator("auto", integer=True))
+    if panel.ticks:
+        axes.set_xticks(range(len(panel.ticks)), panel.ticks)
+    axes.set_ylabel(textwrap.fill(panel.y, max(12, round(_LABEL * PANEL * panel.height))))
+    if panel.limits is not None:
+        axes.set_ylim(*panel.limits)
+    else:
+        _include(axes, panel)
+    _shade(axes, panel.spans, named=first)
+    axes.set_title(panel.title)
+    axes.yaxis.get_offset_text().set_x(-0.07)  # a power of ten, beside the title
+    _legend(axes)
+
+
+def _line(axes: Axes, one: Line, *, named: bool) -> None:
+    look = {"color": PALETTE[one.colour], "ls": _DASHES[one.dash], "label": one.label if named else ""}
+    look |= _MARKS[one.marks]
+    if one.broad:
+        look |= {"lw": BROAD, "zorder": 1.9, "solid_capstyle": "butt"}
+    line(axes, one.x, one.y, **look)
+
+
+def _area(axes: Axes, area: Area) -> None:
+    axes.fill_between(area.x, area.low, area.high, color=PALETTE[area.colour], alpha=0.25, lw=0, label=area.label)
+
+
+def _bars(axes: Axes, bars: Bars) -> None:
+    """Groups beside each other, the first name on top."""
+    at, wide = -np.arange(len(bars.names), dtype=float), 0.8 / len(bars.values)
+    for k, (label, values) in enumerate(bars.values.items()):
+        place = at + wide * ((len(bars.values) - 1) / 2 - k)
+        axes.barh(place, values, height=0.9 * wide, color=PALETTE[k], label=label)
+        if bars.low:
+            ends = [values - bars.low[label], bars.high[label] - values]
+            axes.errorbar(values, place, xerr=ends, fmt="none", ecolor="black", elinewidth=0.9, capsize=2.5)
+    axes.axvline(0, color="black", lw=0.8)
+    axes.set_yticks(at, bars.names)
+    axes.grid(axis="y", visible=False)
+
+
+def _map(axes: Axes, cells: Map) -> None:
+    axes.grid(visible=False)
+    mesh = axes.pcolormesh(cells.x, cells.y, cells.values.T, cmap="cividis", shading="nearest")
+    axes.figure.colorbar(mesh, ax=axes, ticks=MaxNLocator(5))
+
+
+def _include(axes: Axes, panel: Panel) -> None:
+    """Stretch a panel to its levels and, where it is asked, to zero: a constant is seen at its size."""
+    low, high = axes.get_ylim()
+    ends = [0.0] if panel.zero else []
+    ends += [1.08 * level.value for level in panel.levels]
+    wide_low, wide_high = min([low, *ends]), max([high, *ends])
+    margin = 0.05 * (wide_high - wide_low) if panel.zero and (low > 0 or high < 0) else 0.0
+    if (wide_low, wide_high) != (low, high):
+        axes.set_ylim(wide_low - margin, wide_high + margin)
+
+
+def _shade(axes: Axes, spans: Sequence[Span], *, named: bool) -> None:
+    """Shade stretches in a panel, with their reasons in the legend of the first."""
+    ordered = sorted(spans, key=lambda span: [each[2] for each in spans].index(span[2]))
+    for reason, some in groupby(ordered, key=lambda span: span[2]):
+        face, hatch = _PATTERNS.get(reason, _LIMIT)
+        corners = [[(a, 0.0), (a, 1.0), (b, 1.0), (b, 0.0)] for a, b, _ in some]
+        shaded = PolyCollection(
+            corners,
+            transform=axes.get_xaxis_transform(),
+            facecolor=face,
+            edgecolor=rcParams["hatch.color"] if hatch else "none",
+            hatch=hatch,
+            lw=0,
+            zorder=0,
+            label=reason if named else f"_{reason}",
+        )
+        axes.add_collection(shaded, autolim=False)  # not as data, or the panel would stretch to it
+
+
+def _legend(axes: Axes) -> None:
+    """Put the legend of what has a label above a panel, lines, then what is shaded."""
+    entries = list(zip(*axes.get_legend_handles_labels(), strict=True))
+    if not entries:
+        return
+    entries.sort(key=lambda each: (not isinstance(each[0], Line2D), each[1] != ENVELOPE))
+    handles, labels = zip(*entries, strict=True)
+    # Columns are as wide as their longest label; a handle takes about five letters.
+    room = _ROW - len(axes.get_title(loc="left"))
+    columns = min(max(1, room // (max(map(len, labels)) + 5)), len(labels))
+    look: dict[str, Any] = {"borderaxespad": 0.2, "handlelength": 1.6, "columnspacing": 1.4, "ncols": columns}
+    axes.legend(handles, labels, loc="lower right", bbox_to_anchor=(1.0, 1.0), **look)

@@ -1,0 +1,52 @@
+"""Every kind of result by its name, and the JSON of several by their motions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from gbeam.results.cases import Sensitivity, Sweep
+from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
+from gbeam.results.facts import json_of
+from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.imitation.criteria import Judged, state_of
+from gbeam.results.imitation.placement import Placement
+from gbeam.results.imitation.plan import MachinePlan
+from gbeam.results.modal import Campbell, Modes
+from gbeam.results.response import Response
+from gbeam.results.result import Result
+from gbeam.results.searches import Fit, Optimum, ShapedCommand
+from gbeam.results.state_space import StateSpace
+from gbeam.results.study import ModelStudy, Study
+
+KINDS: dict[str, type[Result]] = {
+    kind.__name__: kind
+    for kind in (
+        Study,
+        Response,
+        Comparison,
+        ModelStudy,
+        Deflection,
+        Modes,
+        Campbell,
+        Critical,
+        CriticalMap,
+        StateSpace,
+        MachinePlan,
+        Placement,
+        Sweep,
+        Sensitivity,
+        Fit,
+        Optimum,
+        ShapedCommand,
+    )
+}
+
+
+def by_motion(answers: Sequence[Any], title: str = "") -> dict[str, Any]:
+    """Return results in several motions as JSON, by the motions' names."""
+    outcome = next((end for each in answers if (end := getattr(each, "outcome", "done")) != "done"), "done")
+    judged = [each for each in answers if isinstance(each, Judged)]
+    state = {"state": state_of(outcome, judged)} if judged else {}
+    named = {getattr(each, "motion", "") or getattr(each, "name", ""): json_of(each) for each in answers}
+    return {"title": title, "outcome": outcome, **state, "motions": named}

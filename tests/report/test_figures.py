@@ -1,0 +1,198 @@
+"""A figure is described once: Matplotlib and the page show the same lines, limits, shading, bars and labels."""
+
+from __future__ import annotations
+
+import html
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+from gbeam.figures import description, figures_of
+from gbeam.plots import draw
+from gbeam.report.page.curves import drawn
+from gbeam.report.page.result import report_of, report_of_file
+from gbeam.report.page.series import Numbers, thinned
+from gbeam.results.cases import Indices, Parameter, Statistics
+from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.imitation.measures import Mismatch, RootHistory, RootLoads, Shock, Sizes
+from gbeam.results.imitation.measures import Statistics as Apart
+from gbeam.results.result import Result
+from gbeam.results.study import Study
+
+from .test_page import BEAM, _fit, _optimum, _sensitivity, _shaped, header_of
+
+GRID = np.linspace(0.1, 0.8, 8)
+LENGTH = Parameter("beam.length", GRID, "m")
+WIDTHS, KINDS = Parameter("beam.width", GRID[:3], "m"), Parameter("kind", np.array(["a", "b", "c"], dtype=object))
+DRAWN = Parameter("beam.modulus", 1e9 * GRID, "Pa", "normal")
+
+
+def _sweep(*parameters: Parameter, time: bool = False, **more: object) -> gb.Sweep:
+    grid = [each for each in parameters if not each.drawn]
+    shape = tuple(len(each.values) for each in grid) + ((8,) if len(grid) < len(parameters) else ())
+    values = np.arange(np.prod(shape), dtype=float).reshape(shape)
+    outcome = np.full(shape, "done", dtype=object)
+    outcome.flat[0] = "diverged"
+    histories = {"tip": values[..., None] * np.linspace(0, 1, 5)} if time else {}
+    every = {"histories": histories, "time": np.linspace(0, 1, 5) if time else np.empty(0)} | more
+    return gb.Sweep("toy", "run", parameters, {"tip": values}, {"tip": "m"}, outcome, 0 * outcome.astype("O"), **every)
+
+
+def _sweeps() -> Iterator[Result]:
+    bounds = np.stack([GRID, GRID - 0.05, GRID + 0.05], axis=-1)
+    share = Indices(("a", "b"), 0.1 * np.array([[[3, 1, 5], [4, 2, 6]], [[1, 0, 2], [2, 1, 3]]]), np.array(4))
+    likely = Statistics(("probability",), bounds[:, None], np.full(8, 9))
+    spread = np.stack([k + np.linspace(0, 1, 5)[:, None] * [1, 0.9, 1.1] for k in range(5)], axis=1)
+    names = ("mean", "standard deviation", "5 %", "median", "95 %")
+    message = {"message": np.full(8, "", dtype=object)}
+    for each in (
+        _sweep(LENGTH),
+        _sweep(KINDS),
+        _sweep(LENGTH, WIDTHS),
+        _sweep(LENGTH, KINDS),
+        _sweep(LENGTH, replace(LENGTH, path="beam.other")),
+        _sweep(DRAWN, indices={"tip": share}),
+        _sweep(WIDTHS, DRAWN),
+        _sweep(LENGTH, DRAWN, statistics={"tip": likely}),
+        _sweep(LENGTH, time=True),
+        _sweep(DRAWN, time=True, statistics={"tip": Statistics(names, spread, np.full(5, 8))}),
+    ):
+        yield replace(each, message=np.full(each.outcome.shape, message["message"][0], dtype=object))
+
+
+def _results(study: Study) -> dict[str, list[Result]]:
+    structure, hub = gb.assemble(BEAM, "TLAM", y=2, z=2), gb.Hub(radius=0.5)
+    machine = gb.Centrifuge(gb.Flight(z=20.0), arm=3.3, control_point=0.2, gravity=False, span=(0.0, 0.5))
+    spectra = np.outer(np.arange(1.0, 6.0), [1, 1, 2])
+    shock = Shock(10.0, np.geomspace(1, 100, 5), spectra, 2 * spectra)
+    compared = replace(_apart(study.comparisons[0]), shock=shock)
+    fit, modal = _fit(), replace(_fit(), modal=True, at=np.arange(1.0, 6.0))
+    column = replace(fit.columns[0], measured=1 + fit.at)
+    return {
+        "study": [study, replace(study, comparisons=(compared,)), study.responses["slew"]],
+        "comparison": [study.comparisons[0], compared],
+        "static": [gb.static(structure, acceleration=(0, 0, 78.5))],
+        "modes": [gb.modes(structure, hub)],
+        "campbell": [gb.campbell(structure, hub, speeds=np.linspace(0, 30, 7))],
+        "map": [gb.critical_speed_map(BEAM, gb.Model("TLAM", y=2, z=2), hub, [0.1], [0.1, 0.3])],
+        "plan": [_sparse(gb.plan("", machine))],
+        "fit": [fit, replace(modal, columns=(column,))],
+        "optimize": [_optimum()],
+        "sensitivity": [_sensitivity()],
+        "shape": [_shaped()],
+        "sweep": list(_sweeps()),
+    }
+
+
+def _apart(compared: Comparison) -> Comparison:
+    """A comparison with root loads, a mismatch, trends and vibrations."""
+    t, one = compared.time, np.ones((1, 3))
+    waves = [np.outer(k + np.sin(t), [1.0, 2.0, 3.0]) for k in range(9)]
+    root = RootLoads(*(np.arange(3.0) + k for k in range(6)), 1.0, 2.0, 3.0, RootHistory(*waves[:4]))
+    most = np.abs(waves[4]).max(axis=0)
+    mismatch = Mismatch(0.1, waves[4], most, 0.2 * most, most, most, most, length=0.3)
+    sizes = [Sizes(one, one, one) for _ in range(3)]
+    return replace(compared, root=root, mismatch=mismatch, stations=Apart(np.array([0.3]), 5.0, *sizes, *waves[5:]))
+
+
+def _sparse(plan: gb.MachinePlan) -> gb.MachinePlan:
+    """Every sixth sample: with so few no line becomes an envelope."""
+    histories = {name: each[::6] for name, each in vars(plan.axes).items() if isinstance(each, np.ndarray)}
+    return replace(plan, time=plan.time[::6], axes=replace(plan.axes, **histories))
+
+
+NAMES = [
+    "study",
+    "comparison",
+    "static",
+    "modes",
+    "campbell",
+    "map",
+    "plan",
+    "fit",
+    "optimize",
+    "sensitivity",
+    "shape",
+    "sweep",
+]
+
+
+@pytest.fixture(scope="module")
+def results(study: Study) -> dict[str, list[Result]]:
+    return _results(study)
+
+
+@pytest.mark.parametrize("kind", NAMES)
+def test_both_renderers_show_the_same(kind: str, results: dict[str, list[Result]]) -> None:
+    for result in results[kind]:
+        every = figures_of(result)
+        assert every
+        for describe in every.values():
+            _compare(describe())
+
+
+def _compare(figure: description.Figure) -> None:
+    numbers, header = Numbers(), {"plots": [], "maps": []}
+    page = html.unescape(drawn([figure], numbers, header))
+    specs, maps = iter(header["plots"]), iter(header["maps"])
+    shown = draw(figure)
+    assert (
+        all(note.lower() in page.lower() for note in (figure.subject, *figure.notes))
+        and figure.subject in shown.get_suptitle()
+    )
+    for axes, panel in zip(shown.axes, figure.panels, strict=False):  # the scale of a map is beside them
+        if panel.bars is not None:
+            widths = [bar.get_width() for bars in axes.containers for bar in getattr(bars, "patches", ())]
+            np.testing.assert_allclose(widths, np.concatenate(list(panel.bars.values.values())))
+            assert all(f"{width:#.4g}".rstrip(".") in page for width in widths if width)
+            assert [each.get_text() for each in axes.get_yticklabels()] == list(panel.bars.names)
+            assert all(name in re.sub("<wbr>", "", page) for name in panel.bars.names)
+        elif panel.map is not None:
+            spec = next(maps)
+            kept = numbers.array[spec["values"]["at"] :][: panel.map.values.size].reshape(panel.map.values.shape)
+            np.testing.assert_allclose(axes.collections[0].get_array(), kept.T, rtol=1e-6)
+        else:
+            _compare_lines(axes, panel, next(specs), numbers.array)
+    assert next(specs, None) is next(maps, None) is None
+
+
+def _compare_lines(axes: object, panel: description.Panel, spec: dict, numbers: np.ndarray) -> None:
+    assert axes.get_ylabel().replace("\n", " ") == spec["y"] and axes.get_xlabel() in ("", spec["x"])
+    assert axes.get_title(loc="left") in spec["title"]
+    lines, series = axes.get_lines(), spec["series"][len(spec["series"]) - len(panel.lines) :]
+    assert len(lines) == len(panel.lines) + len(panel.levels) + len(panel.marks)
+    low, high = panel.limits or (-np.inf, np.inf)
+    for one, line, each in zip(panel.lines, lines, series, strict=False):
+        x, y = (numbers[each[way]["at"] :][: each[way]["shape"][0]] for way in "xy")
+        along, values = thinned(line.get_xdata(), line.get_ydata())
+        np.testing.assert_allclose(x, along, rtol=1e-6, atol=1e-6 * np.ptp(along))
+        np.testing.assert_allclose(y, np.clip(values, low, high), rtol=1e-6, atol=1e-6 * np.ptp(values))
+        assert line.get_label() == one.label if panel.named and one.label else line.get_label().startswith("_")
+        assert each["label"] == (one.label.removeprefix("_") or panel.y)
+    levels = [line.get_ydata()[0] for line in lines[len(panel.lines) :][: len(panel.levels)]]
+    assert levels == [each["value"] for each in spec["levels"]]
+    shaded = [
+        (path.vertices[:, 0].min(), path.vertices[:, 0].max())
+        for each in axes.collections[len(panel.areas) :]
+        for path in each.get_paths()
+    ]
+    bands = [tuple(band) for band in spec["bands"]][: len(panel.spans)]
+    assert sorted(shaded) == sorted(bands) and len(shaded) == len(panel.spans)
+    for mark, (start, end) in zip(panel.marks, spec["bands"][len(panel.spans) :], strict=True):
+        assert start == end == mark.value
+
+
+@pytest.mark.parametrize("kind", NAMES)
+def test_the_page_of_a_file_has_every_figure(kind: str, results: dict[str, list[Result]], tmp_path: object) -> None:
+    """Read back from a file, a result has the figures that it had."""
+    for result in results[kind]:
+        page = report_of(result)
+        header = header_of(page)
+        panels = [panel for describe in figures_of(result).values() for panel in describe().panels]
+        assert len(header["plots"]) == sum(panel.bars is None and panel.map is None for panel in panels)
+        result.save(tmp_path / "result.nc")
+        assert report_of_file(tmp_path / "result.nc") == page

@@ -1,0 +1,86 @@
+"""Every kind of result has every output, and every number in them a declaration."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+
+import gbeam as gb
+from gbeam.figures import figures_of
+from gbeam.report.facts import facts
+from gbeam.report.page.result import report_of_file
+from gbeam.report.reference import json_schema_of_results, reference_of_results
+from gbeam.report.words import as_json
+from gbeam.results.facts import paths_of, tree_of
+from gbeam.results.kinds import KINDS
+from gbeam.results.result import Figured
+
+PAGE = Path(__file__).parents[2] / "docs" / "results.md"
+# One value, a table of answers, or matrices: nothing of them is a curve.
+WITHOUT_FIGURE = {"Critical", "Placement", "StateSpace", "ModelStudy"}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_has_every_output(matrix: dict[str, Any], kind: str, tmp_path: Path) -> None:
+    result = matrix[kind]
+    assert type(result).__name__ == kind
+    known = json.loads(as_json(facts(result)))
+    # A response alone is a study of one.
+    assert known["form"] == {"kind": "Study" if kind == "Response" else kind, "version": 1} and known["outcome"]
+    assert result.to_xarray().attrs is not None
+    result.save(tmp_path / "x.nc")
+    with xr.open_dataset(tmp_path / "x.nc") as saved:
+        assert json.loads(str(saved["facts"].values))["form"] == known["form"]
+    result.report(tmp_path / "x.html")
+    assert "<table>" in (tmp_path / "x.html").read_text(encoding="utf-8")
+    (tmp_path / "x.json").write_text(as_json(known), encoding="utf-8")
+    assert "<table>" in report_of_file(tmp_path / "x.json")
+    assert result._repr_html_() and repr(result)
+    assert isinstance(result, Figured) == (kind not in WITHOUT_FIGURE)
+    if isinstance(result, Figured):
+        assert figures_of(result)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_number_of_json_is_declared(matrix: dict[str, Any], kind: str) -> None:
+    tree, known = tree_of(KINDS[kind]), json.loads(as_json(facts(matrix[kind])))
+    several = {"Deflection", "MachinePlan"}
+    held = known["motions"].values() if kind in several | {"Response"} else [known]
+    for each in held:
+        schema = json.loads(json_schema_of_results())["$defs"][kind]
+        own = {key: value for key, value in each.items() if key not in ("lines", "outcome")}
+        _held(own, schema, kind)
+    assert dict(paths_of(tree))
+
+
+def _held(value: Any, schema: dict[str, Any], place: str) -> None:
+    """Everything in a value is what the schema says; else an error names the place."""
+    types = schema.get("type", [])
+    words = {dict: "object", list: "array", str: "string", bool: "boolean", type(None): "null"}
+    word = words.get(type(value), "number")
+    assert word in types or (word == "null" and "null" not in types) or "const" in schema or "enum" in schema, place
+    if isinstance(value, dict) and "properties" in schema:
+        for key, each in value.items():
+            inner = schema["properties"].get(key, schema.get("additionalProperties"))
+            assert inner is not None or key == "lines", f"{place}.{key} is not declared"
+            if inner is not None:
+                _held(each, inner, f"{place}.{key}")
+    if isinstance(value, list) and "items" in schema:
+        for each in value:
+            _held(each, schema["items"], f"{place}[i]")
+
+
+def test_the_page_of_results_is_up_to_date() -> None:
+    assert PAGE.read_text(encoding="utf-8") == reference_of_results()
+
+
+def test_what_may_be_measured_is_known_before_anything_is_computed() -> None:
+    slew = "examples/hubbeam2009_slew_2p8.toml"
+    with pytest.raises(gb.InputError, match=r"'tip\.w\.maximum' is no figure of run; did you mean"):
+        gb.sweep(slew, ["beam.length=7 m, 8 m"], ["tip.w.maximum"])
+    with pytest.raises(gb.InputError, match="is no figure of modes; did you mean"):
+        gb.sensitivity(slew, ["modes[0].frequenzy"], verb="modes")
