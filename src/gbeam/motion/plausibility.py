@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import holds_jax
-from gbeam.guards.plausibility import implausible
+from gbeam.guards.ranges import implausible
 from gbeam.motion.bases.flight import Flight
 from gbeam.motion.protocol import Motion
 from gbeam.results.result import part_words

@@ -14,7 +14,7 @@ from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
-from gbeam.guards.plausibility import possible
+from gbeam.guards.ranges import possible
 from gbeam.structure.attachments import TIP, Load, Point, PointMass, Root
 from gbeam.structure.material import ASSUMED_RATIO, Material
 from gbeam.structure.section import Section

@@ -14,7 +14,7 @@ from gbeam.arrays.tree import Value, record, static
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive
-from gbeam.guards.plausibility import possible
+from gbeam.guards.ranges import possible
 from gbeam.structure.shapes import ROUND, SHAPES
 
 Array = NDArray[np.float64]

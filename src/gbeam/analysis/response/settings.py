@@ -12,7 +12,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive
 from gbeam.guards.limits import STEPS, refuse_more
-from gbeam.guards.plausibility import implausible, possible
+from gbeam.guards.ranges import implausible, possible
 
 FINE = 1e-4
 KEPT = 50_000  # samples of each history that a file holds, unless the settings say how often: 36 MB of the F-16 example

@@ -13,7 +13,7 @@ from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, positive
-from gbeam.guards.plausibility import possible
+from gbeam.guards.ranges import possible
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.flight import Flight
 from gbeam.motion.centrifuge.course import AxisMotion, Course, prepare

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 Sign = Literal["any", "positive", "zero or more"]
 Loc = tuple[int | str, ...]
 
-# Kinds of which the objects say what is possible, and which unit was meant: gbeam.guards.plausibility.
+# Kinds of which the objects say what is possible, and which unit was meant: gbeam.guards.ranges.
 _OF_OBJECTS = ("length", "area", "second moment of area", "density", "pressure", "time")
 
 

@@ -1,4 +1,4 @@
-"""What values are plausible, and possible at all: one table, and the slip of a unit that an implausible one looks like.
+"""Ranges of plausible and of possible values: one table, and the slip of a unit that an implausible one looks like.
 
 An implausible value is computed with and warned of; an impossible one, with which nothing can be computed, is refused.
 """
