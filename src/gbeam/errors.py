@@ -1,4 +1,4 @@
-"""What gbeam raises: an input that is wrong, or a computation that failed. Each says where, what, and the fix."""
+"""Errors that gbeam raises: wrong input, or a computation that failed; each says where, what, and the fix."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ class Bar:
         self._now = what, share
 
     def line(self) -> str:
-        """What is done, its share and the time left, as far as they are known."""
+        """Step under way, its share and the time left, as far as they are known."""
         what, share = self._now
         if not share:
             return on_one_line(what)

@@ -28,7 +28,7 @@ STATIONS = 81  # along the beam, at which shapes are given
 
 @dataclass(frozen=True)
 class Needs:
-    """Which parts of an answer are read; the costly ones that are not need not be computed.
+    """Parts of an answer that are read; the costly ones that are not need not be computed.
 
     Parameters
     ----------

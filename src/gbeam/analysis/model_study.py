@@ -137,7 +137,7 @@ def _answer(
 
 
 def shape_tail(structure: Structure, response: Response) -> float:
-    """How far the last shape of each family moves the tip, over the largest displacement: what a next one may add."""
+    """Share of the largest displacement by which the last shape of each family moves the tip: what a next may add."""
     q, ends = response.q, np.cumsum(structure.counts) - 1
     last = [int(end) for end, count in zip(ends, structure.counts, strict=True) if count > 1]
     size = float(response.peaks.max_abs.max())

@@ -200,7 +200,7 @@ class Connections:
 
 
 def _descriptors() -> int:
-    """How many descriptors the process may have."""
+    """Number of descriptors that the process may have."""
     if sys.platform == "win32":
         return 4 * MOST
     import resource

@@ -113,7 +113,7 @@ def _leaves(scenario: dict[str, Any]) -> Iterator[tuple[Place, Any]]:
 
 
 def changes(before: str, after: str) -> str:
-    """What is otherwise in a scenario than in one before it, in a line."""
+    """Changes of a scenario against one before it, in a line."""
     try:
         then, now = ({path_text(path): value for path, value in _leaves(parse(NAME, text))} for text in (before, after))
     except GbeamError:
@@ -144,7 +144,7 @@ def records(data: Any, folder: Path) -> list[Path]:
 
 
 def problems(error: GbeamError) -> list[dict[str, Any]]:
-    """What is wrong, each with its path, its field, its message, the fix, and its line where it has one."""
+    """Problems of a document, each with its path, its field, its message, the fix, and its line where it has one."""
     if isinstance(error, Unfit):
         return error.problems
     if isinstance(error, ScenarioError):

@@ -100,7 +100,7 @@ def _table(schema: Node, tables: list[Node], raw: Any, path: Path) -> Node:
 
 
 def _value(schema: Node, alternatives: list[Node], raw: Any) -> Node:
-    """What a field shows: text as it is, anything else as TOML."""
+    """Text that a field shows: text as it is, anything else as TOML."""
     shown = "" if raw is None else raw if isinstance(raw, str) else toml(raw)
     default = schema.get("default")
     words = [str(word) for each in alternatives for word in _literals(each)]
@@ -166,7 +166,7 @@ def _names_tables(schema: Node) -> bool:
 
 
 def _alternatives(schema: Node) -> Iterator[Node]:
-    """What may stand at a place, one by one, null apart."""
+    """Schemas of the values that may stand at a place, null apart."""
     if "$ref" in schema:
         yield from _alternatives(_schema()["$defs"][schema["$ref"].rpartition("/")[2]])
     elif "anyOf" in schema or "oneOf" in schema:

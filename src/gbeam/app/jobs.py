@@ -289,7 +289,7 @@ async def _begun(place: Path, command: Sequence[str]) -> asyncio.subprocess.Proc
 
 
 def _read(file: Path) -> dict[str, Any]:
-    """What is kept of a run; that it is damaged, where that cannot be read."""
+    """State that is kept of a run; that it is damaged, where that cannot be read."""
     nothing = {"state": DAMAGED, "title": "", "verb": "run", "case": "", "changes": "", "arguments": []}
     try:
         known = json.loads(file.read_text(encoding="utf-8"))

@@ -1,4 +1,4 @@
-"""What a record holds, which of its columns hold what, and the load that a scenario makes of it."""
+"""Preview of a record: its columns, their quantities, and the load that a scenario makes of it."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def _together(found: Mapping[str, list[tuple[str, str]]], keys: Iterable[str], u
 
 
 def _meanings(name: str, unit: str) -> Iterable[tuple[str, str]]:
-    """What a column may hold, with its unit as a scenario spells it; nothing where the unit is of something else."""
+    """Quantities that a column may hold, with its unit as a scenario spells it; none where the unit is another's."""
     plain = _BRACKETS.sub("", name)
     for words, written in (*_readings(plain, unit), *_readings(re.split(r"[./]", plain)[-1], unit)):
         for quantity, pattern in (("time", _TIME), ("acceleration", _LOAD), ("rate", _RATE)):

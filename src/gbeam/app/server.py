@@ -140,7 +140,7 @@ def create_app(folder: Path) -> FastAPI:
 
     @app.get("/api/records/{name}")
     def described_record(name: str) -> dict[str, Any]:
-        """What the columns of a record are that is kept."""
+        """Columns of a record that is kept."""
         return head(files.regular(records, name))
 
     @app.get("/api/runs")
@@ -150,7 +150,7 @@ def create_app(folder: Path) -> FastAPI:
 
     @app.get("/api/verbs")
     def offered() -> dict[str, Any]:
-        """What can be done with a scenario, and the options of it."""
+        """Verbs for a scenario, with their options."""
         return verbs.offered()
 
     @app.post("/api/runs")

@@ -1,4 +1,4 @@
-"""What the page can do with a scenario: verbs of the command line, and of their options those that name no file."""
+"""Verbs that the page offers: those of the command line, and of their options those that name no file."""
 
 from __future__ import annotations
 

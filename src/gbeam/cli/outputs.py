@@ -1,4 +1,4 @@
-"""What a verb prints, and the JSON and figures that it writes."""
+"""Output of verbs: text, JSON and figures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a figure shows: panels of lines, areas, levels and bars, in the units in which they are drawn."""
+"""Descriptions of figures: panels of lines, areas, levels and bars, in the units in which they are drawn."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Line:
 
 @dataclass(frozen=True, eq=False)
 class Area:
-    """What lies between two lines, (n,) each."""
+    """Area between two lines, (n,) each."""
 
     x: Floats
     low: Floats
@@ -140,7 +140,7 @@ def declared(kind: type, name: str) -> tuple[str, str]:
 
 
 def of_motion(name: str, subject: str) -> str:
-    """What is shown, after the motion's name if it has one."""
+    """Subject of a figure, after the motion's name if it has one."""
     return f"{name}: {subject}" if name else subject
 
 
@@ -158,7 +158,7 @@ def moving(*values: Floats) -> list[int]:
 
 
 def not_drawn(shown: Sequence[int], *lengths: Floats) -> tuple[str, ...]:
-    """How large those components (of the last axis) of lengths are that are not shown."""
+    """Sizes of those components (of the last axis) of lengths that are not shown."""
     sizes = [max(largest(each[..., i]) for each in lengths) for i in range(3)]
     hidden = [i for i in range(3) if i not in shown and sizes[i] > 1e-9 * max(sizes)]
     units = {i: scale_of("m", sizes[i]) for i in hidden}

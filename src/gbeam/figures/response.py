@@ -43,7 +43,7 @@ MOMENTS = ("torque", "bending M_y", "bending M_z")
 
 
 def looks(study: Study) -> dict[str, dict[str, Any]]:
-    """How the lines of every environment look: broad of a flight that another imitates."""
+    """Styles of the lines of every environment: broad of a flight that another imitates."""
     flights = {each.flight for each in study.comparisons}
     others = [name for name in study.responses if name not in flights]
     plain: dict[str, dict[str, Any]] = {name: {"colour": k % 6} for k, name in enumerate(others)}
@@ -227,7 +227,7 @@ def _with_power(panel: Panel, axes: AxesResult) -> Panel:
 
 
 def _used(history: Floats, limit: float, unit: str) -> str:
-    """How much of a limit is used, in words."""
+    """Use of a limit, in words."""
     used = float(np.nanmax(np.abs(history)))
     return f"{_plain(used)} of {_plain(limit)} {unit}" if math.isfinite(limit) else f"up to {_plain(used)} {unit}"
 

@@ -1,1 +1,1 @@
-"""What an input may be: checks of single values, limits of size, plausible and possible values."""
+"""Guards of input: checks of single values, limits of size, plausible and possible values."""

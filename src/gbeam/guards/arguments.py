@@ -36,7 +36,7 @@ def refuse_units(where: str, value: Any) -> None:
 
 
 def _in_si(value: Any) -> str:
-    """How pint makes a number in SI of a quantity of its own; empty of another library's."""
+    """Expression by which pint makes a number in SI of a quantity of its own; empty of another library's."""
     try:
         unit = f"{value.to_base_units().units:~}" or "dimensionless"
     except (AttributeError, ValueError):

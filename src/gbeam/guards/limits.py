@@ -1,4 +1,4 @@
-"""How much of anything gbeam takes, in one table: what is more is refused before it is read, parsed or allocated.
+"""Limits of size of all input, in one table: what is more is refused before it is read, parsed or allocated.
 
 Each limit is far beyond what a sound scenario holds; a refusal says what it would have cost.
 """

@@ -81,7 +81,7 @@ def possible(where: str, kind: str, value: Any) -> None:
 
 
 def _slip(given: Range, value: float) -> str:
-    """The same number in the first other unit in which it is plausible; empty where there is none."""
+    """Number in the first other unit in which it is plausible; empty where there is none."""
     for unit, size in given.slips:
         if unit != given.unit and given.low < abs(value) * size <= given.high:
             return f"{value:g} {unit}"

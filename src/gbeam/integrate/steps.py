@@ -36,7 +36,7 @@ class Corners:
 
     @staticmethod
     def of(times: Any, drive: Drive, start: float, end: float) -> Corners:
-        """Those among `times` (s) that lie from `start` to before `end`, judged by the drive's values on both sides."""
+        """Times among `times` (s) that lie from `start` to before `end`, judged by the drive's values on both sides."""
         time = np.unique(np.asarray(times, dtype=np.float64))
         time = time[(time >= start) & (time < end)]
         if not len(time):
@@ -52,7 +52,7 @@ class Corners:
         return Corners(time, jump)
 
     def felt_by(self, scheme: Scheme) -> Corners:
-        """Those that a scheme's steps have to end at."""
+        """Times at which a scheme's steps have to end."""
         return self if scheme.order > 2 else Corners(self.time[self.jump], self.jump[self.jump])
 
 

@@ -60,7 +60,7 @@ def write_commands(plan: MachinePlan, commands: Commands, folder: Path) -> list[
 
 
 def header(plan: MachinePlan, commands: Commands) -> list[str]:
-    """What the motions are made for, and what frame, units, zeros and signs the numbers have."""
+    """Purpose of the motions, with frame, units, zeros and signs of the numbers."""
     first, last = plan.axes.span
     lines = [
         f"gbeam: axis motions of {plan.name}" + (f", which imitates {plan.tracks}" if plan.tracks else ""),
@@ -88,7 +88,7 @@ def header(plan: MachinePlan, commands: Commands) -> list[str]:
 
 
 def _limits(plan: MachinePlan) -> dict[str, list[float]]:
-    """What is allowed of each quantity, of axes 1, 2, 3; of the power, of the arm."""
+    """Limits of each quantity, of axes 1, 2, 3; of the power, of the arm."""
     allowed: dict[str, list[float]] = {}
     for use in plan.axes.limits:
         allowed.setdefault(use.quantity, []).append(use.allowed)
@@ -102,7 +102,7 @@ def _limit_words(plan: MachinePlan) -> str:
 
 
 def origin_lines(provenance: Provenance) -> list[str]:
-    """Where the numbers come from."""
+    """Provenance of the numbers."""
     provenance, environment = provenance.stated()
     records = [f"Record of {each.motion}: {each.file}, SHA-256 {each.sha256}." for each in provenance.records]
     made = f"Made by gbeam {environment.gbeam}, Python {environment.python}, {environment.platform}"

@@ -1,4 +1,4 @@
-"""What a file or an xarray Dataset is made of: variables with dimensions, units and frames, before either is there."""
+"""Parts of a file or an xarray Dataset: variables with dimensions, units and frames, before either is there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a file holds of any record whose fields are declared."""
+"""Layout of files: variables and attributes of any record whose fields are declared."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ def save(result: Any, path: str | os.PathLike[str], facts: str = "") -> None:
 
 
 def groups_of(result: Result, *, every: bool = True) -> dict[str, Group]:
-    """What a result holds, by path: the root says what it is and where it comes from."""
+    """Groups of a file by path: the root says what it is and where it comes from."""
     groups = _study(result, every=every) if isinstance(result, Study) else {"": _group(result, every=every)}
     origin = result.provenance or Provenance()
     root = groups[""]

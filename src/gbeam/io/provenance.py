@@ -1,4 +1,4 @@
-"""What a file holds of where its result comes from."""
+"""Provenance in files."""
 
 from __future__ import annotations
 

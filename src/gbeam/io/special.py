@@ -105,7 +105,7 @@ def sweep_group(sweep: Sweep) -> Group:
 
 
 def _statistics(sweep: Sweep) -> dict[str, Variable]:
-    """What samples say, at every point of the grid."""
+    """Statistics at every point of the grid."""
     grid = tuple(name for name in sweep.dimensions if name != SAMPLE)
     found = {}
     for name, each in sweep.statistics.items():

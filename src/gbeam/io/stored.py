@@ -24,7 +24,7 @@ from gbeam.results.result import Floats, Result
 
 @dataclass(frozen=True)
 class Stored:
-    """What a file holds.
+    """Contents of a file.
 
     Parameters
     ----------
@@ -39,12 +39,12 @@ class Stored:
 
     @property
     def provenance(self) -> Provenance:
-        """Where it comes from."""
+        """Provenance of the result."""
         return provenance_of({name: each for name, each in self.variables.items() if "/" not in name}, self.attrs)
 
 
 def stored(result: Result) -> Stored:
-    """What a result's file would hold."""
+    """Contents of the file that a result would have."""
     with h5py.File(io.BytesIO(image(groups_of(result, every=False)))) as file:
         return _stored(**contents_of(file))
 

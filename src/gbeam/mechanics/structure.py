@@ -306,7 +306,7 @@ class Structure:
         return rest_modes(self.coefficients.mass, self.coefficients.stiffness)
 
     def at_time(self, time: float) -> Structure:
-        """The same structure with its loads frozen as they are at a `time`, s: what static, modes and stability see."""
+        """Return the structure with its loads frozen at a `time`, s: as static, modes and stability take it."""
         return self if self.history is None else replace(self, load_values=self.history(np.asarray(float(time))))
 
     @property

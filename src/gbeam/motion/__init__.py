@@ -1,4 +1,4 @@
-"""What the base does: profiles, records, flight, hub and centrifuge. Knows nothing of beams.
+"""Motions of the base: profiles, records, flight, hub and centrifuge. Knows nothing of beams.
 
 Every motion is a :class:`Motion`: it has a `kind`, ``base(t)`` (a :class:`Base`), ``corners(step)`` and ``over(start,
 end)``; a hub that is `free` to turn has a torque in place of a motion.

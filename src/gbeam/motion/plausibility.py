@@ -1,4 +1,4 @@
-"""What is implausible in a motion: its sizes, and how fast it goes over a span of time."""
+"""Implausible motions: their sizes, and how fast they go over a span of time."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def implausible_motion(motion: Motion, where: str, span: tuple[float, float], ba
 
 
 def implausible_values(motion: Any, where: str, span: tuple[float, float], base: Any) -> Iterator[str]:
-    """The same of a motion that holds nothing of JAX."""
+    """Warnings of a motion that holds nothing of JAX."""
     if motion.kind == "centrifuge":
         yield from implausible(f"{where}.arm", "arm", float(motion.geometry.arm))
         yield from _of_gravity(motion, where)
@@ -42,7 +42,7 @@ def implausible_values(motion: Any, where: str, span: tuple[float, float], base:
 
 
 def _of_flight(flight: Flight, where: str, span: tuple[float, float]) -> Iterator[str]:
-    """What was done to its record, and is odd in it; and that only a part of it is flown."""
+    """Notes on its record: steps taken, oddities, and that only a part of it is flown."""
     if flight.record is not None:
         yield from (f"{where}.record: {note}" for note in flight.record.notes)
     whole = flight.part_of(*span) if span[1] > span[0] else None

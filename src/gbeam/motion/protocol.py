@@ -1,4 +1,4 @@
-"""What every motion of the base offers, whatever it is."""
+"""Protocol of motions of the base."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Motion(Protocol):
         ...
 
     def over(self, start: float, end: float) -> Self:
-        """The same motion, prepared for times from `start` to `end`, s."""
+        """Return the motion prepared for times from `start` to `end`, s."""
         ...
 
     def beyond(self, start: float, end: float) -> tuple[Any, Any]:

@@ -104,7 +104,7 @@ class Grid:
         return np.asarray(self.points[:, None] ** np.arange(PIECE) @ self._powers(order))
 
     def matrix(self, order: int) -> Any:
-        """The same for every time, a sparse matrix (times, size)."""
+        """Basis at every time, a sparse matrix (times, size)."""
         return self._on_pieces(self.rows(order))
 
     def hull(self, order: int) -> Any:

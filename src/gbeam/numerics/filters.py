@@ -175,7 +175,7 @@ def _closed_form(omega: Floats, damping: float, step: float) -> Floats:
 
 
 def _series(omega: Floats, damping: float, step: float) -> Floats:
-    """The same by the power series of η under the load t, and its derivatives."""
+    """Value by the power series of η under the load t, and its derivatives."""
     terms = [np.zeros_like(omega), np.zeros_like(omega), np.full_like(omega, step**3 / 6)]  # of steps¹, ², ³
     for k in range(2, _TERMS):
         last, one_before = terms[-1], terms[-2]

@@ -1,4 +1,4 @@
-"""What is known at samples over time: runs of them, values between them, integrals, attitude and peaks."""
+"""Histories sampled over time: runs of samples, values between them, integrals, attitude and peaks."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ class Series:
         return Series(tuple(k * c if k > 1 else c for k, c in enumerate(self.coefficients) if k > 0))
 
     def truncated(self, order: int) -> Series:
-        """The same up to a lower order."""
+        """Series up to a lower order."""
         return Series(self.coefficients[: order + 1])
 
     def each(self, function: Callable[[Any], Any]) -> Series:

@@ -1,4 +1,4 @@
-"""What a scenario means, as `check` prints it."""
+"""Meaning of a scenario, as `check` prints it."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def _record(record: RecordSummary) -> dict[str, Any]:
 
 
 def _lines(record: RecordSummary) -> Iterator[str]:
-    """What a record is, loads in g; its notes are among the warnings."""
+    """Summary of a record, loads in g; its notes are among the warnings."""
     span = f"{record.span[0]:.6g} to {record.span[1]:.6g} s"
     part = span if record.span == record.whole else part_words(record.span, record.whole)
     clock = f", 0 s being {record.clock}" if record.clock else ""

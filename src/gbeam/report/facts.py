@@ -23,7 +23,7 @@ VERSION = 1  # of the keys: raised where one changes or goes
 
 
 def whole(result: Result) -> Result:
-    """The same result, a response alone as a study of one; a result that is listed by its motion has a name."""
+    """Return the result as its JSON has it: a response alone in a study, one that is listed by motion with a name."""
     match result:
         case Response():
             name = result.name or result.environment

@@ -1,4 +1,4 @@
-"""Where a result comes from, as JSON; and a result computed again."""
+"""Provenance of a result as JSON; and a result computed again."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def reproduction_json(again: Reproduction) -> dict[str, Any]:
 
 
 def reproduction_text(again: Reproduction) -> str:
-    """What was compared, what differs, and what has changed since."""
+    """Values compared, differences, and changes since."""
     if again.differences:
         extent = f"within {again.tolerance:g}" if again.reproduced else "NOT reproduced"
     else:

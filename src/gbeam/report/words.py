@@ -117,5 +117,5 @@ def warning_lines(result: Result) -> list[str]:
 
 
 def sentence(text: str) -> str:
-    """The same words with a capital letter in front."""
+    """Words with a capital letter in front."""
     return text[:1].upper() + text[1:]

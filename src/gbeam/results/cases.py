@@ -229,7 +229,7 @@ class Sweep(Figured):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Effect(Part):
-    """What a parameter does to a figure."""
+    """Effect of a parameter on a figure."""
 
     path: str = quantity("", "path in the scenario")
     value: float = quantity(BESIDE, "value of the parameter")
@@ -243,7 +243,7 @@ class Effect(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Effects(Part):
-    """A figure, and what the parameters do to it."""
+    """A figure, and the effects of parameters on it."""
 
     value: float = quantity(BESIDE, "value of the figure")
     unit: str = quantity("", "its SI unit")

@@ -31,7 +31,7 @@ _METHOD = TypeVar("_METHOD", bound=Callable[[Any], Any])
 
 @dataclass(frozen=True)
 class Declaration:
-    """What is to be known of a field of a result, or of a property.
+    """Declaration of a field of a result, or of a property.
 
     Parameters
     ----------

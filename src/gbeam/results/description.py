@@ -1,4 +1,4 @@
-"""What a case means: frozen records of its beam, model, motions, flights' records and settings before any run."""
+"""Description of a case: frozen records of its beam, model, motions, flights' records and settings before any run."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Level(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class RecordSummary(Part):
-    """What a flight's record is, as its file has it, in base axes.
+    """A flight's record as its file has it, in base axes.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class RecordSummary(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Description(Part):
-    """What a case means.
+    """Meaning of a case.
 
     Parameters
     ----------

@@ -36,7 +36,7 @@ class ErrorEstimate(Part):
         return self.total - (0.0 if math.isnan(self.beam_theory) else self.beam_theory)
 
     def with_theory(self, share: float) -> ErrorEstimate:
-        """The same with an error of the beam theory; one that is not known leaves the total."""
+        """Errors with one of the beam theory; one that is not known leaves the total."""
         return replace(self, beam_theory=share, total=self.total + (0.0 if math.isnan(share) else share))
 
     def __repr__(self) -> str:

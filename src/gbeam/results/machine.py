@@ -1,4 +1,4 @@
-"""What a centrifuge does and what it cannot: frozen records of its axes, its limits and its commands."""
+"""Records of a centrifuge: its axes, its limits and its commands."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from gbeam.results.result import Flags, Floats, Part
 
 @dataclass(frozen=True)
 class LimitUse:
-    """How much of one of its limits a machine uses."""
+    """Use of one of its limits by a machine."""
 
     axis: str = entry("", "axis 1, axis 2, axis 3 or arm")
     quantity: str = entry("", "rate, acceleration, jerk or power")

@@ -273,7 +273,7 @@ def yield_margin(yield_strength: float, stress: Floats) -> Floats:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Loads(Part):
-    """What the sections of the beam carry, and what its base must supply.
+    """Loads of the sections of the beam, and those that its base must supply.
 
     The outboard part of the beam acts on the inboard part with `force` and `moment` at the section's deformed
     position: a positive axial force is tension, a positive M_z bends towards +y, a positive M_y towards −z. A body
@@ -325,7 +325,7 @@ class Loads(Part):
     fatigue_exponent: float = fact("exponent of the material's Wöhler curve", name=None, key=None, default=math.nan)
 
     def during(self, part: slice) -> Loads:
-        """The same at some of the times."""
+        """Loads at some of the times."""
         over_time = [
             each.name for each in fields(self) if np.ndim(getattr(self, each.name)) and each.name != "stations"
         ]

@@ -1,4 +1,4 @@
-"""Where a result comes from: what was computed, from which files, by what, on what."""
+"""Provenance of results: scenario, records, versions and platform."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class RecordFile:
 
 @dataclass(frozen=True)
 class Environment:
-    """What computed a result.
+    """Versions and platform that computed a result.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class Environment:
     dependencies: Mapping[str, str]
 
     def changes(self, other: Environment) -> dict[str, tuple[str, str]]:
-        """What is otherwise in another: its name, here and there."""
+        """Differences to another: its name, here and there."""
         mine, theirs = self._facts(), other._facts()
         names = [*mine, *(name for name in theirs if name not in mine)]
         pairs = {name: (mine.get(name, "missing"), theirs.get(name, "missing")) for name in names}
@@ -93,7 +93,7 @@ class Provenance:
     date: str = ""
 
     def stated(self) -> tuple[Provenance, Environment]:
-        """The same with its date and its environment, which takes some time to find, and that."""
+        """Provenance with its date and its environment, which takes some time to find, and that."""
         environment = self.environment or present()
         return replace(self, environment=environment, date=self.date or _now()), environment
 

@@ -74,7 +74,7 @@ class HubResult(Part):
 
 
 class PlotHeading(Protocol):
-    """What a plot's title says of a result: the motion's name and how its computation ended."""
+    """Parts of a result that a plot's title names: the motion's name and how its computation ended."""
 
     @property
     def name(self) -> str: ...

@@ -1,4 +1,4 @@
-"""What all results share: short words on the screen, and the doors to xarray, to a file, a figure and a report.
+"""Base of all results: short words on the screen, and the doors to xarray, to a file, a figure and a report.
 
 The doors lead to the leaves `gbeam.io`, `gbeam.plots` and `gbeam.report`, which are imported when one is opened: a
 record needs none, and importing a record loads none.
@@ -32,7 +32,7 @@ def brief(record: Any) -> str:
 
 
 def part_words(span: tuple[float, float], whole: tuple[float, float]) -> str:
-    """Which part of a flight: ``0 to 6 of 15.99 s``, ``102 to 108 of 100 to 116 s``; all s."""
+    """Part of a flight in words: ``0 to 6 of 15.99 s``, ``102 to 108 of 100 to 116 s``; all s."""
     first = "" if whole[0] == 0 else f"{whole[0]:.6g} to "
     return f"{span[0]:.6g} to {span[1]:.6g} of {first}{whole[1]:.6g} s"
 
@@ -68,7 +68,7 @@ class Part(Value):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Result(Value):
-    """What an analysis returns as a whole: it goes to xarray and to a netCDF file.
+    """Base of what an analysis returns as a whole: it goes to xarray and to a netCDF file.
 
     Parameters
     ----------

@@ -51,7 +51,7 @@ class Gauge:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Truncation(Part):
-    """What a smaller model leaves out of the one that it is made from.
+    """Part of a model that a smaller one leaves out.
 
     Gains are those from an input to an output, (p, m) in the unit of the output by that of the input. They are compared
     from half the lowest frequency that oscillates to the highest that is kept; of a balanced truncation to twice the
@@ -162,7 +162,7 @@ class StateSpace(Result):
         return float(self.frequency[count - 1]) if count else 0.0
 
     def select(self, *, inputs: tuple[str, ...] | None = None, outputs: tuple[str, ...] | None = None) -> StateSpace:
-        """The same system with some of its inputs and outputs only, by name.
+        """Return the system with some of its inputs and outputs only, by name.
 
         Parameters
         ----------

@@ -125,7 +125,7 @@ class ModelRow(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class ModelStudy(Result):
-    """The same scenario by every model; rows by motion, then model."""
+    """A scenario by every model; rows by motion, then model."""
 
     title: str = fact("title of the scenario")
     reference: str = fact("model that the others are compared with")

@@ -1,4 +1,4 @@
-"""Where a scenario came from, and errors at their places in it."""
+"""Origin of a scenario, and errors at their places in it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def provenance(scenario: Environments, command: str = "") -> Provenance:
-    """Where results of a scenario come from."""
+    """Provenance of the results of a scenario."""
     source = scenario.source
     if source is None:
         return Provenance(command=command)

@@ -101,7 +101,7 @@ class _Page:
         return "\n".join(rows) + "\n"
 
     def _value(self, schema: dict[str, Any], of: str) -> str:
-        """What may stand there, in words."""
+        """Values that may stand there, in words."""
         if "x-quantity" in schema:
             return self._quantity(schema, of)
         if "$ref" in schema:

@@ -141,7 +141,7 @@ def _facts(of: Stored) -> dict[str, Any]:
 
 @np.errstate(all="ignore")  # a damaged file may hold any number
 def _difference(name: str, then: Any, now: Any) -> Difference | None:
-    """How a variable or an attribute differs, if it does."""
+    """Difference of a variable or an attribute, if there is one."""
     if then is None or now is None:
         return Difference(name, math.inf, "is not there any more" if now is None else "was not there")
     old, new = np.asarray(then), np.asarray(now)

@@ -44,7 +44,7 @@ class Cases:
 
     @property
     def independent(self) -> int:
-        """How many samples, of the first, are draws from all distributions: the others repeat parts of them."""
+        """Number of samples, of the first, that are draws from all distributions: the others repeat parts of them."""
         return 2 * self.samples // (len(self.drawn) + 2) if self.sampler == "saltelli" else self.samples
 
     def __len__(self) -> int:
@@ -179,7 +179,7 @@ class Variation:
     distribution: Distribution | None = None
 
     def drawn(self, probability: NDArray[Any]) -> Variation:
-        """The same with the values at probabilities (n,), (0, 1)."""
+        """Variation with the values at probabilities (n,), (0, 1)."""
         assert self.distribution is not None
         quantile = QUANTILES[self.distribution.family]
         with np.errstate(over="ignore"):
@@ -224,7 +224,7 @@ def read_variation(text: str) -> Variation:
 
 
 def drawn_from(path: str, distribution: Distribution) -> Variation:
-    """What is drawn from a distribution for a path."""
+    """Values drawn from a distribution for a path."""
     return Variation(path, unit=distribution.unit, distribution=distribution)
 
 

@@ -41,7 +41,7 @@ _VERDICT_WITHOUT_LOADS = (("verdict", "tip"), ("verdict", "followed"))
 
 @dataclass(frozen=True)
 class Row:
-    """What one case gave: its figures, how it ended, and why it is not done or which limits it does not keep."""
+    """Row of one case: its figures, how it ended, and why it is not done or which limits it does not keep."""
 
     case: int
     values: tuple[float, ...]
@@ -78,12 +78,12 @@ class Question:
 
     @cached_property
     def width(self) -> int:
-        """How many figures a case has."""
+        """Number of figures of a case."""
         return len(self.keys) + len(self.functions) + len(self.histories) * len(self.times)
 
     @cached_property
     def needs(self) -> Needs:
-        """What the figures are taken from; before their keys are known, anything."""
+        """Parts of answers that the figures are taken from; before their keys are known, all."""
         if not self.keys and not self.histories:
             return Needs()
         errors = any("error" in str(key) for keys in self.keys for key in own_keys(keys))
@@ -104,7 +104,7 @@ class Question:
         return build(self.scenario(overrides))
 
     def facts(self, case: Case) -> Facts:
-        """What the verb answers, as JSON."""
+        """Answer of the verb, as JSON."""
         return answered(self.verb, case, self.motion, self.at, self.needs)
 
     def row(self, number: int, overrides: Sequence[str]) -> Row:
@@ -183,7 +183,7 @@ _ALONE = ("response", "model")  # tables: cases in which they differ have few st
 
 
 def width(question: Question) -> int:
-    """How many cases are best computed at once."""
+    """Number of cases that are best computed at once."""
     return TOGETHER if question.together else 1
 
 

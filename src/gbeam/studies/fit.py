@@ -203,7 +203,7 @@ _IMPOSSIBLE = 1e3  # times the first residual: of values that the scenario does 
 
 @dataclass
 class Fitted:
-    """What the scenario says of the measured quantities at any values of the parameters."""
+    """Measured quantities of the scenario at any values of the parameters."""
 
     question: Question
     parameters: Sequence[PhysicalValue]

@@ -135,7 +135,7 @@ class Journal:
                 os.close(folder)
 
     def _known(self) -> tuple[Line, list[Line]]:
-        """What the first line says and what the others do, None of a damaged one, but for those cut off at the end."""
+        """Header and rows, None of a damaged one, but for those cut off at the end."""
         try:
             lines = _parsed(self._file.read_bytes()) if self._file.exists() else []
         except OSError as error:
@@ -187,7 +187,7 @@ def _row(line: Mapping[str, Any]) -> Row:
 
 
 def identity(question: Question, cases: Cases, measures: Sequence[str], histories: Sequence[Any]) -> dict[str, Any]:
-    """What makes two sweeps the same: version, scenario, what varies, and what is measured."""
+    """Identity of a sweep: version, scenario, what varies, and what is measured."""
     digest = hashlib.sha256()
     for each in cases.variations:
         for text in each.texts:

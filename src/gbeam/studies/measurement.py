@@ -78,7 +78,7 @@ class Measurement:
 
     @property
     def parts(self) -> dict[str, bool]:
-        """Which parts of a response the columns are of."""
+        """Parts of a response that the columns are of."""
         return {"loads": any(each.quantity.startswith(("root_", "strain")) for each in self.columns), "axes": False}
 
     def weights(self, residuals: Floats | None, freed: int) -> Floats:
@@ -106,7 +106,7 @@ class Measurement:
         return replace(case, stations=tuple(sorted({*case.stations, *gauges}))) if gauges else case
 
     def read(self, case: Case, answer: Any) -> Floats:
-        """The same quantities of a case, (m,)."""
+        """Measured quantities of a case, (m,)."""
         if self.modal:
             return np.array([_modal(answer, each.quantity, int(k)) for each in self.columns for k in self.at])
         assert isinstance(answer, Study)
@@ -209,7 +209,7 @@ def _factor(unit: str, kind: str, name: str) -> float:
 
 
 def _position(text: str, face: str, case: Case) -> float:
-    """Where a gauge on a face of the beam is, m."""
+    """Position of a gauge on a face of the beam, m."""
     try:
         at = case.beam.named_points.get(text.strip())
         at = argument(text.strip(), "length") if at is None else at

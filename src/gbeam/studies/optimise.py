@@ -198,7 +198,7 @@ _FEASIBLE = 1e-4  # of a bound: less is no excess
 
 @dataclass(frozen=True)
 class Goal:
-    """What is minimised, and what is required."""
+    """Objective and requirements."""
 
     objective: Keys
     required: tuple[tuple[str, Keys, float, float], ...]
@@ -249,7 +249,7 @@ class Search:
         return self.tried[-1][0], ends
 
     def _from(self, start: Floats, limits: Floats) -> Floats:
-        """Where a search from some values ends."""
+        """End of a search from some values."""
         from scipy.optimize import minimize
 
         low, width = limits[:, 0], limits[:, 1] - limits[:, 0]

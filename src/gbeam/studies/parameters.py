@@ -170,6 +170,6 @@ def starting_points(own: Floats, limits: Floats, count: int) -> list[Floats]:
 
 
 def agreeing(ends: Sequence[Floats], best: Floats, limits: Floats) -> int:
-    """How many of the values that searches ended at are the best ones."""
+    """Number of searches that ended at the best values."""
     width = limits[:, 1] - limits[:, 0]
     return sum(bool((np.abs(end - best) <= _SAME * width).all()) for end in ends)

@@ -1,4 +1,4 @@
-"""Which value matters, and how much: derivatives of figures with respect to physical values."""
+"""Sensitivities: derivatives of figures with respect to physical values."""
 
 from __future__ import annotations
 

@@ -123,7 +123,7 @@ def go_on(
     figures: Figures,
     histories: OverTime = NO_HISTORIES,
 ) -> Start:
-    """The same of a sweep some of whose cases are done, by which its figures are known; nothing may be missing."""
+    """Start of a sweep some of whose cases are done, by which its figures are known; nothing may be missing."""
     question = replace(question, keys=tuple(tuple(keys) for keys, *_ in figures if keys))
     possible = [row for row in done if row.outcome != "refused"] or done
     scenario = question.scenario(cases.overrides(possible[0].case))

@@ -1,4 +1,4 @@
-"""What samples say of a figure, and how sure that is: mean, spread, quantiles, probability, Sobol indices.
+"""Statistics of a figure with their confidence: mean, spread, quantiles, probability, Sobol indices.
 
 Every bound is of 95 % confidence for independent draws; samples that are spread evenly (sobol, latin) estimate a smooth
 figure better than their bounds say.

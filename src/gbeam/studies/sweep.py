@@ -198,7 +198,7 @@ def _over_time(histories: tuple[str, ...], times: int, verb: str) -> OverTime:
 
 
 def _texts(over: Mapping[str, Any] | Sequence[str]) -> list[str]:
-    """What varies, as texts."""
+    """Variations, as texts."""
     if not isinstance(over, Mapping):
         return list(over)
     return [f"{path}={values if isinstance(values, str) else _listed(path, values)}" for path, values in over.items()]
@@ -282,7 +282,7 @@ def assembled(title: str, cases: Cases, names: Sequence[str], begun: Start, rows
 
 
 def with_statistics(sweep: Sweep, cases: Cases, truths: Mapping[str, bool], seed: int) -> Sweep:
-    """The same with what its samples say; they are the last dimension of the measures."""
+    """Sweep with the statistics of its samples, which are the last dimension of the measures."""
     first = slice(cases.independent)
     # A figure of a case that was cut off, such as the peak until it diverged, is none of the answer.
     done = sweep.computed

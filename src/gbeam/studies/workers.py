@@ -1,4 +1,4 @@
-"""Where cases are computed on this machine: in this process, or in others.
+"""Computation of cases on this machine: in this process, or in others.
 
 Each takes batches of cases and yields their rows in any order; the same cases give the same rows everywhere, as they do
 on a cluster.

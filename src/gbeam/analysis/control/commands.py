@@ -114,7 +114,7 @@ class Vibration:
 
     @staticmethod
     def of(structure: Structure, hub: Hub) -> Vibration:
-        """Those that a drive of the hub excites."""
+        """Modes that a drive of the hub excites."""
         linear = linearize(structure, hub)
         if hub.free:
             column = linear.b[:, 0]

@@ -150,7 +150,7 @@ def balanced_truncation(system: StateSpace, order: int) -> tuple[StateSpace, Flo
 def truncation(
     method: str, system: StateSpace, apart: StateSpace, states: int, hankel: Floats, band: tuple[float, float]
 ) -> Truncation:
-    """What a truncation leaves out, by the system that the difference is; the band in rad/s."""
+    """Truncation by the system of the difference; the band in rad/s."""
     start, end = band
     poles = np.abs(scipy.linalg.eigvals(apart.a))  # where its gain has peaks
     over = np.geomspace(start, end, POINTS, endpoint=False)  # short of the last pole kept, which may be undamped

@@ -119,14 +119,14 @@ class ResponseSettings(Value):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is implausible, and what is left out."""
+        """Warnings of implausible settings, and of what is left out."""
         step = () if self.step is None else implausible("response.step", "step", self.step)
         parts = {NOT_ESTIMATED: self.estimate, NO_LOADS: self.loads}
         left_out = tuple(words for words, made in parts.items() if not made)
         return (*implausible("response.duration", "duration", self.duration), *step, *left_out)
 
     def kept_every(self, samples: int, step: float) -> int:
-        """How many of the `samples` of a history, `step` s apart, make one in a file."""
+        """Number of the `samples` of a history, `step` s apart, make one in a file."""
         wanted = -(-samples // KEPT) if self.histories is None else round(self.histories / step)
         return max(1, wanted)
 

@@ -1,1 +1,1 @@
-"""What a base does: flight (prescribed or recorded), a turning hub, how a beam is mounted on one."""
+"""Motions of a base: flight (prescribed or recorded), a turning hub, how a beam is mounted on one."""

@@ -1,4 +1,4 @@
-"""What a motion hands to the beam: the acceleration and rotation of the base axes."""
+"""Motion of the base axes as the beam takes it: acceleration and rotation."""
 
 from __future__ import annotations
 

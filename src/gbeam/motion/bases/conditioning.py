@@ -1,4 +1,4 @@
-"""What a record's samples go through: dropouts, spikes and flat tops found, filter, resampling."""
+"""Conditioning of a record's samples: dropouts, spikes and flat tops found, filter, resampling."""
 
 from __future__ import annotations
 

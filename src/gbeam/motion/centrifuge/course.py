@@ -58,7 +58,7 @@ class AxisMotion:
 
     @property
     def inverse(self) -> Inverse:
-        """What makes axis motions of the target, likewise."""
+        """Inverse that makes axis motions of the target, likewise."""
         return self._solved.inverse
 
     def corners(self, step: float) -> NDArray[np.float64]:
@@ -113,14 +113,14 @@ class AxisMotion:
         return self.target.episodes()
 
     def usage(self) -> tuple[LimitUse, ...]:
-        """What the motion uses of the machine's limits, from its beginning to its end."""
+        """Use of the machine's limits by the motion, from its beginning to its end."""
         first, last = (float(end) for end in self.extent)
         time = sampled(first, last, max(_GRID, (last - first) / _MOST))
         axes, jerk = self.axes_and_jerks(time)
         return usage(time, axes.rates, axes.accelerations, jerk, self.limits)
 
     def shortfalls(self) -> tuple[Shortfall, ...]:
-        """Where no such machine can make the flight's load, and what would help."""
+        """Stretches in which no such machine can make the flight's load, and what would help."""
         # A plan keeps the limits at corners too, and what it misses there is its tracking error.
         return shortfalls(self.target, float(self.geometry.arm), turns=not INVERSES[self.method].plans)
 
@@ -145,7 +145,7 @@ class Course:
         return self.solution
 
     def solved(self, inverse: str, limits: Limits, ends: Ends) -> Course:
-        """The same with the axis motions, and how they begin and end."""
+        """Course with the axis motions, and how they begin and end."""
         solution = INVERSES[inverse].build(self.target, self.geometry, limits, ends)
         own = solution.extent is not None
         ramps = None if own else build_ramps(self.target, solution, self.geometry, limits, ends)

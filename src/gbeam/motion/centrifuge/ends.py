@@ -1,4 +1,4 @@
-"""How a centrifuge's motion begins and ends: from standstill and back to it, or turning already."""
+"""Beginning and end of a centrifuge's motion: from standstill and back to it, or turning already."""
 
 from __future__ import annotations
 

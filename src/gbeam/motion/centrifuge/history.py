@@ -1,4 +1,4 @@
-"""What a centrifuge's axes do at given times, what that uses of its limits, and where it cannot follow."""
+"""Motion of a centrifuge's axes at given times, its use of limits, and where it cannot follow."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _USED_UP = 0.99  # share of a limit
 
 
 def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
-    """What a centrifuge does at given times (s, ascending), with its limits and where it cannot follow."""
+    """Axes of a centrifuge at given times (s, ascending), with its limits and where it cannot follow."""
     axes, jerk = motion.axes_and_jerks(time)
     reference, actual, not_followed = motion.reference(time), motion.actual_by(axes), motion.not_followed(time)
     angle, rate, acceleration = columns(axes, time)

@@ -68,13 +68,13 @@ class MachineLimits:
 
     @property
     def axes(self) -> tuple[AxisLimit, AxisLimit, AxisLimit]:
-        """Those of the three axes."""
+        """Limits of the three axes."""
         return self.axis1, self.axis2, self.axis3
 
 
 @record
 class Limits:
-    """The same as arrays: infinite where nothing is given.
+    """Limits as arrays: infinite where nothing is given.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def _use(
 
 
 def exceeded(uses: Sequence[LimitUse]) -> tuple[LimitUse, ...]:
-    """Those that are above what is allowed."""
+    """Uses above the limits."""
     return tuple(use for use in uses if use.exceeded)
 
 

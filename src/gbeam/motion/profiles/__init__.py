@@ -1,1 +1,1 @@
-"""What a quantity does over time: straight pieces, pulses, smooth steps, and their smoothing."""
+"""Profiles of quantities over time: straight pieces, pulses, smooth steps, and their smoothing."""

@@ -149,7 +149,7 @@ class Convolved(Profile):
         return self.profile.breaks[:0]
 
     def corners(self, step: float) -> NDArray[np.float64]:
-        """Those of the profile, s, where steps are long beside the width."""
+        """Breaks of the profile, s, where steps are long beside the width."""
         return rounded_corners(self.profile.corners(step), self.width, step)
 
     def knots(self, step: float) -> NDArray[np.float64]:

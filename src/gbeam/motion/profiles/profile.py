@@ -1,4 +1,4 @@
-"""What a profile is: a quantity prescribed over time, with its derivatives; its smoothing."""
+"""Protocol of profiles: a quantity prescribed over time, with its derivatives; its smoothing."""
 
 from __future__ import annotations
 

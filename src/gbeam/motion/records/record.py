@@ -49,7 +49,7 @@ class Rates:
 
 @dataclass(frozen=True)
 class Conditioning:
-    """What is done to a record.
+    """Steps that are taken on a record.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ class FlightRecord:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was done to it, and what looks odd."""
+        """Steps taken, and oddities of the record."""
         return () if self.acceleration.record is None else self.acceleration.record.notes
 
 

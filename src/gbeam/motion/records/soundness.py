@@ -109,7 +109,7 @@ _ACCELERATION = 'if it is acceleration without gravity, add quantity = "accelera
 
 @dataclass(frozen=True)
 class Samples:
-    """What is checked.
+    """Subject of the checks.
 
     Parameters
     ----------

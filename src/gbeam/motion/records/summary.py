@@ -1,4 +1,4 @@
-"""What a record is, in numbers, and what looks odd in it and is flown all the same."""
+"""Summary of a record in numbers, and its oddities, which are flown all the same."""
 
 from __future__ import annotations
 

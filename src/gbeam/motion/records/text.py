@@ -228,7 +228,7 @@ def _is_data(cells: list[str]) -> bool:
 
 
 def _comment(line: str, delimiter: str) -> str | None:
-    """What a comment says; None if a line is none. A line of semicolons may be one whose first cell is empty."""
+    """Text of a comment; None if a line is none. A line of semicolons may be one whose first cell is empty."""
     mark = _COMMENT.match(line)
     return None if mark is None or (delimiter == ";" == mark[1]) else line[mark.end() :]
 

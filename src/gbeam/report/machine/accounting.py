@@ -1,4 +1,4 @@
-"""What a machine makes of a flight, and what is accepted of it, as lines below the verdict."""
+"""Accounting of an imitation and its acceptance, as lines below the verdict."""
 
 from __future__ import annotations
 

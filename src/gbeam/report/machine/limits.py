@@ -1,4 +1,4 @@
-"""What a machine uses of its limits, a table for people."""
+"""Use of a machine's limits, as a table for people."""
 
 from __future__ import annotations
 

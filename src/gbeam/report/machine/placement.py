@@ -70,7 +70,7 @@ def _percent(share: float) -> str:
 
 
 def _range(placement: Placement) -> str:
-    """What was searched, and whether the best lies at its end."""
+    """Range that was searched, and whether the best lies at its end."""
     low, high = placement.widths
     if low == high:
         return ""

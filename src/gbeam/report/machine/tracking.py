@@ -1,4 +1,4 @@
-"""How well a centrifuge follows the load of its flight: the numbers that reports quote."""
+"""Tracking of the load of a flight by its centrifuge: the numbers that reports quote."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _EXACT = 1e-9  # of the load: a smaller error is rounding
 
 
 def tracked(driven: Driven) -> str:
-    """How well the load is followed, in words."""
+    """Tracking of the load, in words."""
     errors = {"tracking_error": driven.tracking_error, "flight_error": driven.flight_error}
     return followed({name: None if each is None else asdict(each) for name, each in errors.items()})
 
@@ -40,7 +40,7 @@ def _within(error: Mapping[str, Any]) -> str:
 
 
 def ends_line(time: Floats, axes: AxesResult) -> str:
-    """How the machine begins and ends, in words."""
+    """Beginning and end of the machine, in words."""
     how = "turning already" if axes.start == "idle" else "from standstill to standstill"
     return f"{how}, from {time[0]:.3f} to {time[-1]:.3f} s on the flight's clock"
 

@@ -20,7 +20,7 @@ _CASES = 400  # listed
 
 
 def placement_body(facts: Facts, viewer: str, drawn: str) -> str:
-    """Where to put the specimen, what that changes, and the other options."""
+    """Best place of the specimen, its effect, and the other options."""
     best = f"{1e3 * facts['control_point']:.2f} mm from the root, {facts['fraction_of_length']:.4f} of the length"
     now = f"{1e3 * facts['current_control_point']:.2f} mm"
     rows = [
@@ -83,7 +83,7 @@ def _use(use: Facts) -> str:
 
 
 def sweep_body(facts: Facts, viewer: str, drawn: str) -> str:
-    """How many cases ended how, a plot or a map of each measure, and every case."""
+    """Counts of outcomes, a plot or a map of each measure, and every case."""
     counts = ", ".join(f"{count} {name}" for name, count in facts["counts"].items())
     outcomes = np.array(facts["outcomes"], dtype=object)
     kind = "" if facts["outcome"] == "done" else "bad"
@@ -103,7 +103,7 @@ def sweep_body(facts: Facts, viewer: str, drawn: str) -> str:
 
 
 def _estimates(facts: Facts) -> str:
-    """What samples say of each measure, where no grid makes many of it, with bounds of 95 % confidence."""
+    """Statistics of each measure, where no grid makes many of it, with bounds of 95 % confidence."""
     rows: list[list[Value]] = []
     for name, estimates in facts["statistics"].items():
         if name in facts["measures"] and isinstance(estimates["draws"], int):

@@ -47,7 +47,7 @@ def _plot(panel: Panel, subject: str, numbers: Numbers, specs: list[dict[str, An
 
 
 def _said(panel: Panel) -> Iterator[str]:
-    """What a picture would name where it is, in words."""
+    """Names that a picture has at its places, in words."""
     for each in panel.marks:
         yield f"{each.label} at {number(each.value)}"
     named = {line.label.removeprefix("_") for line in panel.lines}

@@ -129,7 +129,7 @@ def html(
 def _viewer(
     kind: str, facts: Mapping[str, Any], variables: Mapping[str, Any], numbers: Numbers
 ) -> dict[str, dict[str, Any]]:
-    """What the viewer shows of a kind, if anything."""
+    """Viewer of a kind, if it has one."""
     if kind == "modes" and facts["modes"]:
         return {"modes": shapes(modes_in(facts), numbers)}
     motions = facts["motions"] if kind == "run" else {}

@@ -119,7 +119,7 @@ def plan_body(facts: Facts, viewer: str, drawn: str) -> str:
 
 
 def machine_section(name: str, motion: Facts) -> str:
-    """What is used of every limit, and how well the load is followed."""
+    """Use of every limit, and how well the load is followed."""
 
     def row(use: Facts) -> list[Value]:
         limited = use["allowed"] is not None and math.isfinite(use["allowed"])

@@ -53,7 +53,7 @@ def listed(lines: Iterable[str], kind: str = "") -> str:
 
 
 def folded(summary: str, inside: str) -> str:
-    """What is shown once its summary is clicked."""
+    """Content that shows once its summary is clicked."""
     return f"<details><summary>{escaped(summary)}</summary>{inside}</details>"
 
 
@@ -92,12 +92,12 @@ def _breaking(name: str) -> str:
 
 
 def badge(state: str) -> str:
-    """How a result ended, which must not be overlooked."""
+    """Outcome of a result, as a badge that must not be overlooked."""
     return f'<span class="badge {"good" if state in GOOD else "bad"}">{escaped(state)}</span>'
 
 
 def plot_places(drawn: Iterable[tuple[str, str]]) -> str:
-    """Where plots are drawn, each by its id and title; nothing where there is none."""
+    """Places of plots, each by its id and title; nothing where there is none."""
     places = "".join(
         f'<figure><figcaption>{escaped(title)}</figcaption><div id="{escaped(name)}"></div></figure>'
         for name, title in drawn

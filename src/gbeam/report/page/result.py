@@ -45,7 +45,7 @@ def variables_of(result: Result) -> dict[str, Any]:
 
 
 def shown(result: Result) -> tuple[dict[str, Any], Numbers]:
-    """What the viewer shows of a result: its header, and the numbers."""
+    """Scene of a result in the viewer: its header, and the numbers."""
     numbers = Numbers()
     header: dict[str, Any] = {"plots": [], "maps": []}
     if isinstance(result, Modes):

@@ -1,4 +1,4 @@
-"""What the viewer shows, from the variables of a result's file."""
+"""Scene of the viewer, from the variables of a result's file."""
 
 from __future__ import annotations
 

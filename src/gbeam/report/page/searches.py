@@ -107,7 +107,7 @@ def sensitivity_body(facts: Facts, viewer: str, drawn: str) -> str:
 
 
 def shaping_body(facts: Facts, viewer: str, drawn: str) -> str:
-    """What each command leaves, the commands, the tip, and what is left where the frequencies are others."""
+    """Vibration that each command leaves, also where the frequencies are others, the commands, and the tip."""
     ((goal, size),) = facts["goal"].items()
     aim = f"to {number(size)} rad/s" if goal == "rate" else f"by {number(size)} rad"
     span = f", for frequencies wrong by up to {percent(facts['robust'])}" if facts["robust"] else ""

@@ -74,7 +74,7 @@ def tracks_table(facts: Facts) -> str:
 
 
 def crossings_table(facts: Facts) -> str:
-    """Where multiples of the speed meet modes."""
+    """Crossings of modes with multiples of the speed."""
     rows = [
         [
             str(each["track"] + 1),
@@ -96,7 +96,7 @@ def _error(facts: Facts) -> str:
 
 
 def static_body(facts: Facts, viewer: str, drawn: str) -> str:
-    """Where the beam rests in every motion, and what its sections carry."""
+    """Deflection in every motion, and the loads of the sections."""
     motions = facts["motions"]
     parts = [
         paragraph(f"motion {name}: unstable, no beam would stay there", "bad")

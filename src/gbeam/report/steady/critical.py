@@ -1,4 +1,4 @@
-"""Where the equilibrium is lost: one value, or a map of hub rates against a mass and its position."""
+"""Critical values in words: one, or a map of hub rates against a mass and its position."""
 
 from __future__ import annotations
 

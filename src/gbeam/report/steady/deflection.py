@@ -1,4 +1,4 @@
-"""Where the beam rests, and what its sections carry."""
+"""Static deflections and the loads of sections in words."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ def text(system: StateSpace, gauges: Iterable[Gauge] = ()) -> str:
 
 
 def _left_out(system: StateSpace, left_out: Truncation) -> list[str]:
-    """How many states, what their share is, and of a balanced truncation the bound of the error."""
+    """States left out, their share, and of a balanced truncation the bound of the error."""
     share = left_out.share
     worst = np.unravel_index(int(share.argmax()), share.shape) if share.size else (0, 0)
     count = f"{left_out.states} of {left_out.states + len(system.a)} states"

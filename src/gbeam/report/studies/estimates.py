@@ -1,4 +1,4 @@
-"""What samples say of one figure, in words: estimates with their bounds."""
+"""Statistics of one figure, in words: estimates with their bounds."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def _over_grid(sweep: Sweep, statistics: Statistics, heads: list[str]) -> list[s
 
 
 def _history(time: Floats, statistics: Statistics, title: str) -> list[str]:
-    """Where the band over time lies at the time at which the median is largest, at the first point of the grid."""
+    """Band over time at the time at which the median is largest, at the first point of the grid."""
     values = statistics.values[(0,) * (statistics.count.ndim - 1)]
     at = [statistics.names.index(each) for each in ("5 %", "median", "95 %")]
     median = np.abs(np.nan_to_num(values[:, at[1], 0]))

@@ -7,7 +7,7 @@ from gbeam.results.searches import ShapedCommand
 
 
 def text(command: ShapedCommand) -> str:
-    """What each command leaves, the shaped one first."""
+    """Vibration that each command leaves, the shaped one first."""
     c = command
     aim = f"to {number(c.goal)} rad/s" if c.to_rate else f"by {number(c.goal)} rad"
     drive = "largest, N m" if c.kind == "torque" else "largest, rad/s^2"

@@ -15,7 +15,7 @@ _FELT = 0.01  # of flight's peak: a mismatch that bends the tip by less is no re
 
 
 def lines(comparison: Comparison) -> Iterator[str]:
-    """What was accepted, load peaks, differences, vibration, and a bound on what the mismatch field can do."""
+    """Acceptance, load peaks, differences, vibration, and a bound on what the mismatch field can do."""
     main = comparison.main_axis
     yield from accounting.judged_lines(comparison)
     yield from accounting.peak_lines(comparison.peaks)

@@ -1,4 +1,4 @@
-"""The same scenario by every model."""
+"""A scenario by every model, as a table."""
 
 from __future__ import annotations
 

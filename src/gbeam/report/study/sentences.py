@@ -1,4 +1,4 @@
-"""What is said of one response: accuracy, loads, hub, and how well a machine follows, a sentence each."""
+"""Sentences on one response: accuracy, loads, hub, and how well a machine follows."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SHORTFALLS = 2
 
 
 def of_beam(response: Response) -> Iterator[str]:
-    """How accurate it is, how it begins, what the root carries, what the hub does, and what a file keeps of it."""
+    """Sentences on accuracy, beginning, root loads, hub, and the samples that a file keeps."""
     yield _accuracy(response)
     if response.initial:
         yield response.initial
@@ -48,7 +48,7 @@ def _accuracy(response: Response) -> str:
 
 
 def _damping(response: Response) -> str:
-    """What the damping ratio is of where that is not obvious: with a free hub the beam's modes are others."""
+    """Modes that the damping ratio is of, where that is not obvious: with a free hub the beam's modes are others."""
     ratios = np.atleast_1d(response.damping_ratio)
     size = " to ".join(f"{100 * each:.3g}" for each in sorted({float(ratios.min()), float(ratios.max())}))
     return f"damping {size} % of critical, of the modes of the beam on a hub at rest; those with the free hub have more"
@@ -76,7 +76,7 @@ def _hub(hub: HubResult) -> str:
 
 
 def of_machine(response: Response) -> Iterator[str]:
-    """How a centrifuge begins and ends, how well it follows the load, and where it does not."""
+    """Sentences on how a centrifuge begins and ends, follows the load, and where it does not."""
     axes = response.axes
     if axes is None:
         return

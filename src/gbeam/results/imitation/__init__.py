@@ -1,1 +1,1 @@
-"""What a machine makes of a flight: peaks and stretches accounted for, differences, damage, verdict, placement."""
+"""Results of an imitation: peaks and stretches accounted for, differences, damage, verdict, placement."""

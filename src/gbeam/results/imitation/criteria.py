@@ -1,4 +1,4 @@
-"""What an imitation is accepted by: every criterion declared once, for scenarios, checks, words and documents.
+"""Criteria of acceptance: every criterion declared once, for scenarios, checks, words and documents.
 
 The schema of scenarios reads it, so that importing it loads no NumPy.
 """

@@ -1,4 +1,4 @@
-"""Where to put a specimen on a centrifuge: frozen records."""
+"""Placements of a specimen on a centrifuge: frozen records."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Candidate(Part):
     @property
     @declared("", "where that is", name="largest_load_place", key=None)
     def load_place(self) -> str:
-        """Where on the specimen that is."""
+        """Place of that on the specimen."""
         return self.largest_load.place_machine
 
     @property
@@ -89,7 +89,7 @@ class Verification:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Setting(Part):
-    """How a specimen is put on a centrifuge."""
+    """Placement of a specimen on a centrifuge."""
 
     control_point: float = quantity("m", "control point, from the root")
     mounting: str = fact("upright or inverted")
@@ -152,7 +152,7 @@ class Placement(Result):
 
     @property
     def changes(self) -> dict[str, str]:
-        """What to change of the centrifuge, as in a scenario; empty where it is the best already, or none may be."""
+        """Changes of the centrifuge, as in a scenario; empty where it is the best already, or none may be."""
         best, before = self.best, self.before
         if self.outcome != "done":
             return {}

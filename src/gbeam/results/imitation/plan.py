@@ -20,7 +20,7 @@ _WIDTH = 110  # columns
 
 @dataclass(frozen=True, repr=False, eq=False)
 class MachinePlan(Judged, Driven, Figured):
-    """What a centrifuge does to imitate a flight, without the response of a beam."""
+    """Motion of a centrifuge that imitates a flight, without the response of a beam."""
 
     name: str = fact("name of the motion", key=None)
     tracks: str = fact("name of the flight")

@@ -99,7 +99,7 @@ class Load(Table):
 
 
 class Stations(Table):
-    """What every section has: the positions at which its dimensions are listed."""
+    """Positions at which the dimensions of a section are listed."""
 
     stations: tuple[Position, ...] = Field(
         default=(),
@@ -109,7 +109,7 @@ class Stations(Table):
 
 
 class Flat(Stations):
-    """What has a width to be kept from bending across."""
+    """A section with a width to be kept from bending across."""
 
     plate: StrictBool = Field(
         default=False,

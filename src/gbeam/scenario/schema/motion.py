@@ -52,7 +52,7 @@ class Accept(_Limits):  # type: ignore[misc, valid-type]
 
     @property
     def given(self) -> dict[str, Any]:
-        """What is given, by name."""
+        """Values that are given, by name."""
         return {name: value for name, value in self if value is not None}
 
 
@@ -98,7 +98,7 @@ class Flight(Table):
 
 
 class AxisLimit(Table):
-    """What one axis of the machine can do."""
+    """Limits of one axis of the machine."""
 
     rate: Annotated[float, Quantity("angular rate", "positive")] | None = Field(
         default=None, description="largest rate, of either sign"
@@ -112,7 +112,7 @@ class AxisLimit(Table):
 
 
 class Limits(Table):
-    """What the machine can do; exceeding it ends in exit status 1 unless allowed."""
+    """Limits of the machine; exceeding one ends in exit status 1 unless allowed."""
 
     axis1: AxisLimit = Field(default_factory=AxisLimit, description="the arm: { rate, acceleration, jerk }")
     axis2: AxisLimit = Field(
@@ -191,7 +191,7 @@ class Centrifuge(Table):
 
     @property
     def limits_of_acceptance(self) -> dict[str, Any]:
-        """What [accept] gives, by name; empty without the table."""
+        """Limits of [accept] by name; empty without the table."""
         return {} if self.accept is None else self.accept.given
 
     @model_validator(mode="after")

@@ -33,7 +33,7 @@ def _described(schema: dict[str, Any], model: type[Any]) -> None:
 
 
 class Smoothed(Table, Generic[L, S]):
-    """What every profile has."""
+    """Common keys of profiles."""
 
     model_config = ConfigDict(json_schema_extra=_described)
 
@@ -49,7 +49,7 @@ class Smoothed(Table, Generic[L, S]):
 
 
 class Constant(Smoothed[L, S], Generic[L, S]):
-    """The same value always."""
+    """A constant value."""
 
     profile: Literal["constant"] = Field(description="name of the profile")
     level: L = Field(description="value")

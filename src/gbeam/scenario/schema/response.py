@@ -72,7 +72,7 @@ class Initial(Table):
 
     @property
     def given(self) -> dict[str, Any]:
-        """What is given, as the object takes it."""
+        """Settings that are given, as the object takes them."""
         return self.model_dump(exclude_none=True)
 
 

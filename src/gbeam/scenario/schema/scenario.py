@@ -103,7 +103,7 @@ def _printable(title: str) -> str:
 
 
 class _Titled(Table):
-    """What every scenario has; a class of its own only to keep the tables in the order they are written in."""
+    """Common keys of scenarios; a class of its own only to keep the tables in the order they are written in."""
 
     title: Annotated[str, AfterValidator(_printable)] = Field("", description="what the scenario is about, for reports")
 

@@ -1,4 +1,4 @@
-"""What is wrong with a scenario, and where: records that print like a compiler's messages."""
+"""Diagnostics of a scenario with their places: records that print like a compiler's messages."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Diagnostic:
 
     @staticmethod
     def _excerpt(line: str, column: int) -> tuple[str, int]:
-        """What is shown of a line, and where the column is in that: a scenario may be one line of a megabyte."""
+        """Part of a line that is shown, and where the column is in that: a scenario may be one line of a megabyte."""
         if len(line) <= _WIDTH:
             return line, column
         first = min(max(column - _WIDTH // 3, 0), len(line) - _WIDTH)

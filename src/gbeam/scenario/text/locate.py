@@ -174,7 +174,7 @@ Written = tuple["Node", "Node | None"]
 
 
 class Layout:
-    """Where every entry of a TOML text is written: several times where headers and dotted keys share a table."""
+    """Places of every entry of a TOML text: several where headers and dotted keys share a table."""
 
     def __init__(self, code: bytes) -> None:
         self.root = syntax_tree(code)

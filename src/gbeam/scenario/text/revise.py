@@ -93,7 +93,7 @@ def toml(value: Any) -> str:
 
 
 def _checked(text: str, expected: Sequence[Any], path: Path, edit: Callable[[], str]) -> str:
-    """What an edit makes of the text, if that reads as it must."""
+    """Text after an edit, if it reads as it must."""
     if is_json(text):
         return json.dumps(expected[0], indent=2, ensure_ascii=False) + "\n"
     changed = edit()

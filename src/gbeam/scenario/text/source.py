@@ -48,7 +48,7 @@ class Source:
 
     @cached_property
     def places(self) -> dict[Path, Place]:
-        """Where each entry of the text stands."""
+        """Places of the entries of the text."""
         # Imported where something is wrong: what is right needs no places.
         from gbeam.scenario.text.locate import locate_json, locate_toml
 

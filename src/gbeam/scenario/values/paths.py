@@ -23,7 +23,7 @@ class Span:
 
 @dataclass(frozen=True)
 class Place:
-    """Where an entry stands: its key (an element of a list has its value's place) and its value.
+    """Place of an entry: its key (an element of a list has its value's place) and its value.
 
     A table written under a ``[header]`` has the header's name for both.
     """

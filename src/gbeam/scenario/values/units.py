@@ -185,7 +185,7 @@ def parsed_factor(unit: str, kind: str) -> float:
 
 
 def _meant(name: str, unit: str, kind: str) -> str | None:
-    """What an unknown name in a unit was probably meant to be; None where no usual spelling makes the kind."""
+    """Unit that an unknown name was probably meant to be; None where no usual spelling makes the kind."""
     registry = _registry()
 
     def makes_the_kind(spelling: str) -> bool:

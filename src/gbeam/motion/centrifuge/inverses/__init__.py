@@ -1,1 +1,1 @@
-"""Which axis motions make a load: closed forms, the exact inverse, the planned one."""
+"""Inverses, from loads to axis motions: closed forms, the exact inverse, the planned one."""

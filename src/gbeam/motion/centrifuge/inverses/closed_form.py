@@ -1,4 +1,4 @@
-"""Which axis angles make a given load: the inverse of the three-axis centrifuge (Zhang 2020, corrected).
+"""Axis angles that make a given load: the inverse of the three-axis centrifuge (Zhang 2020, corrected).
 
 An inverse maps a target (the reference load at the control point, over time) to the arm's rate and the two gimbal
 angles, as series in time, so that their rates come with them. Here are those in closed form; `registry` names all.
@@ -20,7 +20,7 @@ Pose = tuple[Series, Series, Series]  # ω1, θ2, θ3
 
 @record
 class Geometry:
-    """What an inverse knows of the machine.
+    """The machine as an inverse knows it.
 
     Parameters
     ----------

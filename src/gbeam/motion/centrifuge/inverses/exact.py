@@ -96,7 +96,7 @@ def unfollowable(target: Target, geometry: Geometry) -> list[tuple[float, float]
 
 
 def _times(target: Target) -> tuple[float, float]:
-    """Where the target may change, s: a corner at either end of the span is rounded within half a width of it."""
+    """Times at which the target may change, s: a corner at an end of the span is rounded within half a width."""
     return target.span[0] - float(target.half_width), target.span[1] + float(target.half_width)
 
 

@@ -101,11 +101,11 @@ class Ramp:
         return abs(float(self.steady) - float(self.still))
 
     def of_length(self, length: Any) -> Ramp:
-        """The same ramp with another length, s."""
+        """Ramp with another length, s."""
         return replace(self, still=self.steady + self.outward * length)
 
     def usage(self, limits: Limits) -> tuple[LimitUse, ...]:
-        """What the ramp uses of the machine's limits."""
+        """Use of the machine's limits by the ramp."""
         first, last = sorted((float(self.still), float(self.steady)))
         time = np.linspace(first, last, _SAMPLES)
         arm, *gimbals = (series.derivatives() for series in self.pose(time, 3))

@@ -1,4 +1,4 @@
-"""How far the load that the axes make is from the flight's: the cost of a plan, with its derivatives."""
+"""Distance of the load that the axes make from the flight's: the cost of a plan, with its derivatives."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class Tracking:
         self.ease = splines.assembled(np.broadcast_to(self.eased, (self.eased.size, grid.pieces)))
 
     def gentler(self, factor: float) -> Tracking:
-        """The same with a larger EASE."""
+        """Cost with a larger EASE."""
         other = copy.copy(self)
         other.ease, other.eased = factor**2 * self.ease, factor**2 * self.eased
         return other

@@ -1,4 +1,4 @@
-"""Which loads no centrifuge makes: those near zero, along the beam, or across it below gravity.
+"""Loads that no centrifuge makes: those near zero, along the beam, or across it below gravity.
 
 All on knots, when a target is built; vectors in base axes, m/s².
 """
@@ -61,7 +61,7 @@ def refuse_far(times: Floats, load: Floats, far: Flags) -> None:
 
 
 def missing_across(load: float) -> str:
-    """What a load across the beam, m/s², lacks to be in reach; rounded up, so that adding it does."""
+    """Least addition to a load across the beam, m/s², that brings it into reach; rounded up."""
     return f"{np.ceil(100 * (MIN_TRANSVERSE_LOAD - load) / STANDARD_GRAVITY - 1e-6) / 100:g} g"
 
 

@@ -179,16 +179,16 @@ class NearestLoad(Profile):
 
     @property
     def breaks(self) -> Any:
-        """Those of the load and of the path, s."""
+        """Breaks of the load and of the path, s."""
         return self.flight.breaks if self.path is None else merged_breaks(self.flight, self.path)
 
     def corners(self, step: float) -> NDArray[np.float64]:
-        """Those of the load and of the path, s."""
+        """Breaks of the load and of the path, s."""
         own = self.flight.corners(step)
         return own if self.path is None else np.union1d(own, self.path.corners(step))
 
     def knots(self, step: float) -> NDArray[np.float64]:
-        """Those of the load and of the path, s."""
+        """Breaks of the load and of the path, s."""
         own = self.flight.knots(step)
         return own if self.path is None else np.union1d(own, self.path.knots(step))
 

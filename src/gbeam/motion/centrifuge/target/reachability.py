@@ -1,4 +1,4 @@
-"""Where a load can be followed, and what smoothing it needs."""
+"""Reachability of loads, and the smoothing that they need."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ def size_and_rates(load: Profile, gravity: float, time: Any) -> tuple[Any, Any, 
 
 
 def _idle_remedy(total: Floats, across: Floats, gravity: float) -> str:
-    """What makes loads below idle, m/s², trackable."""
+    """Change that makes loads below idle, m/s², trackable."""
     least = np.floor(100 * np.min(total) / UNTOUCHED / STANDARD_GRAVITY) / 100
     if least >= (LEAST_IDLE if gravity else 0.02):
         return f'idle = "{least:.2f} g" or less would follow it'
@@ -131,7 +131,7 @@ def _idle_remedy(total: Floats, across: Floats, gravity: float) -> str:
 
 
 def _sharp_remedy(width: float | None, load: float) -> str:
-    """What makes a turn trackable: the smoothing, s, if one is enough; else the idle that holds the load, m/s²."""
+    """Change that makes a turn trackable: the smoothing, s, if that is enough; else the idle, m/s²."""
     if width is not None:
         return f'smoothing = "{np.ceil(1e3 * width):.0f} ms" or more is trackable'
     idle = np.ceil(100 * load / UNTOUCHED / STANDARD_GRAVITY) / 100
