@@ -34,7 +34,7 @@ def every() -> dict[str, Any]:
     options = tuple(Candidate("upright", 0.06, at, 0.1, 0.2, (1.0, 2.0, 3.0), 0.5, uses[:1]) for at in (0.2, 0.1))
     values = {place: {"tip": 0.1} for place in ("best", "current", "middle")}
     rows = (
-        ModelRow("exact", "slew", "done", "", (), 0.1, 0.5, 0.0, difference=0.0),
+        ModelRow("exact", "slew", "done", "", (), 0.1, 0.5, 0.0, difference=0.0, time=time, history=0.1 * time),
         ModelRow("TLAM", "slew", "diverged", "too fast", ("a warning",)),
     )
     flight = gb.Flight(z=gb.constant(9.81))

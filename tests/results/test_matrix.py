@@ -20,8 +20,8 @@ from gbeam.results.kinds import KINDS
 from gbeam.results.result import Figured
 
 PAGE = Path(__file__).parents[2] / "docs" / "results.md"
-# One value, a table of answers, or matrices: nothing of them is a curve.
-WITHOUT_FIGURE = {"Critical", "Placement", "StateSpace", "ModelStudy"}
+# One value, a table of options, or matrices: nothing of them is a curve.
+WITHOUT_FIGURE = {"Critical", "Placement", "StateSpace"}
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -68,7 +68,7 @@ def test_values_in_xarray(every: dict[str, Any]) -> None:
     assert every["placement"].to_xarray().attrs["weight_tip"] == 1.0
 
 
-@pytest.mark.parametrize("kind", ["static", "modes", "campbell", "critical map", "plan", "response"])
+@pytest.mark.parametrize("kind", ["static", "modes", "campbell", "critical map", "plan", "response", "models"])
 def test_draws_itself(every: dict[str, Any], kind: str) -> None:
     axes = every[kind].plot(title="a title")
     assert all("," in panel.get_ylabel() for panel in axes) and "," in axes[-1].get_xlabel()  # quantity, unit

@@ -212,6 +212,8 @@ def _row(
         error_estimate=answer.error_estimate,
         steps=answer.steps,
         seconds=seconds,
+        time=answer.time,
+        history=answer.tip[:, axis],
     )
 
 

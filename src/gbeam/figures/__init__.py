@@ -20,7 +20,7 @@ from gbeam.results.machine import AxesResult
 from gbeam.results.modal import Campbell, Modes
 from gbeam.results.response import Response
 from gbeam.results.searches import Fit, Optimum, ShapedCommand
-from gbeam.results.study import Study
+from gbeam.results.study import ModelStudy, Study
 
 Describe = Callable[[], Figure]
 
@@ -41,6 +41,8 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
         case Response():
             tip = partial(response.tip, Study(title, {result.name or result.environment: result}, ()))
             return {"tip": tip, **_of_response(result, title)}
+        case ModelStudy():
+            return {"models": partial(response.models, result, title)} if any(len(r.time) for r in result.rows) else {}
         case Comparison():
             return _of_comparison(result, title, "parts", "parts ")
         case Deflection():

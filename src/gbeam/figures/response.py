@@ -35,7 +35,7 @@ from gbeam.results.machine import AxesResult
 from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion, HubResult, PlotHeading, Response
 from gbeam.results.result import Floats
-from gbeam.results.study import Study
+from gbeam.results.study import ModelStudy, Study
 
 AXES = ("axis 1, the arm", "axis 2, yaw", "axis 3, roll")
 FORCES = ("axial N", "shear V_y", "shear V_z")
@@ -71,6 +71,20 @@ def tip(study: Study) -> Figure:
     notes = (*not_drawn(shown, *sizes), *estimated(errors))
     outcomes = tuple(each.outcome for each in responses.values())
     return Figure(study.title, "tip displacement relative to the base", tuple(panels), notes, outcomes)
+
+
+def models(study: ModelStudy, title: str = "") -> Figure:
+    """Describe the tip's displacement by every model, in every motion; the one compared with is broad."""
+    panels = []
+    for name, axis in study.direction.items():
+        rows = [row for row in study.rows if row.motion == name and len(row.time)]
+        scale, unit = scale_of("m", *(row.history for row in rows))
+        looks = [FLIGHT if row.model == study.reference else imitating(k) for k, row in enumerate(rows)]
+        lines = [Line(row.time, scale * row.history, row.model, **look) for row, look in zip(rows, looks, strict=True)]
+        heading = name if len(study.direction) > 1 else ""
+        panels.append(Panel(f"{axis}, {unit}", tuple(lines), heading, zero=True, height=1.6))
+    subject = f"tip displacement by every model, {study.reference} broad"
+    return Figure(title or study.title, subject, tuple(panels), outcomes=(study.outcome,))
 
 
 def _displacement(study: Study, axis: int, *, named: bool) -> Panel:

@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from math import isnan
 from math import nan as NAN
 
+import numpy as np
+
 from gbeam.results.declared import declared, fact, quantity, rows
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.criteria import state_of
 from gbeam.results.response import Response
-from gbeam.results.result import Figured, Part, Result
+from gbeam.results.result import Figured, Floats, Part
 
 
 @dataclass(frozen=True)
@@ -109,6 +111,18 @@ class ModelRow(Part):
     error_estimate: float = quantity("", "total estimated error over the largest displacement", default=NAN)
     steps: int = quantity("", "number of steps", default=0)
     seconds: float = quantity("s", "time to compute it", note="once compiled", default=NAN)
+    time: Floats = quantity(
+        "s", "times of the history", "time", name=None, key=None, default_factory=lambda: np.empty(0)
+    )
+    history: Floats = quantity(
+        "m",
+        "displacement of the tip in the direction compared",
+        "time",
+        name=None,
+        key=None,
+        note="empty where there is no answer",
+        default_factory=lambda: np.empty(0),
+    )
 
     @property
     @declared("", "warnings", name="warnings", key=None)
@@ -124,7 +138,7 @@ class ModelRow(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class ModelStudy(Result):
+class ModelStudy(Figured):
     """A scenario by every model; rows by motion, then model."""
 
     title: str = fact("title of the scenario")

@@ -104,19 +104,20 @@ def models(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = N
     """The same scenario by every model, compared with the exact one.
 
     Peak, residual vibration, its phase and the cost. A model that diverges or cannot answer has a row that says why.
-    The exact model in three dimensions takes minutes. With --out also writes models.json. Exit status: 0 done, 1 exact
-    has no answer to compare with, 2 the input is wrong.
+    The exact model in three dimensions takes minutes. With --out also writes models.json and a plot. Exit status: 0
+    done, 1 exact has no answer to compare with, 2 the input is wrong.
     """
     given = read("models", scenario, overrides, out)
 
     from gbeam.analysis.model_study import compare_models
+    from gbeam.figures import figures_of
     from gbeam.report.facts import facts as facts_of
     from gbeam.report.study import models as report
 
     with Watch() as watch, given.placing():
         study = compare_models(given.case, progress=watch)
     facts = given.signed(facts_of(study))
-    write(out, "models", facts)
+    write(out, "models", facts, figures_of(study))
     if json:
         show("", facts, json)
     else:
