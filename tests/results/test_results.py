@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -75,7 +76,9 @@ def test_draws_itself(every: dict[str, Any], kind: str) -> None:
     figure = axes[0].figure
     assert figure is axes.figure
     assert figure.get_suptitle().startswith(("a title\n", "LIMITS EXCEEDED – a title\n"))
-    figure.draw_without_rendering()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # such as of words far out of their panel
+        figure.draw_without_rendering()
 
 
 def test_parts_print_their_shapes(every: dict[str, Any]) -> None:

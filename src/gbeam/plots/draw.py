@@ -127,6 +127,10 @@ def _fill(axes: Axes, panel: Panel, *, first: bool) -> None:
         _area(axes, each)
     for one in panel.lines:
         _line(axes, one, named=panel.named)
+    if panel.lines and not any(np.isfinite(one.y).any() for one in panel.lines):
+        along = np.concatenate([one.x for one in panel.lines])  # no limits follow from points without a height
+        margin = 0.05 * (np.ptp(along) or abs(along[0]) or 1.0)
+        axes.set_xlim(along.min() - margin, along.max() + margin)
     named = ""
     for level in panel.levels:
         label = level.label if level.label != named else None  # both sides of a limit have one name
