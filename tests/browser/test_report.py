@@ -29,10 +29,14 @@ NUMBERED = """plot => {
 
 
 def _seek(page: Any, time: float) -> bytes:
-    """Take the clock to a time, and return the picture of the viewer there."""
+    """Take the clock to a time, and return the picture of the viewer there once it is at rest."""
     page.evaluate(f"window.gbeam.viewer.clock.seek({time})")
     page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
     picture: bytes = page.locator(CANVAS).screenshot()
+    for _ in range(10):  # on a busy machine the page may still be laid out around it
+        before, picture = picture, page.locator(CANVAS).screenshot()
+        if picture == before:
+            break
     return picture
 
 
