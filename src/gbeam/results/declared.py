@@ -174,7 +174,8 @@ def _type_words(annotation: str, each: Declaration) -> str:
     kinds = {"Floats": "", "Complex": "complex", "Flags": "bool"}
     base, _, none = annotation.partition(" | None")
     words = kinds.get(base, re.sub(r"tuple\[(\w+), \.\.\.\]", r"tuple of \1", base)) + (" or None" if none or _ else "")
-    shape = f"({', '.join(each.dims)}{',' if len(each.dims) == 1 else ''})" if each.dims else ""
+    dims = [dim.rstrip("_") for dim in each.dims]
+    shape = f"({', '.join(dims)}{',' if len(dims) == 1 else ''})" if dims else ""
     unit = each.unit if isinstance(each.unit, str) else ""
     return ", ".join(filter(None, (" ".join(filter(None, (shape if base in kinds else "", words.strip()))), unit)))
 

@@ -147,7 +147,7 @@ UNITS = {"largest_load": "m/s^2", "tip": "m", "root_force": "N", "root_moment": 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class PeakPair(Part):
-    """Largest size of a quantity in flight and on the machine, in one of :data:`UNITS`; NaN where it is unknown."""
+    """Largest size of a quantity in flight and on the machine, SI; NaN where it is unknown."""
 
     flight: float = quantity(BESIDE, "largest in flight", default=math.nan)
     machine: float = quantity(BESIDE, "largest on the machine", default=math.nan)
