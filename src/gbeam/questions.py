@@ -74,15 +74,16 @@ class Question:
     words: str = ""
 
     @property
-    def record(self) -> tuple[type, bool]:
-        """Kind of record that answers, and whether several do, by their motions."""
+    def record(self) -> type:
+        """Kind of record that answers; that of each motion's where several do."""
         from gbeam.results.kinds import KINDS
 
         written = self.answer.__annotations__["return"]
         if isinstance(written, type):
-            return written, False
+            return written
         name = written.removeprefix("tuple[").partition(",")[0]
-        return self.answer.__globals__.get(name) or KINDS[name], name != written
+        kind: type = self.answer.__globals__.get(name) or KINDS[name]
+        return kind
 
 
 QUESTIONS: dict[str, Question] = {}

@@ -50,17 +50,18 @@ def list_figures(verb: str, json: bool) -> int:
     from gbeam.report.words import terminal_width
     from gbeam.studies.answers import choices
 
-    units = {path: "" if each.unit == "unit" else each.unit for path, each in choices(verb).items()}
+    every = choices(verb)
+    units = {path: "" if each.unit == "unit" else each.unit for path, each in every.items()}
     named = {path: f"{path} [{unit}]" if unit else path for path, unit in units.items()}
     wide, room = max(map(len, named.values())), terminal_width()
     lines = []
-    for path, each in choices(verb).items():
+    for path, each in every.items():
         if 0 < room < wide + 40:
             lines += [named[path], *wrap(each.words, room - 2, initial_indent="  ", subsequent_indent="  ")]
         else:
             lines.append(f"{named[path]:<{wide}}  {each.words}")
     note = "* is a name, such as a motion's or an axis, [i] a place in a list, [0] the first. A path's end is enough."
-    facts = {path: {"unit": units[path], "words": each.words} for path, each in choices(verb).items()}
+    facts = {path: {"unit": units[path], "words": each.words} for path, each in every.items()}
     show("\n".join([*lines, *wrap(note, room or len(note))]), facts, json)
     return 0
 

@@ -7,7 +7,7 @@ from dataclasses import asdict
 import numpy as np
 
 from gbeam.io.groups import Group, Variable, coordinate, known, known_attrs, labels, variable
-from gbeam.io.layout import completed, group_of, whole_group
+from gbeam.io.layout import completed, group_of, in_files, whole_group
 from gbeam.results.cases import BOUNDS, ORDERS, PROBABILITY, SAMPLE, Parameter, Sweep
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.errors import Errors
@@ -41,9 +41,6 @@ def _errors(errors: Errors) -> dict[str, float | str]:
     return known_attrs({**values, "error_note": errors.note, "error_theory": errors.theory})
 
 
-UNITS = {"rate": "rad s-1", "acceleration": "rad s-2", "jerk": "rad s-3", "power": "W"}
-
-
 def plan_group(plan: MachinePlan) -> Group:
     """Return what a file holds of a plan."""
     axes, load, group = group_of(plan.axes), group_of(plan.accounting), whole_group(plan)
@@ -56,10 +53,9 @@ def plan_group(plan: MachinePlan) -> Group:
 def limits_variables(uses: tuple[LimitUse, ...]) -> dict[str, Variable]:
     """Used, allowed and when, per quantity: of the three axes, and of the arm its power."""
     variables = {}
-    for quantity, unit in UNITS.items():
+    for quantity in dict.fromkeys(use.quantity for use in uses):
         rows = [use for use in uses if use.quantity == quantity]
-        if not rows:
-            continue
+        unit = in_files(rows[0].unit)
         whose, dims = ("of the arm", ()) if quantity == "power" else ("of each axis of the machine", ("machine_axis",))
         columns = (np.array([getattr(use, name) for use in rows]) for name in ("used", "allowed", "time"))
         used, allowed, time = (column if dims else column[0] for column in columns)

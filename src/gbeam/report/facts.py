@@ -7,14 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from gbeam.report.machine.accounting import judged_lines
-from gbeam.report.study import comparison, sentences
 from gbeam.report.words import as_json
 from gbeam.results.cases import Sweep
 from gbeam.results.equilibrium import Deflection
-from gbeam.results.facts import json_of, paths_of, tree_of
+from gbeam.results.facts import json_of, paths_of
 from gbeam.results.imitation.plan import MachinePlan
-from gbeam.results.kinds import by_motion
+from gbeam.results.motions import by_motion, tree_of_answers
 from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.study import Study
@@ -44,34 +42,31 @@ def facts(*results: Result, title: str = "", files: Iterable[Path] | None = None
     answers = [whole(each) for each in results]
     kind = type(answers[0])
     written = {} if files is None else {"files": [str(file) for file in files]}
-    units = {path: each.unit for path, each in paths_of(tree_of(kind)) if each.unit not in ("", "unit")}
-    several = "motions.*." if isinstance(answers[0], (Deflection, MachinePlan)) else ""
+    units = {path: each.unit for path, each in paths_of(tree_of_answers(kind)) if each.unit not in ("", "unit")}
     form = {"kind": kind.__name__, "version": VERSION}
-    return {"form": form} | _figures(answers, title) | written | {"units": {several + p: u for p, u in units.items()}}
+    figures = by_motion(answers, title) if kind.listed_by else json_of(answers[0])
+    return {"form": form} | _worded(figures, answers) | written | {"units": units}
 
 
-def _figures(answers: list[Result], title: str) -> dict[str, Any]:
-    match answers[0]:
-        case Deflection():
-            return by_motion(answers, title)
-        case MachinePlan():
-            figures = by_motion(answers, title)
-            for plan in answers:
-                if isinstance(plan, MachinePlan):
-                    figures["motions"][plan.name]["lines"] = list(judged_lines(plan))
-            return figures
-        case Study() as study:
-            figures = json_of(study)
-            for name, response in study.responses.items():
-                lines = [*sentences.of_beam(response), *sentences.of_machine(response)]
-                figures["motions"][name]["lines"] = lines
-            for each, compared in zip(figures["comparisons"], study.comparisons, strict=True):
-                each["lines"] = list(comparison.lines(compared))
-            return figures
-        case Sweep() as answer:
-            return {**json_of(answer), "outcome": answer.state}
-        case answer:
-            return json_of(answer)
+def _worded(figures: dict[str, Any], answers: list[Result]) -> dict[str, Any]:
+    """Figures with the sentences of a verb's text, and with how all cases of a sweep ended."""
+    for answer in answers:
+        match answer:
+            case MachinePlan():
+                from gbeam.report.machine.accounting import judged_lines
+
+                figures["motions"][answer.name]["lines"] = list(judged_lines(answer))
+            case Study():
+                from gbeam.report.study import comparison, sentences
+
+                for name, response in answer.responses.items():
+                    lines = [*sentences.of_beam(response), *sentences.of_machine(response)]
+                    figures["motions"][name]["lines"] = lines
+                for each, compared in zip(figures["comparisons"], answer.comparisons, strict=True):
+                    each["lines"] = list(comparison.lines(compared))
+            case Sweep():
+                figures["outcome"] = answer.state
+    return figures
 
 
 def facts_text(result: Result) -> str:

@@ -8,8 +8,9 @@ from typing import Any
 
 from gbeam.report.facts import VERSION
 from gbeam.results.declared import declarations
-from gbeam.results.facts import paths_of, schema_of, tree_of
+from gbeam.results.facts import paths_of, schema_of
 from gbeam.results.kinds import KINDS
+from gbeam.results.motions import tree_of_answers
 
 _ENVELOPE = {
     "form": {
@@ -17,6 +18,9 @@ _ENVELOPE = {
         "description": "kind of result, and version of its keys",
         "properties": {"kind": {"enum": list(KINDS)}, "version": {"const": VERSION}},
     },
+    "title": {"type": "string", "description": "title of the scenario"},
+    "outcome": {"type": "string", "description": "how it ended; done where all is well"},
+    "state": {"type": "string", "description": "outcome with what limits of acceptance make of it"},
     "units": {"type": "object", "description": "SI unit of every number by its path, where it has one"},
     "provenance": {"type": "object", "description": "scenario, records, command and versions that it comes from"},
     "files": {"type": "array", "description": "files that were written", "items": {"type": "string"}},
@@ -29,8 +33,8 @@ This page is written by `gbeam schema --results --markdown`; `gbeam schema --res
 Every `--json` says in `form` which kind of result it is and which version its keys have, and in `units` the SI unit
 of every number by its path. A key changes or goes with a new version only. In paths `*` is a name, such as a motion's
 or an axis, and `[i]` a place in a list. The end of a path names a figure for `--measure`, `--of` and `--minimise`;
-`--measure list` prints those of a verb. Deflections and plans stand under `motions.*`, as responses do. `null` is what
-is not known, or not finite. The same quantities are in files, with long names, units and dimensions.
+`--measure list` prints those of a verb. `null` is what is not known, or not finite. The same quantities are in files,
+with long names, units and dimensions.
 """
 
 
@@ -38,7 +42,7 @@ def json_schema_of_results() -> str:
     """Return the JSON schema of what verbs print, by kinds of result."""
     kinds: dict[str, Any] = {}
     for name, kind in KINDS.items():
-        schema = schema_of(tree_of(kind))
+        schema = schema_of(tree_of_answers(kind))
         kinds[name] = {**schema, "properties": _ENVELOPE | schema["properties"]}
     schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "gbeam --json", "$defs": kinds}
     return json.dumps(schema, indent=1, ensure_ascii=False) + "\n"
@@ -64,6 +68,6 @@ def _rows(kind: type) -> Iterator[tuple[str, str, str]]:
     links = {"motions": "Response", "comparisons": "Comparison"} if kind.__name__ == "Study" else {}
     for key in sorted(links.keys() & others):
         yield f"{key}.*" if key == "motions" else f"{key}[i]", "–", f"a [{links[key]}](#{links[key].lower()})"
-    for path, each in paths_of(tree_of(kind)):
+    for path, each in paths_of(tree_of_answers(kind)):
         if path.partition(".")[0].partition("[")[0] not in links:
             yield path, each.unit, each.words.replace("|", "\\|")

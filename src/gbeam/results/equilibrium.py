@@ -18,6 +18,7 @@ from gbeam.results.result import Figured, Floats, Part, Result, brief
 class Deflection(Figured):
     """Relative equilibrium at a frozen base motion."""
 
+    listed_by = "motion"
     motion: str = fact("name of the motion", key=None)
     model: str = fact("kind of the model")
     time: float = fact("time at which the motion is frozen", "s")

@@ -49,11 +49,15 @@ def facts_of(record: Any) -> dict[str, Any]:
 
 
 class Rows(dict[str, Any]):
-    """In a tree: figures of a list's rows."""
+    """In a tree: entries of a list's rows."""
+
+
+class Nullable(dict[str, Any]):
+    """In a tree: entries of a part that may be null."""
 
 
 @dataclass(frozen=True)
-class Figure:
+class Entry:
     """A leaf of a tree: a quantity in JSON.
 
     Parameters
@@ -74,7 +78,7 @@ class Figure:
 
 
 def tree_of(kind: type) -> dict[str, Any]:
-    """Return what :func:`facts_of` makes of a record of this kind: a :class:`Figure` for each quantity at its place."""
+    """Return what :func:`facts_of` makes of a record of this kind: a :class:`Entry` for each quantity at its place."""
     tree: dict[str, Any] = {}
     lists: dict[str, str] = getattr(kind, "json_rows", {})
     for name, each in declarations(kind):
@@ -83,14 +87,17 @@ def tree_of(kind: type) -> dict[str, Any]:
         key, written = each.key or name, annotation(kind, name)
         inside = record_in(kind, name) if each.role in ("part", "rows") else None
         leaf: Any = tree_of(inside) if inside else _leaf(each, lists, written)
+        along = _along(each, lists)
+        if each.role == "part" and "None" in written and along is None and not each.optional:
+            leaf = Nullable(leaf)
         if inside and each.unit and isinstance(each.unit, str):
             leaf = _each(leaf, partial(_united, unit=each.unit))
         if inside and each.role == "part" and key != INSIDE and not each.words.startswith("of "):
             leaf = _each(leaf, partial(_explained, words=each.words))
-        if inside and each.role == "part" and each.dims and _along(each, lists) is None:
-            leaf = _each(leaf, lambda figure: replace(figure, ends=figure.ends or ("[i]",)))
+        if inside and each.role == "part" and each.dims and along is None:
+            leaf = _each(leaf, lambda entry: replace(entry, ends=entry.ends or ("[i]",)))
         if isinstance(each.unit, dict):
-            named_unit = {"unit": Figure("", "SI unit", types=("string",))} if inside else {}
+            named_unit = {"unit": Entry("", "SI unit", types=("string",))} if inside else {}
             leaf = leaf if inside else replace(leaf, ends=())
             for row, unit in each.unit.items():
                 united = _each(leaf, partial(_united, unit=unit))
@@ -99,7 +106,7 @@ def tree_of(kind: type) -> dict[str, Any]:
         if each.role == "rows":
             named = "Mapping" in written or (inside and _label(inside))
             leaf = {ANY: leaf} if named else Rows(leaf)
-        along, where = _along(each, lists), tree
+        where = tree
         if along is not None and lists[along]:
             where = tree.setdefault(lists[along], {} if _is_labelled(kind, along) else Rows())
         if along is not None and _is_labelled(kind, along):
@@ -110,7 +117,7 @@ def tree_of(kind: type) -> dict[str, Any]:
     return tree
 
 
-def _leaf(each: Declaration, lists: Mapping[str, str], written: str) -> Figure:
+def _leaf(each: Declaration, lists: Mapping[str, str], written: str) -> Entry:
     spread = not (each.key or "").startswith("/")
     dims = [dim for dim in each.dims if dim not in lists or not spread]
     either = written == "Limit" or re.search(r"float \| tuple", written)
@@ -123,22 +130,22 @@ def _leaf(each: Declaration, lists: Mapping[str, str], written: str) -> Figure:
     number = re.search("float|Floats|int|Complex|Limit|Any", written)
     kind = "number" if number else "boolean" if re.search("bool|Flags", written) else "string"
     unit = each.unit if isinstance(each.unit, str) else "unit"
-    return Figure(unit, each.words, ends, (kind, "array") if either else (kind,))
+    return Entry(unit, each.words, ends, (kind, "array") if either else (kind,))
 
 
-def _each(tree: Any, change: Callable[[Figure], Figure]) -> Any:
-    """A tree whose figures are changed."""
+def _each(tree: Any, change: Callable[[Entry], Entry]) -> Any:
+    """A tree whose entries are changed."""
     if isinstance(tree, dict):
         return type(tree)({key: _each(each, change) for key, each in tree.items()})
     return change(tree)
 
 
-def _united(figure: Figure, unit: str) -> Figure:
-    return replace(figure, unit="" if unit == "1" else unit) if figure.unit == "unit" else figure
+def _united(entry: Entry, unit: str) -> Entry:
+    return replace(entry, unit="" if unit == "1" else unit) if entry.unit == "unit" else entry
 
 
-def _explained(figure: Figure, words: str) -> Figure:
-    return replace(figure, words=f"{words}: {figure.words}")
+def _explained(entry: Entry, words: str) -> Entry:
+    return replace(entry, words=f"{words}: {entry.words}")
 
 
 def units_of(kind: type) -> Units:
@@ -150,7 +157,7 @@ def units_of(kind: type) -> Units:
     return dict(units(tree_of(kind)))
 
 
-def paths_of(tree: dict[str, Any], before: str = "") -> Iterator[tuple[str, Figure]]:
+def paths_of(tree: dict[str, Any], before: str = "") -> Iterator[tuple[str, Entry]]:
     """Yield the path of every number in a tree; ``*`` is a name, ``[i]`` a number in a list."""
     for key, each in tree.items():
         path = f"{before}{key}"
@@ -167,7 +174,8 @@ def schema_of(tree: Any) -> dict[str, Any]:
         return {"type": "array", "items": schema_of(dict(tree))}
     if isinstance(tree, dict):
         named = {key: schema_of(each) for key, each in tree.items() if key != ANY}
-        return {"type": "object", "properties": named} | (
+        types = ["object", "null"] if isinstance(tree, Nullable) else "object"
+        return {"type": types, "properties": named} | (
             {"additionalProperties": schema_of(tree[ANY])} if ANY in tree else {}
         )
     form: dict[str, Any] = {"type": [*tree.types, "null"]}
@@ -187,7 +195,7 @@ def unit_at(facts: Any, tree: Any, keys: tuple[str | int, ...]) -> str | None:
         tree = tree.get(word, tree.get(ANY)) if isinstance(tree, dict) else tree
         if tree is None:
             return None
-    if not isinstance(tree, Figure):
+    if not isinstance(tree, Entry):
         return None
     for key in keys[:-1] if tree.unit == "unit" else ():
         facts = facts[key]

@@ -1,15 +1,10 @@
-"""Every kind of result by its name, and the JSON of several by their motions."""
+"""Every kind of result by its name."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
-
 from gbeam.results.cases import Sensitivity, Sweep
 from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
-from gbeam.results.facts import json_of
 from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.criteria import Judged, state_of
 from gbeam.results.imitation.placement import Placement
 from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.modal import Campbell, Modes
@@ -41,12 +36,3 @@ KINDS: dict[str, type[Result]] = {
         ShapedCommand,
     )
 }
-
-
-def by_motion(answers: Sequence[Any], title: str = "") -> dict[str, Any]:
-    """Return results in several motions as JSON, by the motions' names."""
-    outcome = next((end for each in answers if (end := getattr(each, "outcome", "done")) != "done"), "done")
-    judged = [each for each in answers if isinstance(each, Judged)]
-    state = {"state": state_of(outcome, judged)} if judged else {}
-    named = {getattr(each, "motion", "") or getattr(each, "name", ""): json_of(each) for each in answers}
-    return {"title": title, "outcome": outcome, **state, "motions": named}

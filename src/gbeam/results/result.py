@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,6 +78,7 @@ class Result(Value):
         The scenario, the records and the command that it comes from, where there is a scenario.
     """
 
+    listed_by: ClassVar[str] = ""  # field that names each where JSON lists several by their motion
     warnings: tuple[str, ...] = fact("why it may not be what it seems", default=(), repr=False)
     provenance: Provenance | None = field(default=None, repr=False)
 
@@ -135,8 +136,6 @@ class Result(Value):
 
         Raises
         ------
-        InputError
-            If a result of this kind has no report; a state space, a comparison and a table of models have none.
         OSError
             If it cannot be written.
         """

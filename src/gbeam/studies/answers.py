@@ -3,25 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from gbeam.questions import QUESTIONS, Needs
 
 if TYPE_CHECKING:
     from gbeam.analysis.case import Case
-    from gbeam.results.facts import Figure
+    from gbeam.results.facts import Entry
 
 Facts = Mapping[str, Any]
 KIND = ""  # key of the kind of answers in facts; no figure's path begins so
-
-
-@dataclass(frozen=True)
-class Answers:
-    """Kind of record that answers, and whether several do, by their motions."""
-
-    kind: type
-    several: bool
 
 
 def answered(verb: str, case: Case, motion: str | None, at: float | None, needs: Needs) -> Facts:
@@ -32,7 +23,7 @@ def answered(verb: str, case: Case, motion: str | None, at: float | None, needs:
 def answer_facts(answer: Any, title: str = "") -> Facts:
     """The facts of an answer with what has a name by its name: comparisons, and the limits of machines."""
     from gbeam.results.facts import json_of
-    from gbeam.results.kinds import by_motion
+    from gbeam.results.motions import by_motion
 
     several = isinstance(answer, tuple)
     facts = by_motion(answer, title) if several else json_of(answer)
@@ -47,30 +38,31 @@ def answer_facts(answer: Any, title: str = "") -> Facts:
         }
         facts["study"] = answer  # for histories
     kind = type(answer[0]) if several else type(answer)
-    return {**facts, KIND: Answers(kind, several), "message": _message(answer) or facts.get("message", "")}
+    return {**facts, KIND: kind, "message": _message(answer) or facts.get("message", "")}
 
 
-def tree_of_answers(answers: Answers) -> dict[str, Any]:
-    """The figures of answers, each at its place in the facts."""
-    from gbeam.results.facts import ANY, Figure, tree_of
+def tree_of_figures(kind: type) -> dict[str, Any]:
+    """The figures of answers of a kind, each at its place in the facts."""
+    from gbeam.results.facts import ANY, Entry
     from gbeam.results.imitation.criteria import RULES
+    from gbeam.results.motions import tree_of_answers
 
-    tree = {"motions": {ANY: tree_of(answers.kind)}} if answers.several else tree_of(answers.kind)
+    tree = tree_of_answers(kind)
     for motion in tree.get("motions", {}).values():
         if "limits" in motion:
             motion["limits"] = {ANY: {ANY: dict(motion["limits"])}}
     if "comparisons" in tree:
-        kept = {"accepted": Figure("", "whether every limit is kept")}
-        judged = {rule.name: Figure("", f"value that the limit `{rule.name}` is on") for rule in RULES.values()}
+        kept = {"accepted": Entry("", "whether every limit is kept")}
+        judged = {rule.name: Entry("", f"value that the limit `{rule.name}` is on") for rule in RULES.values()}
         tree["comparisons"] = {ANY: {**tree["comparisons"], "verdict": judged | kept}}
     return tree
 
 
-def choices(verb: str) -> dict[str, Figure]:
+def choices(verb: str) -> dict[str, Entry]:
     """Every figure of a question's answers by its path, in which ``*`` is a name and ``[i]`` a place in a list."""
     from gbeam.results.facts import paths_of
 
-    return dict(paths_of(tree_of_answers(Answers(*QUESTIONS[verb].record))))
+    return dict(paths_of(tree_of_figures(QUESTIONS[verb].record)))
 
 
 def _message(answer: Any) -> str:

@@ -17,7 +17,7 @@ from gbeam.scenario.schema import Centrifuge
 from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.values.paths import advise, closest, path_text
 from gbeam.structure.attachments import TIP
-from gbeam.studies.answers import KIND, Facts, choices, tree_of_answers
+from gbeam.studies.answers import KIND, Facts, choices, tree_of_figures
 
 if TYPE_CHECKING:
     from gbeam.results.study import Study
@@ -62,7 +62,7 @@ def _segments(path: str) -> list[str]:
 
 
 def _fits(ends: Sequence[str], path: Sequence[str]) -> bool:
-    """Whether a path can end so."""
+    """Whether a path, in which ``*`` is any name, can end in these keys."""
     if len(ends) > len(path):
         # A name may have dots of its own.
         return any(each.startswith("*") for each in path)
@@ -108,7 +108,7 @@ def declared(facts: Facts, keys: Keys) -> str | None:
     """Unit of the figure at `keys`, empty where it has none; None where no unit is declared for its place."""
     from gbeam.results.facts import unit_at
 
-    return unit_at(facts, tree_of_answers(facts[KIND]), keys)
+    return unit_at(facts, tree_of_figures(facts[KIND]), keys)
 
 
 def unit_at(facts: Facts, keys: Keys) -> str:

@@ -87,12 +87,16 @@ def _answer(
     with Watch(), given.placing(**places):
         answer = question.answer(given.case, chosen, time, Needs(shapes=True), **options)
 
-    from gbeam.figures import figures_of
-    from gbeam.report.facts import facts as facts_of
+    facts: dict[str, Any] = {}
+    if json or folder is not None:
+        from gbeam.report.facts import facts as facts_of
 
-    facts = given.signed(facts_of(answer))
-    described = figures_of(answer, given.case.title)
-    write(folder, name, facts, dict(zip([name], described.values(), strict=False)), report=report)
+        facts = given.signed(facts_of(answer))
+    if folder is not None:
+        from gbeam.figures import figures_of
+
+        described = figures_of(answer, given.case.title)
+        write(folder, name, facts, dict(zip([name], described.values(), strict=False)), report=report)
     show(_words(question, answer), facts, json)
     return 0
 

@@ -9,7 +9,7 @@ import tomllib
 from collections.abc import Callable, Mapping
 from html import escape
 from importlib.resources import files
-from typing import Any
+from typing import Any, NamedTuple
 
 from gbeam.errors import InputError
 from gbeam.figures import Describe
@@ -32,30 +32,42 @@ from gbeam.results.result import Result
 from gbeam.results.study import Study
 
 Body = Callable[[Mapping[str, Any], str, str], str]  # of the JSON, the viewer's place, and the figures
-# By verb: keys that its facts have, keys that each of their motions has, and what makes the page's inside.
-KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...], Body]] = {
-    "run": (("motions", "comparisons"), (), study.body),
-    "static": (("motions",), ("displacement", "tip", "stable"), steady.static_body),
-    "plan": (("motions",), ("limits", "tracks"), machine.plan_body),
-    "modes": (("modes", "instabilities"), (), steady.modes_body),
-    "campbell": (("tracks", "crossings"), (), steady.campbell_body),
-    "critical-speed": (("quantity", "searched_to", "reason"), (), steady.critical_body),
-    "critical-speed --masses": (("mass", "position", "critical_speed"), (), steady.critical_map_body),
-    "place": (("fraction_of_length", "options"), (), cases.placement_body),
-    "sweep": (("parameters", "measures"), (), cases.sweep_body),
-    "fit": (("covariance", "columns"), (), searches.fit_body),
-    "optimize": (("minimise", "subject_to"), (), searches.optimum_body),
-    "sensitivity": (("measures", "run_error"), (), searches.sensitivity_body),
-    "shape": (("commands", "coefficients"), (), searches.shaping_body),
+
+
+class Page(NamedTuple):
+    """Page of a kind of result: its verb, the body, and keys by which files of 0.2, which name no kind, are known."""
+
+    verb: str
+    body: Body
+    keys: tuple[str, ...]
+    of_motions: tuple[str, ...] = ()
+
+
+PAGES = {
+    "Study": Page("run", study.body, ("motions", "comparisons")),
+    "Deflection": Page("static", steady.static_body, ("motions",), ("displacement", "tip", "stable")),
+    "MachinePlan": Page("plan", machine.plan_body, ("motions",), ("limits", "tracks")),
+    "Modes": Page("modes", steady.modes_body, ("modes", "instabilities")),
+    "Campbell": Page("campbell", steady.campbell_body, ("tracks", "crossings")),
+    "Critical": Page("critical-speed", steady.critical_body, ("quantity", "searched_to", "reason")),
+    "CriticalMap": Page("critical-speed --masses", steady.critical_map_body, ("mass", "position", "critical_speed")),
+    "Placement": Page("place", cases.placement_body, ("fraction_of_length", "options")),
+    "Sweep": Page("sweep", cases.sweep_body, ("parameters", "measures")),
+    "Fit": Page("fit", searches.fit_body, ("covariance", "columns")),
+    "Optimum": Page("optimize", searches.optimum_body, ("minimise", "subject_to")),
+    "Sensitivity": Page("sensitivity", searches.sensitivity_body, ("measures", "run_error")),
+    "ShapedCommand": Page("shape", searches.shaping_body, ("commands", "coefficients")),
 }
 
 
 def _kind(facts: Mapping[str, Any]) -> str | None:
-    for name, (keys, each, _) in KINDS.items():
-        motions = facts["motions"].values() if each and "motions" in facts else ()
-        if all(key in facts for key in keys) and all(key in motion for motion in motions for key in each):
+    if "form" in facts:
+        return str(facts["form"]["kind"])
+    motions = facts.get("motions", {}).values()
+    for name, page in PAGES.items():
+        if facts.keys() >= set(page.keys) and all(motion.keys() >= set(page.of_motions) for motion in motions):
             return name
-    return str(facts["form"]["kind"]) if "form" in facts else None
+    return None
 
 
 _APART = ("form", "units", "provenance", "warnings", "files", "title", "outcome", "state")
@@ -102,24 +114,24 @@ def html(
     facts = json.loads(as_json(facts))  # what is not finite is null, as in a file
     kind = _kind(facts)
     if kind is None:
-        fix = f"give the result of {', '.join(f'gbeam {name}' for name in KINDS)}"
+        fix = f"give the result of {', '.join(f'gbeam {page.verb}' for page in PAGES.values())}"
         raise InputError("result", "is of a kind that has no report", fix)
     origin = facts.get("provenance") or origin or {}
     numbers = Numbers()
     header: dict[str, Any] = {"plots": [], "maps": []}
     described = figures_in(kind, facts, variables or {}) if figures is None else figures
     plots = drawn((each() for each in described.values()), numbers, header)
-    make = KINDS[kind][2] if kind in KINDS else _figures
+    verb, make = PAGES[kind][:2] if kind in PAGES else (kind, _figures)
     header |= _viewer(kind, facts, variables or {}, numbers)
     body = make(facts, '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else "", plots)
-    title = facts.get("title") or _title(origin) or f"gbeam {kind}"
+    title = facts.get("title") or _title(origin) or f"gbeam {verb}"
     warnings = study.warnings(facts) if "motions" in facts else facts.get("warnings", [])
     if warnings:
         body = heading("Warnings") + listed(warnings, "warning") + body
     return _page(
         title,
         badge(facts.get("state", facts["outcome"])),
-        _subject(kind, origin),
+        _subject(verb, origin),
         body + _origin(origin),
         header,
         numbers,
@@ -130,18 +142,18 @@ def _viewer(
     kind: str, facts: Mapping[str, Any], variables: Mapping[str, Any], numbers: Numbers
 ) -> dict[str, dict[str, Any]]:
     """Viewer of a kind, if it has one."""
-    if kind == "modes" and facts["modes"]:
+    if kind == "Modes" and facts["modes"]:
         return {"modes": shapes(modes_in(facts), numbers)}
-    motions = facts["motions"] if kind == "run" else {}
+    motions = facts["motions"] if kind == "Study" else {}
     environments = {name: each["environment"] for name, each in motions.items() if "environment" in each}
     shown = scene(environments, variables, numbers)
     return {} if shown is None else {"scene": shown}
 
 
-def _subject(kind: str, origin: Mapping[str, Any]) -> str:
+def _subject(verb: str, origin: Mapping[str, Any]) -> str:
     version = f", gbeam {origin['gbeam']}" if "gbeam" in origin else ""
     date = f", {_date(origin['date'])}" if origin.get("date") else ""
-    return f"gbeam {kind}{version}{date}"
+    return f"gbeam {verb}{version}{date}"
 
 
 def _date(text: str) -> str:

@@ -31,12 +31,12 @@ _R = TypeVar("_R")
 def figures_in(kind: str, facts: Facts, variables: Facts) -> dict[str, Describe]:
     """Return what describes the figures of a result of a kind, from its JSON and, of histories, its variables."""
     match kind:
-        case "run":
+        case "Study":
             study = _study(facts, variables)
             return figures_of(study) if study.responses else {}
-        case "plan":
+        case "MachinePlan":
             return of_plans(_plans(facts, variables))
-        case "static":
+        case "Deflection":
             return of_deflections([_deflection(name, each) for name, each in facts["motions"].items()])
     if kind not in _ALONE:
         return {}
@@ -287,13 +287,13 @@ def _shaped(facts: Facts, v: Facts) -> ShapedCommand:
 
 # By verb: a variable without which there are no histories, and what reads the record.
 _ALONE: dict[str, tuple[str, Callable[[Facts, Facts], Any]]] = {
-    "modes": ("", modes_in),
-    "campbell": ("", _campbell),
-    "critical-speed --masses": ("", lambda facts, _: _read(CriticalMap, facts)),
+    "Modes": ("", modes_in),
+    "Campbell": ("", _campbell),
+    "CriticalMap": ("", lambda facts, _: _read(CriticalMap, facts)),
     "Comparison": ("time", lambda facts, v: _comparison(facts, v, v.get("station", np.array([np.nan])))),
-    "sensitivity": ("", _sensitivity),
-    "sweep": ("", _sweep),
-    "fit": ("measured", _fit),
-    "optimize": ("history", lambda facts, v: _read(Optimum, facts, v)),
-    "shape": ("command", _shaped),
+    "Sensitivity": ("", _sensitivity),
+    "Sweep": ("", _sweep),
+    "Fit": ("measured", _fit),
+    "Optimum": ("history", lambda facts, v: _read(Optimum, facts, v)),
+    "ShapedCommand": ("command", _shaped),
 }

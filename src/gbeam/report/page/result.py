@@ -28,11 +28,8 @@ _FIX = "give the result.nc of `gbeam run`, its folder, or the JSON of another ve
 
 def report_of(result: Result) -> str:
     """Return the page of a result."""
-    found = facts(result)
-    if found is None:
-        raise InputError("result", f"{type(result).__name__} has no report", "print it, or plot it")
     origin = origin_json(result.provenance or Provenance())
-    return html(found, variables_of(result), origin, figures_of(whole(result)))
+    return html(facts(result), variables_of(result), origin, figures_of(whole(result)))
 
 
 def variables_of(result: Result) -> dict[str, Any]:

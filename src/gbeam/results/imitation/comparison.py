@@ -112,8 +112,9 @@ class Comparison(Judged, Figured):
         """Axis (0, 1, 2) along which the tip moves most in flight; z where no time is compared."""
         return int(np.argmax(self.peak_flight)) if self.covered.any() else 2
 
-    def sentence(self) -> str:
-        """Return one sentence about the whole flight that a person can quote."""
+    @property
+    def verdict(self) -> str:
+        """One sentence about the whole flight that a person can quote."""
         tip = self.accept.get("tip")
         within = tip if isinstance(tip, float) else None
         return verdict(self.flight, self.centrifuge, self.peaks, self.accounting, within, self.margins, self.whole)

@@ -39,10 +39,6 @@ class Judged:
     @declared("", "one sentence about the whole flight", role="fact")
     def verdict(self) -> str:
         """One sentence about the whole flight that a person can quote."""
-        return self.sentence()
-
-    def sentence(self) -> str:
-        """Return the verdict."""
         raise NotImplementedError
 
     @property
@@ -90,7 +86,7 @@ class Judged:
     @declared("", "whether every limit is kept: true, false, or empty where there is none", role="fact", key=None,
               name="accepted")  # fmt: skip
     def acceptance(self) -> str:
-        """Whether every limit is kept, in a word; empty where there is none."""
+        """true where every limit is kept, false where one is not, empty where there is none."""
         return {None: "", True: "true", False: "false"}[self.accepted]
 
     @property

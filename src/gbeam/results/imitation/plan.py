@@ -22,6 +22,7 @@ _WIDTH = 110  # columns
 class MachinePlan(Judged, Driven, Figured):
     """Motion of a centrifuge that imitates a flight, without the response of a beam."""
 
+    listed_by = "name"
     name: str = fact("name of the motion", key=None)
     tracks: str = fact("name of the flight")
     arm: float = fact("arm of the centrifuge", "m")
@@ -50,8 +51,9 @@ class MachinePlan(Judged, Driven, Figured):
     )  # fmt: skip
     with_response = False
 
-    def sentence(self) -> str:
-        """Return one sentence about the load over the whole flight."""
+    @property
+    def verdict(self) -> str:
+        """One sentence about the load over the whole flight."""
         return verdict(
             self.tracks or "flight", self.name or "centrifuge", self.peaks, self.accounting, whole=self.whole
         )

@@ -1,0 +1,25 @@
+"""JSON of verbs whose answers stand one by one by their motions, such as deflections and plans of machines."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from gbeam.results.facts import ANY, Entry, json_of, tree_of
+from gbeam.results.imitation.criteria import Judged, state_of
+
+
+def by_motion(answers: Sequence[Any], title: str = "") -> dict[str, Any]:
+    """Return results of one kind in several motions as JSON, by the motions' names."""
+    outcome = next((end for each in answers if (end := getattr(each, "outcome", "done")) != "done"), "done")
+    judged = [each for each in answers if isinstance(each, Judged)]
+    state = {"state": state_of(outcome, judged)} if judged else {}
+    named = {getattr(each, each.listed_by): json_of(each) for each in answers}
+    return {"title": title, "outcome": outcome, **state, "motions": named}
+
+
+def tree_of_answers(kind: type) -> dict[str, Any]:
+    """Return the tree of the JSON of a verb: of some kinds it lists one by one what each motion answers."""
+    if not getattr(kind, "listed_by", ""):
+        return tree_of(kind)
+    return {"motions": {ANY: {"outcome": Entry("", "how it ended", types=("string",)), **tree_of(kind)}}}
