@@ -13,6 +13,7 @@ import gbeam as gb
 from gbeam.analysis.response.batch import simulate_batch
 from gbeam.scenario.load import load
 from gbeam.studies.evaluate import Question, may_share, rows, settled
+from gbeam.studies.template import ScenarioTemplate
 
 LEVEL = "motion.flight.acceleration.z.level"
 MEASURES = ["flight.tip.z.max_abs", "spin.tip.z.max_abs", "verdict.tip", "flight.loads.root_moment.y.max_abs"]
@@ -59,9 +60,10 @@ def test_a_case_that_fails_leaves_its_batch_as_it_is(fast: Path) -> None:
 
 def test_each_case_of_a_batch_that_fails_is_computed_once(fast: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The batch of a case that raises is halved until that one is alone; every other has its own figures."""
-    source, computed = load(fast).source, []
-    assert source is not None
-    whole = Question(source, "run", None, keys=(("motions", "flight", "tip", "z", "max_abs"),), together=True)
+    computed: list[int] = []
+    whole = Question(
+        ScenarioTemplate(load(fast)), "run", None, keys=(("motions", "flight", "tip", "z", "max_abs"),), together=True
+    )
     tasks = [(k, (*FIXED, f"{LEVEL}={2 + k / 2} g", f"beam.length={200 + k} mm")) for k in range(11)]
     alone = [rows(whole, [task])[0] for task in tasks]
     real = simulate_batch
@@ -84,10 +86,8 @@ def test_each_case_of_a_batch_that_fails_is_computed_once(fast: Path, monkeypatc
 
 
 def test_what_no_measure_needs_changes_no_digit(fast: Path) -> None:
-    source = load(fast).source
-    assert source is not None
     tip, error = ("motions", "flight", "tip", "z", "max_abs"), ("motions", "flight", "error_estimate")
-    plain = Question(source, "run", None, keys=(tip,))
+    plain = Question(ScenarioTemplate(load(fast)), "run", None, keys=(tip,))
     judged = replace(plain, keys=(tip, error))
     (bare,), (whole,) = (rows(each, [(0, ())]) for each in (plain, judged))
     assert bare.values[0] == whole.values[0] and whole.values[1] > 0
@@ -113,15 +113,18 @@ def test_loads_that_are_not_measured_change_no_digit(fast: Path) -> None:
     ],
 )
 def test_loads_are_computed_where_a_figure_is_one_of_them(fast: Path, keys: str, loads: bool) -> None:
-    source = load(fast).source
-    assert source is not None and Question(source, "run", None, keys=(tuple(keys.split(".")),)).needs.loads == loads
+    assert Question(ScenarioTemplate(load(fast)), "run", None, keys=(tuple(keys.split(".")),)).needs.loads == loads
 
 
 def test_few_cases_of_an_automatic_step_are_computed_one_by_one(fast: Path) -> None:
     for given, cases, together in (((), 31, False), ((), 32, True), (FIXED, 2, True)):
-        source = load(fast, given).source
-        assert source is not None
-        question = Question(source, "run", None, keys=(("motions", "flight", "tip", "z", "max_abs"),), together=True)
+        question = Question(
+            ScenarioTemplate(load(fast, given)),
+            "run",
+            None,
+            keys=(("motions", "flight", "tip", "z", "max_abs"),),
+            together=True,
+        )
         case = question.case(())
         assert settled(question, case, cases).together == together
         assert not settled(question, replace(case, model=replace(case.model, automatic=True)), cases).together

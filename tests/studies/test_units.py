@@ -10,6 +10,7 @@ from gbeam.scenario.load import loads
 from gbeam.studies.answers import Facts
 from gbeam.studies.evaluate import Question
 from gbeam.studies.figures import _figures, declared, find, own_keys, unit_at
+from gbeam.studies.template import ScenarioTemplate
 
 from ..scenarios import FAST, FREE_HUB, RAMPS, SLEWING
 
@@ -43,8 +44,7 @@ ASKED = [
 @cache
 def facts_of(text: str, verb: str, motion: str | None) -> Facts:
     base = loads(text, "scenario.toml")
-    assert base.source is not None
-    question = Question(base.source, verb, motion, at=34.0 if verb == "modes" and text != LOADED else None)
+    question = Question(ScenarioTemplate(base), verb, motion, at=34.0 if verb == "modes" and text != LOADED else None)
     return question.facts(question.case(()))
 
 

@@ -54,7 +54,7 @@ class Case(Value):
     Attributes
     ----------
     scenario : Scenario or None
-        What the case was read from, of which studies make others; None of one that is made, or changed, by hand.
+        The scenario that the case was read from; None of one that is made, or changed, in Python.
 
     Examples
     --------

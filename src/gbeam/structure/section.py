@@ -150,6 +150,16 @@ class Section(Value):
                 values[name] = listed * len(at) if len(listed) == 1 and at else listed
         return cls(shape, values, at, plate)
 
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """Arguments of :meth:`of` by their names: of a constant section the dimensions as numbers."""
+        values = {name: each[0] if len(each) == 1 else each for name, each in self.dimensions.items()}
+        return {"shape": self.shape, "stations": self.stations, "plate": self.plate, **values}
+
+    def altered(self, **changes: Any) -> Section:
+        """Section with other arguments, by the names of :meth:`of`."""
+        return Section.of(**{**self.arguments, **changes})
+
     @classmethod
     @typed
     def rectangle(

@@ -24,13 +24,10 @@ from gbeam.results.cases import ANSWERED
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Failure
-from gbeam.scenario.build import build
-from gbeam.scenario.load import change
-from gbeam.scenario.schema.scenario import Scenario
-from gbeam.scenario.text.source import Source
 from gbeam.scenario.values.paths import advise
 from gbeam.studies.answers import Facts, answer_facts, answered
 from gbeam.studies.figures import History, Keys, own_keys, value_at
+from gbeam.studies.template import Template
 
 Function = Callable[[Case], float]
 NO_FACTS: Facts = {"outcome": "done"}  # where functions measure the case, no verb answers
@@ -62,7 +59,7 @@ class Question:
     integrated `together` are.
     """
 
-    source: Source
+    template: Template
     verb: str
     motion: str | None
     at: float | None = None
@@ -95,13 +92,9 @@ class Question:
         """Whether the verb has to answer."""
         return bool(self.keys or self.histories)
 
-    def scenario(self, overrides: Sequence[str]) -> Scenario:
-        """One case's scenario, validated."""
-        return change(self.source, overrides)
-
     def case(self, overrides: Sequence[str]) -> Case:
         """The objects of one case."""
-        return build(self.scenario(overrides))
+        return self.template.changed(overrides).built()
 
     def facts(self, case: Case) -> Facts:
         """Answer of the verb, as JSON."""

@@ -13,11 +13,10 @@ import numpy as np
 from gbeam.errors import InputError
 from gbeam.questions import QUESTIONS
 from gbeam.results.result import Floats
-from gbeam.scenario.schema import Centrifuge
-from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.values.paths import advise, closest, path_text
 from gbeam.structure.attachments import TIP
 from gbeam.studies.answers import KIND, Facts, choices, tree_of_figures
+from gbeam.studies.template import Template
 
 if TYPE_CHECKING:
     from gbeam.results.study import Study
@@ -69,19 +68,18 @@ def _fits(ends: Sequence[str], path: Sequence[str]) -> bool:
     return all(own in ("*", end) for end, own in zip(reversed(ends), reversed(path), strict=False))
 
 
-def usual(scenario: Scenario, verb: str) -> tuple[str, ...]:
+def usual(template: Template, verb: str) -> tuple[str, ...]:
     """Figures of ``run`` that are meant where none is named: of every motion the largest of tip and root moment."""
     if verb != "run":
         return ()
     ends = ("tip.size.max_abs", "loads.root_moment.size.max_abs")
-    return tuple(f"motions.{name}.{end}" for name in scenario.motion for end in ends)
+    return tuple(f"motions.{name}.{end}" for name in template.motions for end in ends)
 
 
-def judged(scenario: Scenario, verb: str) -> tuple[str, ...]:
+def judged(template: Template, verb: str) -> tuple[str, ...]:
     """Further ones, of every centrifuge: the share of the flight that is followed, and whether limits accept it."""
-    machines = {name: each for name, each in scenario.motion.items() if isinstance(each, Centrifuge) and each.tracks}
-    limited = [name for name, each in machines.items() if each.limits_of_acceptance]
-    figures = [f"comparisons.{name}.verdict.followed" for name in machines]
+    limited = [name for name, accepts in template.imitations.items() if accepts]
+    figures = [f"comparisons.{name}.verdict.followed" for name in template.imitations]
     return tuple(figures + [f"comparisons.{name}.verdict.accepted" for name in limited]) if verb == "run" else ()
 
 

@@ -17,12 +17,11 @@ from gbeam.mechanics.models import Model
 from gbeam.progress import Progress
 from gbeam.results.result import Floats
 from gbeam.results.searches import Fit, FittedColumn
-from gbeam.scenario.build import scenario_of
-from gbeam.scenario.origin import provenance
 from gbeam.studies.derivatives import Neighbourhood
 from gbeam.studies.evaluate import Question
 from gbeam.studies.measurement import Measurement, read_measurement
 from gbeam.studies.parameters import Bounds, PhysicalValue, agreeing, bounds_of, named, starting_points
+from gbeam.studies.template import template_of
 
 OPTION = "--free"
 _HARDLY = 0.99  # correlation of two values
@@ -51,7 +50,8 @@ def fit(
     Parameters
     ----------
     scenario : path or Case
-        The scenario's file, or what :func:`gbeam.read_scenario` makes of it; its values are where the search starts.
+        The scenario's file, or a case, of :func:`gbeam.read_scenario` or made in Python.
+        Its values are where the search starts.
     data : path
         A text file with a header. Columns ``time`` and any of ``tip.z``, ``root_moment.y``, ``root_force.z``,
         ``hub.angle``, ``hub.rate``, ``strain.z@10 mm``, with a unit in brackets or SI, after the motion's name where
@@ -96,12 +96,11 @@ def fit(
     >>> print(f"{answer.values[0]:.4g} {answer.units[0]}")
     6.788e+10 Pa
     """
-    base = scenario_of(scenario, overrides)
-    assert base.source is not None  # it was read from a file
+    template = template_of(scenario, overrides)
     if not free:
         raise InputError(OPTION, "is missing", 'name values: --free "beam.material.youngs_modulus"')
-    parameters = named(base, free, OPTION)
-    question = Question(base.source, "run", motion, at)
+    parameters = named(template, free, OPTION)
+    question = Question(template, "run", motion, at)
     case = question.case(())
     measurement = read_measurement(data, case, motion)
     if len(measurement.values) <= len(parameters):
@@ -115,7 +114,7 @@ def fit(
     found, ends = search_from(model, points, limits)
     described = _described(model, parameters, limits, found)
     agreed = agreeing(ends, found.values, limits)
-    return replace(described, title=base.title, starts=starts, agreed=agreed, provenance=provenance(base))
+    return replace(described, title=template.title, starts=starts, agreed=agreed, provenance=template.provenance)
 
 
 def _described(model: Fitted, parameters: Sequence[PhysicalValue], limits: Floats, found: Solution) -> Fit:

@@ -194,8 +194,7 @@ def identity(question: Question, cases: Cases, measures: Sequence[str], historie
             digest.update(text.encode() + b"\n")
     return {
         "version": gbeam.__version__,
-        "scenario": hashlib.sha256(question.source.text.encode()).hexdigest(),
-        "changes": [each.text for each in question.source.overrides],
+        **question.template.identity,
         "question": [question.verb, question.motion, question.at],
         "parameters": [each.path for each in cases.variations],
         "values": digest.hexdigest(),

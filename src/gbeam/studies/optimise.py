@@ -20,8 +20,6 @@ from gbeam.progress import Progress
 from gbeam.results.result import Floats
 from gbeam.results.searches import BROKEN, Optimum, Requirement
 from gbeam.results.study import Study
-from gbeam.scenario.build import scenario_of
-from gbeam.scenario.origin import provenance
 from gbeam.scenario.values.kinds import KINDS
 from gbeam.scenario.values.units import UnitError, argument
 from gbeam.studies.answers import Facts
@@ -30,6 +28,7 @@ from gbeam.studies.evaluate import Question
 from gbeam.studies.figures import Keys, offered, unit_at
 from gbeam.studies.parameters import Bounds, PhysicalValue, agreeing, bounds_of, named, starting_points
 from gbeam.studies.sensitivity import facts_of, figure, needed, values_at
+from gbeam.studies.template import template_of
 
 OPTION, SUBJECT = "--minimise", "--subject-to"
 LIMITS = "limits"
@@ -61,7 +60,7 @@ def optimise(
     Parameters
     ----------
     scenario : path or Case
-        The scenario's file, or what :func:`gbeam.read_scenario` makes of it.
+        The scenario's file, or a case, of :func:`gbeam.read_scenario` or made in Python.
     minimise : str
         A figure of the verb's JSON by the end of its path, such as ``tip.y.residual_amplitude``. Of a figure without a
         unit, such as ``verdict.root_moment``, the size is minimised.
@@ -100,14 +99,13 @@ def optimise(
     >>> print(f"{1e3 * answer.values[0]:.1f} mm")
     37.5 mm
     """
-    base = scenario_of(scenario, overrides)
-    assert base.source is not None  # it was read from a file
+    template = template_of(scenario, overrides)
     if not over:
         raise InputError("--over", "is missing", 'name values: --over "motion.centrifuge.control_point"')
-    parameters = named(base, over, "--over")
+    parameters = named(template, over, "--over")
     offered(verb, [minimise], OPTION)
     limits = np.array([bounds_of(each, bounds or {}, "--over") for each in parameters])
-    question = Question(base.source, verb, motion, at)
+    question = Question(template, verb, motion, at)
     first = Neighbourhood(question, parameters, progress=progress)
     goal = _goal(facts_of(first.answer), first.case, minimise, subject_to)
     # On the way no more is computed than is read; the last answer is whole.
@@ -125,7 +123,7 @@ def optimise(
     reach = 1e-6 * (limits[:, 1] - limits[:, 0])
     broken = [each.name for each in requirements if not each.kept]
     return Optimum(
-        title=base.title,
+        title=template.title,
         minimise=minimise,
         unit=goal.unit,
         parameters=tuple(each.path for each in parameters),
@@ -145,7 +143,7 @@ def optimise(
         agreed=agreeing(ends, values, limits),
         outcome=BROKEN if broken else "done",
         warnings=search.warnings,
-        provenance=provenance(base),
+        provenance=template.provenance,
     )
 
 

@@ -14,12 +14,11 @@ from gbeam.errors import InputError
 from gbeam.guards.limits import refuse_more
 from gbeam.results.result import Floats
 from gbeam.scenario.load import load
-from gbeam.scenario.schema.fields import quantities
-from gbeam.scenario.schema.scenario import Scenario
 from gbeam.scenario.text.revise import with_quantities
 from gbeam.scenario.values.kinds import KINDS
 from gbeam.scenario.values.paths import advise
 from gbeam.scenario.values.units import UnitError, argument
+from gbeam.studies.template import ScenarioTemplate, Template
 
 # Values of the computation, not of what is computed.
 _FIXED = {
@@ -58,9 +57,9 @@ class PhysicalValue:
         return rest.partition(".")[0] if first == "motion" else ""
 
 
-def physical_values(scenario: Scenario, names: Sequence[str] = ()) -> list[PhysicalValue]:
+def physical_values(scenario: Template, names: Sequence[str] = ()) -> list[PhysicalValue]:
     """Return the values of those names; without names every one that is not zero."""
-    every = quantities(scenario)
+    every = scenario.quantities()
     if not names:
         usual = [
             path
@@ -98,10 +97,10 @@ Bounds = Mapping[str, tuple[float | str, float | str]]  # by path, SI or text wi
 _NEAR, _FAR = 0.1, 10.0  # times the scenario's value: bounds where none are given
 
 
-def named(base: Scenario, names: Sequence[str], option: str) -> list[PhysicalValue]:
+def named(template: Template, names: Sequence[str], option: str) -> list[PhysicalValue]:
     """Values by their paths; InputError, of an option of the command line, if one is none."""
     try:
-        return physical_values(base, names)
+        return physical_values(template, names)
     except InputError as error:
         raise InputError(option, error.problem, error.fix) from None
 
@@ -133,7 +132,7 @@ def with_values(
     if recorded and Path(folder).resolve() != base.source.folder.resolve():
         fix = f"write it beside {os.fspath(scenario)}"
         raise InputError(os.fspath(folder), "is not the folder that the scenario's records are named from", fix)
-    found = zip(physical_values(base, paths), values, strict=True)
+    found = zip(physical_values(ScenarioTemplate(base), paths), values, strict=True)
     changes = {path: (value, each.kind) for each, value in found for path in (each.path, *each.followers)}
     return with_quantities(base.source, changes)
 

@@ -18,14 +18,13 @@ from gbeam.progress import Progress
 from gbeam.results.cases import Sensitivity
 from gbeam.results.result import Flags, Floats
 from gbeam.results.study import Study
-from gbeam.scenario.build import scenario_of
-from gbeam.scenario.origin import provenance
 from gbeam.scenario.values.paths import path_text
 from gbeam.studies.answers import Facts, answer_facts
 from gbeam.studies.derivatives import Neighbourhood, Slopes
 from gbeam.studies.evaluate import Question
 from gbeam.studies.figures import Keys, find, offered, own_keys, unit_at, usual, value_at
 from gbeam.studies.parameters import PhysicalValue, physical_values
+from gbeam.studies.template import template_of
 
 OPTION = "--of"
 _SHARE = 0.05  # by which the slopes on either side may differ
@@ -55,7 +54,7 @@ def sensitivity(
     Parameters
     ----------
     scenario : path or Case
-        The scenario's file, or what :func:`gbeam.read_scenario` makes of it.
+        The scenario's file, or a case, of :func:`gbeam.read_scenario` or made in Python.
     of : sequence of str
         Figures of the verb's JSON by the end of their path, such as ``tip.z.max_abs`` or ``verdict.tip``; of run
         by default the largest of tip and root moment in every motion.
@@ -91,14 +90,13 @@ def sensitivity(
     >>> print(answer.relative.round(2))
     [[-2.]]
     """
-    base = scenario_of(scenario, overrides)
-    assert base.source is not None  # it was read from a file
-    of = of or usual(base, verb)
+    template = template_of(scenario, overrides)
+    of = of or usual(template, verb)
     if not of:
         raise InputError(OPTION, "is missing", 'name figures: --of "tip.z.max_abs, verdict.tip"')
     offered(verb, of, OPTION)
-    question = Question(base.source, verb, motion, at)
-    chosen, refused = _possible(question, physical_values(base, parameters), strict=bool(parameters))
+    question = Question(template, verb, motion, at)
+    chosen, refused = _possible(question, physical_values(template, parameters), strict=bool(parameters))
     if not chosen:
         raise InputError("--with", "has no value that may be a little more and a little less", "name some")
     about = Neighbourhood(question, chosen, progress=progress)
@@ -115,7 +113,7 @@ def sensitivity(
         for j in np.flatnonzero(kinks[k])
     ]
     return Sensitivity(
-        title=base.title,
+        title=template.title,
         verb=verb,
         measures=tuple(of),
         units=units,
@@ -130,7 +128,7 @@ def sensitivity(
         run_error=_run_error(about.answer, motions),
         not_varied=tuple(refused),
         warnings=tuple(kinked),
-        provenance=provenance(base),
+        provenance=template.provenance,
     )
 
 

@@ -22,8 +22,9 @@ from gbeam.motion.profiles.piecewise import constant
 from gbeam.progress import Progress
 from gbeam.questions import motion_of
 from gbeam.results.searches import ShapedCommand
-from gbeam.scenario.build import build, scenario_of
+from gbeam.scenario.build import scenario_of
 from gbeam.scenario.values.paths import advise
+from gbeam.studies.template import template_of
 
 _REST = 1e-9  # of the largest rate: a hub that turns slower at its end is to turn by an angle
 _POINTS = 401  # of a table: straight lines between them are off by 1e-4 of a smooth step
@@ -49,7 +50,7 @@ def shape_hub_command(
     Parameters
     ----------
     scenario : path or Case
-        The scenario's file, or what :func:`gbeam.read_scenario` makes of it.
+        The scenario's file, or a case, of :func:`gbeam.read_scenario` or made in Python.
     angle, rate : float, optional
         To turn by, rad, or to reach, rad/s; by default what the scenario's own rate does. A free hub needs one of them.
     duration : float, optional
@@ -85,7 +86,7 @@ def shape_hub_command(
     >>> gb.shape_hub_command(hub, duration=20.0).outcome
     'done'
     """
-    case = build(scenario_of(scenario, overrides))
+    case = template_of(scenario, overrides).built()
     name, hub = hub_of(case, motion)
     if case.model.automatic:
         raise InputError("model.modes", "is left out, and a command knows the modes of given shapes", "give it")

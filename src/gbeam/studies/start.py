@@ -14,12 +14,11 @@ import numpy as np
 
 from gbeam.analysis.case import Case
 from gbeam.errors import GbeamError, InputError
-from gbeam.scenario.build import build
-from gbeam.scenario.schema.scenario import Scenario
 from gbeam.studies.cases import Cases
 from gbeam.studies.evaluate import NO_FACTS, Question, Row, ended, settled, width, without_figures
 from gbeam.studies.evaluate import rows as computed
 from gbeam.studies.figures import find, is_truth, read_history, unit_at
+from gbeam.studies.template import Template
 
 _FEW = 8  # cases that stand together in the computation that is timed
 TRIED = 20  # cases, all over the sweep, of which one must be possible
@@ -59,7 +58,7 @@ class Start:
     question: Question
     units: tuple[str, ...]
     truths: tuple[bool, ...]
-    example: Scenario
+    example: Template
     rows: tuple[Row, ...]
     seconds: float
 
@@ -80,8 +79,8 @@ def start(
     for index in np.unique(np.linspace(0, len(missing) - 1, TRIED).astype(int)):
         number, begin = missing[index], time.perf_counter()
         try:
-            scenario = question.scenario(cases.overrides(number))
-            case = build(scenario)
+            example = question.template.changed(cases.overrides(number))
+            case = example.built()
             needed = histories.names or not question.functions
             facts = question.facts(case) if needed else NO_FACTS
         except GbeamError as error:
@@ -110,7 +109,7 @@ def start(
         if after and (seconds < _IMPORTS or question.together):
             more, seconds = _timed(question, cases, after)
             rows += more
-        return Start(question, units, truths, scenario, tuple(rows), seconds)
+        return Start(question, units, truths, example, tuple(rows), seconds)
     assert reason is not None
     raise reason
 
@@ -126,9 +125,9 @@ def go_on(
     """Start of a sweep some of whose cases are done, by which its figures are known; nothing may be missing."""
     question = replace(question, keys=tuple(tuple(keys) for keys, *_ in figures if keys))
     possible = [row for row in done if row.outcome != "refused"] or done
-    scenario = question.scenario(cases.overrides(possible[0].case))
+    example = question.template.changed(cases.overrides(possible[0].case))
     if histories.names or question.together:
-        case = build(scenario)
+        case = example.built()
         question = settled(histories.of(question, case), case, len(cases))
     rows: list[Row] = []
     seconds = 0.0
@@ -140,7 +139,7 @@ def go_on(
         if seconds >= _IMPORTS:
             break
     units, truths = tuple(unit for _, unit, _ in figures), tuple(truth for *_, truth in figures)
-    return Start(question, units, truths, scenario, tuple(rows), seconds)
+    return Start(question, units, truths, example, tuple(rows), seconds)
 
 
 def _timed(question: Question, cases: Cases, numbers: Sequence[int]) -> tuple[list[Row], float]:

@@ -91,7 +91,7 @@ def indices(values: Floats, parameters: Sequence[str], seed: int) -> Indices:
     """Sobol indices of values (..., (d + 2) n) in the order of the sampler saltelli: A, B, and A with each column of B.
 
     The estimators of Saltelli (2010) and, for the total, of Jansen (1999); bounds of normal shape, by a bootstrap's
-    standard error. Base samples one of whose cases came to nothing are left out; below 8 of them, or where nothing
+    standard error. Template samples one of whose cases came to nothing are left out; below 8 of them, or where nothing
     varies, NaN. They need not be a power of 2, as those of ``scipy.stats.sobol_indices`` must.
     """
     from scipy.stats import bootstrap, norm

@@ -18,12 +18,6 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.limits import HISTORY_BYTES, WORKERS, refuse_more
 from gbeam.progress import tell
 from gbeam.results.cases import Sweep
-from gbeam.scenario.build import scenario_of
-from gbeam.scenario.origin import provenance
-from gbeam.scenario.schema.fields import kind_of
-from gbeam.scenario.schema.scenario import Scenario
-from gbeam.scenario.values.kinds import KINDS
-from gbeam.scenario.values.paths import parse_path
 from gbeam.studies.cases import Cases, read_cases
 from gbeam.studies.cluster import on_scheduler
 from gbeam.studies.evaluate import Function, Question, Row, Task, may_share, width
@@ -31,6 +25,7 @@ from gbeam.studies.figures import HISTORY, TIMES, judged, offered, usual
 from gbeam.studies.journal import Journal, identity, opened
 from gbeam.studies.start import NO_HISTORIES, OverTime, Start, go_on, start
 from gbeam.studies.statistics import indices, statistics
+from gbeam.studies.template import template_of
 from gbeam.studies.workers import processes, serially
 
 MANY = 100_000  # cases beyond which a sweep is begun only when that is confirmed
@@ -66,7 +61,7 @@ def sweep(
     Parameters
     ----------
     scenario : path or Case
-        The scenario's file, or what :func:`gbeam.read_scenario` makes of it.
+        The scenario's file, or a case, of :func:`gbeam.read_scenario` or made in Python.
     over : mapping of str to values, or sequence of str
         What varies: values by the key's path, ``{"motion.centrifuge.arm": ["1 m", "3.3 m"]}``, numbers in SI; or texts
         such as ``"motion.centrifuge.arm=1 m:12 m:12"`` (a range: from, to, how many), ``"model.kind=FOAM, exact"`` (a
@@ -130,30 +125,29 @@ def sweep(
     >>> answer
     Sweep of modes over 3 beam.material.youngs_modulus: 3 done; modes[0].frequency
     """
-    base = scenario_of(scenario, overrides, distributions=True)
-    assert base.source is not None  # it was read from a file
-    table = base.sweep
+    template = template_of(scenario, overrides, distributions=True)
+    table = template.table
     if table is not None:
         over, measure, histories = over or table.over, measure or table.measure, histories or table.history
         verb, samples = verb or table.verb, table.samples if samples is None else samples
         sampler, seed = sampler or table.sampler, table.seed if seed is None else seed
     verb = verb or "run"
     if not (measure or histories):
-        measure = (*usual(base, verb), *judged(base, verb))
+        measure = (*usual(template, verb), *judged(template, verb))
     names = tuple(measure)
     if not (names or histories):
         raise InputError("--measure", "is missing", 'name figures: --measure "tip.z.max_abs, verdict.tip"')
     over_time = _over_time(tuple(histories), times, verb)
     if not 1 <= workers <= WORKERS:
         raise InputError("--workers", f"is {workers}", f"give 1 to {WORKERS}; a --scheduler has any number")
-    cases = read_cases(_texts(over), samples, sampler or "sobol", seed := seed or 0, base.source.distributions)
+    cases = read_cases(_texts(over), samples, sampler or "sobol", seed := seed or 0, template.distributions)
     size = len(over_time.names) * over_time.count * len(cases)
     refuse_more("--times", "values of histories", size, HISTORY_BYTES // 8, 8.0, "give fewer times, or fewer cases")
     if not isinstance(measure, Mapping):
         offered(verb, names)
     functions = tuple(measure.values()) if isinstance(measure, Mapping) else ()
     share = not functions and may_share(verb, [each.path for each in cases.variations])
-    question = Question(base.source, verb, motion, at, functions=functions, together=share)
+    question = Question(template, verb, motion, at, functions=functions, together=share)
     journal, done = opened(store, resume, identity(question, cases, names, [over_time.names, over_time.count]))
     known = {row.case for row in done}
     missing = [number for number in range(len(cases)) if number not in known] if known else range(len(cases))
@@ -182,8 +176,8 @@ def sweep(
             with journal.writing(resume=resume):
                 journal.add(begun.rows)
                 rows += _collected(found, rows, len(cases), progress, journal)
-    made = assembled(base.title, cases, names, begun, rows, seed)
-    return replace(made, warnings=() if journal is None else journal.warnings, provenance=provenance(base))
+    made = assembled(template.title, cases, names, begun, rows, seed)
+    return replace(made, warnings=() if journal is None else journal.warnings, provenance=template.provenance)
 
 
 def _over_time(histories: tuple[str, ...], times: int, verb: str) -> OverTime:
@@ -270,7 +264,7 @@ def assembled(title: str, cases: Cases, names: Sequence[str], begun: Start, rows
     found = Sweep(
         title=title,
         verb=question.verb,
-        parameters=tuple(each.parameter(_unit(begun.example, each.path)) for each in cases.variations),
+        parameters=tuple(each.parameter(begun.example.unit(each.path)) for each in cases.variations),
         measures=measures,
         units=dict(zip(names, begun.units, strict=True)) | {each.name: each.unit for each in question.histories},
         outcome=outcome.reshape(shape),
@@ -295,13 +289,3 @@ def with_statistics(sweep: Sweep, cases: Cases, truths: Mapping[str, bool], seed
         paths = [each.path for each in cases.drawn]
         shares = {name: indices(values, paths, seed) for name, values in measures.items()}
     return replace(sweep, statistics=known, indices=shares)
-
-
-def _unit(scenario: Scenario, path: str) -> str:
-    """SI unit of what stands at a path; empty for what has none."""
-    *above, key = parse_path(path) or ("",)
-    node: Any = scenario
-    for step in above:
-        node = node[step] if isinstance(step, int) or isinstance(node, Mapping) else getattr(node, step, None)
-    kind = kind_of(node, key) if isinstance(key, str) and hasattr(type(node), "model_fields") else ""
-    return KINDS[kind].unit if kind else ""

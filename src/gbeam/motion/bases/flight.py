@@ -75,6 +75,11 @@ class Flight:
         )
 
     @property
+    def arguments(self) -> dict[str, Any]:
+        """Arguments of the constructor by their names, with which the flight is made again."""
+        return {"acceleration": self.acceleration, "rates": self.rates}
+
+    @property
     def record(self) -> RecordSummary | None:
         """The record that is flown; None of a flight that is prescribed."""
         return self.acceleration.record

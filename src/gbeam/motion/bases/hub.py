@@ -142,7 +142,7 @@ class Hub:
     stiffness: Any
     damping: Any
     free: bool = static()
-    set: bool = static()  # whether a setting angle is given
+    setting_angle: Any | None
     times: Any
     angles: Any
 
@@ -181,7 +181,7 @@ class Hub:
             stiffness=stiffness,
             damping=damping,
             free=free,
-            set=setting_angle is not None,
+            setting_angle=None if setting_angle is None else as_array(finite("setting_angle", setting_angle)),
         )
         # Gravity turns in base axes with the hub: only then does the motion of the base need the angle.
         times, angles = self._angles() if gravity is not None and not free else (np.zeros(1), np.zeros(1))
@@ -191,6 +191,16 @@ class Hub:
     def radius(self) -> Any:
         """From the axis to the root, m."""
         return self.mount.radius
+
+    @property
+    def pointing(self) -> str:
+        """outward or inward."""
+        return POINTINGS[0] if self.mount.R_HB[0, 0] > 0 else POINTINGS[1]
+
+    @property
+    def gravity(self) -> Any | None:
+        """Acceleration of free fall, (3,) m/s², in hub axes at hub angle zero; None without."""
+        return self.mount.gravity
 
     def base(self, t: Any) -> Base:
         """Motion of the base at times `t` (s, any shape): a_O = (−rΩ², r dΩ/dt, 0) in hub axes."""

@@ -179,7 +179,12 @@ class Centrifuge(AxisMotion):
         """
         if changes.keys() == {"control_point"}:
             return self._changed(control_point=_position(changes["control_point"]))
-        given: dict[str, Any] = {
+        return type(self)(**{**self.arguments, **changes})
+
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """Arguments of the constructor by their names, with which the machine is made again."""
+        return {
             "flight": self.flight,
             "arm": self.geometry.arm,
             "control_point": self.control_point,
@@ -193,7 +198,6 @@ class Centrifuge(AxisMotion):
             "clip": self.clip,
             "span": None if self.course is None else self.course.target.span,
         }
-        return type(self)(**{**given, **changes})
 
     def base(self, t: Any) -> Base:
         """Motion of the root at times `t` (s, any shape)."""
