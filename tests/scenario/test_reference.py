@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from gbeam.cli import main
+from gbeam.guards.kinds import KINDS
 from gbeam.scenario import schema
 from gbeam.scenario.reference import reference
 from gbeam.scenario.schema.fields import Table, fields_of
-from gbeam.scenario.values.kinds import KINDS
 
 PAGE = Path(__file__).parents[2] / "docs" / "scenario.md"
 

@@ -9,8 +9,8 @@ import scipy.constants as si
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gbeam.scenario.values.kinds import KINDS, USUAL
-from gbeam.scenario.values.units import UnitError, argument, parsed_factor, quantity
+from gbeam.guards.kinds import KINDS, USUAL
+from gbeam.guards.units import UnitError, argument, parsed_factor, quantity
 
 G0 = 9.80665
 

@@ -97,7 +97,7 @@ def naming(option: str) -> Iterator[None]:
 
 def number(option: str, text: str, kind: str) -> float:
     """Read an option with a unit."""
-    from gbeam.scenario.values.units import UnitError, argument
+    from gbeam.guards.units import UnitError, argument
 
     try:
         return argument(text, kind)

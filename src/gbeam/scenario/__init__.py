@@ -4,13 +4,13 @@ text/ reads quantities, places and overrides; schema/ declares the tables; load 
 explain and placing put every error at its line; template is for those who write scenarios.
 """
 
+from gbeam.guards.units import UnitError, argument, quantity
 from gbeam.scenario.build import build, build_machines, build_specimen, read_scenario
 from gbeam.scenario.load import load, load_environments, loads
 from gbeam.scenario.origin import placed, provenance
 from gbeam.scenario.schema import Environments, Scenario
 from gbeam.scenario.template import json_schema, template
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
-from gbeam.scenario.values.units import UnitError, argument, quantity
 
 __all__ = [
     "Diagnostic",

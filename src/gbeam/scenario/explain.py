@@ -6,13 +6,14 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
+from gbeam.guards.kinds import KINDS
+from gbeam.guards.names import advise
+from gbeam.guards.units import spoken
 from gbeam.scenario.schema import Scenario
 from gbeam.scenario.schema.fields import Quantity, Table, fields_of
 from gbeam.scenario.text.diagnostics import Diagnostic
 from gbeam.scenario.text.source import Mark, Source
-from gbeam.scenario.values.kinds import KINDS
-from gbeam.scenario.values.paths import Path, advise
-from gbeam.scenario.values.units import spoken
+from gbeam.scenario.values.paths import Path
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo

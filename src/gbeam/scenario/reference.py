@@ -7,8 +7,8 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+from gbeam.guards.kinds import KINDS
 from gbeam.scenario.template import json_schema
-from gbeam.scenario.values.kinds import KINDS
 
 _INTRODUCTION = """\
 # The scenario file, key by key

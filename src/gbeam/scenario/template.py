@@ -6,9 +6,9 @@ import json
 from typing import Any
 
 from gbeam.errors import InputError
+from gbeam.guards.names import advise
 from gbeam.scenario.schema import Scenario
 from gbeam.scenario.values.distributions import FAMILIES
-from gbeam.scenario.values.paths import advise
 
 _HEAD = """\
 # A scenario for gbeam. Quantities are text with a unit ("300 mm", "6 g", "60 rpm"); bare numbers are SI.

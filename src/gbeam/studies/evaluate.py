@@ -18,13 +18,13 @@ from gbeam.analysis.case import Case
 from gbeam.analysis.environments import study_of
 from gbeam.analysis.response.batch import TOGETHER, simulate_batch
 from gbeam.errors import ComputationError, GbeamError, InputError
+from gbeam.guards.names import advise
 from gbeam.mechanics.structure import Structure
 from gbeam.questions import QUESTIONS, Needs, reduced
 from gbeam.results.cases import ANSWERED
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Failure
-from gbeam.scenario.values.paths import advise
 from gbeam.studies.answers import Facts, answer_facts, answered
 from gbeam.studies.figures import History, Keys, own_keys, value_at
 from gbeam.studies.template import Template

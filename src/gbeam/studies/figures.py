@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gbeam.errors import InputError
+from gbeam.guards.names import advise, closest
 from gbeam.questions import QUESTIONS
 from gbeam.results.result import Floats
-from gbeam.scenario.values.paths import advise, closest, path_text
+from gbeam.scenario.values.paths import path_text
 from gbeam.structure.attachments import TIP
 from gbeam.studies.answers import KIND, Facts, choices, tree_of_figures
 from gbeam.studies.template import Template

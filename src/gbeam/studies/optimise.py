@@ -15,13 +15,13 @@ from gbeam.analysis.case import Case
 from gbeam.analysis.response.differentiated import Grid
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.guards.arguments import typed
+from gbeam.guards.kinds import KINDS
+from gbeam.guards.units import UnitError, argument
 from gbeam.mechanics.models import Model
 from gbeam.progress import Progress
 from gbeam.results.result import Floats
 from gbeam.results.searches import BROKEN, Optimum, Requirement
 from gbeam.results.study import Study
-from gbeam.scenario.values.kinds import KINDS
-from gbeam.scenario.values.units import UnitError, argument
 from gbeam.studies.answers import Facts
 from gbeam.studies.derivatives import Neighbourhood
 from gbeam.studies.evaluate import Question

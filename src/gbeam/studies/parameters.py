@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from gbeam.errors import InputError
+from gbeam.guards.kinds import KINDS
 from gbeam.guards.limits import refuse_more
+from gbeam.guards.names import advise
+from gbeam.guards.units import UnitError, argument
 from gbeam.results.result import Floats
 from gbeam.scenario.load import load
 from gbeam.scenario.text.revise import with_quantities
-from gbeam.scenario.values.kinds import KINDS
-from gbeam.scenario.values.paths import advise
-from gbeam.scenario.values.units import UnitError, argument
 from gbeam.studies.template import ScenarioTemplate, Template
 
 # Values of the computation, not of what is computed.

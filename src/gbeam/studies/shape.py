@@ -16,6 +16,7 @@ from gbeam.analysis.control.shaping import profile_of, shape_command
 from gbeam.analysis.model_study import counterpart
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
+from gbeam.guards.names import advise
 from gbeam.mechanics.models import KINDS
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.piecewise import constant
@@ -23,7 +24,6 @@ from gbeam.progress import Progress
 from gbeam.questions import motion_of
 from gbeam.results.searches import ShapedCommand
 from gbeam.scenario.build import scenario_of
-from gbeam.scenario.values.paths import advise
 from gbeam.studies.template import template_of
 
 _REST = 1e-9  # of the largest rate: a hub that turns slower at its end is to turn by an angle

@@ -20,6 +20,9 @@ from pydantic import BaseModel
 
 from gbeam.analysis.case import Case
 from gbeam.errors import InputError
+from gbeam.guards.kinds import KINDS
+from gbeam.guards.names import advise
+from gbeam.guards.units import UnitError, argument
 from gbeam.results.provenance import Provenance
 from gbeam.scenario.build import build, scenario_of
 from gbeam.scenario.load import change
@@ -28,9 +31,7 @@ from gbeam.scenario.schema import Centrifuge, Scenario
 from gbeam.scenario.schema.fields import fields_of, kind_in, kind_of, quantities
 from gbeam.scenario.schema.scenario import Sweep as SweepTable
 from gbeam.scenario.values.distributions import Distribution
-from gbeam.scenario.values.kinds import KINDS
-from gbeam.scenario.values.paths import Path, advise, parse_path, path_text
-from gbeam.scenario.values.units import UnitError, argument
+from gbeam.scenario.values.paths import Path, parse_path, path_text
 
 _LONGEST = 100  # numbers of a list that are values of a study; more are a record
 

@@ -115,7 +115,7 @@ def campbell(
         diagram = questions.campbell(given.case, name, start=low, end=high, modes=modes, orders=orders)
     facts = given.signed(facts_of(diagram))
 
-    from gbeam.scenario.values.units import unit_of
+    from gbeam.guards.units import unit_of
 
     # In words and in the diagram speeds are in the unit in which they are given.
     unit, size = unit_of(end or start or "0", "angular rate")

@@ -10,10 +10,10 @@ from pydantic import BaseModel, ConfigDict, Discriminator, Field, GetCoreSchemaH
 from pydantic import ValidationError as PydanticError
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
 
+from gbeam.guards.kinds import KINDS
 from gbeam.guards.limits import ENTRIES, LARGEST, SMALLEST
-from gbeam.scenario.values.kinds import KINDS
+from gbeam.guards.units import UnitError, quantity
 from gbeam.scenario.values.paths import Path, path_text
-from gbeam.scenario.values.units import UnitError, quantity
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
@@ -54,7 +54,7 @@ class Quantity:
     Parameters
     ----------
     kind : str
-        A key of ``gbeam.scenario.values.kinds.KINDS``.
+        A key of ``gbeam.guards.kinds.KINDS``.
     sign : str
         ``any``, ``positive`` or ``zero or more``.
     words : tuple of str

@@ -8,8 +8,8 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field, StrictBool, Tag, ValidationInfo, model_validator
 
 from gbeam.guards.limits import existing
+from gbeam.guards.names import closest
 from gbeam.scenario.schema.fields import ONE_OR_LIST, Moment, Quantity, Table, refuse, wrong
-from gbeam.scenario.values.paths import closest
 
 
 def _existing(file: str, info: ValidationInfo) -> str:

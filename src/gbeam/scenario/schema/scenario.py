@@ -10,13 +10,13 @@ from pydantic import AfterValidator, Field, PrivateAttr, StrictInt, ValidationIn
 from pydantic_core import PydanticCustomError
 
 from gbeam.guards.limits import NAME, SHAPES, TITLE
+from gbeam.guards.names import advise
 from gbeam.printable import shortened, unprintable
 from gbeam.questions import QUESTIONS
 from gbeam.scenario.schema.beam import Beam
 from gbeam.scenario.schema.fields import Loc, Table, refuse, wrong
 from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub, Motion
 from gbeam.scenario.schema.response import Response
-from gbeam.scenario.values.paths import advise
 
 if TYPE_CHECKING:
     from gbeam.scenario.text.source import Source

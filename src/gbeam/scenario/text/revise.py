@@ -11,11 +11,11 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from gbeam.errors import InputError
+from gbeam.guards.units import unit_of
 from gbeam.scenario.text.diagnostics import ScenarioError
 from gbeam.scenario.text.locate import BLOCKS, Layout, keys_of
 from gbeam.scenario.text.source import Source, is_json, parse
 from gbeam.scenario.values.paths import Path, parse_path, path_text, written_at
-from gbeam.scenario.values.units import unit_of
 
 if TYPE_CHECKING:
     from tree_sitter import Node

@@ -13,10 +13,11 @@ from typing import Any, Literal
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import SCENARIO_BYTES, refuse_large_file
+from gbeam.guards.names import closest
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.overrides import Override, crowded, excess, no_text
 from gbeam.scenario.values.distributions import Distribution
-from gbeam.scenario.values.paths import Path, Place, Span, closest, path_text, written_at
+from gbeam.scenario.values.paths import Path, Place, Span, path_text, written_at
 
 Mark = Literal["value", "key"]
 

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from gbeam.errors import InputError
-from gbeam.scenario.values.paths import Path, closest, walk
-from gbeam.scenario.values.units import NUMBER
+from gbeam.guards.names import closest
+from gbeam.guards.units import NUMBER
+from gbeam.scenario.values.paths import Path, walk
 
 
 @dataclass(frozen=True)

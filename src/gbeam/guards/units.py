@@ -11,10 +11,10 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from gbeam.guards.kinds import KINDS, USUAL, Kind
 from gbeam.guards.limits import QUANTITY
+from gbeam.guards.names import closest
 from gbeam.printable import shortened
-from gbeam.scenario.values.kinds import KINDS, USUAL, Kind
-from gbeam.scenario.values.paths import closest
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
