@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -19,6 +21,7 @@ import pytest
 
 import gbeam as gb
 from gbeam.analysis.response.settings import Settings
+from gbeam.guards.kinds import KINDS, kind_of_argument
 
 from .scenarios import FAST, FREE_HUB
 
@@ -344,16 +347,88 @@ def test_no_number_loses_its_unit(given: Given, name: str, tmp_path: Path, monke
             argument = at if isinstance(at, str) else names[at]
             if argument == "over" and "text" in how:
                 continue  # a sweep's values are the scenario's, which has units
+            kind = kind_of_argument(name.rpartition(".")[2] if name.startswith("Section.") else name, argument)
+            if kind == ("angle" if how == "without dimension" else "length") and how not in (
+                "unit",
+                "array of objects",
+            ):
+                continue  # it is read: see below
             try:
                 called(function, *changed[0], **changed[1])
             except gb.InputError as error:
-                if not ("text" in how or (argument in error.where and BARE in error.fix)):
+                said_so = BARE in error.fix or (kind and "expected" in error.fix)
+                if not ("text" in how or (argument in error.where and said_so)):
                     problems.append(f"{argument}, {how}: {error}")
             except Exception as error:
                 problems.append(f"{argument}, {how}: {type(error).__name__}: {error}")
             else:
                 problems.append(f"{argument}, {how}: nothing is refused")
     assert not problems, "\n".join(problems)
+
+
+MADE = [*SHAPES, *(name for name in PUBLIC if isinstance(getattr(gb, name), type))]
+
+
+@pytest.mark.parametrize("name", [*MADE, *(f"{name} instead" for name in INSTEAD if name != "vector")])
+@pytest.mark.parametrize("how", ["text", "pint"])
+def test_a_quantity_is_read_as_scenarios_read_it(given: Given, name: str, how: str) -> None:
+    """Texts with a unit and pint's quantities make what the numbers in SI make."""
+    name, _, instead = name.partition(" ")
+    args, keywords = SHAPES[name] if name in SHAPES else ((), INSTEAD[name]) if instead else given.calls()[name]
+    function = attrgetter(name)(gb)
+    places = [*zip(signature(function).parameters, args, strict=False), *keywords.items()]
+
+    def said(argument: str, value: Any) -> Any:
+        kind = kind_of_argument(name.rpartition(".")[2], argument)
+        if not kind or not numbers(value):
+            return value
+        unit = KINDS[kind].unit
+        if how == "text":
+            return with_numbers(value, lambda number: f"{number!r} {unit}" if unit else number)
+        return with_numbers(value, lambda number: number * UNITS(unit or "dimensionless"))
+
+    in_si, read = (
+        function(*[change(*each) for each in places[: len(args)]], **{k: change(k, v) for k, v in keywords.items()})
+        for change in (lambda _, value: value, said)
+    )
+    assert read == in_si
+
+
+def test_units_of_arguments_are_those_of_the_documents() -> None:
+    """Where a public docstring says one unit of a number, the argument is read as a quantity that has it."""
+    problems, read = [], 0
+    for name in PUBLIC:
+        for argument, words in documented(getattr(gb, name)).items():
+            kind = kind_of_argument(name, argument)
+            units = set(SAID.findall(words))
+            if not kind or not units:
+                continue
+            read += 1
+            unit = KINDS[kind].unit.replace("^2", "²").replace("^3", "³").replace("^4", "⁴").replace("1/s", "Hz")
+            if unit and unit not in units:
+                problems.append(f"{name}: {argument} is read in {unit}, and said to be in {units}")
+    assert not problems and read > 60, "\n".join(problems)
+
+
+SAID = re.compile(
+    r"(?<![\w/])(kg m²|N m s/rad|N m/rad|N m|N/m|kg/m³|rad/s[²³]|rad/s|m/s[²³]|m/s|m²|m⁴|Hz|Pa|rad|kg|N|s|m|W)"
+    r"(?![\w/²³⁴'])"
+)
+
+
+def documented(thing: Any) -> dict[str, str]:
+    """Words of every parameter in a docstring."""
+    text = inspect.getdoc(thing) or ""
+    section = re.search(r"Parameters\n-+\n(.*?)(?:\n\n[A-Z]\w+\n---|\Z)", text, re.DOTALL)
+    words: dict[str, str] = {}
+    names: list[str] = []
+    for line in section[1].splitlines() if section else ():
+        if line and not line.startswith(" "):
+            head, _, _ = line.partition(" : ")
+            names = [each.strip() for each in head.split(",")]
+        else:
+            words |= {each: f"{words.get(each, '')} {line.strip()}" for each in names}
+    return words
 
 
 @pytest.mark.parametrize("name", ["flight", "hub", "centrifuge", "profile", "section", "beam", "particles"])
@@ -386,13 +461,17 @@ class Metres(float):
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: gb.Section.rectangle(20 * UNITS.mm, 0.004), f'width is 20 millimeter; {BARE}: .to("m").magnitude'),
-        (lambda: gb.Hub(radius=0.5, rate=60 * UNITS.Hz), f'rate is 60 hertz; {BARE}: .to("1 / s").magnitude; '
+        (lambda: gb.constant(20 * UNITS.mm), f'value is 20 millimeter; {BARE}: .to("m").magnitude'),
+        (lambda: gb.constant(60 * UNITS.Hz), f'value is 60 hertz; {BARE}: .to("1 / s").magnitude; '
          "1 Hz is 6.2832 rad/s as an angular rate"),
         (lambda: gb.PointMass(0.1, 0.1, offset=(0, Metres(1), 0)), f"offset[1] is 1.0; {BARE}"),
-        (lambda: gb.Section.of("circle", diameter="20 mm"), "diameter is '20 mm'; give numbers in SI"),
-        (lambda: gb.Material(2700, "70"), "youngs_modulus is '70'; give a number in SI"),
-        (lambda: gb.Hub(radius=0.5, rate="60 rpm"), "rate is '60 rpm'; give numbers in SI"),
+        (lambda: gb.constant("20 mm"), "value is '20 mm'; give numbers in SI"),
+        (lambda: gb.Material(2700, "70"), 'youngs_modulus "70" has no unit; '
+         'add a unit, such as "70 GPa", or write the bare number 70 for Pa'),
+        (lambda: gb.Hub(radius=0.5, rate="60 mm"), 'rate "60 mm" is a length; '
+         'expected an angular rate, such as "3 rad/s"'),
+        (lambda: gb.Hub(radius=0.5, rate=60 * UNITS.mm), 'rate "60.0 mm" is a length; '
+         'expected an angular rate, such as "3 rad/s"'),
     ],
 )  # fmt: skip
 def test_how_a_unit_is_refused(call: Callable[[], Any], words: str) -> None:

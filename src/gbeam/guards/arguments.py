@@ -12,10 +12,13 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_
 
 from gbeam.arrays.namespace import has_unit
 from gbeam.errors import GbeamError, InputError
+from gbeam.guards.kinds import kind_of_argument
+from gbeam.guards.units import UnitError, in_si
 from gbeam.printable import shortened
 from gbeam.progress import Bar
 
-_BARE = frozenset({float, int, bool, complex, str, bytes, type(None)})
+_NUMBERS = frozenset({float, int, bool, type(None)})
+_BARE = _NUMBERS | {complex, str, bytes}
 
 
 def refuse_units(where: str, value: Any) -> None:
@@ -66,13 +69,15 @@ _MAKERS = {
 def typed(function: F) -> F:
     """Let a function, or the constructor of a class, refuse arguments that are not what their annotations say.
 
-    The error is an InputError with the argument's name; missing and unknown arguments stay Python's TypeError. Numbers
-    with a unit are refused, in texts too; another text for a number, or a fraction for a whole one, only where the call
-    fails: the checks of values know more of them.
+    The error is an InputError with the argument's name; missing and unknown arguments stay Python's TypeError. A text
+    with a unit, as scenarios have it, and pint's quantities are read where the argument has a kind of quantity
+    (`gbeam.guards.kinds`); elsewhere numbers with a unit are refused. Another text for a number, or a fraction for a
+    whole one, is refused only where the call fails: the checks of values know more of them.
     """
     if isinstance(function, type):
         function.__init__ = typed(function.__init__)  # type: ignore[misc]
         return function
+    owner = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
     kinds = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
     names = [each.name for each in signature(function).parameters.values() if each.kind in kinds]
 
@@ -89,6 +94,10 @@ def typed(function: F) -> F:
         if ("progress", True) in given:
             with Bar() as bar:
                 return call(**dict(given) | {"progress": bar})
+        if any(type(value) not in _NUMBERS for _, value in given):
+            args = (*(_read(owner, *each) for each in zip(names, args, strict=False)), *args[len(names) :])
+            keywords = {name: _read(owner, name, value) for name, value in keywords.items()}
+            given = (*zip(names, args, strict=False), *keywords.items())
         check(given, True)
         try:
             return function(*args, **keywords)
@@ -98,6 +107,17 @@ def typed(function: F) -> F:
             raise
 
     return call  # type: ignore[return-value]
+
+
+def _read(owner: str, name: str, value: Any) -> Any:
+    """An argument in SI, where it is a quantity, or holds some, as text or of pint."""
+    kind = "" if type(value) in _NUMBERS else kind_of_argument(owner, name)
+    if not kind:
+        return value
+    try:
+        return in_si(value, kind)
+    except UnitError as error:
+        raise InputError(name, error.problem, error.hint) from None
 
 
 @functools.cache

@@ -1,4 +1,4 @@
-"""The kinds of quantity that a scenario holds, and the units that most files write them in."""
+"""The kinds of quantity of scenarios and of public functions, and the units that most files write them in."""
 
 from __future__ import annotations
 
@@ -81,3 +81,55 @@ USUAL: dict[str, dict[str, float]] = {
     "ratio": {"%": 0.01},
     "amplitude ratio": {"%": 0.01},
 }
+
+_BY_KIND = {
+    "length": "arm at control_point diameter extreme_fibre_y extreme_fibre_z length offset positions radius stations "
+    "thickness tip_displacement wall width",
+    "area": "area",
+    "second moment of area": "inertia_y inertia_z torsion_constant",
+    "mass": "mass",
+    "density": "density",
+    "moment of inertia": "inertia",
+    "pressure": "shear_modulus yield_strength youngs_modulus",
+    "stiffness": "translation_x translation_y translation_z",
+    "rotational stiffness": "rotation_y rotation_z",
+    "torque": "torque",
+    "time": "duration end hold residual_from sample smoothing span spin_down spin_up start step time widths",
+    "speed": "tip_velocity",
+    "acceleration": "acceleration gravity idle",
+    "angle": "angle setting_angle",
+    "angular rate": "rate rates speeds",
+    "power": "power",
+    "frequency": "frequency",
+    "ratio": "damping_ratio fatigue_exponent poissons_ratio robust shear_coefficient_y shear_coefficient_z tolerance",
+}
+_BY_NAME = {name: kind for kind, names in _BY_KIND.items() for name in names.split()}
+# Of a function or a class, the arguments whose names mean something else elsewhere; of no kind where it is not known.
+_BY_OWNER = {
+    "AxisLimit": {"acceleration": "angular acceleration", "jerk": "angular jerk"},
+    "Case": {"tolerance": ""},
+    "Centrifuge": {"gravity": ""},
+    "Clamped": {"first": "time", "last": "time"},
+    "Convolved": {"width": "time"},
+    "Flight": {"x": "acceleration", "y": "acceleration", "z": "acceleration"},
+    "Hub": {"stiffness": "rotational stiffness", "damping": "rotational damping"},
+    "buckling_acceleration": {"upper": "acceleration"},
+    "PiecewiseLinear": {"times": "time"},
+    "SmoothedPiecewiseLinear": {"width": "time"},
+    "build_target": {"gravity": ""},
+    "campbell": {"start": "angular rate", "end": "angular rate"},
+    "critical_speed": {"upper": "angular rate"},
+    "critical_speed_map": {"upper": "angular rate", "masses": "mass"},
+    "fit": {"at": "time"},
+    "optimise": {"at": "time"},
+    "read_record": {"time": ""},
+    "sensitivity": {"at": "time"},
+    "smoothed": {"width": "time"},
+    "sweep": {"at": "time"},
+    "tabulated": {"times": "time"},
+}
+
+
+def kind_of_argument(owner: str, name: str) -> str:
+    """Return the kind of quantity of an argument of a public function or class; empty where texts are not read."""
+    return _BY_OWNER.get(owner, {}).get(name, _BY_NAME.get(name, ""))

@@ -41,7 +41,7 @@ degree = 0.017453292519943295 * radian = deg = °
 revolution = 6.283185307179586 * radian = rev
 rpm = revolution / minute
 hertz = revolution / second = Hz
-gee = 9.80665 * meter / second ** 2 = g0
+gee = 9.80665 * meter / second ** 2 = g0 = g_0
 newton = kilogram * meter / second ** 2 = N
 pascal = newton / meter ** 2 = Pa
 watt = newton * meter / second = W
@@ -60,6 +60,7 @@ psi ksi Msi % watt meter metre millimeter gram kilogram second millisecond minut
 newton pascal inch foot pound percent
 """
 # A number and what follows it: its unit, or nothing.
+_BEGINNING = re.compile(r"\s*[+-]?\s*(\.?\d|inf|nan)", re.IGNORECASE)
 NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*", re.DOTALL)
 # pint's tokenizer drops what it does not know ("5 m$", "5 m # note"), so the letters are checked first.
 _UNIT = re.compile(r"[\w°%()*/^+\-·.⁻⁰¹²³⁴-⁹ ]+")
@@ -109,6 +110,28 @@ def quantity(value: object, kind: str) -> float:
     if not math.isfinite(number):
         raise UnitError(f"{shown} is not finite", f"expected {such_as}")
     return number
+
+
+def in_si(value: Any, kind: str) -> Any:
+    """Return a value, or what a list or a mapping holds, in SI: texts that begin with a number and pint's quantities.
+
+    Raises UnitError where one is of another kind. What is neither stays what it is.
+    """
+    if isinstance(value, str):
+        return quantity(value, kind) if _BEGINNING.match(value) else value
+    if hasattr(value, "magnitude") and hasattr(value, "dimensionality"):  # of pint
+        unit, number = f"{value.units:~P}", value.magnitude
+        if not unit and not KINDS[kind].unit:
+            return number
+        if isinstance(number, (int, float)):
+            return quantity(f"{float(number)!r} {unit}", kind)
+        return number * quantity(f"1 {unit}", kind)
+    if isinstance(value, (list, tuple)):
+        parts = [in_si(each, kind) for each in value]
+        return value if all(one is other for one, other in zip(parts, value, strict=True)) else type(value)(parts)
+    if isinstance(value, dict):
+        return {key: in_si(each, kind) for key, each in value.items()}
+    return value
 
 
 def _ratio(decibels: float) -> float:

@@ -12,15 +12,13 @@ import os
 import pickle
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
-from functools import cache
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
-from pydantic import BaseModel
 
 from gbeam.analysis.case import Case
 from gbeam.errors import InputError
-from gbeam.guards.kinds import KINDS
+from gbeam.guards.kinds import KINDS, kind_of_argument
 from gbeam.guards.names import advise
 from gbeam.guards.units import UnitError, argument
 from gbeam.results.provenance import Provenance
@@ -28,7 +26,7 @@ from gbeam.scenario.build import build, scenario_of
 from gbeam.scenario.load import change
 from gbeam.scenario.origin import provenance
 from gbeam.scenario.schema import Centrifuge, Scenario
-from gbeam.scenario.schema.fields import fields_of, kind_in, kind_of, quantities
+from gbeam.scenario.schema.fields import kind_of, quantities
 from gbeam.scenario.schema.scenario import Sweep as SweepTable
 from gbeam.scenario.values.distributions import Distribution
 from gbeam.scenario.values.paths import Path, parse_path, path_text
@@ -163,7 +161,7 @@ class CaseTemplate:
             for step in steps[:-1]:
                 node = node.setdefault(step, {})
             node[steps[-1]] = value.strip()
-        parts = _with(self._tree, wanted, ())
+        parts = _with(self._tree, "", wanted, ())
         motions: dict[str, Any] = parts.pop("motion")
         for machine, flight in self.case.tracks.items():
             if motions.get(flight) is not self.case.motions.get(flight):
@@ -176,14 +174,18 @@ class CaseTemplate:
 
     def quantities(self) -> dict[str, tuple[float, str]]:
         """Value in SI and kind of every quantity, by path."""
-        every = {path_text(path): (value, kind) for path, value, kind in _numbers(self._tree, ())}
+        every = {path_text(path): (value, kind) for path, value, kind in _numbers(self._tree, "", ())}
         # A machine that tracks a flight of the case has it from there.
         copies = tuple(f"motion.{machine}.flight." for machine in self.case.tracks)
         return {path: each for path, each in every.items() if not path.startswith(copies)}
 
     def unit(self, path: str) -> str:
         """SI unit of the quantity at a path; empty where it has none."""
-        return KINDS[_kind(parse_path(path) or ())].unit
+        node: Any = self._tree
+        kind = ""
+        for step in parse_path(path) or ():
+            node, kind = _below(node, kind).get(step, (None, ""))
+        return KINDS[kind].unit if kind else ""
 
 
 Template = ScenarioTemplate | CaseTemplate
@@ -212,33 +214,44 @@ def arguments_of(node: Any) -> dict[str, Any] | None:
     return {name: getattr(node, name) for name in names} if all(hasattr(node, name) for name in names) else None
 
 
-def _with(node: Any, wanted: Any, path: Path) -> Any:
+def _below(node: Any, kind: str) -> dict[Any, tuple[Any, str]]:
+    """What stands below a node by name or number, each with its kind of quantity; nothing where it is not known.
+
+    An argument that has no kind of its own, such as the level of a profile, has that of what it is an argument of.
+    """
+    if isinstance(node, (tuple, list)) or np.ndim(node):
+        return {k: (each, kind) for k, each in enumerate(node)}
+    owner = type(node).__name__
+    arguments = arguments_of(node) or {}
+    return {name: (each, kind_of_argument(owner, name) or kind) for name, each in arguments.items()}
+
+
+def _with(node: Any, kind: str, wanted: Any, path: Path) -> Any:
     """The node with other values, SI or text with a unit, at some places below it."""
     if isinstance(wanted, str):
-        return _read(node, wanted, path)
-    listed = list(node) if isinstance(node, (tuple, list)) or np.ndim(node) else None
-    known: dict[Any, Any] | None = dict(enumerate(listed)) if listed is not None else arguments_of(node)
+        return _read(node, kind, wanted, path)
+    known = _below(node, kind)
     for step in wanted:
-        if known is None or step not in known:
-            place = path_text((*path, step))
-            below = [str(each) for each in known or () if known and _may_vary(known[each])]
+        if step not in known:
+            below = [str(name) for name, (each, _) in known.items() if _may_vary(each)]
             fix = advise(str(step), below) if below else "vary one of its numbers"
-            raise InputError(place, "is no value that the case gives", fix)
-    assert known is not None
-    changed = {step: _with(known[step], each, (*path, step)) for step, each in wanted.items()}
-    if listed is not None:
-        values = [*(known | changed).values()]
-        return type(node)(values) if isinstance(node, (tuple, list)) else np.array(values)
+            raise InputError(path_text((*path, step)), "is no value that the case gives", fix)
+    changed = {step: _with(*known[step], each, (*path, step)) for step, each in wanted.items()}
+    every = {step: each for step, (each, _) in known.items()} | changed
     if isinstance(node, Mapping):
-        return known | changed
+        return every
+    if isinstance(node, (tuple, list)):
+        return type(node)(every.values())
+    if np.ndim(node):
+        return np.array([*every.values()])
     try:
-        return node.altered(**changed) if hasattr(node, "altered") else type(node)(**known | changed)
+        return node.altered(**changed) if hasattr(node, "altered") else type(node)(**every)
     except InputError as error:
         raise error.within(path_text(path)) from None
 
 
-def _read(current: Any, text: str, path: Path) -> Any:
-    """A value of the kind that stands at a place: a word, a truth, a number in SI or with a unit."""
+def _read(current: Any, kind: str, text: str, path: Path) -> Any:
+    """A value of what stands at a place: a word, a truth, a number in SI or with a unit."""
     if isinstance(current, bool):
         if text not in ("true", "false"):
             raise InputError(path_text(path), f"is {text!r}", "write true or false")
@@ -246,56 +259,22 @@ def _read(current: Any, text: str, path: Path) -> Any:
     if isinstance(current, str):
         return text.strip('"')
     try:
-        value = argument(text, _kind(path))
+        value = argument(text, kind or "ratio")
     except UnitError as error:
         raise InputError(path_text(path), error.problem, error.hint) from None
-    if isinstance(current, int) and value == int(value):
-        return int(value)
-    return value
+    return int(value) if isinstance(current, int) and value == int(value) else value
 
 
-def _numbers(node: Any, path: Path) -> Iterator[tuple[Path, float, str]]:
+def _numbers(node: Any, kind: str, path: Path) -> Iterator[tuple[Path, float, str]]:
     """Every number below a node, with its path and kind; counts are none."""
-    if isinstance(node, (bool, str, int)):
+    if isinstance(node, (bool, str, int)) or np.size(node) > _LONGEST:
         return
     if isinstance(node, float) or (hasattr(node, "dtype") and np.ndim(node) == 0):
-        yield path, float(node), _kind(path)
+        yield path, float(node), kind or "ratio"
         return
-    if isinstance(node, (tuple, list, np.ndarray)):
-        known: dict[Any, Any] | None = dict(enumerate(node)) if len(node) <= _LONGEST else None
-    else:
-        known = arguments_of(node)
-    for step, value in (known or {}).items():
-        yield from _numbers(value, (*path, step))
+    for step, (value, of) in _below(node, kind).items():
+        yield from _numbers(value, of, (*path, step))
 
 
 def _may_vary(node: Any) -> bool:
-    return isinstance(node, str) or any(True for _ in _numbers(node, ()))
-
-
-def _kind(path: Path) -> str:
-    """Kind of quantity at a path: that which every key of that name in a scenario has; else a plain number."""
-    key = next((step for step in reversed(path) if isinstance(step, str)), "")
-    return _kinds().get(key, "ratio")
-
-
-@cache
-def _kinds() -> dict[str, str]:
-    """Kinds of the keys that are the same quantity in every table of a scenario."""
-    every: dict[str, set[str]] = {}
-    for table in _tables(Scenario, set()):
-        for key, field in fields_of(table).items():
-            if kind := kind_in([*field.metadata, field.annotation]):
-                every.setdefault(key, set()).add(kind)
-    return {key: kinds.pop() for key, kinds in every.items() if len(kinds) == 1}
-
-
-def _tables(part: Any, known: set[Any]) -> set[Any]:
-    """The tables of a scenario's schema in a part of it, besides those that are known."""
-    if isinstance(part, type) and issubclass(part, BaseModel) and part not in known:
-        known.add(part)
-        for field in part.model_fields.values():
-            _tables(field.annotation, known)
-    for each in get_args(part):
-        _tables(each, known)
-    return known
+    return isinstance(node, str) or any(True for _ in _numbers(node, "", ()))

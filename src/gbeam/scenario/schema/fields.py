@@ -120,13 +120,12 @@ def fields_of(table: type[BaseModel]) -> dict[str, FieldInfo]:
 def kind_of(table: BaseModel, key: str) -> str:
     """Kind of quantity that a key of a table holds, a key of ``KINDS``; empty where it holds none."""
     field = fields_of(type(table)).get(key)
-    return "" if field is None else kind_in([*field.metadata, field.annotation])
+    return "" if field is None else _kind_in([*field.metadata, field.annotation])
 
 
-def kind_in(parts: Iterable[Any]) -> str:
-    """Kind of quantity that an annotation, in parts, is of; empty where it is none."""
+def _kind_in(parts: Iterable[Any]) -> str:
     for part in parts:
-        kind = part.kind if isinstance(part, Quantity) else kind_in(get_args(part))
+        kind = part.kind if isinstance(part, Quantity) else _kind_in(get_args(part))
         if kind:
             return kind
     return ""
