@@ -39,6 +39,9 @@ from ..specimens import ALUMINIUM, BOX, HUB_INERTIA, HUB_RADIUS, LENGTH, METAL, 
 AGREES = 1e-6  # relative, with central differences
 E = METAL.youngs_modulus
 KINDS = {"FOAM": (0, 1, 1), "CFOAM": (1, 1, 1), "exact": (1, 1, 1)}
+# What the other direction adds is a program three times as large: one complete model bends in both.
+IN_PLANE = {("CFOAM", "slew"): (1, 1, 0), ("exact", "slew"): (1, 1, 0), ("exact", "torque"): (1, 1, 0),
+            ("CFOAM", "machine"): (1, 0, 1), ("CFOAM", "tip"): (1, 0, 1), ("exact", "tip"): (1, 0, 1)}  # fmt: skip
 OF_BEAM = {"modulus": E, "density": METAL.density, "damping": 0.2}
 Values = dict[str, Any]
 
@@ -67,7 +70,7 @@ BASES: dict[str, tuple[Callable[[Values], Any], Values]] = {
 
 def tip_of(kind: str, base: str, *, step: float = 0.02) -> Callable[[Values], Any]:
     """Sum of the tip's displacements over time, in lengths, as a function of what beam and base are made of."""
-    motion, counts = BASES[base][0], KINDS[kind]
+    motion, counts = BASES[base][0], IN_PLANE.get((kind, base), KINDS[kind])
 
     def tip(at: Values) -> Any:
         material = Material(at.get("density", METAL.density), at.get("modulus", E))
@@ -143,13 +146,14 @@ def test_derivatives_of_where_a_loaded_beam_rests(kind: str) -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_derivatives_of_a_run_from_a_displaced_tip(kind: str) -> None:
-    rest = [0.02] * (sum(KINDS[kind]) - 1)
+    counts = IN_PLANE.get((kind, "tip"), KINDS[kind])
+    rest = [0.02] * (sum(counts) - 1)
 
     def tip(at: Values) -> Any:
         beam = Beam(0.3, STRIP, Material(METAL.density, at["modulus"]), damping_ratio=[at["first"], *rest])
         initial = Initial(tip_displacement={"z": 0.02}, tip_velocity={"z": 0.2})
         hub = Hub(radius=HUB_RADIUS, rate=constant(1.0))
-        response = simulate(assemble(beam, Model(kind, *KINDS[kind])), hub, duration=0.1, step=0.005, initial=initial)
+        response = simulate(assemble(beam, Model(kind, *counts)), hub, duration=0.1, step=0.005, initial=initial)
         return (response.tip[5:] ** 2).sum()
 
     agree(tip, {"modulus": E, "first": 0.01})

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from gbeam import Beam, InputError, Load, Material, Model, PointMass, Root, Section, assemble
+from gbeam import Beam, InputError, Load, Material, Model, Point, PointMass, Root, Section, assemble
 from gbeam.analysis.control.linearization import linearize, nonlinear_system
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.motion import Flight, Hub, constant
@@ -35,6 +35,7 @@ BEAM = Beam(
         Load(1.5, force=(0.3, 0.1, -0.2), moment=(0.0, 0.05, 0.02), follower=True),
         Load(None, force=(0.0, 0.1, 0.3)),
     ],
+    points=[Point("camera", 0.7), Point("end", 2.0)],
 )
 # A complete model's programs grow with all there is: its beam has a point mass and a clamped root.
 PLAIN = replace(BEAM, masses=[PointMass(2.0, 0.1)], root=Root())
@@ -94,7 +95,7 @@ def test_finite_differences_of_the_nonlinear_model(base, kind):
 
 
 def carried(kind, base, system, rates):
-    """Root moment and tip acceleration are those of the section forces; with hub and ground they make up the torque."""
+    """Root moment and accelerations are those of the section forces; with hub and ground they make up the torque."""
     beam, size, first = structure(kind), structure(kind).size, int(base == "free")
     mount, states = HUBS[base].mount, {state.name: k for k, state in enumerate(system.states)}
     half = first + size
@@ -107,7 +108,10 @@ def carried(kind, base, system, rates):
     outputs = dict(zip([signal.name for signal in system.outputs], system.output, strict=True))
     for i, axis in enumerate("xyz"):
         assert outputs[f"root_moment_{axis}"] == pytest.approx(loads.root_moment[0, i], rel=1e-9, abs=1e-9)
-        assert outputs[f"tip_specific_force_{axis}"] == pytest.approx(loads.acceleration[0, -1, i], rel=1e-9, abs=1e-9)
+        for name, station in (("tip", -1), ("camera", -2), ("end", -1)):
+            a, moved = loads.acceleration[0, station, i], beam.displacement(q)[station, i]
+            assert outputs[f"{name}_specific_force_{axis}"] == pytest.approx(a, rel=1e-9, abs=1e-9)
+            assert outputs[f"{name}_{axis}"] == pytest.approx(moved, rel=1e-9, abs=1e-12)
     if first and kind in COMPLETE:  # the others' hub does not feel terms of third order
         force, moment = (np.asarray(mount.R_HB) @ x[0] for x in (loads.root_force, loads.root_moment))
         spring, damper = 20.0 * turned[0], 4.0 * turned[1]

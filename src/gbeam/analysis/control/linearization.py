@@ -36,7 +36,8 @@ from gbeam.motion.bases.base import mapped
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.series import complex_step
 from gbeam.results.state_space import ACCURATE, Gauge, Signal, StateSpace, import_control
-from gbeam.structure.beam import Beam, fibre_strain
+from gbeam.structure.attachments import TIP
+from gbeam.structure.beam import Beam, fibre_strain, names_at
 
 
 @typed
@@ -88,7 +89,8 @@ BASE_RATES = tuple(Signal(f"base_rate_{i}", "rad/s") for i in "xyz")
 @record
 class Outputs:
     """Outputs of (y, ẏ, ÿ, u): tip displacement and (absolute) acceleration, root moment, strains (from gauges' section
-    forces by `strains` (gauges, 6)) and a free hub's angle and rate, in base axes.
+    forces by `strains` (gauges, 6)), those of the tip at other `points`, stations by their numbers, and a free hub's
+    angle and rate, in base axes.
     """
 
     structure: Structure
@@ -96,6 +98,7 @@ class Outputs:
     outboard: Sections
     at: Array
     strains: Array
+    points: Array
 
     def __call__(self, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
         """Outputs (p,)."""
@@ -108,7 +111,10 @@ class Outputs:
         xp = namespace(y, a)
         strain = (xp.concatenate([each[0, self.at] for each in carried], axis=-1) * self.strains).sum(axis=-1)
         hub = xp.stack([y[0], yd[0]]) if i else xp.zeros(0)
-        return xp.concatenate([self.structure.displacement(q)[-1], a[0, -1], -moment[0, 0], strain, hub])
+        moved = self.structure.displacement(q)
+        # Stations are counted from the first behind the root, which accelerations have as well.
+        named = xp.concatenate([moved[self.points], a[0, self.points + 1]], axis=-1).reshape(-1)
+        return xp.concatenate([moved[-1], a[0, -1], -moment[0, 0], strain, named, hub])
 
     def stacked(self, z: Array) -> Array:
         """Outputs of one vector (y, ẏ, ÿ, u)."""
@@ -164,12 +170,25 @@ def input_signals(structure: Structure, motion: Motion) -> tuple[Signal, ...]:
     return tuple(signals)
 
 
-def output_signals(gauges: Sequence[Gauge], motion: Motion) -> tuple[Signal, ...]:
+def output_signals(structure: Structure, gauges: Sequence[Gauge], motion: Motion) -> tuple[Signal, ...]:
     """Names and units of the outputs."""
-    kinds = (("tip", "m"), (f"tip_{_acceleration(motion)}", "m/s^2"), ("root_moment", "N m"))
-    signals = [Signal(f"{name}_{i}", unit) for name, unit in kinds for i in "xyz"]
+
+    def moving(point: str) -> list[Signal]:
+        kinds = ((point, "m"), (f"{point}_{_acceleration(motion)}", "m/s^2"))
+        return [Signal(f"{name}_{i}", unit) for name, unit in kinds for i in "xyz"]
+
+    signals = moving(TIP) + [Signal(f"root_moment_{i}", "N m") for i in "xyz"]
     signals += [Signal(f"strain_{k + 1}", "1") for k in range(len(gauges))]
+    signals += [signal for name in points_of(structure) for signal in moving(name)]
     return tuple(signals + ([Signal("hub_angle", "rad"), Signal("hub_rate", "rad/s")] if motion.free else []))
+
+
+def points_of(structure: Structure) -> dict[str, int]:
+    """Named points of the beam besides the tip, with the numbers of their stations."""
+    if structure.source is None:
+        return {}
+    names = names_at(structure.source.beam, structure.stations)
+    return {name: k for k, name in enumerate(names) if name in structure.source.beam.named_points and name != TIP}
 
 
 def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gauge]) -> Outputs:
@@ -190,12 +209,15 @@ def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gau
         beam, unit = structure.source.beam, np.eye(6)[:, None]
         where, y, z = np.array([[gauge.at, gauge.y, gauge.z] for gauge in gauges]).T
         structure = at_stations(structure, where)
+        every = structure.sections
+        assert every is not None
         strains = fibre_strain(beam, where, unit[..., :3], unit[..., 3:], y, z).T
         which = np.abs(np.append(0.0, structure.stations) - where[:, None]).argmin(axis=1)
-        every, rows = structure.sections, list(range(len(structure.stations) + 1))
-        assert every is not None
+    points = np.array(list(points_of(structure).values()), dtype=int)
+    if gauges or points.size:
+        rows = list(range(len(structure.stations) + 1))
     outboard = replace(every, mass=every.mass[rows], loaded=every.loaded[rows])
-    return Outputs(structure, point.residual, outboard, which, strains)
+    return Outputs(structure, point.residual, outboard, which, strains, points)
 
 
 @typed
@@ -234,8 +256,10 @@ def linearize(
     Returns
     -------
     StateSpace
-        States are the coordinates and their rates. Where the base's angular velocity acts to first order, that is
-        about a turning base, its components are states too: the integrals of the angular acceleration.
+        Outputs are displacement and acceleration of the tip, the root's moment, strains, displacement and acceleration
+        of every other named point of the beam, and a free hub's angle and rate. States are the coordinates and their
+        rates. Where the base's angular velocity acts to first order, that is about a turning base, its components are
+        states too: the integrals of the angular acceleration.
 
     Raises
     ------
@@ -307,7 +331,7 @@ def linearize(
         d=through,
         states=states,
         inputs=input_signals(structure, motion),
-        outputs=output_signals(gauges, motion),
+        outputs=output_signals(structure, gauges, motion),
         state=at,
         input=given,
         output=value,
@@ -369,6 +393,6 @@ def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[G
         measure,
         states=[signal.name for signal in states],
         inputs=[signal.name for signal in input_signals(structure, motion)],
-        outputs=[signal.name for signal in output_signals(gauges, motion)],
+        outputs=[signal.name for signal in output_signals(structure, gauges, motion)],
         name=structure.kind,
     )
