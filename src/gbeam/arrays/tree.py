@@ -44,15 +44,15 @@ def record(cls: type[_T]) -> type[_T]:
     """Make a class a frozen dataclass that is a pytree, compared by its fields; an ``__init__`` of its own uses
     :func:`assign`.
     """
-    made = dataclasses.dataclass(frozen=True, eq=False, init="__init__" not in cls.__dict__)(cls)
+    record_type = dataclasses.dataclass(frozen=True, eq=False, init="__init__" not in cls.__dict__)(cls)
     for method in (Value.__eq__, __hash__):
-        setattr(made, method.__name__, method)
-    _records.append(made)
+        setattr(record_type, method.__name__, method)
+    _records.append(record_type)
     if _register is not None:
-        _register(made)
+        _register(record_type)
     elif "jax" in sys.modules:  # whoever imported it may hand records to it before any array
         import gbeam.arrays.jax_setup  # noqa: F401
-    return made
+    return record_type
 
 
 def __hash__(self: Any) -> int:

@@ -61,29 +61,29 @@ RANGES = {
 
 def implausible(where: str, kind: str, value: Any) -> tuple[str, ...]:
     """A warning, or none."""
-    given = RANGES[kind]
-    if is_jax(value) or given.low <= abs(value) <= given.high:
+    limits = RANGES[kind]
+    if is_jax(value) or limits.low <= abs(value) <= limits.high:
         return ()
-    between = f"{_number(given.low)} to {_number(given.high)} {given.unit}".rstrip()
-    slip = _slip(given, float(value))
+    between = f"{_number(limits.low)} to {_number(limits.high)} {limits.unit}".rstrip()
+    slip = _slip(limits, float(value))
     advice = f"did you mean {slip}?" if slip else "is its unit right?"
-    return (f"{where} is {float(value):g} {given.unit}".rstrip() + f", outside the plausible {between}; {advice}",)
+    return (f"{where} is {float(value):g} {limits.unit}".rstrip() + f", outside the plausible {between}; {advice}",)
 
 
 def possible(where: str, kind: str, value: Any) -> None:
     """Raise InputError where nothing can be computed with a value."""
-    given = RANGES[kind]
-    if is_jax(value) or given.least <= abs(value) <= given.most:
+    limits = RANGES[kind]
+    if is_jax(value) or limits.least <= abs(value) <= limits.most:
         return
-    slip = _slip(given, float(value))
-    fix = f"give {_number(given.least)} to {_number(given.most)} {given.unit}".rstrip()
-    raise InputError(where, f"is {float(value):g} {given.unit}".rstrip(), f"did you mean {slip}?" if slip else fix)
+    slip = _slip(limits, float(value))
+    fix = f"give {_number(limits.least)} to {_number(limits.most)} {limits.unit}".rstrip()
+    raise InputError(where, f"is {float(value):g} {limits.unit}".rstrip(), f"did you mean {slip}?" if slip else fix)
 
 
-def _slip(given: Range, value: float) -> str:
+def _slip(limits: Range, value: float) -> str:
     """Number in the first other unit in which it is plausible; empty where there is none."""
-    for unit, size in given.slips:
-        if unit != given.unit and given.low < abs(value) * size <= given.high:
+    for unit, size in limits.slips:
+        if unit != limits.unit and limits.low < abs(value) * size <= limits.high:
             return f"{value:g} {unit}"
     return ""
 

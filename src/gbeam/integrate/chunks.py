@@ -93,14 +93,14 @@ def chunks(drive: Drive, scheme: Scheme, of: Iterable[Stretch]) -> Iterator[Chun
     stages = len(scheme.offsets)
     for stretch in of:
         (groups, size), first = stretch.shape, 0
-        given = drive(stretch.times.ravel())
-        given = jax.tree.map(lambda leaf, to=(groups, size, -1): leaf.reshape(*to, *leaf.shape[1:]), given)
-        at_ends = None if scheme.ends else jax.tree.map(lambda leaf: leaf[:, :, stages], given)
-        inputs = jax.tree.map(lambda leaf: leaf[:, :, :stages], given)
+        driven = drive(stretch.times.ravel())
+        driven = jax.tree.map(lambda leaf, to=(groups, size, -1): leaf.reshape(*to, *leaf.shape[1:]), driven)
+        at_ends = None if scheme.ends else jax.tree.map(lambda leaf: leaf[:, :, stages], driven)
+        inputs = jax.tree.map(lambda leaf: leaf[:, :, :stages], driven)
         for last in stretch.lasts:
             part = slice(first, first + len(last))
-            own = jax.tree.map(lambda leaf, part=part: leaf[part], (stretch.tableau, inputs, at_ends))
-            yield Chunk(stretch.steps[part.start * size : part.stop * size], last, *own)
+            pieces = jax.tree.map(lambda leaf, part=part: leaf[part], (stretch.tableau, inputs, at_ends))
+            yield Chunk(stretch.steps[part.start * size : part.stop * size], last, *pieces)
             first = part.stop
 
 

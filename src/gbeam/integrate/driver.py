@@ -115,13 +115,13 @@ def _nonlinear(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, s
         carry, end = after, chunk.end
         if scheme.ends and end.anew:
             q, qd = (values[chunk.inside][-1] for values in piece[:2])
-            begin, there = (
+            begin, final = (
                 np.asarray(newton.accelerations(residual, q[None], qd[None], drive(np.array([t]))))[0]
                 for t in (end.resume, end.end)
             )
             carry = begun(q, qd, begin, end.following)
             at_end = np.arange(len(chunk.inside)) == np.flatnonzero(chunk.inside)[-1]
-            piece[2] = np.where(at_end[:, None], there, piece[2])
+            piece[2] = np.where(at_end[:, None], final, piece[2])
         # A part of a step that has not been solved spoils what follows.
         solved = np.logical_and.accumulate(np.append(sound, np.asarray(solved)[chunk.inside]))[1:]
         sound = bool(solved[-1])

@@ -58,13 +58,13 @@ def steps(
         return _combined(t.g, z) + _combined(t.d, x), (q, qd, qdd)
 
     def turn(i: Any, state: Any) -> Any:
-        z, made = state
+        z, history = state
         z, new = step(z, lengths[i], features[i])
-        return z, tuple(jax.lax.dynamic_update_index_in_dim(a, b, i, 0) for a, b in zip(made, new, strict=True))
+        return z, tuple(jax.lax.dynamic_update_index_in_dim(a, b, i, 0) for a, b in zip(history, new, strict=True))
 
-    made = (jnp.zeros((len(lengths), *z.shape[1:])),) * 3
-    z, made = jax.lax.fori_loop(0, count, turn, (z, made))
-    return z, tuple(jnp.moveaxis(x, -1, 0) for x in made)
+    history = (jnp.zeros((len(lengths), *z.shape[1:])),) * 3
+    z, history = jax.lax.fori_loop(0, count, turn, (z, history))
+    return z, tuple(jnp.moveaxis(x, -1, 0) for x in history)
 
 
 def eliminated(rows: Array) -> Array:

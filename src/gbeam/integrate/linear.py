@@ -39,8 +39,8 @@ def _solved(xp: Any, left: Array, right: Array) -> Array:
 def _sum(weights: Array, values: Array) -> Array:
     """Sums over k of weights (t or 1, j, k) and values (t or 1, k, ...)."""
     rest = values.shape[2:]
-    made = weights @ values.reshape(*values.shape[:2], -1)
-    return made.reshape(*made.shape[:2], *rest)
+    sums = weights @ values.reshape(*values.shape[:2], -1)
+    return sums.reshape(*sums.shape[:2], *rest)
 
 
 def chunk(
@@ -60,20 +60,20 @@ def chunk(
     at = [(c + added[1], k, f) for c, k, f in at]
     anew = scheme.ends and not steps.equal
     groups = [np.arange(n)] if xp is not np or anew else _uncoupled(mass, at)
-    solved = [_stages(xp, t, mass, at, own, m) for own in groups]
+    solved = [_stages(xp, t, mass, at, group, m) for group in groups]
     maps = solved[0][1] if len(groups) == 1 else np.zeros((count, m, n, m * n + 1))
     if anew:
         ends = _sum(t.end_z, _unit(m, n)) + _sum(t.end_x, solved[0][0])
         maps = _started_anew(equations, scheme, maps, ends, steps)
-    for own, (_, part) in zip(groups, solved, strict=True):
+    for group, (_, part) in zip(groups, solved, strict=True):
         if len(groups) > 1:
-            columns = np.append((n * np.arange(m)[:, None] + own).ravel(), m * n)
-            maps[:, :, own[:, None], columns] = part
+            columns = np.append((n * np.arange(m)[:, None] + group).ravel(), m * n)
+            maps[:, :, group[:, None], columns] = part
     before, last = _recur(xp, xp.reshape(maps, (count, m * n, m * n + 1)), xp.reshape(z, (-1,)))
     states, parts = xp.reshape(before, (count, m, n)), []
-    for own, (x, _) in zip(groups, solved, strict=True):
-        state = xp.reshape(states if len(groups) == 1 else states[:, :, own], (count, -1, 1))
-        flat = xp.reshape(x, (count, stages * len(own), -1))
+    for group, (x, _) in zip(groups, solved, strict=True):
+        state = xp.reshape(states if len(groups) == 1 else states[:, :, group], (count, -1, 1))
+        flat = xp.reshape(x, (count, stages * len(group), -1))
         parts.append(xp.reshape((flat[..., :-1] @ state)[..., 0] + flat[..., -1], (count, stages, -1)))
     x = parts[0] if len(groups) == 1 else np.concatenate(parts, axis=-1)[..., np.argsort(np.concatenate(groups))]
     ends = _sum(t.end_z, states) + _sum(t.end_x, x)
@@ -83,11 +83,11 @@ def chunk(
     if again.size:
         c, k, f = equations.matrices(equations.drive(steps.end[steps.kept][again]))
         force = f - (k @ q[again, :, None] + c @ qd[again, :, None])[..., 0]
-        there = xp.linalg.solve(equations.mass, force.T).T
+        acceleration = xp.linalg.solve(equations.mass, force.T).T
         if scheme.ends:
-            qdd[again] = there
+            qdd[again] = acceleration
         else:
-            qdd = there
+            qdd = acceleration
     return xp.reshape(last, (m, n)), (q, qd, qdd)
 
 
@@ -108,13 +108,13 @@ def _unit(m: int, n: int) -> Array:
 
 
 def _stages(
-    xp: Any, t: Any, mass: Array, at: list[tuple[Array, Array, Array]], own: Array, m: int
+    xp: Any, t: Any, mass: Array, at: list[tuple[Array, Array, Array]], group: Array, m: int
 ) -> tuple[Array, Array]:
     """Affine maps of the own part of z to the stages' x, (t, stages, n, m n + 1), and to the next z, (t, m, n, ...)."""
-    stages, n, whole = len(at), len(own), len(own) == len(mass)
+    stages, n, whole = len(at), len(group), len(group) == len(mass)
     if not whole:
-        pair = np.ix_(own, own)
-        mass, at = mass[pair], [(c[:, *pair], k[:, *pair], f[:, own]) for c, k, f in at]
+        pair = np.ix_(group, group)
+        mass, at = mass[pair], [(c[:, *pair], k[:, *pair], f[:, group]) for c, k, f in at]
     # S x = F − L z at all stages together.
     c_v, c_q, w_v, w_q = (weights[..., None, None] for weights in (t.c_v, t.c_q, t.w_v, t.w_q))
     rows, sides = [], []

@@ -121,34 +121,34 @@ def steps(
             after, q, qd = _next(t, carry, x)
             return after, (q, qd, x[-1], _left(size, before))
 
-        after, made = jax.lax.scan(step, carry, group_inputs)
+        after, history = jax.lax.scan(step, carry, group_inputs)
         if stages > 1:  # z is q and q̇
-            q, qd, qdd, _ = (values[end] for values in made)
-            filled = end < len(made[0]) - 1
+            q, qd, qdd, _ = (values[end] for values in history)
+            filled = end < len(history[0]) - 1
             guess = jnp.broadcast_to(qdd, (stages, n))
             other = Carry(jnp.stack([q, qd]), guess, guess)
             after = jax.tree.map(lambda a, b: jnp.where(filled, a, b), other, after)
-        q, qd, qdd, left = made
+        q, qd, qdd, left = history
         return after, (q, qd, qdd if group_ends is None else accelerations(residual, q, qd, group_ends), left)
 
     by_group = tableau, inputs, at_ends, last
-    carry, made = _first(group, carry, by_group, count, (*jax.tree.leaves(inputs)[0].shape[:2], n))
-    return carry, tuple(x.reshape(-1, *x.shape[2:]) for x in made)
+    carry, history = _first(group, carry, by_group, count, (*jax.tree.leaves(inputs)[0].shape[:2], n))
+    return carry, tuple(x.reshape(-1, *x.shape[2:]) for x in history)
 
 
 def _first(group: Any, carry: Carry, by_group: Any, count: Any, shape: tuple[int, ...]) -> Any:
     """A scan over the first `count` of some groups; its results are three arrays of a shape, and one less."""
 
     def turn(k: Any, state: Any) -> Any:
-        carry, made = state
+        carry, history = state
         carry, new = group(
             carry, jax.tree.map(lambda leaf: jax.lax.dynamic_index_in_dim(leaf, k, keepdims=False), by_group)
         )
         at = partial(jax.lax.dynamic_update_index_in_dim, index=k, axis=0)
-        return carry, tuple(at(whole, part) for whole, part in zip(made, new, strict=True))
+        return carry, tuple(at(whole, part) for whole, part in zip(history, new, strict=True))
 
-    made = (*[jnp.zeros(shape)] * 3, jnp.zeros(shape[:-1]))
-    return jax.lax.fori_loop(0, count, turn, (carry, made))
+    history = (*[jnp.zeros(shape)] * 3, jnp.zeros(shape[:-1]))
+    return jax.lax.fori_loop(0, count, turn, (carry, history))
 
 
 quick = jax.jit(steps)

@@ -105,14 +105,14 @@ def integrate_together(runs: Sequence[Run]) -> list[Trajectory | None]:
     """Integrate runs of one shape; None in place of one that has to be integrated alone, for its corrections failed."""
     solve = _linear if isinstance(runs[0].equations, LinearEquations) else _nonlinear
     histories, solved = solve(runs)
-    made = []
-    for run, fine, *own in zip(runs, solved, *histories, strict=True):
+    trajectories = []
+    for run, fine, *state in zip(runs, solved, *histories, strict=True):
         kept = np.append(True, run.steps.kept)
         time = np.append(run.steps.begin[0], run.steps.end)
         if not kept.all():
-            time, *own = (x[kept] for x in (time, *own))
-        made.append(Trajectory(time, *own) if fine and np.isfinite(own[2]).all() else None)
-    return made
+            time, *state = (x[kept] for x in (time, *state))
+        trajectories.append(Trajectory(time, *state) if fine and np.isfinite(state[2]).all() else None)
+    return trajectories
 
 
 def _stacked(parts: Sequence[Any], axis: int = 0) -> Any:
@@ -145,14 +145,14 @@ def _linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     for begin in range(0, count, lanes.STEPS):
         # The last piece is filled, so that one program serves every duration.
         chosen, those = np.minimum(np.arange(begin, begin + lanes.STEPS), count - 1), min(lanes.STEPS, count - begin)
-        given = mass + of_mass, damping, inverse, terms, scheme.unit, z, lengths[chosen], features[chosen], those
-        z, piece = lanes.steps(*given, parts=parts, ends=scheme.ends)
+        arguments = mass + of_mass, damping, inverse, terms, scheme.unit, z, lengths[chosen], features[chosen], those
+        z, piece = lanes.steps(*arguments, parts=parts, ends=scheme.ends)
         for whole, part in zip(histories, piece, strict=True):
             whole[:, begin + 1 : begin + 1 + those] = np.asarray(part)[:, :those]
     return (histories[0], histories[1], histories[2]), np.ones(len(runs), dtype=bool)
 
 
-def _over_runs(solve: Callable[..., Any], *given: int | None) -> Callable[..., Any]:
+def _over_runs(solve: Callable[..., Any], *more_axes: int | None) -> Callable[..., Any]:
     """A function of a residual and more for many runs, (form, axes, leaves, ...): the residual's by arrays and axes."""
 
     @partial(jax.jit, static_argnums=(0, 1))
@@ -160,7 +160,7 @@ def _over_runs(solve: Callable[..., Any], *given: int | None) -> Callable[..., A
         def of_one(leaves: list[Array], *args: Any) -> Any:
             return solve(jax.tree.unflatten(form, leaves), *args)
 
-        return jax.vmap(of_one, in_axes=(list(axes), *given))(leaves, *args)
+        return jax.vmap(of_one, in_axes=(list(axes), *more_axes))(leaves, *args)
 
     return over_runs
 
@@ -202,22 +202,22 @@ def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     for every in zip(*of_runs, strict=True):
         inside, ends = every[0].inside, [chunk.end for chunk in every]
         tableau, inputs, at_ends = _stacked([(chunk.tableau, chunk.inputs, chunk.at_ends) for chunk in every])
-        made: Any = None
+        result: Any = None
         solved = np.zeros(len(runs), dtype=bool)
         for tries in (corrections, newton.PATIENT[0]):
-            given = tableau, carry, inputs, at_ends, every[0].last, tries, every[0].count
-            new = jax.tree.map(np.asarray, _quick(*residual, *given))
+            arguments = tableau, carry, inputs, at_ends, every[0].last, tries, every[0].count
+            new = jax.tree.map(np.asarray, _quick(*residual, *arguments))
             # A run that is solved keeps what it has: nothing of it depends on the others.
-            made = new if made is None else jax.tree.map(partial(_chosen, solved), made, new)
+            result = new if result is None else jax.tree.map(partial(_chosen, solved), result, new)
             solved |= (new[1][-1][:, inside] <= newton.ACCEPTED).all(axis=1)  # NaN is not
             if (solved | ~sound).all():
                 break
-        carry, piece = made[0], [np.array(values)[:, inside] for values in made[1][:-1]]
+        carry, piece = result[0], [np.array(values)[:, inside] for values in result[1][:-1]]
         sound = sound & solved
         if scheme.ends and ends[0].anew:
             q, qd = piece[0][:, -1], piece[1][:, -1]
-            begin, there = (accelerations([getattr(end, at) for end in ends], q, qd) for at in ("resume", "end"))
-            carry, piece[2][:, -1] = begun(q, qd, begin, [end.following for end in ends]), there
+            begin, final = (accelerations([getattr(end, at) for end in ends], q, qd) for at in ("resume", "end"))
+            carry, piece[2][:, -1] = begun(q, qd, begin, [end.following for end in ends]), final
         pieces.append(piece)
     q, qd, qdd = (np.concatenate(part, axis=1) for part in zip(*pieces, strict=True))
     return (q, qd, qdd), sound

@@ -111,14 +111,14 @@ def fitted(start: float, step: float, count: int, corners: Corners | None = None
     """Return `count` steps of length `step`, split at the corners within them; times are products and do not drift."""
     if count > FEW:
         return _fitted(start, step, count, corners)
-    given = None if corners is None else (corners.time.tobytes(), corners.jump.tobytes())
-    return _shared(start, step, count, given)
+    key = None if corners is None else (corners.time.tobytes(), corners.jump.tobytes())
+    return _shared(start, step, count, key)
 
 
 @lru_cache(maxsize=8)
 def _shared(start: float, step: float, count: int, corners: tuple[bytes, bytes] | None) -> Steps:
-    given = None if corners is None else Corners(np.frombuffer(corners[0]), np.frombuffer(corners[1], dtype=bool))
-    return _fitted(start, step, count, given)
+    restored = None if corners is None else Corners(np.frombuffer(corners[0]), np.frombuffer(corners[1], dtype=bool))
+    return _fitted(start, step, count, restored)
 
 
 def _fitted(start: float, step: float, count: int, corners: Corners | None) -> Steps:

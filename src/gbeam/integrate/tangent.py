@@ -40,10 +40,10 @@ def tangent(
     linearised about its states; `within` are those that fitted steps solve.
     """
     shape = (len(steps) + 1, *q.shape)
-    made = np.empty(shape), np.empty(shape), np.empty(shape)
-    made[0][0], made[1][0] = q, qd
-    made[2][0] = _accelerations(system, steps.first[:1], run, [0], q[None], qd[None])[0]
-    z = np.einsum("ij,jnp->inp", scheme.tableau(steps.length[0]).first, np.stack([history[0] for history in made]))
+    histories = np.empty(shape), np.empty(shape), np.empty(shape)
+    histories[0][0], histories[1][0] = q, qd
+    histories[2][0] = _accelerations(system, steps.first[:1], run, [0], q[None], qd[None])[0]
+    z = np.einsum("ij,jnp->inp", scheme.tableau(steps.length[0]).first, np.stack([history[0] for history in histories]))
     # A chunk ends where the scheme starts anew.
     ends = np.append(np.flatnonzero(steps.anew[:-1]) + 1, len(steps)) if scheme.ends else [len(steps)]
     begin = 0
@@ -51,14 +51,14 @@ def tangent(
         for first in range(begin, end, _CHUNK):
             part = slice(first, min(first + _CHUNK, end))
             z, piece = _chunk(system, within or system, scheme, z, steps[part], _part(run, part))
-            for history, values in zip(made, piece, strict=True):
+            for history, values in zip(histories, piece, strict=True):
                 history[part.start + 1 : part.stop + 1] = values
         if end < len(steps):
-            q, qd = made[0][end], made[1][end]
+            q, qd = histories[0][end], histories[1][end]
             qdd = _accelerations(system, steps.resume[[end - 1]], run, [end], q[None], qd[None])[0]
             z = np.einsum("ij,jnp->inp", scheme.tableau(steps.length[end]).first, np.stack([q, qd, qdd]))
         begin = end
-    return made
+    return histories
 
 
 def _part(run: Trajectory, steps: slice) -> Trajectory:
@@ -88,7 +88,7 @@ def _chunk(
         sides.append(np.concatenate([*(-(w_v[:, i, a] * c + w_q[:, i, a] * k) for a in range(m)), f], axis=-1))
     # x = onto z + own at all stages.
     x = np.linalg.solve(np.concatenate(rows, axis=-2), np.concatenate(sides, axis=-2))
-    onto, own = x[..., : m * n], x[..., m * n :]
+    onto, constant = x[..., : m * n], x[..., m * n :]
     by_stage = x.reshape(len(steps), stages, n, m * n + p)
     unit = np.eye(m * n, m * n + p).reshape(m, n, m * n + p)
     maps = np.einsum("tij,jnk->tink", t.g, unit) + np.einsum("tis,tsnk->tink", t.d, by_stage)
@@ -98,7 +98,7 @@ def _chunk(
     for index, one in enumerate(maps):
         before[index] = state
         state = one[:, : m * n] @ state + one[:, m * n :]
-    x = (onto @ before + own).reshape(len(steps), stages, n, p)
+    x = (onto @ before + constant).reshape(len(steps), stages, n, p)
     ends = np.einsum("tij,tjnp->tinp", t.end_z, before.reshape(len(steps), m, n, p))
     ends += np.einsum("tis,tsnp->tinp", t.end_x, x)
     q, qd, qdd = ends[:, 0], ends[:, 1], x[:, -1]

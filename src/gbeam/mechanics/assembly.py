@@ -71,8 +71,8 @@ def assemble(
     array([0.1, 0.2, 0.3])
     """
     if isinstance(model, str):
-        given = axial or y or z
-        model = Model(model, axial, y, z, shapes or "clamped-free") if given else Model.of(model, shapes)
+        has_counts = axial or y or z
+        model = Model(model, axial, y, z, shapes or "clamped-free") if has_counts else Model.of(model, shapes)
     row, counts = model.row, model.counts
     _refuse_traced_places(beam, adapted=model.shapes == "adapted")
     refuse_disparate(beam)
@@ -180,14 +180,14 @@ def _refuse_traced_places(beam: Beam, *, adapted: bool) -> None:
 
 
 def _stations(beam: Beam, stations: ArrayLike) -> Array:
-    given = np.asarray(stations, dtype=float).ravel()
-    for i, x in enumerate(given):
+    positions = np.asarray(stations, dtype=float).ravel()
+    for i, x in enumerate(positions):
         if not 0 <= x <= beam.length:
             raise InputError(f"stations[{i}]", f"is {x:g} m, off the beam", f"give 0 to {beam.length:g} m")
     named = [at for name, at in beam.named_points.items() if name != TIP and at < beam.length]
     if named:  # among the others, from root to tip
-        given = np.unique(np.concatenate([given, named]))
-    return np.append(given[given < beam.length], beam.length)
+        positions = np.unique(np.concatenate([positions, named]))
+    return np.append(positions[positions < beam.length], beam.length)
 
 
 def _inertia(beam: Beam, field: Field, rule: Quadrature) -> tuple[Inertia, Array]:

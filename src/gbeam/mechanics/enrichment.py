@@ -54,15 +54,17 @@ def enriched_shapes(
     direction.
     """
     least = APART**2 * max(_period(beam, of, along) for along, of in enumerate(spaces))
-    made = [_enriched(beam, spaces[along], own[along], along, force, least) for along in range(3)]
-    (s, a), (v, b), (w, c) = made
+    enriched = [_enriched(beam, spaces[along], own[along], along, force, least) for along in range(3)]
+    (s, a), (v, b), (w, c) = enriched
     return (s, v, w), (a, b, c)
 
 
-def _enriched(beam: Beam, of: Space, own: Family, along: int, force: Array | None, least: float) -> tuple[Family, int]:
+def _enriched(
+    beam: Beam, of: Space, family: Family, along: int, force: Array | None, least: float
+) -> tuple[Family, int]:
     nodes = len(of.rule.node)
-    given = own(of.rule.node)
-    strain = given.slope if of.axial else given.curvature
+    nodal = family(of.rule.node)
+    strain = nodal.slope if of.axial else nodal.curvature
     size, count = len(of.stiffness), strain.shape[1]
     # The root's motion has coordinates of its own.
     basis = np.concatenate([np.eye(size)[:, nodes:], np.pad(strain, ((0, size - nodes), (0, 0)))], axis=1)
@@ -95,10 +97,10 @@ def _enriched(beam: Beam, of: Space, own: Family, along: int, force: Array | Non
 
     def both(x: Array) -> Shapes:
         if more is None:
-            return own(x)
-        return Shapes(*(np.concatenate(pair, axis=1) for pair in zip(own(x), more(x), strict=True)))
+            return family(x)
+        return Shapes(*(np.concatenate(pair, axis=1) for pair in zip(family(x), more(x), strict=True)))
 
-    return (own if count == 0 and more is None else both), len(added)
+    return (family if count == 0 and more is None else both), len(added)
 
 
 def _period(beam: Beam, of: Space, along: int) -> float:
@@ -140,7 +142,9 @@ def _loads(beam: Beam, of: Space, along: int) -> Array:
     for load in beam.loads:
         moved, turned = (value, slope) if load.at is None else of.sensitivity(np.array([load.at]))
         weight = of.rule.weight if load.at is None else np.ones(1)
-        columns += [weight @ part for part, given in ((moved, load.force), (turned, load.moment)) if given is not None]
+        columns += [
+            weight @ part for part, component in ((moved, load.force), (turned, load.moment)) if component is not None
+        ]
     return np.stack([uniform, growing, *columns], axis=1)
 
 
@@ -169,11 +173,11 @@ class Enrichment:
     def __init__(self, structure: Structure, force: Array | None = None) -> None:
         assert structure.source is not None
         self.structure, beam = structure, structure.source.beam
-        own = structure.counts
+        counts = structure.counts
         marks = [m.at for m in beam.masses] + [load.at for load in beam.loads if load.at is not None]
         breaks = [*beam.section.stations, *marks]
         panels = len(quadrature(beam.length, 1, breaks).edges) - 1
-        self.rule = quadrature(beam.length, max(PER_PANEL, -(-(NODES + 2 * max(own)) // panels)), breaks)
+        self.rule = quadrature(beam.length, max(PER_PANEL, -(-(NODES + 2 * max(counts)) // panels)), breaks)
         self.spaces = space(beam, self.rule, 0), space(beam, self.rule, 1), space(beam, self.rule, 2)
         self.families, self.new = enriched_shapes(beam, self.spaces, own_families(structure, beam, self.rule), force)
         self.beam = beam
@@ -195,8 +199,10 @@ class Enrichment:
         return self._made[key]
 
     def _model(self, kind: str, directions: tuple[bool, bool, bool]) -> tuple[Structure, NDArray[np.int_]]:
-        own = self.structure.counts
-        counts = [n + (more if wanted else 0) for n, more, wanted in zip(own, self.new, directions, strict=True)]
+        model_counts = self.structure.counts
+        counts = [
+            n + (more if wanted else 0) for n, more, wanted in zip(model_counts, self.new, directions, strict=True)
+        ]
         if not KINDS[kind].axial:
             counts[0] = 0
         s, v, w = (_first(family, count) for family, count in zip(self.families, counts, strict=True))
@@ -210,7 +216,10 @@ class Enrichment:
         rich = assembled(beam, kind, (counts[0], counts[1], counts[2]), self.rule, at, (s, v, w), shapes)
         starts = np.cumsum([0, *counts])
         index = np.concatenate(
-            [*(np.arange(n) + start for n, start in zip(own, starts, strict=False)), np.arange(springs) + starts[-1]]
+            [
+                *(np.arange(n) + start for n, start in zip(model_counts, starts, strict=False)),
+                np.arange(springs) + starts[-1],
+            ]
         )
         return replace(rich, compiled=False), index.astype(int)
 

@@ -82,8 +82,8 @@ class Model:
         """
         row = KINDS.get(kind, Kind())
         axial, across = FIRST_EXACT if row.exact else FIRST
-        own = "clamped-free" if row.exact else "adapted"
-        return cls(kind, axial if row.axial else 0, across, across, shapes or own, automatic=True)
+        default = "clamped-free" if row.exact else "adapted"
+        return cls(kind, axial if row.axial else 0, across, across, shapes or default, automatic=True)
 
     def richer(self) -> Model | None:
         """Add two shapes across the beam, and one along it; None where that is too many."""

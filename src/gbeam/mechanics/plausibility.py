@@ -31,15 +31,15 @@ def input_warnings(
     if structure.traced or holds_jax(motion):
         return ()
     where = f"motion.{name}" if name else "motion"
-    found = [*structure.warnings, *_frequency(structure)]
+    warnings = [*structure.warnings, *_frequency(structure)]
     if motion is not None:
-        found += implausible_values(motion, where, span, base)
+        warnings += implausible_values(motion, where, span, base)
         if base is None and motion.kind != "centrifuge" and not motion.free:
             base = motion.base(times(motion, span))
         elif base is None and motion.free:
             base = motion.mount.base(*np.zeros((3, 1)))  # type: ignore[attr-defined]
-    found += _without_shapes(structure, base, where, span)
-    return (*found, *_twisting(structure, span), *_on_edge(structure, motion, base, where))
+    warnings += _without_shapes(structure, base, where, span)
+    return (*warnings, *_twisting(structure, span), *_on_edge(structure, motion, base, where))
 
 
 def _frequency(structure: Structure) -> Iterator[str]:

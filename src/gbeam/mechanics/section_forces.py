@@ -60,8 +60,8 @@ def section_forces(
     force, moment, section_force, section_moment, a = (
         xp.concatenate(part) if len(pieces) > 1 else part[0] for part in zip(*pieces, strict=True)
     )
-    own = structure.sections
-    tension, compression = extreme_stresses(own.values, section_force, section_moment)
+    section_data = structure.sections
+    tension, compression = extreme_stresses(section_data.values, section_force, section_moment)
     loads = Loads(
         stations=np.append(0.0, structure.stations),
         force=force,
@@ -71,9 +71,9 @@ def section_forces(
         stress_tension=tension,
         stress_compression=compression,
         acceleration=a,
-        root_fibre=None if is_jax(tension) else worst_fibre(own.values, 0, section_force, section_moment),
-        yield_strength=own.yield_strength,
-        fatigue_exponent=own.fatigue_exponent,
+        root_fibre=None if is_jax(tension) else worst_fibre(section_data.values, 0, section_force, section_moment),
+        yield_strength=section_data.yield_strength,
+        fatigue_exponent=section_data.fatigue_exponent,
     )
     return about_the_hub(loads, motion, base.alpha_WB_B)
 

@@ -37,12 +37,12 @@ def stiffening(beam: Beam, x: Array, bent: Array) -> tuple[Array, Array]:
         near_clamp_or_bent(ratio, x, across, through, curvature) * np.maximum(1 - (through / across) ** 2, 0)
         for across, through, curvature in ((width, thickness, bent[0]), (thickness, width, bent[1]))
     ]
-    own = 1 / (1 - ratio**2) if beam.section.plate else 1.0
-    return (1 + most * flat[0]) / own, 1 + most * flat[1]
+    plate_factor = 1 / (1 - ratio**2) if beam.section.plate else 1.0
+    return (1 + most * flat[0]) / plate_factor, 1 + most * flat[1]
 
 
 def near_clamp_or_bent(ratio: float, x: Array, across: Array, through: Array, curvature: Array) -> Array:
-    """How far sections are kept flat, from 0 (free to bend across) to 1 (as in a plate), at positions (p,): c = c' = 0
+    """Flatness of sections, from 0 (free to bend across) to 1 (as in a plate), at positions (p,): c = c' = 0
     at the clamp in b⁴/720 c'''' − (1 − ν) b²/6 c'' + c = −ν w'', to which the stretch adds (1 − ν²) (b² w''/h)²/60 c
     (Searle, 1907).
     """
@@ -197,9 +197,9 @@ class _Parts:
 
     def theory(self, families: Families) -> Theory:
         """Both theories, with own shapes."""
-        own = self.own(families)
-        answers = self.answers(own)
-        blocks = [np.concatenate([own, self.others(answers, SLENDER, own)], axis=1)]
+        strains = self.own(families)
+        answers = self.answers(strains)
+        blocks = [np.concatenate([strains, self.others(answers, SLENDER, strains)], axis=1)]
         blocks += [self.others(answers, family) for family in (SHEAR, TWIST)]
         ends = np.cumsum([0, *(block.shape[1] for block in blocks)]).tolist()
         thick, slender = np.concatenate(blocks, axis=1), blocks[0]
@@ -209,7 +209,7 @@ class _Parts:
         arms = np.cross(field.angles(self.cumulative[bodies]), offset.T[..., None], axis=0)
         _, about_y, about_z = self.beam.rigidities(self.rule.node)
         models = self.model(slender, thick=False), self.model(thick, thick=True)
-        count_own = own.shape[1]
+        count_own = strains.shape[1]
         return Theory(
             *models,
             {"shear": slice(ends[1], ends[2]), "twist": slice(ends[2], ends[3])},
@@ -227,13 +227,13 @@ class _Parts:
         s, v, w = (family(self.rule.node) for family in families)
         nodes = len(self.rule.node)
         columns = [(0, s.slope), (5, v.curvature), (4, -w.curvature)]
-        own = np.zeros((len(self.stiffness), self.structure.size))
+        strains = np.zeros((len(self.stiffness), self.structure.size))
         start = 0
         for family, values in columns:
-            own[family * nodes : (family + 1) * nodes, start : start + values.shape[1]] = values
+            strains[family * nodes : (family + 1) * nodes, start : start + values.shape[1]] = values
             start += values.shape[1]
-        own[6 * nodes :, start:] = np.eye(len(self.move.T))
-        return own
+        strains[6 * nodes :, start:] = np.eye(len(self.move.T))
+        return strains
 
     def others(self, answers: Array, families: tuple[int, ...], own: Array | None = None) -> Array:
         """The part of some answers in families of strains, without that of own shapes, orthonormal in energy."""
@@ -288,12 +288,12 @@ class _Parts:
         )
 
 
-def _beyond(slender: Structure, thick: Structure, own: int) -> tuple[Array, LinearTerms]:
+def _beyond(slender: Structure, thick: Structure, count: int) -> tuple[Array, LinearTerms]:
     few, more = slender.coefficients, thick.coefficients
 
     def difference(less: Array, whole: Array) -> Array:
-        out = np.array(whole[..., :own])
-        out[..., : few.size, :] -= less[..., :own]
+        out = np.array(whole[..., :count])
+        out[..., : few.size, :] -= less[..., :count]
         return out
 
     force = np.array(more.terms.force)

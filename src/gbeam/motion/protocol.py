@@ -38,5 +38,5 @@ class Motion(Protocol):
         ...
 
     def beyond(self, start: float, end: float) -> tuple[Any, Any]:
-        """How long the motion of a machine goes on before `start` and after `end`, to and from standstill, s."""
+        """Return the times that a machine moves before `start` and after `end`, to and from standstill, s."""
         ...

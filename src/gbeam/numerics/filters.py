@@ -96,7 +96,7 @@ def _in_blocks(filters: Filters, values: Floats) -> Floats:
     to_state = np.stack([(p @ b[:, :, None])[:, :, 0] for p in powers[-2::-1]], axis=2)  # Aⁿ B, (f, 2, block)
     impulse = np.concatenate([d[:, None], (from_state[:, :-1] @ b[:, :, None])[:, :, 0]], axis=1)
     lag = np.subtract.outer(np.arange(_BLOCK), np.arange(_BLOCK))
-    own = np.where(lag >= 0, impulse[:, np.maximum(lag, 0)], 0.0)
+    response = np.where(lag >= 0, impulse[:, np.maximum(lag, 0)], 0.0)
 
     gained = (to_state[:, None] @ u).reshape(count, -1, 2, side, columns)
     gained = np.ascontiguousarray(gained.transpose(1, 3, 0, 2, 4)).reshape(-1, count, 2, columns)
@@ -105,7 +105,7 @@ def _in_blocks(filters: Filters, values: Floats) -> Floats:
         np.matmul(powers[-1], state[n - 1], out=state[n])
         state[n] += gained[n - 1]
     state = state.reshape(-1, side, count, 2, columns).transpose(2, 0, 3, 1, 4).reshape(count, -1, 2, side * columns)
-    y = own[:, None] @ u
+    y = response[:, None] @ u
     y += from_state[:, None] @ state
     return y.reshape(count, -1, _BLOCK, side, columns)
 
@@ -144,10 +144,10 @@ def _responses(
     load: Floats, frequency: Floats, damping: float, step: float, by_place: Floats, by_rate: Floats, steady: Floats
 ) -> Floats:
     """Outputs by_place η + by_rate η̇; `steady` is that of a unit load."""
-    given = np.reshape(np.asarray(load, dtype=float), (len(load), -1))
+    loads = np.reshape(np.asarray(load, dtype=float), (len(load), -1))
     # The filter runs on what changes: it then starts at rest without knowing its own history.
     filters = _filters(np.ravel(frequency), damping, step, np.ravel(by_place), np.ravel(by_rate))
-    out = run(filters, given - given[0]) + np.ravel(steady)[:, None, None] * given[0]
+    out = run(filters, loads - loads[0]) + np.ravel(steady)[:, None, None] * loads[0]
     return out.reshape(*np.shape(frequency), *np.shape(load))
 
 

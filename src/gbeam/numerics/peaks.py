@@ -129,16 +129,16 @@ def seven_point(time: Floats, values: Floats, at: Indices) -> tuple[Floats, Floa
         for m in (7, 5, 3)
         for k in [np.clip(at - m // 2, 0, n - m)[:, None] + np.arange(m)]
     )
-    here = values[at][:, None]
+    sampled = values[at][:, None]
     left = np.abs(high - low).max(axis=1, keepdims=True)
-    rough = left > np.maximum(_SMOOTH * np.abs(low - parabola).max(axis=1, keepdims=True), 1e-9 * np.abs(here))
-    return t, np.where(rough, here, high)
+    rough = left > np.maximum(_SMOOTH * np.abs(low - parabola).max(axis=1, keepdims=True), 1e-9 * np.abs(sampled))
+    return t, np.where(rough, sampled, high)
 
 
 def _subdivided(time: Floats, at: Indices) -> Floats:
     """Times of the two steps about samples, (u, p)."""
-    before, here, after = time[at - 1][:, None], time[at][:, None], time[at + 1][:, None]
-    return np.concatenate([before + _SHARES * (here - before), here + _SHARES[1:] * (after - here)], axis=1)
+    before, centre, after = time[at - 1][:, None], time[at][:, None], time[at + 1][:, None]
+    return np.concatenate([before + _SHARES * (centre - before), centre + _SHARES[1:] * (after - centre)], axis=1)
 
 
 def _lagrange(nodes: Floats, t: Floats) -> Floats:

@@ -67,26 +67,26 @@ def separate_peaks(values: NDArray[np.float64], floor: float, dip: float) -> lis
 
     `values` (n,); returns (int, slice).
     """
-    found: list[tuple[int, slice]] = []
+    peaks: list[tuple[int, slice]] = []
     for run in true_runs(values > floor):
-        own = values[run]
-        rises = np.concatenate([[True], own[1:] > own[:-1]])
-        falls = np.concatenate([own[:-1] >= own[1:], [True]])
+        part = values[run]
+        rises = np.concatenate([[True], part[1:] > part[:-1]])
+        falls = np.concatenate([part[:-1] >= part[1:], [True]])
         tops = np.flatnonzero(rises & falls)
         kept, lowest = [int(tops[0])], np.inf
-        for top, before in zip(tops[1:].tolist(), np.minimum.reduceat(own, tops)[:-1].tolist(), strict=True):
+        for top, before in zip(tops[1:].tolist(), np.minimum.reduceat(part, tops)[:-1].tolist(), strict=True):
             lowest = min(lowest, before)
-            if lowest < dip * min(own[kept[-1]], own[top]):
+            if lowest < dip * min(part[kept[-1]], part[top]):
                 kept.append(top)
-            elif own[top] > own[kept[-1]]:
+            elif part[top] > part[kept[-1]]:
                 kept[-1] = top
             else:
                 continue
             lowest = np.inf
-        lows = [first + int(np.argmin(own[first:second])) for first, second in pairwise(kept)]
-        edges = [0, *lows, len(own)]
-        found += [
+        lows = [first + int(np.argmin(part[first:second])) for first, second in pairwise(kept)]
+        edges = [0, *lows, len(part)]
+        peaks += [
             (run.start + top, slice(run.start + begin, run.start + end))
             for top, (begin, end) in zip(kept, pairwise(edges), strict=True)
         ]
-    return found
+    return peaks

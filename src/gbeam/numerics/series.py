@@ -32,10 +32,10 @@ class Series:
     @classmethod
     def of(cls, derivatives: Sequence[Any], order: int) -> Series:
         """From the value and the derivatives; those left out are zero."""
-        given = [value / factorial(k) if k > 1 else value for k, value in enumerate(derivatives[: order + 1])]
-        if len(given) <= order:
-            given += [namespace(*derivatives).zeros_like(derivatives[0])] * (order + 1 - len(given))
-        return cls(tuple(given))
+        coefficients = [value / factorial(k) if k > 1 else value for k, value in enumerate(derivatives[: order + 1])]
+        if len(coefficients) <= order:
+            coefficients += [namespace(*derivatives).zeros_like(derivatives[0])] * (order + 1 - len(coefficients))
+        return cls(tuple(coefficients))
 
     @classmethod
     def in_pieces(cls, function: Callable[[Any], Series], t: Any, count: int) -> Series:

@@ -246,8 +246,8 @@ class Root(Value):
     @property
     def springs(self) -> dict[str, float]:
         """The stiffnesses that are given, by name."""
-        given = {f.name: getattr(self, f.name) for f in fields(self)}
-        return {name: value for name, value in given.items() if value is not None}
+        stiffnesses = {f.name: getattr(self, f.name) for f in fields(self)}
+        return {name: value for name, value in stiffnesses.items() if value is not None}
 
     def directions(self) -> tuple[Array, Array]:
         """Matrices (3, springs) from the springs' stretches to the root's displacement and rotation vector."""

@@ -51,9 +51,9 @@ def _shares(beam: Beam) -> Iterator[tuple[str, float, str, str, float]]:
     """Bodies and springs: place, value, unit, what it brings, and how often the beam has as much."""
     mass, length, inertia = _mass(beam), beam.length, "moment of inertia"
     for i, body in enumerate(beam.masses):
-        turned, arm, own = mass * length**2, max(map(abs, body.offset)), max(body.inertia)
+        turned, arm, largest = mass * length**2, max(map(abs, body.offset)), max(body.inertia)
         yield f"masses[{i}].mass", body.mass, "kg", "mass", body.mass / mass
-        yield f"masses[{i}].inertia", own, "kg m^2", inertia, own / turned
+        yield f"masses[{i}].inertia", largest, "kg m^2", inertia, largest / turned
         yield f"masses[{i}].offset", arm, "m", inertia, body.mass * arm**2 / turned
     section = beam.section.at(np.asarray(beam.section.stations or (0.0,)))
     axial, modulus = np.mean(section.area) / length, beam.material.youngs_modulus
@@ -137,11 +137,11 @@ def _proportions(beam: Beam, bends: tuple[bool, bool]) -> Iterator[str]:
 
 
 def _bodies(beam: Beam) -> Iterator[str]:
-    own = _mass(beam)
+    mass = _mass(beam)
     for i, body in enumerate(beam.masses):
         where = f"beam.masses[{i}]"
-        if body.mass > HEAVIEST * own:
-            times = f"{body.mass / own:.3g} times the beam's"
+        if body.mass > HEAVIEST * mass:
+            times = f"{body.mass / mass:.3g} times the beam's"
             yield f"{where}.mass is {body.mass:g} kg, {times}; did you mean {body.mass:g} g?"
         arm = max(map(abs, body.offset))
         if arm > beam.length:

@@ -336,9 +336,9 @@ def worst_fibre(values: SectionValues, section: int, force: Any, moment: Any) ->
     """Normal stress (t,) Pa, N/A + M_y z/I_y − M_z y/I_z, at that corner of a section, or that of 24 points around a
     round one, where it ranges most; force and moment (t, s, 3).
     """
-    here = values[section]
+    at_section = values[section]
     points = [(1, 1), (1, -1), (-1, 1), (-1, -1)]
     if values.round:
         points = [(np.cos(a), np.sin(a)) for a in 2 * np.pi * np.arange(_ROUND) / _ROUND]
-    fibres = [(y * here.extreme_fibre_y, z * here.extreme_fibre_z) for y, z in points]
-    return max((fibre_stress(here, force[:, section], moment[:, section], y, z) for y, z in fibres), key=np.ptp)
+    fibres = [(y * at_section.extreme_fibre_y, z * at_section.extreme_fibre_z) for y, z in points]
+    return max((fibre_stress(at_section, force[:, section], moment[:, section], y, z) for y, z in fibres), key=np.ptp)

@@ -72,10 +72,10 @@ class Weighed:
     def forces(self, relative: Any, root: Array) -> tuple[Array, ...]:
         """Inertia forces on the points by components (p,), of accelerations relative to the root's, and that, (3,)."""
         if self.pairs is None:
-            own = [self.first * a for a in relative]
+            relative_forces = [self.first * a for a in relative]
         else:  # which is symmetric
-            own = list(namespace(self.pairs, *relative).stack(relative) @ self.pairs)
-        return tuple(f + self.first * a for f, a in zip(own, root, strict=True))
+            relative_forces = list(namespace(self.pairs, *relative).stack(relative) @ self.pairs)
+        return tuple(f + self.first * a for f, a in zip(relative_forces, root, strict=True))
 
     def total(self, relative: Any, root: Array) -> Array:
         """Their resultant, (3,) N."""

@@ -27,11 +27,11 @@ def _family(rule: Quadrature, nodal: Array, length: float, *, axial: bool) -> Fa
     nodal, slope = nodal * scale, slope * scale
 
     def shapes(x: Array) -> Shapes:
-        first, here = rule.cumulative(x), rule.interpolation(x)
+        first, interpolation = rule.cumulative(x), rule.interpolation(x)
         if not axial:
-            return Shapes(first @ slope, first @ nodal, here @ nodal)
+            return Shapes(first @ slope, first @ nodal, interpolation @ nodal)
         # No model needs the second derivative of a bar's shape.
-        return Shapes(first @ nodal, here @ nodal, np.full((len(x), nodal.shape[1]), np.nan))
+        return Shapes(first @ nodal, interpolation @ nodal, np.full((len(x), nodal.shape[1]), np.nan))
 
     return shapes
 

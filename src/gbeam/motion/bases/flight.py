@@ -62,11 +62,13 @@ class Flight:
         acceleration: Profile | Any | None = None,
         rates: Profile | Any | None = None,
     ) -> None:
-        given = [name for name, value in (("x", x), ("y", y), ("z", z)) if value is not None]
-        if acceleration is None and not given:
+        components = [name for name, value in (("x", x), ("y", y), ("z", z)) if value is not None]
+        if acceleration is None and not components:
             raise InputError("acceleration", "is missing", "give x, y or z, or acceleration")
-        if acceleration is not None and given:
-            raise InputError(given[0], "is given beside acceleration", "keep the components or the vector, not both")
+        if acceleration is not None and components:
+            raise InputError(
+                components[0], "is given beside acceleration", "keep the components or the vector, not both"
+            )
         load = vector(x, y, z) if acceleration is None else as_profile("acceleration", acceleration, 3)
         assign(
             self,
@@ -99,8 +101,8 @@ class Flight:
 
     def corners(self, step: float) -> NDArray[np.float64]:
         """Times that steps of length `step` (s) should not pass unseen, s, ascending."""
-        own = self.acceleration.corners(step)
-        return own if self.rates is None else np.union1d(own, self.rates.corners(step))
+        breaks = self.acceleration.corners(step)
+        return breaks if self.rates is None else np.union1d(breaks, self.rates.corners(step))
 
     @typed
     def over(self, start: float, end: float) -> Self:

@@ -201,8 +201,8 @@ class Centrifuge(AxisMotion):
 
     def base(self, t: Any) -> Base:
         """Motion of the root at times `t` (s, any shape)."""
-        here = forward(self.axes(t), self.geometry.arm, self.geometry.gravity)
-        return moved(here, self.control_point * np.array([-1.0, 0.0, 0.0]))
+        base = forward(self.axes(t), self.geometry.arm, self.geometry.gravity)
+        return moved(base, self.control_point * np.array([-1.0, 0.0, 0.0]))
 
     @property
     def mounting(self) -> str:

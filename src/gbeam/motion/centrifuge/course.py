@@ -43,7 +43,7 @@ class AxisMotion:
         return self._solved.extent
 
     def beyond(self, start: float, end: float) -> tuple[Any, Any]:
-        """How long the motion goes on before `start` and after `end`, s.
+        """Return the times that the motion goes on before `start` and after `end`, s.
 
         Nothing where these lie within the times that it is prepared for: a run of a part of a flight is no more.
         """
@@ -147,8 +147,8 @@ class Course:
     def solved(self, inverse: str, limits: Limits, ends: Ends) -> Course:
         """Course with the axis motions, and how they begin and end."""
         solution = INVERSES[inverse].build(self.target, self.geometry, limits, ends)
-        own = solution.extent is not None
-        ramps = None if own else build_ramps(self.target, solution, self.geometry, limits, ends)
+        plans_ends = solution.extent is not None
+        ramps = None if plans_ends else build_ramps(self.target, solution, self.geometry, limits, ends)
         return replace(self, solution=solution, ramps=ramps)
 
     @property
@@ -199,8 +199,8 @@ class Course:
         """A load with only the part p of what is horizontal; what is across the beam keeps its direction."""
         xp = namespace(load, rate)
         gravity, across = self.geometry.gravity, xp.sum(load[..., 1:] ** 2, axis=-1)
-        made = self.geometry.arm * xp.hypot(rate**2, acceleration if self.start == "pre-yawed" else 0.0)
-        p = made / xp.sqrt(across + load[..., 0] ** 2 - gravity**2)
+        horizontal = self.geometry.arm * xp.hypot(rate**2, acceleration if self.start == "pre-yawed" else 0.0)
+        p = horizontal / xp.sqrt(across + load[..., 0] ** 2 - gravity**2)
         bent = across > 0
         size = xp.sqrt(xp.maximum(across - gravity**2, 0.0) * p**2 + gravity**2)
         factor = xp.where(bent, size / xp.sqrt(xp.where(bent, across, 1.0)), 0.0)

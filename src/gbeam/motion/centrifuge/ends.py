@@ -37,9 +37,9 @@ class Ends:
     def __post_init__(self) -> None:
         choice("start", self.start, STARTS)
         for name in ("spin_up", "spin_down"):
-            given = getattr(self, name)
-            if given is None:
+            duration = getattr(self, name)
+            if duration is None:
                 continue
             if self.start == "idle":
                 raise InputError(name, "does not go with start = idle", f'leave it out, or give start = "{STARTS[0]}"')
-            object.__setattr__(self, name, float(positive(name, given, "s")))
+            object.__setattr__(self, name, float(positive(name, duration, "s")))

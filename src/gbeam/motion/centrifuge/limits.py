@@ -123,7 +123,7 @@ def usage(
     jerk: NDArray[np.float64],
     limits: Limits,
 ) -> tuple[LimitUse, ...]:
-    """How much of its limits a motion uses.
+    """Return the use that a motion makes of each limit.
 
     `time` (n,) s, `rate`, `acceleration`, `jerk` (n, 3) rad/s³.
     """

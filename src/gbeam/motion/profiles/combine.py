@@ -128,7 +128,9 @@ def vector(x: Any | None = None, y: Any | None = None, z: Any | None = None) -> 
     >>> print(load.derivatives(1.0, 0)[0])
     [ 9.81  0.   20.  ]
     """
-    parts = [as_profile(name, 0.0 if given is None else given) for name, given in (("x", x), ("y", y), ("z", z))]
+    parts = [
+        as_profile(name, 0.0 if component is None else component) for name, component in (("x", x), ("y", y), ("z", z))
+    ]
     return Vector((parts[0], parts[1], parts[2]))
 
 

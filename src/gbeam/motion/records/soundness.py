@@ -54,7 +54,7 @@ def mirrored(table: Table, names: dict[str, str]) -> Iterator[str]:
     mapping = np.zeros((3, 3))
     for row, name in zip(mapping, names.values(), strict=True):
         sign, column = table.signed(name)
-        axes = [] if column is None else [found[1] for word in words_of(column) if (found := _AXIS.fullmatch(word))]
+        axes = [] if column is None else [match[1] for word in words_of(column) if (match := _AXIS.fullmatch(word))]
         if len(axes) == 1:
             row["xyz".index(axes[0])] = sign
     if round(float(np.linalg.det(mapping))) == -1:
@@ -208,20 +208,20 @@ def _check_level(record: Samples, size: Floats) -> None:
     """Refuse a load that is level flight in another unit and no flight in the declared one."""
     in_g, units = size / STANDARD_GRAVITY, UNITS["acceleration"]
     first = slice(max(int(1 / np.median(np.diff(record.time))), 4))
-    begins, peak, here = float(np.median(in_g[first])), in_g.max(), _share(in_g, LEVEL)
+    begins, peak, level_share = float(np.median(in_g[first])), in_g.max(), _share(in_g, LEVEL)
     others = []
     for unit in units:
         as_other = in_g * units[unit] / units[record.unit]
         begins_level = _BEGINS_LEVEL[0] < float(np.median(as_other[first])) < _BEGINS_LEVEL[1]
         if unit != record.unit:
             others.append((begins_level, _share(as_other, LEVEL), unit))
-    for begins_level, there, other in sorted(others, reverse=True):  # the likeliest first
+    for begins_level, other_share, other in sorted(others, reverse=True):  # the likeliest first
         if record.unit == "g":
             # Level at 9.8 and nowhere at 1; a rocket that passes 9.8 g has been at less.
-            doubtful = begins > _BEGINS or (there > _SOME and here < _HARDLY and peak > _PILOTED)
+            doubtful = begins > _BEGINS or (other_share > _SOME and level_share < _HARDLY and peak > _PILOTED)
         else:
             # What is level at 0.1 g either pulls more than 1 g to stay in the air, or is in g.
-            doubtful = peak < _NEVER or (there > _SOME and (peak < LEVEL[1] or begins_level))
+            doubtful = peak < _NEVER or (other_share > _SOME and (peak < LEVEL[1] or begins_level))
         if doubtful:
             raise InputError(
                 "record.unit",

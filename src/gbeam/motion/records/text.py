@@ -104,14 +104,14 @@ def part_within(clock: NDArray[np.float64], of_day: Clock | None, span: Span, co
     interval = float(np.median(np.diff(clock)))
     shown = f"{first:g} to {last:g} s" if of_day is None else f"0 to {last:g} s, 0 s being {of_day.first}"
 
-    def read(key: str, given: float | str | None, otherwise: float) -> float:
-        if given is None:
+    def read(key: str, value: float | str | None, otherwise: float) -> float:
+        if value is None:
             return otherwise
-        number = of_day.seconds(given) if isinstance(given, str) and of_day is not None else given
+        number = of_day.seconds(value) if isinstance(value, str) and of_day is not None else value
         if number is None or isinstance(number, str):
-            raise InputError(f"record.{key}", f"is {given!r}", f"give a time of the record's own clock, {shown}")
+            raise InputError(f"record.{key}", f"is {value!r}", f"give a time of the record's own clock, {shown}")
         if not first - interval <= number <= last + interval:
-            what = given if isinstance(given, str) else f"{given:g} s"
+            what = value if isinstance(value, str) else f"{value:g} s"
             raise InputError(f"record.{key}", f"is {what}, and the record lasts {shown}", "give a time of it")
         return float(number)
 
@@ -235,22 +235,22 @@ def _comment(line: str, delimiter: str) -> str | None:
 
 def _header(path: str | os.PathLike[str], lines: list[str], delimiter: str, width: int) -> tuple[list[str], list[str]]:
     """Names and units of the columns, from the lines before the first of numbers."""
-    found: list[tuple[bool, list[str]]] = []
+    headers: list[tuple[bool, list[str]]] = []
     for line in lines:
         comment = _comment(line, delimiter)
         cells = _cells(line if comment is None else comment, delimiter)
         if len(cells) == width - 1 and comment is None:  # every row of data ends in a delimiter
             cells = [*cells, ""]
         if len(cells) == width and not _is_data(cells):
-            found.append((comment is not None, cells))
-    plain = [i for i, (commented, _) in enumerate(found) if not commented]
-    if not found:
+            headers.append((comment is not None, cells))
+    plain = [i for i, (commented, _) in enumerate(headers) if not commented]
+    if not headers:
         problem = f"{path} has no header line with {width} names, as many as the data has columns"
         raise InputError("record.file", problem, "name the columns in the line above the data")
-    last = plain[-1] if plain else len(found) - 1
-    header = found[last][1]
+    last = plain[-1] if plain else len(headers) - 1
+    header = headers[last][1]
     if last > 0 and any(is_unit(cell) for cell in header):
-        return found[last - 1][1], header
+        return headers[last - 1][1], header
     return header, [""] * width
 
 

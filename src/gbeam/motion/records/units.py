@@ -53,9 +53,9 @@ def words_of(name: str) -> list[str]:
 def unit_in_name(name: str) -> str:
     """Unit in which a column's name ends, as files spell it: g of ``a_z_g``, rad/s of ``p_rad_s``; empty if none."""
     *before, last = words_of(name) or [""]
-    found = [f"{before[-1]}/{last}"] if len(before) > 1 else []
-    found += [last] if before and last not in _BARE else []
-    return next((text for text in found if is_unit(text)), "")
+    candidates = [f"{before[-1]}/{last}"] if len(before) > 1 else []
+    candidates += [last] if before and last not in _BARE else []
+    return next((text for text in candidates if is_unit(text)), "")
 
 
 def is_unit(text: str) -> bool:
@@ -74,29 +74,29 @@ def unit_of(
     if declared is not None and trust:
         return declared
     unit = declared
-    for column, given in stated:
-        text = given or unit_in_name(column)
-        found = _canonical(text, quantity)
-        if found is None:
+    for column, stated_unit in stated:
+        text = stated_unit or unit_in_name(column)
+        canonical = _canonical(text, quantity)
+        if canonical is None:
             other = [kind for kind in _TELLING if kind != quantity and _canonical(text, kind) and text not in _BARE]
             if other:
                 problem = f"is {unit or 'missing'}, and the file gives column {column!r} in {text}, of {other[0]}"
                 fix = 'name another column; if the file is wrong, add skip_checks = ["unit"]'
                 raise InputError(f"record.{key}", problem, fix)
             continue
-        if found not in units:
+        if canonical not in units:
             raise InputError(
                 f"record.{key}",
                 f"is {unit or 'missing'}, and the file gives column {column!r} in {text}",
                 f"convert the column to {' or '.join(units)}",
             )
-        if unit is not None and found != unit:
+        if unit is not None and canonical != unit:
             raise InputError(
                 f"record.{key}",
                 f"is {unit}, and the file gives column {column!r} in {text}",
-                f'write {key} = "{found}"; if the file is wrong, add skip_checks = ["unit"]',
+                f'write {key} = "{canonical}"; if the file is wrong, add skip_checks = ["unit"]',
             )
-        unit = found
+        unit = canonical
     return unit
 
 

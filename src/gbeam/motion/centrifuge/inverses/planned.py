@@ -118,8 +118,10 @@ def _guess(time: Floats, target: Target, geometry: Geometry, ramps: tuple[Ramp, 
 def _refusal(limits: Limits, ends: Ends, ramps: tuple[Ramp, Ramp] | None) -> InputError:
     """Name the time that is too short for the limits."""
     for name, ramp in zip(("spin_up", "spin_down"), ramps or (), strict=False):
-        given, more = getattr(ends, name), ramp.lengthened(limits).length - ramp.length
-        if given is not None and more > 0:
-            problem = f"is {given:.3g} s: within the limits of axis 1 that is too short for the arm to reach idle"
-            return InputError(name, problem, f'give "{np.ceil(10 * (given + more)) / 10:g} s" or more, or leave it out')
+        duration, more = getattr(ends, name), ramp.lengthened(limits).length - ramp.length
+        if duration is not None and more > 0:
+            problem = f"is {duration:.3g} s: within the limits of axis 1 that is too short for the arm to reach idle"
+            return InputError(
+                name, problem, f'give "{np.ceil(10 * (duration + more)) / 10:g} s" or more, or leave it out'
+            )
     return InputError("limits", "leave no motion that keeps idle during the flight", "give less idle, or wider limits")

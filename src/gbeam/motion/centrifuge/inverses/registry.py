@@ -14,7 +14,7 @@ from gbeam.motion.centrifuge.target.target import Target
 
 
 class Method(NamedTuple):
-    """How to build an inverse.
+    """Method by which an inverse is built.
 
     Parameters
     ----------

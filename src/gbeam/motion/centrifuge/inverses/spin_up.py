@@ -151,19 +151,19 @@ def _build(name: str, target: Target, inverse: Inverse, geometry: Geometry, limi
     across = across_beam(target.load.series(steady, 0), geometry).value
     parts = (rate, yaw, roll, across, geometry.gravity, ends.start == "pre-yawed", outward)
     ramp = Ramp(steady + outward * USUAL_TURNED / rate, steady, *parts)
-    given, traced = getattr(ends, name), is_traced(rate, steady)
-    if given is None:
+    length, traced = getattr(ends, name), is_traced(rate, steady)
+    if length is None:
         if not traced:
             return ramp.lengthened(limits, _MARGIN)
         if np.isfinite(np.asarray(limits.axes)).any() or np.isfinite(limits.power):
             raise InputError(name, "is found within the limits, and JAX traces the machine", f"give {name}, s")
         return ramp
-    if not traced and rate * (given - lead) < LEAST_TURNED:
+    if not traced and rate * (length - lead) < LEAST_TURNED:
         enough = np.ceil(100 * (LEAST_TURNED / rate + lead)) / 100
         raise InputError(
             name,
-            f"is {given:.3g} s, so short that the arm's own acceleration would load the specimen beyond the flight's "
+            f"is {length:.3g} s, so short that the arm's own acceleration would load the specimen beyond the flight's "
             f"{'first' if outward < 0 else 'last'} load",
             f'give "{enough:g} s" or more, or leave it out',
         )
-    return ramp.of_length(given - lead)
+    return ramp.of_length(length - lead)

@@ -118,7 +118,7 @@ def build_target(
         raise InputError(
             "idle", f"is {least / STANDARD_GRAVITY:.3g} g and gravity 1 g", f"give at least {LEAST_IDLE} g"
         )
-    made = partial(
+    target_of = partial(
         Target, flight=raw, idle=0.0 if least is None else least, gravity=STANDARD_GRAVITY if gravity else 0.0,
         half_width=width / 2, span=(float(first), float(last)),
     )  # fmt: skip
@@ -128,7 +128,7 @@ def build_target(
         if gravity:
             load = _nearest(load, None, None, None, gravity)
         none = padded_rows([]), merged_edges([], last)
-        return made(load=load, corners=corners, stretches=none[0], edges=none[1], rounded=True, turns=True)
+        return target_of(load=load, corners=corners, stretches=none[0], edges=none[1], rounded=True, turns=True)
     if width:
         fix = f"give {_PER_WIDTH * (last - first) / KNOTS:.2g} s or more, or a shorter duration"
         refuse_more("smoothing", "knots", _PER_WIDTH * (last - first) / width, KNOTS, 4000.0, fix)
@@ -137,23 +137,23 @@ def build_target(
             raise InputError("smoothing", problem, f"give less than {_WIDEST * (last - first):.3g} s")
     flight = smoothed(corners, width) if width else corners
     times = _knots(corners, first, last, width / _PER_WIDTH or _GRID)
-    own = np.asarray(flight(times))
-    size, across = np.linalg.norm(own, axis=1), np.linalg.norm(own[:, 1:], axis=1)
+    loads = np.asarray(flight(times))
+    size, across = np.linalg.norm(loads, axis=1), np.linalg.norm(loads[:, 1:], axis=1)
     far = across < MIN_TRANSVERSE_LOAD * (1 - _ROUNDING) if gravity else np.zeros(times.size, bool)
     if far.any() and least is None and not clip:
-        given = np.asarray(corners(times))
-        far |= np.linalg.norm(given[:, 1:], axis=1) < MIN_TRANSVERSE_LOAD * (1 - _ROUNDING)
-        refuse_far(times, given, far)
+        at_corners = np.asarray(corners(times))
+        far |= np.linalg.norm(at_corners[:, 1:], axis=1) < MIN_TRANSVERSE_LOAD * (1 - _ROUNDING)
+        refuse_far(times, at_corners, far)
     low = np.zeros(times.size, bool) if least is None else size < least * (1 - _ROUNDING)
     gate = _gate(times, size, least, leave_out)
     out = np.zeros(times.size, bool) if gate is None else np.asarray(gate(times)) == 0
     load = _nearest(flight, None, None, None, gravity)
     if (low | far | out).any():
         if least is not None:
-            refuse_undirected(own, least)
+            refuse_undirected(loads, least)
             if not gravity and not across.any():
-                refuse_reversal(times, own, least)
-        path = _path(times, own, low | out, far, least, gravity, arm)
+                refuse_reversal(times, loads, least)
+        path = _path(times, loads, low | out, far, least, gravity, arm)
         load = _nearest(flight, smoothed(path, _PATH * width) if width else path, gate, least, gravity)
     values = np.asarray(load(times))
     if not gravity:
@@ -161,7 +161,7 @@ def build_target(
     steady = values if gravity else values / np.maximum(np.linalg.norm(values, axis=1), 1e-12)[:, None]
     reasons = np.select([low, out, far], [BELOW_IDLE, LEFT_OUT, GIMBALS], -1)
     rows = stretches(times, reasons, size - (least or 0.0), across - MIN_TRANSVERSE_LOAD, corners)
-    return made(
+    return target_of(
         load=load, corners=corners, stretches=padded_rows(rows), edges=merged_edges(rows, last),
         rounded=width > 0 or not _has_corners(load, first, last),
         turns=bool(np.max(np.abs(steady - steady[0])) > 1e-9),
@@ -179,15 +179,15 @@ def _nearest(flight: Profile, path: Profile | None, gate: Profile | None, idle: 
 
 
 def _path(
-    times: Floats, own: Floats, held: Flags, far: Flags, idle: float | None, gravity: bool, arm: Any | None
+    times: Floats, loads: Floats, held: Flags, far: Flags, idle: float | None, gravity: bool, arm: Any | None
 ) -> PiecewiseLinear:
     """Angles about the beam and from it, (k, 2), on knots: the flight's where followed, gentle between."""
     whole = MIN_TRANSVERSE_LOAD if idle is None else idle
     scale = _QUICK if arm is None else float(np.sqrt(_number(arm) / whole))
-    across = np.linalg.norm(own[:, 1:], axis=1)
-    about, weight = unwrapped(times, own[:, 2], own[:, 1], whole)
+    across = np.linalg.norm(loads[:, 1:], axis=1)
+    about, weight = unwrapped(times, loads[:, 2], loads[:, 1], whole)
     about = gentle(times, about, weight, _and_next(~(held | far)) & (weight > 0), scale)
-    away, weight = unwrapped(times, across, own[:, 0], whole)
+    away, weight = unwrapped(times, across, loads[:, 0], whole)
     away = gentle(times, away, weight, _and_next(~held), scale)
     if not gravity:
         away = np.where(held, off_axis(away), away)
@@ -232,13 +232,13 @@ def _knots(raw: Profile, start: float, end: float, step: float) -> Floats:
     """Knots of `raw` and a grid, without points so near a knot that a slope would be mere rounding."""
     least = 1e-4 * step
     first, last = raw.extent or (start, end)
-    own = raw.knots(min(step, max(_CURVE, (last - first) / _MOST)))
-    own = np.concatenate([[start], own[(own > start + least) & (own < end - least)], [end]])
-    own = own[np.diff(own, prepend=-np.inf) > least]
+    knots = raw.knots(min(step, max(_CURVE, (last - first) / _MOST)))
+    knots = np.concatenate([[start], knots[(knots > start + least) & (knots < end - least)], [end]])
+    knots = knots[np.diff(knots, prepend=-np.inf) > least]
     grid = sampled(start, end, step)
-    after = np.clip(np.searchsorted(own, grid), 1, own.size - 1)
-    distance = np.minimum(np.abs(grid - own[after - 1]), np.abs(own[after] - grid))
-    return np.union1d(own, grid[distance > step / 4])
+    after = np.clip(np.searchsorted(knots, grid), 1, knots.size - 1)
+    distance = np.minimum(np.abs(grid - knots[after - 1]), np.abs(knots[after] - grid))
+    return np.union1d(knots, grid[distance > step / 4])
 
 
 def _has_corners(load: Profile, start: float, end: float) -> bool:

@@ -174,8 +174,8 @@ class NearestLoad(Profile):
             x, part = _reached(held * x, held * part, self.least, band)
         else:
             x, part = held * x, held * part
-        made = stack([x, part * y, part * z])
-        return where(xp.asarray(beside(free, 1)), flight, made)
+        load = stack([x, part * y, part * z])
+        return where(xp.asarray(beside(free, 1)), flight, load)
 
     @property
     def breaks(self) -> Any:
@@ -184,13 +184,13 @@ class NearestLoad(Profile):
 
     def corners(self, step: float) -> NDArray[np.float64]:
         """Breaks of the load and of the path, s."""
-        own = self.flight.corners(step)
-        return own if self.path is None else np.union1d(own, self.path.corners(step))
+        breaks = self.flight.corners(step)
+        return breaks if self.path is None else np.union1d(breaks, self.path.corners(step))
 
     def knots(self, step: float) -> NDArray[np.float64]:
         """Breaks of the load and of the path, s."""
-        own = self.flight.knots(step)
-        return own if self.path is None else np.union1d(own, self.path.knots(step))
+        knots = self.flight.knots(step)
+        return knots if self.path is None else np.union1d(knots, self.path.knots(step))
 
     def smoothed(self, width: Any) -> Profile:
         """By quadrature."""
@@ -202,9 +202,9 @@ def _sharp_to_smooth(share: Series) -> Series:
     return soft_step(soft_step(share, 0.5, 1.0), 0.5, 1.0)
 
 
-def _blend(share: Series, own: list[Series], path: list[Series]) -> list[Series]:
+def _blend(share: Series, flight: list[Series], path: list[Series]) -> list[Series]:
     """A unit vector between two: a share of one and the rest of the other."""
-    mixed = [share * one + (1 - share) * other for one, other in zip(own, path, strict=True)]
+    mixed = [share * one + (1 - share) * other for one, other in zip(flight, path, strict=True)]
     size = sqrt(square(stack(mixed)))
     return [each / size for each in mixed]
 

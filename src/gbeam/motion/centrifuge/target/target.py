@@ -29,7 +29,7 @@ def stretches(times: Floats, reasons: NDArray[np.int64], size: Floats, reach: Fl
     """
 
     def edge(outside: int, inside: int) -> float:
-        """Where one reason ends and another, or none, begins: between two neighbouring knots, or at the last one."""
+        """Time at which a reason ends and another, or none, begins: between two neighbouring knots, or at the last."""
         if outside < 0 or outside == times.size:
             return float(times[inside])
         pair = reasons[outside], reasons[inside]
