@@ -166,12 +166,12 @@ def _axis(moved: Floats) -> int:
 
 def _most_moved(answers: dict[tuple[str, str], tuple[Response | Failure, float]], name: str) -> int:
     """Axis along which the models that have an answer move the tip most."""
-    found = [
+    peaks = [
         answer.peaks.max_abs
         for (_, where), (answer, _) in answers.items()
         if where == name and isinstance(answer, Response)
     ]
-    return _axis(np.sum(found, axis=0)) if found else 0
+    return _axis(np.sum(peaks, axis=0)) if peaks else 0
 
 
 def _row(
@@ -186,13 +186,13 @@ def _row(
     against = (nan, nan, nan, nan)
     if isinstance(reference, Response) and reference.outcome == "done":
         top, left = float(reference.peaks.max_abs[axis]), float(reference.peaks.residual_amplitude[axis])
-        there = reference.tip[:, axis]
+        tip = reference.tip[:, axis]
         if not np.array_equal(reference.time, answer.time):
             # 40 samples to the lowest period: a cubic is wrong there by 1e-5 of a vibration, a straight line by 0.3 %.
-            there = CubicSpline(reference.time, there)(answer.time)
-        largest = float(np.abs(answer.tip[:, axis] - there).max())
+            tip = CubicSpline(reference.time, tip)(answer.time)
+        largest = float(np.abs(answer.tip[:, axis] - tip).max())
         after = answer.time >= answer.residual_from
-        phase = _phase(answer.time[after], answer.tip[after, axis], there[after]) if after.sum() > 8 else nan
+        phase = _phase(answer.time[after], answer.tip[after, axis], tip[after]) if after.sum() > 8 else nan
         if top > 0:
             against = (peak / top - 1, residual / left - 1 if left > 0 else nan, phase, largest / top)
     return ModelRow(
@@ -224,8 +224,8 @@ def _phase(time: Floats, ours: Floats, theirs: Floats) -> float:
 
     def fit(values: Floats, omega: float) -> tuple[complex, float]:
         basis = np.stack([np.cos(omega * time), np.sin(omega * time), np.ones_like(time)], axis=1)
-        found, *_ = np.linalg.lstsq(basis, values, rcond=None)
-        return complex(found[0], -found[1]), float(np.sum((values - basis @ found) ** 2))
+        fitted, *_ = np.linalg.lstsq(basis, values, rcond=None)
+        return complex(fitted[0], -fitted[1]), float(np.sum((values - basis @ fitted) ** 2))
 
     step, span = float(np.mean(np.diff(time))), float(time[-1] - time[0])
     spectrum = np.abs(np.fft.rfft((theirs - theirs.mean()) * np.hanning(len(theirs))))

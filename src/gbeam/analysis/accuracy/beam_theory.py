@@ -101,12 +101,12 @@ def static_theory(structure: Structure, resting: Callable[[Structure], Sampled])
 
 
 def _gap(theory: Theory, full: Sampled, thin: Sampled, plate: Floats) -> _Gap:
-    c, own = theory.thick.coefficients, theory.own
+    c, count = theory.thick.coefficients, theory.own
     features = c.features(full.base.a_WO_B, full.base.w_WB_B, full.base.alpha_WB_B, full.loads)
     mass, terms = theory.beyond
     velocity, stiffness, force = terms.each
     # Feature by feature: no matrix is made for every time.
-    p, pd, pdd = (each[:, :own] for each in (full.p, full.pd, full.pdd))
+    p, pd, pdd = (each[:, :count] for each in (full.p, full.pd, full.pdd))
     beam = pdd @ mass.T - features @ force
     for feature, by_rate, by_place in zip(features.T, velocity, stiffness, strict=True):
         beam += feature[:, None] * (pd @ by_rate.T + p @ by_place.T)
@@ -120,12 +120,12 @@ def _gap(theory: Theory, full: Sampled, thin: Sampled, plate: Floats) -> _Gap:
 
 def _lacking(theory: Theory, full: Sampled, thin: Sampled, gap: _Gap, answers: list[Correction]) -> Lacking:
     """The larger of what is lacking without and with plate action: how far a clamp keeps a section flat is not sure."""
-    thick, own = theory.thick, quantities(theory.slender, thin)
+    thick, slender = theory.thick, quantities(theory.slender, thin)
     sizes, bodies = dict.fromkeys(Quantities._fields, 0.0), np.zeros(len(theory.bodies))
     for answer in answers:
         truth = quantities(thick, full.moved(*answer))
         for name, size in sizes.items():
-            sizes[name] = max(size, largest(getattr(truth, name) - getattr(own, name)))
+            sizes[name] = max(size, largest(getattr(truth, name) - getattr(slender, name)))
         moved = np.einsum("bai,ti->tba", theory.bodies, answer.value[:, -thick.size :])
         bodies = np.maximum(bodies, np.linalg.norm(moved, axis=2).max(axis=0))
     return Lacking(sizes, causes(theory, full.p, *(each[:, -thick.size :] for each in gap)), bodies)
@@ -151,8 +151,8 @@ def causes(theory: Theory, p: Any, beam: Any, plate: Any) -> dict[str, float]:
 def mode_causes(theory: Theory, base: Base, loads: Any, mode: Any, rate: Any, plate: Floats) -> dict[str, float]:
     """Share of each cause in the energy of modes (k, own) at rates (k,) on a base (3,), without a free hub's."""
     a, w, alpha = (np.asarray(x)[None] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B))
-    given = None if loads is None else np.asarray(loads)[None]
-    features = theory.thick.coefficients.features(a, w, alpha, given)[0]
+    load_row = None if loads is None else np.asarray(loads)[None]
+    features = theory.thick.coefficients.features(a, w, alpha, load_row)[0]
     mass, terms = theory.beyond
     velocity, stiffness = (np.tensordot(features, each, 1) for each in (terms.velocity, terms.stiffness))
     rate = np.asarray(rate)[:, None]
@@ -176,5 +176,5 @@ def words(causes: Mapping[str, float]) -> str:
 def described(structure: Structure, causes: Mapping[str, float]) -> str:
     """The causes that matter, and what the estimate assumes: ``shear; assumed: Poisson's ratio 0.3``."""
     assert structure.source is not None
-    named, given = words(causes), assumptions(structure.source.beam)
-    return f"{named}; assumed: {', '.join(given)}" if named and given else named
+    named, assumed = words(causes), assumptions(structure.source.beam)
+    return f"{named}; assumed: {', '.join(assumed)}" if named and assumed else named

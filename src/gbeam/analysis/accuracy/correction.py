@@ -275,11 +275,11 @@ def responses(of: Operator, vibration: Vibration, time: Floats) -> Callable[[Flo
             return between(c), between(k), between(force)
 
         equations = LinearEquations(np.eye(phi.shape[1]), matrices, drive, rest=rest)
-        made = integrate(equations, gauss(), first, moving, step=step, count=len(time) - 1, start=float(time[0]))
+        trajectory = integrate(equations, gauss(), first, moving, step=step, count=len(time) - 1, start=float(time[0]))
         static = -residual @ flexibility
-        if not made.whole:
+        if not trajectory.whole:
             return Correction(*np.full((3, *static.shape), np.nan))
-        return Correction(made.q @ phi.T + static, made.qd @ phi.T, made.qdd @ phi.T)
+        return Correction(trajectory.q @ phi.T + static, trajectory.qd @ phi.T, trajectory.qdd @ phi.T)
 
     return correction
 

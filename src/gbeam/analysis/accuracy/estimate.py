@@ -97,11 +97,11 @@ def response_errors(
         beyond = response_theory(structure, motion, solution.some(slice(None, None, stride)), begin)
     theory = described(structure, beyond.causes)
 
-    def judged(stride: int, own: Quantities | None = None) -> tuple[Errors, float]:
+    def judged(stride: int, computed: Quantities | None = None) -> tuple[Errors, float]:
         """Errors by every so many steps, and the rate of the fastest mode that these may have missed, rad/s."""
         few = solution.some(slice(None, None, stride))
         with np.errstate(all="ignore"):
-            parts, rings = lacking(structure, motion, few, own, begin=begin)
+            parts, rings = lacking(structure, motion, few, computed, begin=begin)
         if not np.isfinite(parts.total.tip).all():
             return _bounded(structure, sizes["tip"], steps[0]), 0.0
 

@@ -79,7 +79,7 @@ def lacking(
     structure: Structure,
     motion: Motion,
     solution: Solution,
-    own: Quantities | None = None,
+    computed: Quantities | None = None,
     *,
     begin: Begin | None = None,
 ) -> tuple[Parts, Rings]:
@@ -107,16 +107,16 @@ def lacking(
         start, start_of_shapes = (_departure(begin, each, at) for each in (exact, same))
     correction = responses(of, vibration, solution.time)
     total = correction(residual, start)
-    if own is None:
-        own = quantities(structure, lifted(structure, np.arange(structure.size), motion, solution))
-    truth, same_shapes = quantities(exact, at.moved(*total)), own
+    if computed is None:
+        computed = quantities(structure, lifted(structure, np.arange(structure.size), motion, solution))
+    truth, same_shapes = quantities(exact, at.moved(*total)), computed
     if structure.kind != "exact":
         shapes = correction(new, start_of_shapes)
         same_shapes = quantities(exact, at.moved(*(a - b for a, b in zip(total, shapes, strict=True))))
     parts = Parts(
         Quantities(*(a - b for a, b in zip(truth, same_shapes, strict=True))),
-        Quantities(*(a - b for a, b in zip(same_shapes, own, strict=True))),
-        Quantities(*(a - b for a, b in zip(truth, own, strict=True))),
+        Quantities(*(a - b for a, b in zip(same_shapes, computed, strict=True))),
+        Quantities(*(a - b for a, b in zip(truth, computed, strict=True))),
     )
     return parts, _rings(exact, *vibration.shaken(of, residual, start))
 
@@ -192,8 +192,8 @@ def _departure(begin: Begin, richer: Structure, at: Sampled) -> State:
     except ComputationError:
         departure[:] = np.nan
         return departure[0], departure[1]
-    for each, begun, own in zip(departure, state, (at.p[0], at.pd[0]), strict=True):
-        each[-richer.size :] = begun - own[-richer.size :]  # the axial shapes, which SFOAM lacks, come first
+    for each, begun, coordinates in zip(departure, state, (at.p[0], at.pd[0]), strict=True):
+        each[-richer.size :] = begun - coordinates[-richer.size :]  # the axial shapes, which SFOAM lacks, come first
     return departure[0], departure[1]
 
 

@@ -86,11 +86,11 @@ def driven(hub: Hub, profile: Profile) -> Hub:
     """The hub under a command, mounted as it is."""
     if hub.free:
         springs = {"stiffness": hub.stiffness, "damping": hub.damping}
-        made = Hub(radius=hub.radius, torque=profile, inertia=hub.inertia, **springs)
+        commanded = Hub(radius=hub.radius, torque=profile, inertia=hub.inertia, **springs)
     else:
-        made = Hub(radius=hub.radius, rate=profile, inertia=hub.inertia)
-    assign(made, mount=hub.mount)
-    return made
+        commanded = Hub(radius=hub.radius, rate=profile, inertia=hub.inertia)
+    assign(commanded, mount=hub.mount)
+    return commanded
 
 
 def turning_inertia(structure: Structure, hub: Hub) -> float:
@@ -146,7 +146,7 @@ class Vibration:
 
 def usual(commands: Commands, vibration: Vibration) -> dict[str, Floats]:
     """The drives (t,) of a smooth step of that duration, and of a shorter one with a ZVD shaper of the first mode."""
-    found = {"smooth-step": commands.scaled(_smooth(commands.time, commands.goal))}
+    drives = {"smooth-step": commands.scaled(_smooth(commands.time, commands.goal))}
     value = vibration.eigenvalue[0]
     half = np.pi / value.imag
     decay = float(np.exp(value.real * half))
@@ -156,8 +156,8 @@ def usual(commands: Commands, vibration: Vibration) -> dict[str, Floats]:
         parts = [
             weight * _smooth(commands.time - k * half, shorter) for k, weight in enumerate((1.0, 2 * decay, decay**2))
         ]
-        found = {"ZVD": commands.scaled(np.sum(parts, axis=0)), **found}
-    return found
+        drives = {"ZVD": commands.scaled(np.sum(parts, axis=0)), **drives}
+    return drives
 
 
 def _smooth(time: Floats, goal: Goal) -> Floats:

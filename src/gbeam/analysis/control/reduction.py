@@ -155,9 +155,9 @@ def truncation(
     poles = np.abs(scipy.linalg.eigvals(apart.a))  # where its gain has peaks
     over = np.geomspace(start, end, POINTS, endpoint=False)  # short of the last pole kept, which may be undamped
     error = _largest_gains(apart, np.concatenate([[0.0, end], over, poles[poles <= end]]))
-    own = _largest_gains(system, over)
+    peaks = _largest_gains(system, over)
     to, of = (np.array([each.unit for each in signals]) for signals in (system.outputs, system.inputs))
-    gain = np.array([[own[np.ix_(to == a, of == b)].max() for b in of] for a in to]).reshape(own.shape)
+    gain = np.array([[peaks[np.ix_(to == a, of == b)].max() for b in of] for a in to]).reshape(peaks.shape)
     return Truncation(method, states, hankel, start / (2 * np.pi), end / (2 * np.pi), error, gain)
 
 

@@ -177,11 +177,11 @@ class _Design:
         commands = self.commands
         a = np.concatenate([rows, self.rough]) @ commands.free
         b = np.concatenate([rows @ about + offset, self.rough @ about + self.rough_offset])
-        found = about + commands.free @ np.linalg.lstsq(a, -b, rcond=None)[0]
+        coefficients = about + commands.free @ np.linalg.lstsq(a, -b, rcond=None)[0]
         every = slice(None, None, 8)
         drive, fixed = commands.drive[every], commands.fixed[every]
-        if np.abs(drive @ found + fixed).max() <= self.limit:
-            return found
+        if np.abs(drive @ coefficients + fixed).max() <= self.limit:
+            return coefficients
         from scipy.sparse import csc_array
 
         size, limited = np.linalg.norm(a, axis=0).max(), (drive @ commands.free) / self.limit
@@ -216,8 +216,8 @@ def _refined(structure: Structure, design: _Design, inner: Floats, progress: Pro
                 raise ComputationError(done.outcome, done.message)
             grid = Grid.of(structure, hub, settings, done)
         about = Differentiated(structure, hub, settings, grid, "", loads=False)
-        own = _left(about.own(), commands.goal.duration) / design.scale
-        size = float(np.linalg.norm(own))
+        residual = _left(about.own(), commands.goal.duration) / design.scale
+        size = float(np.linalg.norm(residual))
         if size < least:
             better, best, least = size < _BETTER * least, inner, size
         else:
@@ -236,7 +236,7 @@ def _refined(structure: Structure, design: _Design, inner: Floats, progress: Pro
         ]
         # In the coefficients: the derivative along every direction that is free.
         rows = np.stack(slopes, axis=1) @ np.linalg.pinv(moves)
-        inner = design.solved(rows, own - rows @ inner, inner)
+        inner = design.solved(rows, residual - rows @ inner, inner)
     return best
 
 

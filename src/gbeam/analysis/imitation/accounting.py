@@ -47,8 +47,8 @@ class History:
 
     def spread(self, i: int) -> tuple[float, float]:
         """Size of the load at the root and at the tip over that in between, less one, at a sample."""
-        own, *ends = (float(np.linalg.norm(each[i])) for each in (self.load, self.root, self.tip))
-        root, tip = (end / own - 1 if own > 0 else np.nan for end in ends)
+        middle, *ends = (float(np.linalg.norm(each[i])) for each in (self.load, self.root, self.tip))
+        root, tip = (end / middle - 1 if middle > 0 else np.nan for end in ends)
         return root, tip
 
 
@@ -95,7 +95,7 @@ def account(
     """Account for a flight's load over time (t,): what the machine does not give, why (its `episodes`, the limits'
     `shares`), and by how much of the largest (`peak`) or of each `instant`'s load.
     """
-    size, made = flight.size, machine.size
+    size, machine_size = flight.size, machine.size
     instant = tolerance_of == "instant"
     least = _SLACK * float(size.max())
     allowed = np.maximum(tolerance * size, least) if instant else np.full(len(time), tolerance * float(size.max()))
@@ -134,7 +134,7 @@ def account(
             for top, basin in separate_peaks(size, floor, _DIP)
         ),
         not_followed=stretches,
-        preloads=tuple(_preloads(edges, time, size, made, most + (tolerance * most if instant else allowed))),
+        preloads=tuple(_preloads(edges, time, size, machine_size, most + (tolerance * most if instant else allowed))),
     )
 
 
@@ -191,11 +191,11 @@ def _peak(
     shares: Mapping[str, Floats],
 ) -> LoadPeak:
     """Judge the flight's peak at sample `top`, with the samples of `basin`, on the machine."""
-    size, made = flight.size[basin], machine.size[basin]
-    own = top - basin.start
-    (near,) = (run for run in true_runs(size >= _DIP * size[own]) if run.start <= own < run.stop)
-    i = near.start + int(np.argmax(made[near]))
-    load, reproduced = float(size[own]), float(made[i])
+    size, machine_size = flight.size[basin], machine.size[basin]
+    peak = top - basin.start
+    (near,) = (run for run in true_runs(size >= _DIP * size[peak]) if run.start <= peak < run.stop)
+    i = near.start + int(np.argmax(machine_size[near]))
+    load, reproduced = float(size[peak]), float(machine_size[i])
     # Sizes at their own times, directions at the same one.
     turned = flight.load[basin.start + i] * (load / size[i])
     error = float(np.linalg.norm(machine.load[basin.start + i] - turned)) / load
@@ -212,11 +212,11 @@ def _peak(
     )
 
 
-def _preloads(edges: Floats, time: Floats, size: Floats, made: Floats, most: Floats) -> Iterator[Preload]:
-    for run in true_runs(made > most):
-        i = run.start + int(np.argmax((made - most)[run]))
+def _preloads(edges: Floats, time: Floats, size: Floats, machine_size: Floats, most: Floats) -> Iterator[Preload]:
+    for run in true_runs(machine_size > most):
+        i = run.start + int(np.argmax((machine_size - most)[run]))
         ends = float(edges[run.start]), float(edges[run.stop])
-        yield Preload(*ends, float(time[i]), float(made[i]), float(size[i]))
+        yield Preload(*ends, float(time[i]), float(machine_size[i]), float(size[i]))
 
 
 _GRID, _MOST = 2e-3, 50_000  # s between times at which a load is looked at; most of them

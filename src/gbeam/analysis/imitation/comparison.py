@@ -174,8 +174,8 @@ def compare(
     0.26%
     """
     limits = checked_limits(accept)
-    flown, made = (float(flight.time[0]), float(flight.time[-1])), centrifuge.flight_span
-    first, last = max(flown[0], made[0]), min(flown[1], made[1])
+    flown, reproduced = (float(flight.time[0]), float(flight.time[-1])), centrifuge.flight_span
+    first, last = max(flown[0], reproduced[0]), min(flown[1], reproduced[1])
     slack = _ROUNDING * max(map(abs, flown))
     begin, end = np.searchsorted(centrifuge.time, (first - slack, last + slack))
     during = slice(int(begin), int(end))  # spin-up and spin-down are not the flight's

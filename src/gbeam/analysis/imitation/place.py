@@ -79,8 +79,8 @@ def verify(
         response = responses[motion, at]
         comparison = compare(in_flight, response)
         # Whose automatic step may differ.
-        own = interpolated(response.time, carried[motion].time, carried[motion].tip)
-        swing = response.tip - own
+        carried_tip = interpolated(response.time, carried[motion].time, carried[motion].tip)
+        swing = response.tip - carried_tip
         swing -= low_pass(swing, float(response.time[1] - response.time[0]), cutoff)
         compared = np.isin(response.time, comparison.time[comparison.covered])
         force, moment = np.nan, np.nan
@@ -254,8 +254,8 @@ class _Trials:
             candidate = trial.candidate
             excess = candidate.share if self.choice.limited and candidate.exceeded else 0.0
             # Mirror images differ by rounding, and by what a search leaves: then the scenario's own comes first.
-            own = candidate.mounting == self.choice.mountings[0]
-            return excess, candidate.total_error * (1.0 if own else 1 + _WORTH)
+            as_mounted = candidate.mounting == self.choice.mountings[0]
+            return excess, candidate.total_error * (1.0 if as_mounted else 1 + _WORTH)
 
         return sorted(self.evaluated.values(), key=rank)
 

@@ -109,8 +109,8 @@ def choice_of(centrifuge: Centrifuge, smoothing: Sequence[float] = (), *, limite
         raise InputError("smoothing", f"is given {len(smoothing)} times", "give one width, or the ends of a range")
     if len(smoothing) == 2 and min(smoothing) <= 0:
         raise InputError("smoothing", f"is {min(smoothing):g} s", "give two positive widths")
-    own = width_of(centrifuge)
-    searched = [own] if INVERSES[centrifuge.method].plans else [own / _FACTOR, own * _FACTOR]
+    width = width_of(centrifuge)
+    searched = [width] if INVERSES[centrifuge.method].plans else [width / _FACTOR, width * _FACTOR]
     ends = sorted(smoothing) or searched
     widths = coarse(ends[0], ends[-1])
 

@@ -82,13 +82,13 @@ def plan(
     warnings = implausible_motion(motion, where, span)
     warnings += implausible_motion(motion.flight, f"motion.{tracks}" if tracks else "flight", span)
     during = slice(*np.searchsorted(time, (span[0], np.nextafter(span[1], np.inf))))
-    flown, made = motion.flight.base(time[during]), motion.base(time)
+    flown, machine = motion.flight.base(time[during]), motion.base(time)
     length = np.nan if beam is None else beam.length
-    along = gradient(flown.w_WB_B, flown.alpha_WB_B), gradient(made.w_WB_B, made.alpha_WB_B)[during]
+    along = gradient(flown.w_WB_B, flown.alpha_WB_B), gradient(machine.w_WB_B, machine.alpha_WB_B)[during]
     largest = PeakPair()
     if beam is not None:
         points = points_of(beam.length, beam.body_centres)
-        largest = largest_pair(largest_load(time[during], flown, points), largest_load(time, made, points))
+        largest = largest_pair(largest_load(time[during], flown, points), largest_load(time, machine, points))
     return MachinePlan(
         name=name,
         tracks=tracks,
@@ -100,7 +100,7 @@ def plan(
         accounting=account_of(
             time[during],
             History.of(flown.a_WO_B, along[0], length),
-            History.of(made.a_WO_B[during], along[1], length, axes.actual[during]),
+            History.of(machine.a_WO_B[during], along[1], length, axes.actual[during]),
             axes,
             during,
             tolerance=tolerance,

@@ -191,8 +191,8 @@ def _going_on(
                 return case
             run, known = posed.run(step, stop=posed.too_far), None
     except StopIteration as end:
-        made, errors = end.value
-    return _Ended(index, posed, made, errors, known if known and made is run else {})
+        chosen, errors = end.value
+    return _Ended(index, posed, chosen, errors, known if known and chosen is run else {})
 
 
 def _together(queue: list[_Case], together: int) -> Iterator[_Case | tuple[int, Response]]:
@@ -228,14 +228,16 @@ def _read(queue: list[_Case], trajectories: list[Trajectory | None]) -> Iterator
 
 def _displaced(queue: list[_Case], trajectories: list[Trajectory | None]) -> list[Any]:
     """Displacement of the stations at every step of each trajectory, m; None where that is None."""
-    made: list[Any] = [None] * len(queue)
-    there = [(k, case.posed, t) for k, (case, t) in enumerate(zip(queue, trajectories, strict=True)) if t is not None]
-    for some in _alike(there, lambda each: (id(each[1].structure), len(each[2].time))):
+    displacements: list[Any] = [None] * len(queue)
+    completed = [
+        (k, case.posed, t) for k, (case, t) in enumerate(zip(queue, trajectories, strict=True)) if t is not None
+    ]
+    for some in _alike(completed, lambda each: (id(each[1].structure), len(each[2].time))):
         posed = some[0][1]
         q = np.stack([trajectory.q[:, posed.problem.first :] for _, _, trajectory in some])
         for (k, _, _), moved in zip(some, np.asarray(posed.structure.displacement(q)), strict=True):
-            made[k] = moved
-    return made
+            displacements[k] = moved
+    return displacements
 
 
 def _responses_of(ended: list[_Ended]) -> Iterator[tuple[int, Response]]:
@@ -248,12 +250,12 @@ def _responses_of(ended: list[_Ended]) -> Iterator[tuple[int, Response]]:
         posed, moved = some[0].posed, np.stack([case.known["moved"] for case in some])
         trajectories, late = [case.made.trajectory for case in some], posed.settings.residual_from
         peaks = displacement_peaks(posed.structure, trajectories, posed.problem.first, moved, late)
-        for case, own, found in zip(some, moved, peaks, strict=True):
-            case.known.update(moved=own.copy(), peaks=found)
+        for case, displacement, case_peaks in zip(some, moved, peaks, strict=True):
+            case.known.update(moved=displacement.copy(), peaks=case_peaks)
     for case in ended:
         posed, step = case.posed, case.made.step
-        given = posed.structure, posed.motion, posed.settings, posed.problem, (None, case.made.trajectory, None)
-        yield case.index, response_of(*given, "", step, case.errors, posed.stride(step), **case.known)
+        inputs = posed.structure, posed.motion, posed.settings, posed.problem, (None, case.made.trajectory, None)
+        yield case.index, response_of(*inputs, "", step, case.errors, posed.stride(step), **case.known)
 
 
 def _alike(items: Iterable[Item], key: Callable[[Item], Hashable]) -> Iterable[list[Item]]:

@@ -138,10 +138,10 @@ class Differentiated:
                 slopes.append(None)
                 continue
             within = linearised(self.nominal, pairs, width, (self.scheme, steps.longest))
-            made = tangent(system, self.scheme, steps, run, q, qd, within=within)
-            q, qd = made[0][-1], made[1][-1]
+            histories = tangent(system, self.scheme, steps, run, q, qd, within=within)
+            q, qd = histories[0][-1], histories[1][-1]
             kept = np.append(True, steps.kept)
-            slopes.append(tuple(x[kept] for x in made))
+            slopes.append(tuple(x[kept] for x in histories))
         return slopes
 
     def _response(self, posed: Posed, moves: Sequence[tuple[Floats, ...] | None]) -> Response:
@@ -179,8 +179,8 @@ class Differentiated:
 
     def _jumps(self, posed: Posed) -> Floats:
         """Times at which something jumps."""
-        found = self._corners(posed)
-        return found.time[found.jump]
+        breaks = self._corners(posed)
+        return breaks.time[breaks.jump]
 
 
 def _moved(run: Trajectory, steps: Steps, by: tuple[Floats, ...] | None) -> Trajectory:

@@ -49,8 +49,8 @@ def coefficient_matrix(c: Coefficients, *, loaded: bool) -> Array:
         slope, constant = c.loads.slope[:, :, 6:], c.loads.constant[:, :, 6:]
         k.append(-slope.reshape(-1, *slope.shape[2:]))
         f.append(constant.reshape(-1, constant.shape[2]))
-    own = [c.mass[None], c.damping[None], c.gyroscopic, c.stiffness[None], *k]
-    rows = [np.swapaxes(each, 1, 2).reshape(-1, c.size) for each in own]
+    matrices = [c.mass[None], c.damping[None], c.gyroscopic, c.stiffness[None], *k]
+    rows = [np.swapaxes(each, 1, 2).reshape(-1, c.size) for each in matrices]
     return np.concatenate([*rows, *(-each for each in f)])
 
 
@@ -96,9 +96,9 @@ def _linear(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: tuple[
 
     more_mass, more_damping = fit(nominal)
     mass_of_steps = equations.mass + more_mass
-    own = matrix(nominal)
+    coefficients = matrix(nominal)
     by_beam = np.stack([(matrix(more) - matrix(less)) / w for (less, more), w in zip(pairs, width, strict=True)], 1)
-    flat = by_beam.reshape(len(own), -1)
+    flat = by_beam.reshape(len(coefficients), -1)
     # A parameter of the beam alone leaves the motion as it is.
     moving = [k for k, pair in enumerate(pairs) if _moves(nominal, pair)]
 
@@ -110,7 +110,7 @@ def _linear(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: tuple[
         forces = -(terms(q, qd, qdd, *inputs) @ flat).reshape(len(time), -1, n)
         for j in moving:
             less, more = (terms(q, qd, qdd, *posed.problem.equations.drive(time)) for posed in pairs[j])
-            forces[:, j] -= (more - less) / width[j] @ own
+            forces[:, j] -= (more - less) / width[j] @ coefficients
         return np.broadcast_to(mass_of_steps, k.shape), c, k, np.swapaxes(forces, 1, 2)
 
     return system

@@ -93,25 +93,25 @@ class Posed:
         time, q, qd, qdd = (x[some] for x in (trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd))
         base, _ = moving(self.motion, time, q, qd, qdd)
         q, qd, qdd = (x[:, self.problem.first :] for x in (q, qd, qdd))
-        made = section_forces(self.structure, base, q, qd, qdd, time, motion=self.motion)
-        if made is None:
+        forces = section_forces(self.structure, base, q, qd, qdd, time, motion=self.motion)
+        if forces is None:
             return []
-        stress = np.concatenate([made.stress_tension, made.stress_compression], axis=1)[..., None]
-        return [made.section_force[:, 0], made.section_moment[:, 0], stress]
+        stress = np.concatenate([forces.stress_tension, forces.stress_compression], axis=1)[..., None]
+        return [forces.section_force[:, 0], forces.section_moment[:, 0], stress]
 
 
 def pose(structure: Structure, motion: Motion, settings: ResponseSettings) -> tuple[Posed, int, int]:
     """Pose a run, from a machine's start if that comes before; and how many steps it takes before and after."""
     coarse = first_step(structure, motion, settings)
-    given = None if settings.step is None else settings.duration / max(1, round(settings.duration / settings.step))
-    kept = given or coarse
+    step = None if settings.step is None else settings.duration / max(1, round(settings.duration / settings.step))
+    kept = step or coarse
     each = 8.0 * (3 * structure.size + 9 * len(structure.stations))
     most = min(STEPS, int(HISTORY_BYTES / each))
     fix = f"give {most * kept:.3g} s or less, or fewer stations"
     refuse_more("response.duration", "steps", settings.duration / kept, most, each, fix)
     before, after = steps_beyond(motion, settings, kept)
     problem = problem_of(structure, motion, settings.start - before * kept, settings.begin)
-    return Posed(structure, motion, settings, problem, coarse, given), before, after
+    return Posed(structure, motion, settings, problem, coarse, step), before, after
 
 
 def steps_within(structure: Structure, displacement: Floats) -> int | None:

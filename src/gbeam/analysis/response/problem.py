@@ -102,8 +102,8 @@ class Initial(Value):
         return f"begins {words}, {speed}"
 
 
-def _components(given: Mapping[str, float], size: float, unit: str) -> str:
-    return ", ".join(f"{axis} {size * value:.4g} {unit}" for axis, value in given.items())
+def _components(values: Mapping[str, float], size: float, unit: str) -> str:
+    return ", ".join(f"{axis} {size * value:.4g} {unit}" for axis, value in values.items())
 
 
 def begun(given: Initial | str) -> Initial:
@@ -128,18 +128,18 @@ def initial_state(structure: Structure, base: Base | None, time: float, initial:
     return q, _moving(structure, q, initial.tip_velocity or {}), stable
 
 
-def _axes(structure: Structure, place: str, given: Mapping[str, float]) -> tuple[tuple[int, ...], Array]:
+def _axes(structure: Structure, place: str, values: Mapping[str, float]) -> tuple[tuple[int, ...], Array]:
     """The axes along which the tip moves, and the values given of them (k,)."""
-    axes = tuple("xyz".index(axis) for axis in given)
+    axes = tuple("xyz".index(axis) for axis in values)
     for axis in set(axes) & set(structure.axes_without_shapes):
         where, fix = f"response.initial.{place}.{'xyz'[axis]}", f"give model.modes.{'xyz'[axis]} = 1 or more"
         raise InputError(where, "is along a direction without shapes", fix)
-    return axes, np.asarray([*given.values()], dtype=float)
+    return axes, np.asarray([*values.values()], dtype=float)
 
 
-def _displaced(structure: Structure, given: Mapping[str, float]) -> Array:
+def _displaced(structure: Structure, values: Mapping[str, float]) -> Array:
     """Coordinates of least strain energy at which the tip has a displacement: Lagrange's multipliers, by Newton."""
-    axes, wanted = _axes(structure, "tip_displacement", given)
+    axes, wanted = _axes(structure, "tip_displacement", values)
     if structure.traced:
         from gbeam.mechanics.equations.compiled import displaced
 
@@ -152,15 +152,15 @@ def _displaced(structure: Structure, given: Mapping[str, float]) -> Array:
         q = q + change
         if np.abs(change).max() <= 1e-12 * np.abs(q).max():
             return q
-    wanted_words = _components(given, 1e3, "mm")
+    wanted_words = _components(values, 1e3, "mm")
     raise ComputationError("not converged", f"no shape of the beam has its tip displaced by {wanted_words}; give less")
 
 
-def _moving(structure: Structure, q: Array, given: Mapping[str, float]) -> Array:
+def _moving(structure: Structure, q: Array, values: Mapping[str, float]) -> Array:
     """Rates at which the tip has a velocity, in the shape of least strain energy."""
-    if not given:
+    if not values:
         return 0.0 * q
-    axes, wanted = _axes(structure, "tip_velocity", given)
+    axes, wanted = _axes(structure, "tip_velocity", values)
     slopes = structure.station_slopes(q)[-1, axes]
     return _constrained(structure.coefficients.stiffness, 0.0 * q, slopes, wanted)
 
@@ -168,8 +168,8 @@ def _moving(structure: Structure, q: Array, given: Mapping[str, float]) -> Array
 def _constrained(stiffness: Array, force: Array, slopes: Array, value: Array) -> Array:
     """x of K x = f + Jᵀ λ with J x = v."""
     solve = namespace(stiffness, force, slopes).linalg.solve
-    own, shapes = solve(stiffness, force), solve(stiffness, slopes.T)
-    return own + shapes @ solve(slopes @ shapes, value - slopes @ own)
+    unconstrained, shapes = solve(stiffness, force), solve(stiffness, slopes.T)
+    return unconstrained + shapes @ solve(slopes @ shapes, value - slopes @ unconstrained)
 
 
 EQUILIBRIUM = Initial()

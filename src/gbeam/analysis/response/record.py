@@ -163,7 +163,7 @@ def response_of(
     errors = Errors()
     warnings: tuple[str, ...] = ()
     if not traced:
-        outcome, message, own = describe(structure, problem, last, over_time, peaks, time, q[:, beam])
+        outcome, message, from_run = describe(structure, problem, last, over_time, peaks, time, q[:, beam])
         if outcome == "done":
             solution = Solution(trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd)
             during = None if loads is None else loads.during(flight)
@@ -179,13 +179,13 @@ def response_of(
                 errors, doubts = response_errors(
                     structure, motion, solution, tip, during, steps, stride=stride, begin=begun, tolerance=tolerance
                 )
-                own += doubts
+                from_run += doubts
             else:
                 alone = [ErrorEstimate(step=step) for step in steps]
                 errors = Errors(alone[0], alone[1], alone[2], NOT_ESTIMATED)
-            own += inaccuracies(structure, errors, settings) + effort(settings, len(trajectory.time) - 1, stride)
-        given = input_warnings(structure, motion, name=name, span=(time[0], time[-1]), base=over_time)
-        warnings = given + settings.warnings + own + (() if axes is None else axes.warnings)
+            from_run += inaccuracies(structure, errors, settings) + effort(settings, len(trajectory.time) - 1, stride)
+        from_inputs = input_warnings(structure, motion, name=name, span=(time[0], time[-1]), base=over_time)
+        warnings = from_inputs + settings.warnings + from_run + (() if axes is None else axes.warnings)
     return Response(
         name=name,
         environment=motion.kind,

@@ -122,7 +122,7 @@ class ResponseSettings(Value):
         """Warnings of implausible settings, and of what is left out."""
         step = () if self.step is None else implausible("response.step", "step", self.step)
         parts = {NOT_ESTIMATED: self.estimate, NO_LOADS: self.loads}
-        left_out = tuple(words for words, made in parts.items() if not made)
+        left_out = tuple(words for words, wanted in parts.items() if not wanted)
         return (*implausible("response.duration", "duration", self.duration), *step, *left_out)
 
     def kept_every(self, samples: int, step: float) -> int:

@@ -94,15 +94,13 @@ def simulate(
         return response_of(structure, motion, settings, posed.problem, (None, up, None), name, kept, StepErrors(), 1)
     if up is not None:
         posed = replace(posed, problem=going_on(posed.problem, up))
-    made, errors = answered(posed.plan(), lambda step, what: posed.run(step, **how(what)))
+    run, errors = answered(posed.plan(), lambda step, what: posed.run(step, **how(what)))
     down = None
-    if after and made.whole:
+    if after and run.whole:
         at_end = round(settings.duration / kept)
-        down = ramp(going_on(posed.problem, made.trajectory), settings, kept, at_end, after, **how("spinning down"))
-    runs = up, made.trajectory, down
-    return response_of(
-        structure, motion, settings, posed.problem, runs, name, made.step, errors, posed.stride(made.step)
-    )
+        down = ramp(going_on(posed.problem, run.trajectory), settings, kept, at_end, after, **how("spinning down"))
+    runs = up, run.trajectory, down
+    return response_of(structure, motion, settings, posed.problem, runs, name, run.step, errors, posed.stride(run.step))
 
 
 def _traced(structure: Structure, motion: Motion, settings: ResponseSettings, name: str) -> Response:

@@ -74,8 +74,8 @@ def answered(plan: Plan, run: Callable[[float, str], Run]) -> tuple[Run, StepErr
         while True:
             wanted = plan.send(run(*wanted))
     except StopIteration as end:
-        made, errors = end.value
-        return made, errors
+        chosen, errors = end.value
+        return chosen, errors
 
 
 def planned(settings: ResponseSettings, coarse: float, given: float | None) -> Plan:
@@ -135,8 +135,8 @@ def _finer(far: float, order: int) -> int:
 
 def _left(runs: list[Run], order: int, settings: ResponseSettings) -> tuple[float, float]:
     """Error of tip or peaks over its aim, by the order observed and by the scheme's own."""
-    found, tip, peaks = Estimate.of(runs, order), settings.aim, settings.aim_of_peaks
-    return max(found.tip / tip, found.peaks / peaks), max(found.promised_tip / tip, found.promised_peaks / peaks)
+    error, tip, peaks = Estimate.of(runs, order), settings.aim, settings.aim_of_peaks
+    return max(error.tip / tip, error.peaks / peaks), max(error.promised_tip / tip, error.promised_peaks / peaks)
 
 
 def _check_needed(runs: list[Run], left: float) -> float | None:
@@ -175,9 +175,11 @@ def integrated(problem: Problem, settings: ResponseSettings, step: float, **how:
 def ramp(problem: Problem, settings: ResponseSettings, step: float, first: int, count: int, **how: Any) -> Trajectory:
     """Spin-up or spin-down from a problem's state: `count` steps from the `first`, counted from the flight's start."""
     how |= {"step": step, "count": count, "start": settings.start + step * first}
-    made = integrate(problem.equations, scheme_of(settings), problem.q, problem.qd, **how)
+    trajectory = integrate(problem.equations, scheme_of(settings), problem.q, problem.qd, **how)
     # The flight's own times to the last digit.
-    return replace(made, time=np.asarray(settings.start + step * (first + np.arange(len(made.time))), dtype=np.float64))
+    return replace(
+        trajectory, time=np.asarray(settings.start + step * (first + np.arange(len(trajectory.time))), dtype=np.float64)
+    )
 
 
 def going_on(problem: Problem, trajectory: Trajectory) -> Problem:

@@ -128,9 +128,9 @@ def campbell(
     def at(rate: float) -> _Speed:
         point = point_at(rate)
         linear = linear_matrices(point)
-        found = modes_at(structure, point, linear)
+        at_rate = modes_at(structure, point, linear)
         beam = linear.mass[point.first :, point.first :]
-        return _Speed(rate, found.frequency, found.damping_ratio, found.coordinates, beam, found.direction)
+        return _Speed(rate, at_rate.frequency, at_rate.damping_ratio, at_rate.coordinates, beam, at_rate.direction)
 
     coarse = [at(float(rate)) for rate in start + (grid - start) * (last - start) / (end - start)]
     kept = min(modes, len(coarse[0].frequency))
@@ -140,16 +140,16 @@ def campbell(
     frequency, damping, alike = np.full((3, len(followed), kept), np.nan)
     track = np.arange(kept)
     index = [track]
-    for i, here in enumerate(followed):
+    for i, at_speed in enumerate(followed):
         if i == 0:
             value = np.ones(kept)
         else:
-            match, likeness = _paired(followed[i - 1], here)
+            match, likeness = _paired(followed[i - 1], at_speed)
             value = np.where(track >= 0, likeness[track], np.nan)
             track = np.where(track >= 0, match[track], -1)
             index.append(track)
-        there = track >= 0
-        frequency[i, there], damping[i, there] = here.frequency[track[there]], here.damping_ratio[track[there]]
+        valid = track >= 0
+        frequency[i, valid], damping[i, valid] = at_speed.frequency[track[valid]], at_speed.damping_ratio[track[valid]]
         alike[i] = value
     rates = np.array([speed.rate for speed in followed])
     met = [
@@ -193,14 +193,14 @@ def campbell(
 
 def _errors(richer: Richer, point: OperatingPoint, speed: _Speed, track: np.ndarray) -> FrequencyErrors:
     """Errors of the modes followed, at one speed; NaN for those that no longer oscillate."""
-    there = track >= 0
-    chosen = track[there]
+    oscillating = track >= 0
+    chosen = track[oscillating]
     value = 2j * np.pi * speed.frequency[chosen]
-    found = richer.errors(point, value, speed.coordinates[chosen])
+    errors = richer.errors(point, value, speed.coordinates[chosen])
     every = np.full((len(PARTS), len(track)), np.nan)
-    every[:, there] = [*found.parts.values()]
+    every[:, oscillating] = [*errors.parts.values()]
     shapes, model, theory, total = every
-    return FrequencyErrors(shapes, model, theory, total, found.theory, found.unseen)
+    return FrequencyErrors(shapes, model, theory, total, errors.theory, errors.unseen)
 
 
 def _crossings(
@@ -246,31 +246,31 @@ def crossing_errors(
     """Errors of a crossing's speed, from where the mode (n,) of richer models meets the same multiple; infinite if
     nowhere near.
     """
-    own, order = crossing.speed, crossing.order
+    speed, order = crossing.speed, crossing.order
 
     def gaps(rate: float) -> tuple[float, float]:
         """Gaps of the same model with more shapes, and of the exact one, rad/s."""
         same, exact = richer.references(point_at(rate), mode[None])
         return float(same[0]) - order * rate, float(exact[0]) - order * rate
 
-    first = gaps(own)
+    first = gaps(speed)
 
     def root(which: int) -> float:
         """By a step of Newton's with the model's own slope; where that is a long one, one of the secant method more."""
-        near = own - first[which] / (slope - order)
-        if not 0 < near < math.inf or abs(near / own - 1) < LIMIT:
+        near = speed - first[which] / (slope - order)
+        if not 0 < near < math.inf or abs(near / speed - 1) < LIMIT:
             return near if near > 0 else math.inf
         try:
             second = gaps(near)[which]
         except ComputationError:
             return math.inf
-        better = near - second * (near - own) / (second - first[which])
+        better = near - second * (near - speed) / (second - first[which])
         return better if 0 < better < math.inf else math.inf
 
     exact = root(1)
     same = exact if richer.same is richer.exact else root(0)
-    away = ErrorEstimate(0.0, apart(own, same), apart(same, exact), total=apart(own, exact))
-    share = float(richer.by_theory(point_at(own), mode[None]).shares[0])
+    away = ErrorEstimate(0.0, apart(speed, same), apart(same, exact), total=apart(speed, exact))
+    share = float(richer.by_theory(point_at(speed), mode[None]).shares[0])
     return away.with_theory(share * order / abs(slope - order))
 
 

@@ -69,10 +69,10 @@ class Richer:
         self, point: OperatingPoint, eigenvalue: Complex, coordinates: Complex, *, gyroscopic: bool = True
     ) -> FrequencyErrors:
         """Errors of the frequencies of modes (k, n) with eigenvalues (k,) about an equilibrium."""
-        own = np.abs(eigenvalue)
+        frequency = np.abs(eigenvalue)
         same, exact = self.references(point, coordinates, gyroscopic=gyroscopic)
         by_theory = self.by_theory(point, coordinates, gyroscopic=gyroscopic)
-        shapes, model, total = (np.abs(a / b - 1) for a, b in ((own, same), (same, exact), (own, exact)))
+        shapes, model, total = (np.abs(a / b - 1) for a, b in ((frequency, same), (same, exact), (frequency, exact)))
         theory = described(self.structure, by_theory.causes)
         shares = by_theory.shares
         return FrequencyErrors(shapes, model, shares, total + np.nan_to_num(shares), theory, by_theory.unseen)
@@ -105,8 +105,8 @@ class Richer:
         except (ComputationError, np.linalg.LinAlgError):
             return ByTheory(np.full(k, np.nan), {}, ())
         mass = linear[1].mass[first:, first:]
-        own, shape = (np.pad(each, ((0, 0), (0, len(mass) - each.shape[1]))) for each in (coordinates, shape))
-        chosen = mac(own, shape, mass).argmax(axis=1)
+        mode, shape = (np.pad(each, ((0, 0), (0, len(mass) - each.shape[1]))) for each in (coordinates, shape))
+        chosen = mac(mode, shape, mass).argmax(axis=1)
         looked = slice(None, chosen.max(initial=-1) + 1)
         among, beside = (matched(mac(shape[looked], each, mass))[0] for each in (deep, flat))
         pairs = (thick, among), (plated, beside)

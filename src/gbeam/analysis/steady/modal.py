@@ -131,12 +131,14 @@ def modes(
     """
     point = operating_point(structure, motion, time)
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)
-    found = modes_at(structure, point, gyroscopic=gyroscopic, name=name, time=time)
+    computed = modes_at(structure, point, gyroscopic=gyroscopic, name=name, time=time)
     errors = None
     if structure.source is not None and not structure.traced:
-        errors = Richer(structure, point.base).errors(point, found.eigenvalue, found.coordinates, gyroscopic=gyroscopic)
+        errors = Richer(structure, point.base).errors(
+            point, computed.eigenvalue, computed.coordinates, gyroscopic=gyroscopic
+        )
         warnings += doubtful(errors)
-    return replace(found, errors=errors, warnings=warnings, **_drawn(structure))
+    return replace(computed, errors=errors, warnings=warnings, **_drawn(structure))
 
 
 def _drawn(structure: Structure) -> dict[str, Any]:

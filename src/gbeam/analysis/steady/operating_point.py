@@ -138,13 +138,13 @@ def placed(
     structure: Structure, base: Base, q: Array | None, qd: Array | None
 ) -> tuple[Array, Array, Coefficients | None, bool]:
     """Coordinates and rates, by default of the relative equilibrium with its coefficients, and whether they are."""
-    found = None
+    coefficients = None
     if q is None:
-        (at, _), found = equilibrium_about(structure, base)
+        (at, _), coefficients = equilibrium_about(structure, base)
     else:
         at = np.asarray(q, dtype=float)
     moving = 0 * at if qd is None else np.asarray(qd, dtype=float)
-    return at, moving, found, q is None and qd is None
+    return at, moving, coefficients, q is None and qd is None
 
 
 def beam_acceleration(
@@ -161,11 +161,11 @@ def on_base(structure: Structure, base: Base, q: Array | None = None, qd: Array 
     """Operating point on a base with a frozen motion, in relative equilibrium or with q, qd (n,) and the accelerations
     that follow.
     """
-    at, moving, found, rests = placed(structure, base, q, qd)
+    at, moving, coefficients, rests = placed(structure, base, q, qd)
     residual = OnBase(structure.equations)
     u, still = residual.pack(base, structure.load_values), np.zeros_like(at)
     qdd = still if rests else beam_acceleration(structure, residual, at, moving, still, u)
-    return OperatingPoint(structure, residual, at, moving, qdd, u, base, found)
+    return OperatingPoint(structure, residual, at, moving, qdd, u, base, coefficients)
 
 
 def _about_rest(point: OperatingPoint) -> tuple[OnHub, Array]:
@@ -200,16 +200,16 @@ def on_hub(
 ) -> OperatingPoint:
     """Operating point on a free hub at a rate, rad/s, and acceleration, rad/s², with the torque that they need."""
     base = hub.mount.base(*(np.asarray(float(x)) for x in (angle, rate, acceleration)))
-    at, moving, found, rests = placed(structure, base, q, qd)
+    at, moving, coefficients, rests = placed(structure, base, q, qd)
     residual = OnHub(structure.on_free_hub(hub), hub.mount)
     y, yd, ydd = (np.append(x, beam) for x, beam in ((angle, at), (rate, moving), (acceleration, 0 * at)))
     u = residual.pack(0.0, structure.load_values)
     if rests:
-        u[0] = needed_torque(OperatingPoint(structure, residual, y, yd, ydd, u, base, found))
+        u[0] = needed_torque(OperatingPoint(structure, residual, y, yd, ydd, u, base, coefficients))
     else:
         ydd[1:] = beam_acceleration(structure, residual, y, yd, ydd, u)
         u[0] = evaluated_at(structure, residual, y, yd, ydd, u)[0][0]
-    return OperatingPoint(structure, residual, y, yd, ydd, u, base, found)
+    return OperatingPoint(structure, residual, y, yd, ydd, u, base, coefficients)
 
 
 def settled_hub(structure: Structure, hub: Any, time: float, q: Array | None, qd: Array | None) -> OperatingPoint:

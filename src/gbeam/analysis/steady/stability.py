@@ -165,12 +165,12 @@ def critical_speed_map(
             tell(progress, "critical hub rates", (i * len(positions) + j) / speed.size)
             loaded = replace(beam, masses=(*beam.masses, PointMass(at, mass)))
             turning = _turning(assemble(loaded, model), hub)
-            found = judged(first_loss_along(turning, limit, "hub rate", "rad/s"), turning)
-            speed[i, j] = np.nan if found.value is None else found.value
+            loss = judged(first_loss_along(turning, limit, "hub rate", "rad/s"), turning)
+            speed[i, j] = np.nan if loss.value is None else loss.value
             for part in PARTS:
-                getattr(errors, part)[i, j] = getattr(found.errors, part)
-            if found.errors.total > worst.total:
-                worst = found.errors
+                getattr(errors, part)[i, j] = getattr(loss.errors, part)
+            if loss.errors.total > worst.total:
+                worst = loss.errors
     heavy, where = np.asarray(masses, dtype=float), np.asarray(positions, dtype=float)
     warnings = input_warnings(unloaded, motion, name=name) + doubtful_loss("hub rate, at worst,", model.kind, worst)
     return CriticalMap(name, model.kind, heavy, where, speed, limit, errors, warnings=warnings)

@@ -38,7 +38,7 @@ def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | No
     structure = point.structure
     if structure.source is None or loads is None:
         return Errors(note=UNKNOWN), ()
-    own = Quantities(displacement[-1:], loads.force[:, 0], loads.moment[:, 0], loads.stress.max(axis=1))
+    computed = Quantities(displacement[-1:], loads.force[:, 0], loads.moment[:, 0], loads.stress.max(axis=1))
     more = enrichment(structure, point.base)
     which = driven(more, lambda rich, index: _lifted(rich, index, point))
     exact = _solved(more.model("exact", directions=which)[0], point)
@@ -55,8 +55,8 @@ def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | No
             away = float(np.linalg.norm(getattr(a, name) - getattr(b, name)))
             return away / size if size > least else 0.0
 
-        size = max(float(np.linalg.norm(getattr(each, name))) for each in (own, exact))
-        away = ErrorEstimate(0.0, apart(own, same), apart(same, exact), total=apart(own, exact))
+        size = max(float(np.linalg.norm(getattr(each, name))) for each in (computed, exact))
+        away = ErrorEstimate(0.0, apart(computed, same), apart(same, exact), total=apart(computed, exact))
         theory = lacking.sizes[name]
         return away.with_theory(theory / size if theory and size > least else 0.0)
 
@@ -68,7 +68,7 @@ def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | No
     )
     theory = described(structure, lacking.causes)
     errors = Errors(fractions("tip", NOTHING**2 * length), worst, fractions("stress", 0.0), theory=theory)
-    bodies = of_bodies(structure, lacking, float(np.linalg.norm(own.tip)), LIMIT)
+    bodies = of_bodies(structure, lacking, float(np.linalg.norm(computed.tip)), LIMIT)
     return errors, (*_doubtful(errors), *bodies, *_sideways(point))
 
 
