@@ -162,7 +162,12 @@ def run(case: Case, motion: str | None = None, at: float | None = None, needs: N
     return study(reduced(case, needs))
 
 
-@question("static", "Where the beam rests relative to its base at one time of the motions.", motion=None)
+@question(
+    "static",
+    "Where the beam rests relative to its base at one time of the motions.",
+    motion=None,
+    words="gbeam.report.steady.deflection",
+)
 def static(
     case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
 ) -> tuple[Deflection, ...]:

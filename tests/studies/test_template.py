@@ -125,6 +125,17 @@ def test_a_machine_follows_the_flight_that_is_changed() -> None:
     assert changed["machine"].flight == changed["flight"] and machine.flight.acceleration(0.1)[2] == 20.0
 
 
+def test_a_motion_of_ones_own_is_swept_and_kept_in_no_store(fast: Path, tmp_path: Path) -> None:
+    class Level(gb.Flight):
+        """No other process, nor another day, has this class."""
+
+    case = replace(by_hand(fast, *FIXED), motions={"flight": Level(z=9.81)}, tracks={}, accept={})
+    over = {"beam.section.thickness": ["2 mm", "3 mm"]}
+    assert gb.sweep(case, over, ["tip.z"], verb="static").outcome.tolist() == ["done", "done"]
+    with pytest.raises(gb.InputError, match="store cannot know the case again"):
+        gb.sweep(case, over, ["tip.z"], verb="static", store=tmp_path / "store")
+
+
 def test_what_a_case_cannot_vary_is_refused_at_its_place(fast: Path) -> None:
     case = by_hand(fast, *FIXED)
     for change, words in {
@@ -134,6 +145,7 @@ def test_what_a_case_cannot_vary_is_refused_at_its_place(fast: Path) -> None:
         "beam.section.thickness.x=3": "beam.section.thickness.x is no value that the case gives",
         "motion.nothing.arm=3": "motion.nothing is no value",
         "beam.length": "is not PATH=VALUE",
+        "beam=3": "beam",
     }.items():
         with pytest.raises(gb.InputError) as refused:
             template_of(case, [change])

@@ -20,16 +20,16 @@ from gbeam.errors import GbeamError
 from gbeam.guards.limits import WORDS
 from gbeam.questions import QUESTIONS
 
-# The file of each verb that has one, and its help: not only in its own docstring, so that `gbeam --help` imports none.
+# The file of each verb that has one, and its help where no question says it: not only in its own docstring, so that
+# `gbeam --help` imports none.
 _FILES = {
-    "run": ("responses", "Compute the response in every environment of a scenario, and compare them."),
-    "static": ("steady_states", "Where the beam rests relative to its base at one time of the motions."),
-    "campbell": ("steady_states", "Frequencies against the speed of a hub, and where its multiples meet them."),
-    "critical-speed": ("steady_states", "The hub rate, load or acceleration at which the beam's equilibrium is lost."),
+    "run": ("responses", ""),
+    "campbell": ("steady_states", ""),
+    "critical-speed": ("steady_states", ""),
     "linearize": ("steady_states", "State-space model A, B, C, D about the equilibrium at one time of a motion."),
     "models": ("responses", "The same scenario by every model, compared with the exact one."),
-    "plan": ("machine", "Plan the axis motions of a centrifuge within its limits; needs no beam."),
-    "place": ("machine", "Find where to put the specimen on the centrifuge."),
+    "plan": ("machine", ""),
+    "place": ("machine", ""),
     "sweep": ("many", "Figures of many cases: over ranges, lists or samples of any values of a scenario."),
     "sensitivity": ("many", "Which values of a scenario a figure depends on, and how much."),
     "report": ("responses", "Write a result as one page of HTML: tables, plots that zoom, and the beam in motion."),
@@ -83,7 +83,8 @@ def parsed(tokens: list[str]) -> tuple[Callable[..., object], BoundArguments]:
 
 def verbs() -> dict[str, str]:
     """Every verb, with the words of what it answers."""
-    return {name: each.about for name, each in QUESTIONS.items()} | {verb: about for verb, (_, about) in _FILES.items()}
+    known = {name: each.about for name, each in QUESTIONS.items()}
+    return known | {verb: about or known[verb] for verb, (_, about) in _FILES.items()}
 
 
 def function(verb: str) -> Callable[..., object]:

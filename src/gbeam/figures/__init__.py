@@ -34,8 +34,10 @@ def figure_of(result: Any, what: str = "", title: str = "") -> Figure:
 
 
 def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
-    """Return what describes each figure of a result, by name; nothing of a kind without figures."""
+    """Return what describes each figure of a result, or of deflections in several motions, by name."""
     match result:
+        case (Deflection(), *_):
+            return of_deflections(result, title)
         case Study():
             return _of_study(result, title or result.title)
         case Response():

@@ -148,9 +148,10 @@ def sweep(
     functions = tuple(measure.values()) if isinstance(measure, Mapping) else ()
     share = not functions and may_share(verb, [each.path for each in cases.variations])
     question = Question(template, verb, motion, at, functions=functions, together=share)
-    journal, done = opened(store, resume, identity(question, cases, names, [over_time.names, over_time.count]))
-    known = {row.case for row in done}
-    missing = [number for number in range(len(cases)) if number not in known] if known else range(len(cases))
+    known = {} if store is None else identity(question, cases, names, [over_time.names, over_time.count])
+    journal, done = opened(store, resume, known)
+    kept = {row.case for row in done}
+    missing = [number for number in range(len(cases)) if number not in kept] if kept else range(len(cases))
     several = workers > 1 and scheduler is None and len(missing) > 1
     with processes(workers, functions) if several else nullcontext() as pool:
         if journal is not None and done:

@@ -139,13 +139,17 @@ class CaseTemplate:
     @property
     def identity(self) -> dict[str, Any]:
         """What a store of cases knows it by."""
-        return {"scenario": hashlib.sha256(pickle.dumps(self.case)).hexdigest(), "changes": []}
+        try:
+            content = pickle.dumps(self.case)
+        except (pickle.PicklingError, AttributeError, TypeError) as error:
+            fix = "define its classes at the top level of a module, or leave the store out"
+            raise InputError("store", f"cannot know the case again, which cannot be pickled ({error})", fix) from None
+        return {"scenario": hashlib.sha256(content).hexdigest(), "changes": []}
 
     @property
     def _tree(self) -> dict[str, Any]:
-        return {name: getattr(self.case, name) for name in ("beam", "model", "response")} | {
-            "motion": self.case.motions
-        }
+        case = self.case
+        return {"beam": case.beam, "model": case.model, "motion": case.motions, "response": case.response}
 
     def changed(self, changes: Sequence[str]) -> CaseTemplate:
         """The template with changes PATH=VALUE; GbeamError if one is impossible."""
@@ -159,7 +163,9 @@ class CaseTemplate:
                 raise InputError(text, "is not PATH=VALUE", 'write it such as "beam.length=250 mm"')
             node = wanted
             for step in steps[:-1]:
-                node = node.setdefault(step, {})
+                if not isinstance(node.get(step), dict):  # the last of several changes of one place counts
+                    node[step] = {}
+                node = node[step]
             node[steps[-1]] = value.strip()
         parts = _with(self._tree, "", wanted, ())
         motions: dict[str, Any] = parts.pop("motion")

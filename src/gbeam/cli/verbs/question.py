@@ -49,9 +49,9 @@ def verb_of(question: Question) -> Callable[..., int]:
         return _answer(question, name, kinds, scenario, **(defaults | options))
 
     verb.__name__ = name
-    verb.__doc__ = (
-        f"{question.about}\n\nWith --out also writes {name}.json and plots, with --report {name}.html. {_STATUS}"
-    )
+    several = "Without --motion for all of them. " if question.motion is None else ""
+    files = f"With --out also writes {name}.json and plots, with --report {name}.html."
+    verb.__doc__ = f"{question.about}\n\n{several}{files} {_STATUS}"
     signature = [inspect.Parameter("scenario", inspect.Parameter.POSITIONAL_ONLY, annotation=ScenarioFile)]
     for key, (annotation, default) in arguments.items():
         signature.append(inspect.Parameter(key, _KEYWORD, default=default, annotation=annotation))
@@ -91,12 +91,15 @@ def _answer(
     if json or folder is not None:
         from gbeam.report.facts import facts as facts_of
 
-        facts = given.signed(facts_of(answer))
+        answers = answer if isinstance(answer, tuple) else (answer,)
+        facts = given.signed(facts_of(*answers, title=given.case.title))
     if folder is not None:
         from gbeam.figures import figures_of
 
-        described = figures_of(answer, given.case.title)
-        write(folder, name, facts, dict(zip([name], described.values(), strict=False)), report=report)
+        figures = figures_of(answer, given.case.title)
+        if not isinstance(answer, tuple):
+            figures = dict(zip([name], figures.values(), strict=False))
+        write(folder, name, facts, figures, report=report)
     show(_words(question, answer), facts, json)
     return 0
 

@@ -1,4 +1,4 @@
-"""Verbs of one steady state: ``gbeam static``, ``modes``, ``campbell``, ``critical-speed`` and ``linearize``."""
+"""Verbs of a steady state with files of their own: ``gbeam campbell``, ``critical-speed`` and ``linearize``."""
 
 from __future__ import annotations
 
@@ -36,45 +36,6 @@ from gbeam.cli.outputs import folder_of, list_files, show, write, write_json
 from gbeam.cli.process import figures_wanted
 from gbeam.cli.publication import publish
 from gbeam.errors import InputError
-from gbeam.questions import Needs
-
-
-def static(
-    scenario: ScenarioFile,
-    /,
-    *,
-    motion: MotionName = None,
-    at: At = None,
-    overrides: Overrides = (),
-    out: Out = None,
-    json: Json = False,
-    report: Report = False,
-) -> int:
-    """Where the beam rests relative to its base at one time of the motions, and what its sections carry.
-
-    Without --motion for all of them. With --out also writes static.json and plots of shapes and loads, with
-    --report static.html. Exit status: 0 done, 1 there is no equilibrium, 2 the input is wrong.
-    """
-    folder = folder_of(out, scenario, default=report)
-    given = read("static", scenario, overrides, folder)
-    if motion is not None:
-        given.motion(motion)
-    time = given.time(at)
-
-    from gbeam.report.facts import facts as facts_of
-    from gbeam.report.steady import deflection as words
-
-    with Watch(), given.placing():
-        deflections = questions.static(given.case, motion, time, Needs(shapes=True))
-    title = given.case.title
-    facts = given.signed(facts_of(*deflections, title=title))
-
-    from gbeam.figures import of_deflections
-
-    figures = of_deflections(deflections, title)
-    write(folder, "static", facts, figures, report=report)
-    show(words.text(deflections), facts, json)
-    return 0
 
 
 def campbell(
