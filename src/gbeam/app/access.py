@@ -66,9 +66,9 @@ class Door:
     def _refusal(self, scope: Any, headers: dict[str, str]) -> tuple[int, str, list[tuple[bytes, bytes]]] | None:
         if headers.get("host") not in self._hosts:
             return 403, "foreign host", []
-        own = {f"http://{host}" for host in self._hosts}
+        origins = {f"http://{host}" for host in self._hosts}
         origin = headers.get("origin")
-        if origin is not None and origin not in own:
+        if origin is not None and origin not in origins:
             return 403, "foreign origin", []
         if headers.get("sec-fetch-site", "same-origin") not in ("same-origin", "none"):
             return 403, "foreign page", []

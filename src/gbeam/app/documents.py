@@ -36,18 +36,18 @@ class Unfit(GbeamError):
 
 def described(text: str, folder: Path, *, distributions: bool = True) -> dict[str, Any]:
     """Return the form of a document, its problems, and where there are none its meaning."""
-    made: dict[str, Any] = {"text": text, "form": [], "errors": [], "meaning": ""}
+    document: dict[str, Any] = {"text": text, "form": [], "errors": [], "meaning": ""}
     try:
         data = parse(NAME, text)
-        made["form"] = form(data)
+        document["form"] = form(data)
         records(data, folder)
         from gbeam.analysis.case import describe
         from gbeam.report.description import text as in_words
 
-        made["meaning"] = in_words(describe(build(loads(text, NAME, folder=folder, distributions=distributions))))
+        document["meaning"] = in_words(describe(build(loads(text, NAME, folder=folder, distributions=distributions))))
     except GbeamError as error:
-        made["errors"] = problems(error)
-    return made
+        document["errors"] = problems(error)
+    return document
 
 
 def edited(text: str, path: str, value: str) -> str:
@@ -118,10 +118,10 @@ def changes(before: str, after: str) -> str:
         then, now = ({path_text(path): value for path, value in _leaves(parse(NAME, text))} for text in (before, after))
     except GbeamError:
         return ""
-    made = [f"{path} = {_shown(value)}" for path, value in now.items() if then.get(path) != value]
-    made += [f"no {path}" for path in then if path not in now]
-    more = f", and {len(made) - CHANGES} more" if len(made) > CHANGES else ""
-    return ", ".join(made[:CHANGES]) + more if made else "as before"
+    changes = [f"{path} = {_shown(value)}" for path, value in now.items() if then.get(path) != value]
+    changes += [f"no {path}" for path in then if path not in now]
+    more = f", and {len(changes) - CHANGES} more" if len(changes) > CHANGES else ""
+    return ", ".join(changes[:CHANGES]) + more if changes else "as before"
 
 
 def _shown(value: Any) -> str:
@@ -131,16 +131,16 @@ def _shown(value: Any) -> str:
 
 def records(data: Any, folder: Path) -> list[Path]:
     """The files that a scenario names, all of which must be records of the folder."""
-    found = []
+    problems = []
     for path, value in _leaves(data):
         if path[-1] == "file":
             if not isinstance(value, str):
                 raise InputError(path_text(path), "is no text", "give the name of a record")
             try:
-                found.append(regular(folder, value))
+                problems.append(regular(folder, value))
             except InputError as error:
                 raise InputError(path_text(path), f"{value[:100]!r} {error.problem}", error.fix) from None
-    return found
+    return problems
 
 
 def problems(error: GbeamError) -> list[dict[str, Any]]:

@@ -64,16 +64,18 @@ def _inside(table: Node, data: dict[str, Any], path: Path) -> list[Node]:
     tag = _tag(table)[0]
     required = table.get("required", ())
     known = table["properties"]
-    made = [_entry(schema, data, (*path, key), required=key in required) for key, schema in known.items() if key != tag]
-    return made + [_entry({}, data, (*path, key), required=False) for key in data if key not in known]
+    entries = [
+        _entry(schema, data, (*path, key), required=key in required) for key, schema in known.items() if key != tag
+    ]
+    return entries + [_entry({}, data, (*path, key), required=False) for key in data if key not in known]
 
 
 def _entry(schema: Node, around: Any, path: Path, *, required: bool) -> Node:
     key = path[-1]
     written = key in around if isinstance(around, dict) else True
     raw = around[key] if written else None
-    made: Node = {"path": path_text(path), "key": str(key), "required": required, "written": written}
-    made["help"] = schema.get("description", "")
+    node: Node = {"path": path_text(path), "key": str(key), "required": required, "written": written}
+    node["help"] = schema.get("description", "")
     alternatives = [*_alternatives(schema)]
     listed = next((each["items"] for each in alternatives if "items" in each and _tables(each["items"])), None)
     named = next((each["additionalProperties"] for each in alternatives if _names_tables(each)), None)
@@ -81,14 +83,14 @@ def _entry(schema: Node, around: Any, path: Path, *, required: bool) -> Node:
     if named is not None:
         inside = raw if isinstance(raw, dict) else {}
         tabled = [_entry(named, inside, (*path, name), required=False) for name in inside]
-        return made | {"kind": "named", "options": _words(named), "inside": tabled}
+        return node | {"kind": "named", "options": _words(named), "inside": tabled}
     if listed is not None and (raw is None or isinstance(raw, list)):
         count = len(raw or ())
         tabled = [_entry(listed, raw, (*path, i), required=False) for i in range(min(count, LISTED))]
-        return made | {"kind": "list", "options": _words(listed), "inside": tabled, "count": count}
+        return node | {"kind": "list", "options": _words(listed), "inside": tabled, "count": count}
     if tables and (isinstance(raw, dict) or len(tables) == len(alternatives)):
-        return made | _table(schema, tables, raw, path)
-    return made | _value(schema, alternatives, raw) | {"tables": _words(schema)}
+        return node | _table(schema, tables, raw, path)
+    return node | _value(schema, alternatives, raw) | {"tables": _words(schema)}
 
 
 def _table(schema: Node, tables: list[Node], raw: Any, path: Path) -> Node:

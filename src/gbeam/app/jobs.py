@@ -142,11 +142,11 @@ class Jobs:
         """All runs, the latest first."""
         if not self.folder.is_dir():
             return []
-        found = []
+        jobs = []
         for number in sorted((each.name for each in self.folder.iterdir() if ID.fullmatch(each.name)), reverse=True):
             with suppress(InputError, FileNotFoundError):  # it has been deleted meanwhile
-                found.append(self.state(number))
-        return found
+                jobs.append(self.state(number))
+        return jobs
 
     def state(self, number: str) -> dict[str, Any]:
         """Return the state, title, last line of progress and files of a run."""
@@ -160,10 +160,10 @@ class Jobs:
 
     def file(self, number: str, name: str) -> Path:
         """The path of a file of a run."""
-        found = _files(self._place(number))
-        if name not in found:
-            raise InputError("file", "is none of this run's", f"choose of {', '.join(found)}")
-        return regular(found[name].parent, found[name].name)
+        files = _files(self._place(number))
+        if name not in files:
+            raise InputError("file", "is none of this run's", f"choose of {', '.join(files)}")
+        return regular(files[name].parent, files[name].name)
 
     def complain(self, trouble: str) -> None:
         """Say on the terminal what keeps the server from its work, once until it has passed."""
@@ -320,7 +320,7 @@ def _command(state: Mapping[str, Any]) -> list[str]:
 
 
 def _state(place: Path, otherwise: str) -> str:
-    """How an answer ended, in a few words: as its report says."""
+    """End of an answer in a few words, as its report says it."""
     try:
         answer = json.loads((place / _ANSWER).read_text(encoding="utf-8"))
         state = str(answer.get("state") or answer["outcome"])

@@ -67,15 +67,15 @@ def suggested(columns: Iterable[tuple[str, str]]) -> dict[str, str]:
     """Return the keys of a scenario's record that names and units of columns suggest, where there is one answer; no
     signs.
     """
-    found: dict[str, list[tuple[str, str]]] = defaultdict(list)  # columns and their units, by what they may hold
+    candidates: dict[str, list[tuple[str, str]]] = defaultdict(list)  # columns and their units, by what they may hold
     for name, unit in columns:
         for key, stated in _meanings(name, unit):
-            found[key].append((name, stated))
-    turning = all(key in found for key in "pqr")  # one rate alone is none
+            candidates[key].append((name, stated))
+    turning = all(key in candidates for key in "pqr")  # one rate alone is none
     return {
-        **_together(found, ("time",), "time_unit"),
-        **_together(found, "xyz", "unit"),
-        **(_together(found, "pqr", "rate_unit") if turning else {}),
+        **_together(candidates, ("time",), "time_unit"),
+        **_together(candidates, "xyz", "unit"),
+        **(_together(candidates, "pqr", "rate_unit") if turning else {}),
     }
 
 

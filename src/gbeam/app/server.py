@@ -161,9 +161,9 @@ def create_app(folder: Path) -> FastAPI:
         case: Annotated[Word, Body(embed=True, max_length=100)] = "",
     ) -> dict[str, str]:
         """Queue a verb on a scenario; of a sweep's case the run that is there."""
-        found = documents.described(text, records, distributions=verb == "sweep")
-        if found["errors"]:
-            raise documents.Unfit(found["errors"])
+        document = documents.described(text, records, distributions=verb == "sweep")
+        if document["errors"]:
+            raise documents.Unfit(document["errors"])
         data = parse(documents.NAME, text)
         arguments = verbs.arguments(verb, options, data)
         title = str(data.get("title", ""))[:200]
@@ -190,11 +190,11 @@ def create_app(folder: Path) -> FastAPI:
     def download(number: str, name: str) -> FileResponse:
         """A file of a run."""
         file = jobs.file(number, name)
-        there: dict[str, Any] = {"headers": {"content-security-policy": REPORT_POLICY}, "stat_result": file.stat()}
+        options: dict[str, Any] = {"headers": {"content-security-policy": REPORT_POLICY}, "stat_result": file.stat()}
         if file.suffix == ".html":
-            return FileResponse(file, media_type="text/html; charset=utf-8", **there)
+            return FileResponse(file, media_type="text/html; charset=utf-8", **options)
         kind = _BINARY.get(file.suffix, "text/plain; charset=utf-8")
-        return FileResponse(file, media_type=kind, filename=f"{number}-{name}", **there)
+        return FileResponse(file, media_type=kind, filename=f"{number}-{name}", **options)
 
     return app
 

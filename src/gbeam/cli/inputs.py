@@ -120,11 +120,11 @@ def names(texts: Sequence[str]) -> list[str]:
 
 def search_bounds(texts: Sequence[str]) -> dict[str, tuple[str, str]]:
     """Bounds of the values of a search, each ``PATH=LOW:HIGH``, by path."""
-    found = {}
+    values = {}
     for text in texts:
         path, equals, ends = text.partition("=")
         low, colon, high = ends.partition(":")
         if not (equals and colon):
             raise InputError("--bounds", f"is {text!r}", 'write "beam.damping_ratio=0.1 %:5 %"')
-        found[path.strip()] = (low.strip(), high.strip())
-    return found
+        values[path.strip()] = (low.strip(), high.strip())
+    return values

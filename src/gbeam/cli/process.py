@@ -59,7 +59,7 @@ def prepare() -> bool:
 
     Where one is closed (``gbeam ... >&-``) the next file opened would take its number, and be printed into.
     """
-    given = sys.stdout is not None
+    present = sys.stdout is not None
     if sys.stdin is None or sys.stdout is None or sys.stderr is None:
         while os.open(os.devnull, os.O_RDWR) < 2:
             pass
@@ -69,14 +69,14 @@ def prepare() -> bool:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without µ or ² is no reason to fail
-    return given
+    return present
 
 
 def _widen() -> None:
     """Take a terminal to be no narrower, and no wider, than a text can be laid out in: others end never, or wrongly."""
-    given = os.environ.get("COLUMNS", "")
-    known = given.isascii() and given.isdigit()
-    width = int(given[:9]) if known else shutil.get_terminal_size().columns
+    columns = os.environ.get("COLUMNS", "")
+    known = columns.isascii() and columns.isdigit()
+    width = int(columns[:9]) if known else shutil.get_terminal_size().columns
     if not _NARROWEST <= width <= _WIDEST:
         os.environ["COLUMNS"] = str(min(max(width, _NARROWEST), _WIDEST))
 

@@ -27,7 +27,7 @@ _FILES = {
     "campbell": ("steady_states", ""),
     "critical-speed": ("steady_states", ""),
     "linearize": ("steady_states", "State-space model A, B, C, D about the equilibrium at one time of a motion."),
-    "models": ("responses", "The same scenario by every model, compared with the exact one."),
+    "models": ("responses", "Compute a scenario by every model, and compare them with the exact one."),
     "plan": ("machine", ""),
     "place": ("machine", ""),
     "sweep": ("many", "Figures of many cases: over ranges, lists or samples of any values of a scenario."),

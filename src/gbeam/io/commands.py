@@ -105,8 +105,8 @@ def origin_lines(provenance: Provenance) -> list[str]:
     """Provenance of the numbers."""
     provenance, environment = provenance.stated()
     records = [f"Record of {each.motion}: {each.file}, SHA-256 {each.sha256}." for each in provenance.records]
-    made = f"Made by gbeam {environment.gbeam}, Python {environment.python}, {environment.platform}"
-    lines = [f"{made}: {provenance.command}", f"Scenario SHA-256 {provenance.sha256}.", *records]
+    origin = f"Made by gbeam {environment.gbeam}, Python {environment.python}, {environment.platform}"
+    lines = [f"{origin}: {provenance.command}", f"Scenario SHA-256 {provenance.sha256}.", *records]
     return [storable(line) for line in lines]
 
 

@@ -115,9 +115,9 @@ def _fill(place: h5py.Group, group: Group, dimensions: int) -> int:
             scale.attrs["_Netcdf4Dimid"] = np.int32(dimensions)
             scales[dim], dimensions = scale, dimensions + 1
     for name, each in group.variables.items():
-        made = _create(place, name, each)
+        dataset = _create(place, name, each)
         for axis, dim in enumerate(each.dims):
-            made.dims[axis].attach_scale(scales[dim])
+            dataset.dims[axis].attach_scale(scales[dim])
     return dimensions
 
 
@@ -128,12 +128,12 @@ def _create(place: h5py.Group, name: str, variable: Variable) -> h5py.Dataset:
         kind = h5py.string_dtype("utf-8")
         values = np.array([storable(str(each)) for each in values.flat], dtype=object).reshape(values.shape)
     fill = np.nan if values.dtype.kind == "f" else None  # what xarray takes for a missing number
-    made = place.create_dataset(name, data=values, dtype=kind, fillvalue=fill, track_order=True)
+    dataset = place.create_dataset(name, data=values, dtype=kind, fillvalue=fill, track_order=True)
     if fill is not None:
-        made.attrs["_FillValue"] = np.array([fill])
+        dataset.attrs["_FillValue"] = np.array([fill])
     for key, value in variable.attrs.items():
-        _describe(made, key, value)
-    return made
+        _describe(dataset, key, value)
+    return dataset
 
 
 def _describe(place: h5py.Group | h5py.Dataset, key: str, value: str | float | np.ndarray) -> None:

@@ -34,7 +34,7 @@ def provenance_attrs(provenance: Provenance) -> dict[str, str]:
 def provenance_variables(provenance: Provenance) -> dict[str, Variable]:
     """Variables of the root: the scenario's text, since an attribute ends at 64 KiB, and the records."""
     text = np.array(provenance.scenario, dtype=object)
-    made = {"scenario": Variable((), text, {"long_name": "text of the scenario file"})}
+    variables = {"scenario": Variable((), text, {"long_name": "text of the scenario file"})}
     for record in provenance.records:
         packed = b"" if record.content is None else zlib.compress(record.content, _LEVEL)
         attrs = {"long_name": "bytes of the record file, compressed by zlib; none where it is too large"}
@@ -42,8 +42,8 @@ def provenance_variables(provenance: Provenance) -> dict[str, Variable]:
         name = f"{RECORD}{record.motion}"
         # netCDF takes a dimension of length zero for an unlimited one.
         values = np.frombuffer(packed or b"\0", dtype=np.uint8)
-        made[name] = Variable((f"{name}_byte",), values, attrs)
-    return made
+        variables[name] = Variable((f"{name}_byte",), values, attrs)
+    return variables
 
 
 def provenance_of(variables: Mapping[str, Any], attrs: Mapping[str, Mapping[str, Any]]) -> Provenance:

@@ -103,20 +103,20 @@ def sweep_group(sweep: Sweep) -> Group:
 def _statistics(sweep: Sweep) -> dict[str, Variable]:
     """Statistics at every point of the grid."""
     grid = tuple(name for name in sweep.dimensions if name != SAMPLE)
-    found = {}
+    variables = {}
     for name, each in sweep.statistics.items():
         dims = (*grid, "time") if name in sweep.histories else grid
         words = f"{name}: estimates with bounds of 95 % confidence"
         if PROBABILITY in each.names:
-            found[f"{name} probability"] = variable((*dims, "bound"), each[PROBABILITY], "1", words)
+            variables[f"{name} probability"] = variable((*dims, "bound"), each[PROBABILITY], "1", words)
         else:
             unit = sweep.units[name] or "1"
-            found[f"{name} statistics"] = variable((*dims, "statistic", "bound"), each.values, unit, words)
-        found[f"{name} count"] = variable(dims, each.count, "1", f"{name}: draws that the estimates come from")
+            variables[f"{name} statistics"] = variable((*dims, "statistic", "bound"), each.values, unit, words)
+        variables[f"{name} count"] = variable(dims, each.count, "1", f"{name}: draws that the estimates come from")
     for name, shares in sweep.indices.items():
         dims = (*grid, "parameter", "order", "bound")
-        found[f"{name} indices"] = variable(dims, shares.values, "1", f"{name}: Sobol indices")
-    return found
+        variables[f"{name} indices"] = variable(dims, shares.values, "1", f"{name}: Sobol indices")
+    return variables
 
 
 def _coordinate(parameter: Parameter) -> Variable:

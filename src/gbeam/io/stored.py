@@ -101,9 +101,9 @@ def _rows(stored: Stored, name: str, count: int) -> Iterator[str]:
     time = stored.variables[f"{place}time"]
     values = np.full((len(time), count + 1), np.nan)
     for k, variable in enumerate(_VECTORS):
-        found = stored.variables.get(place + ("displacement" if variable == "tip" else variable))
-        if found is not None:
-            values[:, 3 * k : 3 * k + 3] = _at_one_place(found, last=variable == "tip")
+        array = stored.variables.get(place + ("displacement" if variable == "tip" else variable))
+        if array is not None:
+            values[:, 3 * k : 3 * k + 3] = _at_one_place(array, last=variable == "tip")
     stress = stored.variables.get(f"{place}stress")
     if stress is not None:
         values[:, -1] = stress[:, 0]
@@ -113,5 +113,5 @@ def _rows(stored: Stored, name: str, count: int) -> Iterator[str]:
 
 
 def _at_one_place(values: Floats, *, last: bool) -> Floats:
-    """Of a vector at several places that at the last, or the first."""
+    """Value of a vector at the last of several places, or the first."""
     return values[:, -1 if last else 0] if values.ndim == 3 else values

@@ -45,7 +45,7 @@ class Series:
 
     @property
     def order(self) -> int:
-        """Of the highest derivative."""
+        """Order of the highest derivative."""
         return len(self.coefficients) - 1
 
     @property

@@ -62,7 +62,7 @@ class _Bins:
         return np.concatenate(at), np.concatenate(values)
 
     def envelope(self, x: Floats, y: Floats, run: slice) -> tuple[Floats, Floats, Floats]:
-        """Where it is, its low and its high edge: it begins and ends on the line, then there is a gap."""
+        """Times of a stretch, its low and its high edge: it begins and ends on the line, then there is a gap."""
         first, last = self._ends[[run.start, run.stop]]
         low, high = ([y[first], *each[run], y[last], np.nan] for each in (self.low, self.high))
         return np.array([x[first], *self.centre[run], x[last], np.nan]), np.array(low), np.array(high)

@@ -85,8 +85,8 @@ def error_words(errors: ErrorEstimate) -> str:
     """An error with what it is made of, the largest first: ``0.29 % (model 0.27, shapes 0.01, step 0.002)``."""
     parts = {"model": errors.model, "shapes": errors.shapes, "step": errors.step, "beam theory": errors.beam_theory}
     known = sorted(((size, name) for name, size in parts.items() if size > 0), reverse=True)
-    made = ", ".join(f"{name} {number(100 * size, 2)}" for size, name in known)
-    return f"{percent(errors.total)}{f' ({made})' if len(known) > 1 else ''}"
+    shares = ", ".join(f"{name} {number(100 * size, 2)}" for size, name in known)
+    return f"{percent(errors.total)}{f' ({shares})' if len(known) > 1 else ''}"
 
 
 def tidy(values: Iterable[float], size: float) -> list[float]:

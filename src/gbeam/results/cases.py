@@ -198,10 +198,10 @@ class Sweep(Figured):
     @property
     @declared("", "how many cases ended how", role="fact")
     def counts(self) -> dict[str, int]:
-        """How many cases ended how; ``done`` first."""
+        """Numbers of cases by their outcome; ``done`` first."""
         names, numbers = np.unique(self.outcome.astype(str), return_counts=True)
-        found = dict(zip(names.tolist(), numbers.tolist(), strict=True))
-        return dict(sorted(found.items(), key=lambda each: (each[0] != "done", each[0])))
+        counts = dict(zip(names.tolist(), numbers.tolist(), strict=True))
+        return dict(sorted(counts.items(), key=lambda each: (each[0] != "done", each[0])))
 
     @property
     def computed(self) -> Flags:
@@ -210,12 +210,12 @@ class Sweep(Figured):
 
     @property
     def lost(self) -> int:
-        """How many cases are not computed to the end."""
+        """Number of cases that are not computed to the end."""
         return int((~self.computed).sum())
 
     @property
     def state(self) -> str:
-        """How the sweep ended: done, some cases failed, or some cases not accepted."""
+        """Outcome of the sweep: done, some cases failed, or some cases not accepted."""
         if self.lost:
             return "some cases failed"
         return "done" if set(self.counts) <= {"done"} else "some cases not accepted"

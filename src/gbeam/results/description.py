@@ -130,5 +130,5 @@ class Description(Part):
 
     @property
     def total_mass(self) -> float:
-        """Of the beam with its bodies, kg."""
+        """Mass of the beam with its bodies, kg."""
         return self.mass + sum(mass for _, mass in self.bodies)

@@ -1,4 +1,4 @@
-"""How far a result may be from the truth, and by what: time steps, too few shapes, the model, the beam theory."""
+"""Estimated errors of a result by their causes: time steps, too few shapes, the model, the beam theory."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ class FrequencyErrors(Part):
         return FrequencyErrors(shapes, model, beam_theory, total, self.theory, self.unseen)
 
     def within(self, share: float) -> int:
-        """Of how many of the first frequencies every total is within a share; none where there is no estimate."""
+        """Number of the first frequencies whose every total is within a share; zero where there is no estimate."""
         return int(np.append(np.flatnonzero(~(self.total <= share)), len(self.total))[0])
 
     @property

@@ -127,12 +127,12 @@ def build_specimen(scenario: schema.Environments) -> Beam | None:
 def _acceptance(parts: Collector, scenario: schema.Environments) -> dict[str, dict[str, Any]]:
     """Limits of acceptance and their settings, by the centrifuge's name."""
     machines = {name: each for name, each in scenario.motion.items() if isinstance(each, schema.Centrifuge)}
-    given = {name: each.limits_of_acceptance for name, each in machines.items() if each.limits_of_acceptance}
-    for name, limits in given.items():
+    limited = {name: each.limits_of_acceptance for name, each in machines.items() if each.limits_of_acceptance}
+    for name, limits in limited.items():
         for key, limit in limits.items():
             if key in RULES:
                 parts.attempt(f"motion.{name}.accept", RULES[key].checked, limit)
-    return given
+    return limited
 
 
 def _beam(parts: Collector, table: schema.Beam) -> Beam | None:

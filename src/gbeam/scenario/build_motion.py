@@ -96,8 +96,8 @@ def _limits(table: schema.Limits, example: motion.MachineLimits) -> motion.Machi
 
 
 def _hub(parts: Collector, where: str, table: schema.Hub) -> motion.Motion | None:
-    given = {name: getattr(table, name) for name in ("rate", "torque") if getattr(table, name) is not None}
-    driven = {name: _profile(parts, f"{where}.{name}", profile) for name, profile in given.items()}
+    driving = {name: getattr(table, name) for name in ("rate", "torque") if getattr(table, name) is not None}
+    driven = {name: _profile(parts, f"{where}.{name}", profile) for name, profile in driving.items()}
     if None in driven.values():
         return None
     return parts.attempt(
@@ -116,8 +116,8 @@ def _hub(parts: Collector, where: str, table: schema.Hub) -> motion.Motion | Non
 
 def components(parts: Collector, where: str, table: Any) -> Profile | None:
     """Build the vector profile of a table with x, y and z, each a profile, a constant quantity or left out."""
-    given = {axis: getattr(table, axis) for axis in "xyz" if getattr(table, axis) is not None}
-    built = {axis: _profile(parts, f"{where}.{axis}", profile) for axis, profile in given.items()}
+    components = {axis: getattr(table, axis) for axis in "xyz" if getattr(table, axis) is not None}
+    built = {axis: _profile(parts, f"{where}.{axis}", profile) for axis, profile in components.items()}
     return None if None in built.values() else motion.vector(**built)
 
 

@@ -65,12 +65,12 @@ def _source(
 ) -> Source:
     data, done = override(parse(name, text), name, overrides)
     source = Source(name, text, Path(folder), data, done)
-    found = list(find_distributions(data))
-    if not found:
+    distributed = list(find_distributions(data))
+    if not distributed:
         return source
     drawn: dict[str, Distribution] = {}
     problems: list[Diagnostic] = []
-    for path, family, given in found:
+    for path, family, given in distributed:
         try:
             drawn[path_text(path)] = each = from_table(family, given)
         except InputError as error:
@@ -82,7 +82,7 @@ def _source(
     if problems:
         raise ScenarioError(problems[:PROBLEMS])
     centred = deepcopy(data)
-    for path, *_ in found:
+    for path, *_ in distributed:
         node: Any = centred
         for step in path[:-1]:
             node = node[step]

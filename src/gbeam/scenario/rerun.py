@@ -132,11 +132,11 @@ def records(origin: Provenance, folder: Path) -> Iterator[str]:
 def _facts(of: Stored) -> dict[str, Any]:
     """Variables and attributes by their names, but those that say of the computation and not of its result."""
     apart = ("scenario", FACTS)  # the facts are the other variables once more
-    made = {name: each for name, each in of.variables.items() if name not in apart and not name.startswith(RECORD)}
+    computed = {name: each for name, each in of.variables.items() if name not in apart and not name.startswith(RECORD)}
     for place, attrs in of.attrs.items():
         if place not in of.variables:  # whose attributes are words about them
-            made |= {f"{place}@{name}": each for name, each in attrs.items() if place or name not in _ABOUT}
-    return made
+            computed |= {f"{place}@{name}": each for name, each in attrs.items() if place or name not in _ABOUT}
+    return computed
 
 
 @np.errstate(all="ignore")  # a damaged file may hold any number

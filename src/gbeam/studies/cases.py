@@ -39,7 +39,7 @@ class Cases:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Of the result's arrays."""
+        """Shape of the result's arrays."""
         return tuple(len(each.texts) for each in self.grid) + ((self.samples,) if self.drawn else ())
 
     @property
@@ -71,8 +71,8 @@ def read_cases(
     """
     variations = [read_variation(text) for text in over]
     paths = [each.path for each in variations]
-    own = distributions or {}
-    variations += [drawn_from(path, each) for path, each in own.items() if path not in paths]
+    declared = distributions or {}
+    variations += [drawn_from(path, each) for path, each in declared.items() if path not in paths]
     if not variations:
         raise InputError(OPTION, "is missing", 'say what varies: --over "motion.centrifuge.arm=1 m:12 m:12"')
     for path in paths:

@@ -80,8 +80,8 @@ class Neighbourhood:
                 self._enrich()
             else:
                 structure = self.case.assemble()
-                own = {name: self._differentiated(structure, name, grid).own() for name, grid in grids.items()}
-                self.answer = study_of(self.case, {name: _possible(structure, each) for name, each in own.items()})
+                runs = {name: self._differentiated(structure, name, grid).own() for name, grid in grids.items()}
+                self.answer = study_of(self.case, {name: _possible(structure, each) for name, each in runs.items()})
         else:
             self.answer = question.facts(self.case)
 

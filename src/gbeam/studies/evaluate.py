@@ -113,8 +113,8 @@ class Question:
         """The row of a case that is built, from what the verb answers to it."""
         try:
             values = [value_at(facts, keys) for keys in self.keys]
-            own, problem = _measured(self.functions, case)
-            values += own
+            more, problem = _measured(self.functions, case)
+            values += more
             for history in self.histories:
                 values += history.at(facts["study"], self.times).tolist()
         except Exception as error:
@@ -201,14 +201,14 @@ def rows(question: Question, tasks: Sequence[Task]) -> list[Row]:
     if not question.together:
         return [question.row(*task) for task in tasks]
     left = iter(tasks)
-    made: list[Row] = []
+    computed: list[Row] = []
     while some := list(islice(left, TOGETHER)):  # no more responses at once
-        made += _together(question, some)
-    return made
+        computed += _together(question, some)
+    return computed
 
 
 def _together(question: Question, tasks: Sequence[Task]) -> list[Row]:
-    made: list[Row] = []
+    computed: list[Row] = []
     posed: list[Posed] = []
     structures: dict[tuple[str, ...], Structure] = {}
     for number, overrides in tasks:
@@ -218,11 +218,11 @@ def _together(question: Question, tasks: Sequence[Task]) -> list[Row]:
             structure = structures[of_beam] = structures.get(of_beam) or case.assemble()
             posed.append((number, case, structure))
         except Exception as error:
-            made.append(without_figures(number, question.width, error))
+            computed.append(without_figures(number, question.width, error))
     # What varies in a motion may end a record elsewhere.
     for _, alike in groupby(posed, key=lambda each: each[1].response):
-        made += _integrated(question, list(alike), set(structures) == {()})
-    return made
+        computed += _integrated(question, list(alike), set(structures) == {()})
+    return computed
 
 
 def _integrated(question: Question, posed: Sequence[Posed], one_structure: bool) -> Iterator[Row]:
@@ -239,7 +239,7 @@ def _responses(
     settings = reduced(posed[0][1], question.needs).response
     try:
         cases = ((structure, case.motions[name]) for _, case, structure in posed)
-        made = dict(simulate_batch(cases, settings, one_structure=one_structure))
+        batch = dict(simulate_batch(cases, settings, one_structure=one_structure))
     except Exception as error:
         if len(posed) == 1:
             return [error]
@@ -247,7 +247,7 @@ def _responses(
         return [
             each for part in (posed[:half], posed[half:]) for each in _responses(question, part, name, one_structure)
         ]
-    return [replace(made[k], name=name, provenance=case.provenance) for k, (_, case, _) in enumerate(posed)]
+    return [replace(batch[k], name=name, provenance=case.provenance) for k, (_, case, _) in enumerate(posed)]
 
 
 def _row(question: Question, number: int, case: Case, answers: Mapping[str, Response | Exception]) -> Row:

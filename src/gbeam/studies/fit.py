@@ -111,9 +111,9 @@ def fit(
         replace(question, verb="modes") if measurement.modal else question, parameters, measurement, progress
     )
     points = starting_points(np.array([each.value for each in parameters]), limits, starts)
-    found, ends = search_from(model, points, limits)
-    described = _described(model, parameters, limits, found)
-    agreed = agreeing(ends, found.values, limits)
+    solution, ends = search_from(model, points, limits)
+    described = _described(model, parameters, limits, solution)
+    agreed = agreeing(ends, solution.values, limits)
     return replace(described, title=template.title, starts=starts, agreed=agreed, provenance=template.provenance)
 
 
@@ -164,14 +164,14 @@ def _described(model: Fitted, parameters: Sequence[PhysicalValue], limits: Float
 def _columns(measurement: Measurement, fitted: Floats, before: Floats, size: int) -> tuple[FittedColumn, ...]:
     ends = np.cumsum([len(each.values) for each in measurement.columns])[:-1]
     share = 1 - size / len(fitted)
-    made = []
+    columns = []
     for each, now, then in zip(measurement.columns, np.split(fitted, ends), np.split(before, ends), strict=True):
         r = each.values - now
         power = float(np.sum(r**2))
         tied = float(np.sum(r[1:] * r[:-1])) / power if power > 0 and not measurement.modal else np.nan
         noise = float(np.sqrt(power / (len(r) * share)))
-        made.append(FittedColumn(each.name, each.unit, each.values, now, then, noise, tied))
-    return tuple(made)
+        columns.append(FittedColumn(each.name, each.unit, each.values, now, then, noise, tied))
+    return tuple(columns)
 
 
 def _doubts(
@@ -217,19 +217,19 @@ class Fitted:
         if self.measurement.modal:
             return
         # Steps and shapes of all runs are those that the scenario's own run needs.
-        own = Neighbourhood(self.question, self.parameters, progress=self.progress)
-        self.shapes = own.case.model
-        self.grids = {name: own.grid(name) for name in self.measurement.motions}
+        start = Neighbourhood(self.question, self.parameters, progress=self.progress)
+        self.shapes = start.case.model
+        self.grids = {name: start.grid(name) for name in self.measurement.motions}
 
     def about(self, values: Floats) -> Neighbourhood:
         """The neighbourhood of some values; the last one is kept."""
         if self._last is None or not np.array_equal(self._last[0], values):
             self.evaluations += 1
-            made = Neighbourhood(
+            about = Neighbourhood(
                 self.question, self.parameters, values.tolist(), grids=self.grids, parts=self.measurement.parts,
                 adapt=self._adapted, progress=self.progress,
             )  # fmt: skip
-            self._last = values.copy(), made
+            self._last = values.copy(), about
         return self._last[1]
 
     def __call__(self, values: Floats) -> Floats:
@@ -261,15 +261,15 @@ class Solution:
 
 def search_from(model: Fitted, starts: Sequence[Floats], limits: Floats) -> tuple[Solution, list[Floats]]:
     """The best of searches from several values, the scenario's own first, and the values at which each ended."""
-    found = [search(model, starts[0], limits)]
+    solutions = [search(model, starts[0], limits)]
     for start in starts[1:]:
         try:
-            found.append(search(model, start, limits))
+            solutions.append(search(model, start, limits))
         except GbeamError:  # values that the scenario does not allow, or at which the data say nothing
             continue
     # Of noise that is not known, the likelihood is a product of the weights.
-    best = max(found, key=lambda each: float(np.log(each.weights).sum()))
-    return replace(best, before=found[0].before), [each.values for each in found]
+    best = max(solutions, key=lambda each: float(np.log(each.weights).sum()))
+    return replace(best, before=solutions[0].before), [each.values for each in solutions]
 
 
 def search(model: Fitted, start: Floats, limits: Floats) -> Solution:
@@ -294,11 +294,11 @@ def search(model: Fitted, start: Floats, limits: Floats) -> Solution:
 
     x = start / scale
     for _ in range(_ROUNDS):
-        found = least_squares(
+        fitted = least_squares(
             residual, x, jacobian, bounds=(limits / scale[:, None]).T, x_scale="jac", args=(weights,),
             xtol=_PRECISE, ftol=_PRECISE, gtol=None,
         )  # fmt: skip
-        x = found.x
+        x = fitted.x
         new = model.measurement.weights(model(x * scale) - measured, len(x))
         change = new / weights
         weights = new

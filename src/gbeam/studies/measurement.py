@@ -86,7 +86,7 @@ class Measurement:
 
         A history's noise is the same at all times, a frequency's is a share of it.
         """
-        made, first = [], 0
+        weights, first = [], 0
         for each in self.columns:
             part = slice(first, first := first + len(each.values))
             size = np.abs(each.values) if self.modal else np.full(len(each.values), np.abs(each.values).max())
@@ -97,8 +97,8 @@ class Measurement:
                 shares = residuals[part] / size
                 left = 1 - freed / len(self.values)
                 usual = max(float(np.sqrt(np.mean(shares**2) / left)), _LEAST * usual)
-            made.append(1 / (usual * size))
-        return np.concatenate(made)
+            weights.append(1 / (usual * size))
+        return np.concatenate(weights)
 
     def instrumented(self, case: Case) -> Case:
         """The case with the gauges among its stations."""

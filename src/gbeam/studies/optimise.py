@@ -158,11 +158,11 @@ def _goal(facts: Facts, case: Case, minimise: str, subject_to: Sequence[str]) ->
     required: list[tuple[str, Keys, float, float]] = []
     for text in subject_to:
         if text.strip() == LIMITS:
-            found = list(_machine_limits(facts))
-            if not found:
+            machine = list(_machine_limits(facts))
+            if not machine:
                 fix = "give the machine's, or name figures: tip.z.max_abs <= 2 mm"
                 raise InputError(SUBJECT, "names limits, of which the scenario has none", fix)
-            required += found
+            required += machine
             continue
         match = _BOUND.fullmatch(text)
         if match is None:
@@ -204,7 +204,7 @@ class Goal:
 
     @property
     def keys(self) -> tuple[Keys, ...]:
-        """Of all figures, the objective first."""
+        """Keys of all figures, the objective first."""
         return (self.objective, *(keys for _, keys, _, _ in self.required))
 
 
@@ -236,9 +236,9 @@ class Search:
 
     def best(self, limits: Floats, count: int) -> tuple[Floats, list[Floats]]:
         """The best values within bounds (p, 2) of so many searches, and where each of them ended."""
-        own = np.array([each.value for each in self.parameters])
+        begin = np.array([each.value for each in self.parameters])
         ends = []
-        for k, start in enumerate(starting_points(own, limits, count)):
+        for k, start in enumerate(starting_points(begin, limits, count)):
             try:
                 ends.append(self._from(start, limits))
             except GbeamError:  # values that the scenario does not allow, or whose run is not done
@@ -284,11 +284,11 @@ class Search:
                 "jac": lambda x: self._signs[:, None] * self.slopes(low + x * width)[1:] * width / sizes[1:, None],
             }
         try:
-            found = minimize(
+            optimum = minimize(
                 objective, (start - low) / width, jac=gradient, method="SLSQP", bounds=[(0.0, 1.0)] * len(start),
                 constraints=constraints, options={"ftol": _PRECISE},
             )  # fmt: skip
-            end = "" if found.success else found.message.lower()
+            end = "" if optimum.success else optimum.message.lower()
         except _Enough:
             end = f"after {_EVALUATIONS} evaluations"
         if end:
@@ -321,10 +321,10 @@ class Search:
             )  # fmt: skip
             for name in self.motions if self.grids is not None else ():
                 about.done(name)
-            found = values_at(facts_of(about.answer), self.goal.keys)
-            if not np.isfinite(found).all():
+            figures = values_at(facts_of(about.answer), self.goal.keys)
+            if not np.isfinite(figures).all():
                 raise ComputationError("not converged", "a figure of the search has no value")
-            self._last = values.copy(), found, about
+            self._last = values.copy(), figures, about
         return self._last[1]
 
     def slopes(self, values: Floats) -> Floats:

@@ -132,8 +132,8 @@ def with_values(
     if recorded and Path(folder).resolve() != base.source.folder.resolve():
         fix = f"write it beside {os.fspath(scenario)}"
         raise InputError(os.fspath(folder), "is not the folder that the scenario's records are named from", fix)
-    found = zip(physical_values(ScenarioTemplate(base), paths), values, strict=True)
-    changes = {path: (value, each.kind) for each, value in found for path in (each.path, *each.followers)}
+    chosen = zip(physical_values(ScenarioTemplate(base), paths), values, strict=True)
+    changes = {path: (value, each.kind) for each, value in chosen for path in (each.path, *each.followers)}
     return with_quantities(base.source, changes)
 
 

@@ -143,7 +143,7 @@ def _run_error(answer: Any, motions: Sequence[str]) -> float:
 
 
 def _kinks(slopes: Slopes, values: Sequence[float], units: Sequence[str]) -> Flags:
-    """Where the slopes on either side differ by a share of them, and by more than rounding and a smooth bend make."""
+    """Flags of slopes that differ on either side by a share of them, and by more than rounding and bends make."""
     # What has no unit is a ratio, or one less one, which may be small.
     sizes = np.maximum(np.abs(slopes.values), [0.0 if unit else 1.0 for unit in units])
     size = sizes[:, None] / np.maximum(np.abs(values), 1e-6)
@@ -168,18 +168,18 @@ def figure(facts: Facts, name: str, option: str = OPTION) -> Keys:
 
 def needed(keys: Sequence[Keys], tracks: Mapping[str, str]) -> tuple[list[str], dict[str, bool]]:
     """Motions whose responses figures of ``run`` come from, and which parts of these."""
-    found: dict[str, None] = {}
+    motions: dict[str, None] = {}
     loads = axes = False
     for first, *rest in keys:
         if first == "comparisons":
-            found |= dict.fromkeys((tracks[str(rest[0])], str(rest[0])))
+            motions |= dict.fromkeys((tracks[str(rest[0])], str(rest[0])))
             loads = axes = True
         elif first == "motions":
-            found[str(rest[0])] = None
+            motions[str(rest[0])] = None
             # The torque of a hub's drive is among its loads.
             loads |= rest[1] not in ("tip", "stations")
             axes |= rest[1] not in ("tip", "stations", "loads", "hub")
-    return list(found), {"loads": loads, "axes": axes}
+    return list(motions), {"loads": loads, "axes": axes}
 
 
 def facts_of(answer: Any) -> Facts:

@@ -99,13 +99,13 @@ def shape_hub_command(
     structure = case.assemble(())
     tested = replace(case, model=counterpart(case.model, check)).assemble(()) if check else None
     try:
-        made = shape_command(
+        shaped = shape_command(
             structure, _at_rest(hub), angle=angle, rate=rate, duration=duration, limit=limit, robust=robust,
             check=tested, progress=progress,
         )  # fmt: skip
     except InputError as error:
         raise error.within(f"motion.{name}") if error.where == "gravity" else error from None
-    return replace(made, motion=name, provenance=case.provenance)
+    return replace(shaped, motion=name, provenance=case.provenance)
 
 
 def hub_of(case: Case, name: str | None) -> tuple[str, Hub]:

@@ -101,8 +101,8 @@ def start(
             units = tuple(unit_at(facts, each) for each in keys)
             truths = tuple(is_truth(facts, each) for each in keys)
         question = settled(histories.of(question, case), case, len(cases))
-        own = (number, cases.overrides(number))
-        rows += computed(question, [own]) if question.together else [question.measured(number, case, facts)]
+        task = (number, cases.overrides(number))
+        rows += computed(question, [task]) if question.together else [question.measured(number, case, facts)]
         seconds = time.perf_counter() - begin
         after = missing[index + 1 : index + 1 + min(_FEW, width(question))] or missing[:1]
         after = [each for each in after if all(each != row.case for row in rows)]

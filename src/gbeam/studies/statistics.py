@@ -36,13 +36,13 @@ def statistics(values: Floats, *, truth: bool = False) -> Statistics:
     1, are Clopper and Pearson's.
     """
     names = (PROBABILITY,) if truth else (MEAN, SPREAD, *QUANTILES)
-    found = np.full((*values.shape[:-1], len(names), len(BOUNDS)), math.nan)
+    estimates = np.full((*values.shape[:-1], len(names), len(BOUNDS)), math.nan)
     count = np.isfinite(values).sum(axis=-1)
     for size in np.unique(count[count > 0]):
         chosen = count == size  # all of them at once
         draws = np.sort(values[chosen], axis=-1)[..., :size]  # NaN is last
-        found[chosen] = _probability(draws) if truth else _moments_and_quantiles(draws)
-    return Statistics(names, found, count)
+        estimates[chosen] = _probability(draws) if truth else _moments_and_quantiles(draws)
+    return Statistics(names, estimates, count)
 
 
 def _probability(draws: Floats) -> Floats:
@@ -58,7 +58,7 @@ def _probability(draws: Floats) -> Floats:
 
 
 def _moments_and_quantiles(draws: Floats) -> Floats:
-    """Of sorted draws (m, n): (m, 2 + q, 3)."""
+    """Estimates (m, 2 + q, 3) of sorted draws (m, n)."""
     from scipy.stats import binom, norm, t
 
     n, tail = draws.shape[-1], (1 - CONFIDENCE) / 2

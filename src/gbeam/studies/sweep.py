@@ -166,19 +166,19 @@ def sweep(
         tasks = ((number, cases.overrides(number)) for number in missing if number not in tried)
         batches = _batches(tasks, max(1, size // width(question)) * width(question))
         if scheduler is not None:
-            found = on_scheduler(question, batches, scheduler)
+            computed = on_scheduler(question, batches, scheduler)
         else:
-            found = serially(question, batches) if pool is None else pool.rows(question, batches)
+            computed = serially(question, batches) if pool is None else pool.rows(question, batches)
         rows = [*done, *begun.rows]
         if journal is None:
-            rows += _collected(found, rows, len(cases), progress)
+            rows += _collected(computed, rows, len(cases), progress)
         else:
             journal.figures = begun.figures
             with journal.writing(resume=resume):
                 journal.add(begun.rows)
-                rows += _collected(found, rows, len(cases), progress, journal)
-    made = assembled(template.title, cases, names, begun, rows, seed)
-    return replace(made, warnings=() if journal is None else journal.warnings, provenance=template.provenance)
+                rows += _collected(computed, rows, len(cases), progress, journal)
+    answer = assembled(template.title, cases, names, begun, rows, seed)
+    return replace(answer, warnings=() if journal is None else journal.warnings, provenance=template.provenance)
 
 
 def _over_time(histories: tuple[str, ...], times: int, verb: str) -> OverTime:
@@ -262,7 +262,7 @@ def assembled(title: str, cases: Cases, names: Sequence[str], begun: Start, rows
     measures = {name: values[k].reshape(shape) for k, name in enumerate(names)}
     over_time = values[len(names) :].reshape(len(question.histories), times, *shape)
     histories = {each.name: np.moveaxis(over_time[k], 0, -1) for k, each in enumerate(question.histories)}
-    found = Sweep(
+    answer = Sweep(
         title=title,
         verb=question.verb,
         parameters=tuple(each.parameter(begun.example.unit(each.path)) for each in cases.variations),
@@ -273,7 +273,7 @@ def assembled(title: str, cases: Cases, names: Sequence[str], begun: Start, rows
         histories=histories,
         time=question.times,
     )
-    return with_statistics(found, cases, dict(zip(names, begun.truths, strict=True)), seed) if cases.drawn else found
+    return with_statistics(answer, cases, dict(zip(names, begun.truths, strict=True)), seed) if cases.drawn else answer
 
 
 def with_statistics(sweep: Sweep, cases: Cases, truths: Mapping[str, bool], seed: int) -> Sweep:

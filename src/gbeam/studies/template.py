@@ -74,7 +74,7 @@ class ScenarioTemplate:
 
     @property
     def identity(self) -> dict[str, Any]:
-        """What a store of cases knows it by."""
+        """Words by which a store of cases knows the template."""
         source = self.scenario.source
         assert source is not None
         digest = hashlib.sha256(source.text.encode()).hexdigest()
@@ -138,7 +138,7 @@ class CaseTemplate:
 
     @property
     def identity(self) -> dict[str, Any]:
-        """What a store of cases knows it by."""
+        """Words by which a store of cases knows the template."""
         try:
             content = pickle.dumps(self.case)
         except (pickle.PicklingError, AttributeError, TypeError) as error:
@@ -221,7 +221,7 @@ def arguments_of(node: Any) -> dict[str, Any] | None:
 
 
 def _below(node: Any, kind: str) -> dict[Any, tuple[Any, str]]:
-    """What stands below a node by name or number, each with its kind of quantity; nothing where it is not known.
+    """Children of a node by name or number, each with its kind of quantity; none where they are not known.
 
     An argument that has no kind of its own, such as the level of a profile, has that of what it is an argument of.
     """

@@ -160,7 +160,7 @@ class Workers:
 @contextmanager
 def processes(count: int, functions: Sequence[Function]) -> Iterator[Workers]:
     """Processes that start, and import, while this one goes on."""
-    given = os.environ.get(_THREADS)
+    threads = os.environ.get(_THREADS)
     os.environ.setdefault(_THREADS, "1")  # inherited
     try:
         workers = Workers(count, functions)
@@ -169,7 +169,7 @@ def processes(count: int, functions: Sequence[Function]) -> Iterator[Workers]:
         finally:
             workers.close()
     finally:
-        if given is None:
+        if threads is None:
             os.environ.pop(_THREADS, None)
 
 

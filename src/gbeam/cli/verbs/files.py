@@ -25,18 +25,18 @@ def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = No
     and the duration; where a value is a distribution it takes the centre. With --out also writes check.json. Exit
     status: 0 the scenario is valid, 2 it is not.
     """
-    given = read("check", scenario, overrides, out)
+    loaded = read("check", scenario, overrides, out)
 
     from gbeam.analysis.case import describe
     from gbeam.report import description as report
 
-    with given.placing():
-        description = describe(given.case)
-    source = given.scenario.source
+    with loaded.placing():
+        description = describe(loaded.case)
+    source = loaded.scenario.source
     assert source is not None  # it was read from a file
     drawn = {path: str(each) for path, each in source.distributions.items()}
     description = replace(description, distributions=drawn)
-    facts = given.signed(report.to_json(description))
+    facts = loaded.signed(report.to_json(description))
     write(out, "check", facts)
     show(report.text(description), facts, json)
     return 0

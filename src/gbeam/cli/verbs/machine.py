@@ -61,8 +61,8 @@ def plan(
     from gbeam.scenario import build_machines, build_specimen, load_environments, provenance, schema
 
     with Watch(f"planning the machines of {scenario}"):
-        given = load_environments(scenario, overrides)
-        machines, beam = build_machines(given), build_specimen(given)
+        environments = load_environments(scenario, overrides)
+        machines, beam = build_machines(environments), build_specimen(environments)
     if not machines:
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
     every = None if sample is None else number("--sample", sample, "time")
@@ -74,13 +74,13 @@ def plan(
     from gbeam.report.machine import plan as words
     from gbeam.results.imitation.criteria import judging
 
-    origin = provenance(given, command())
-    tables = {name: table for name, table in given.motion.items() if isinstance(table, schema.Centrifuge)}
+    origin = provenance(environments, command())
+    tables = {name: table for name, table in environments.motion.items() if isinstance(table, schema.Centrifuge)}
     plans = {
         name: replace(
             analysis.plan(
                 name, machines[name], table.tracks,
-                beam=beam, title=given.title, **judging(table.limits_of_acceptance),
+                beam=beam, title=environments.title, **judging(table.limits_of_acceptance),
             ),
             provenance=origin,
         )
@@ -91,28 +91,28 @@ def plan(
         from gbeam.io.commands import write_commands
 
         for name, each in plans.items():
-            own = tables[name].commands
-            time = every or (own.sample if own else SAMPLE)
+            commands = tables[name].commands
+            time = every or (commands.sample if commands else SAMPLE)
             write_commands(each, analysis.axis_commands(machines[name], time), hidden)
             if figures_wanted():
                 from gbeam.figures import figures_of
                 from gbeam.plots import write_figures
 
-                described = figures_of(each, given.title).items()
+                described = figures_of(each, environments.title).items()
                 write_figures({f"{kind}_{name}": figure for kind, figure in described}, hidden, "gbeam plan")
 
         if report:
             from gbeam.report.page.document import html
             from gbeam.report.page.records import of_plans
 
-            known = signed(facts(*plans.values(), title=given.title), origin)
+            known = signed(facts(*plans.values(), title=environments.title), origin)
             (hidden / "plan.html").write_text(html(known, figures=of_plans(plans)), encoding="utf-8")
 
     if not json:
-        show_table(words.table(given.title, plans.values()))
+        show_table(words.table(environments.title, plans.values()))
     files = [] if folder is None else publish(folder, make)
     if json:
-        show("", signed(facts(*plans.values(), title=given.title, files=files), origin), json)
+        show("", signed(facts(*plans.values(), title=environments.title, files=files), origin), json)
     list_files(None if json else folder, files)
     broken = [each for each in plans.values() if each.outcome != "done"]
     for each in broken:
@@ -151,9 +151,9 @@ def place(
     weights = parse(measure)
     widths = [number("--smoothing", text, "time") for text in smoothing]
     folder = folder_of(out, scenario, default=report)
-    given = read("place", scenario, overrides, folder)
-    given.motion(motion, kind="centrifuge")
-    name, current = machine_of(given.case, motion)
+    loaded = read("place", scenario, overrides, folder)
+    loaded.motion(motion, kind="centrifuge")
+    name, current = machine_of(loaded.case, motion)
 
     from gbeam.analysis.imitation import place as analysis
     from gbeam.analysis.imitation.place_measures import choice_of
@@ -163,19 +163,19 @@ def place(
     analysis.check_weights(weights, "--measure")
     with naming("--smoothing"):
         choice = choice_of(current, widths, limited=not ignore_limits)
-    with given.placing():
+    with loaded.placing():
         placement = analysis.place(
-            given.case.assemble(),
+            loaded.case.assemble(),
             current.flight,
             choice,
-            given.case.response,
+            loaded.case.response,
             weights,
             current=current,
-            names=(given.case.tracks[name], name),
+            names=(loaded.case.tracks[name], name),
             check=check,
         )
-    written = _apply(given, scenario, name, placement.changes) if write_back and placement.changes else None
-    known = given.signed(facts_of(placement) | {"written": written})
+    written = _apply(loaded, scenario, name, placement.changes) if write_back and placement.changes else None
+    known = loaded.signed(facts_of(placement) | {"written": written})
     write(folder, "place", known, report=report)
     show(words.text(placement, written), known, json)
     if placement.outcome != "done":

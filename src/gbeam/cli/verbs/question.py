@@ -33,16 +33,16 @@ def __getattr__(name: str) -> Callable[..., int]:
 
 def verb_of(question: Question) -> Callable[..., int]:
     """The function of a question's verb."""
-    name, kinds, own = question.name.replace("-", "_"), dict[str, str](), {}
+    name, kinds, declared = question.name.replace("-", "_"), dict[str, str](), {}
     options = [each for each in inspect.signature(question.answer).parameters.values() if each.kind is _KEYWORD]
     written = SimpleNamespace(__annotations__={each.name: each.annotation for each in options})
     hints = get_type_hints(written, question.answer.__globals__, include_extras=True)
     for each in options:
         hint, words, *kind = get_args(hints[each.name])
         kinds[each.name] = kind[0] if kind else ""
-        own[each.name] = Annotated[str | None if kind else hint, Parameter(help=words)], each.default
+        declared[each.name] = Annotated[str | None if kind else hint, Parameter(help=words)], each.default
 
-    arguments = {**_BEFORE, **own, **_AFTER}
+    arguments = {**_BEFORE, **declared, **_AFTER}
 
     def verb(scenario: Path, /, **options: Any) -> int:
         defaults = {key: default for key, (_, default) in arguments.items()}
@@ -75,28 +75,28 @@ def _answer(
     **options: Any,
 ) -> int:
     folder = folder_of(out, scenario, default=report)
-    given = read(question.name, scenario, overrides, folder)
+    loaded = read(question.name, scenario, overrides, folder)
     chosen = motion
     if question.motion is not None or motion is not None:
-        chosen, _ = given.motion(motion, kind=question.motion or "")
-    time = given.time(at)
+        chosen, _ = loaded.motion(motion, kind=question.motion or "")
+    time = loaded.time(at)
     places = {key: f"--{key.replace('_', '-')}" for key in kinds}
     for key, value in options.items():
         if kinds[key] and isinstance(value, str):
             options[key] = number(places[key], value, kinds[key])
-    with Watch(), given.placing(**places):
-        answer = question.answer(given.case, chosen, time, Needs(shapes=True), **options)
+    with Watch(), loaded.placing(**places):
+        answer = question.answer(loaded.case, chosen, time, Needs(shapes=True), **options)
 
     facts: dict[str, Any] = {}
     if json or folder is not None:
         from gbeam.report.facts import facts as facts_of
 
         answers = answer if isinstance(answer, tuple) else (answer,)
-        facts = given.signed(facts_of(*answers, title=given.case.title))
+        facts = loaded.signed(facts_of(*answers, title=loaded.case.title))
     if folder is not None:
         from gbeam.figures import figures_of
 
-        figures = figures_of(answer, given.case.title)
+        figures = figures_of(answer, loaded.case.title)
         if not isinstance(answer, tuple):
             figures = dict(zip([name], figures.values(), strict=False))
         write(folder, name, facts, figures, report=report)

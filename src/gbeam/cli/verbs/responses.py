@@ -48,15 +48,15 @@ def run(
     exceeded or a [motion.NAME.accept] is not met, 2 the input is wrong.
     """
     folder = folder_of(out, scenario, default=report or not json)
-    given = read("run", scenario, overrides, folder)
+    loaded = read("run", scenario, overrides, folder)
     if folder is not None:
         # A second of imports, beside the computation, which leaves a core idle.
         Thread(target=_import_leaves, daemon=True).start()
 
     from gbeam.analysis.environments import study
 
-    with Watch() as watch, given.placing():
-        answer = study(given.case, watch)
+    with Watch() as watch, loaded.placing():
+        answer = study(loaded.case, watch)
 
     def make(hidden: Path) -> None:
         answer.save(hidden / "result.nc")
@@ -79,7 +79,7 @@ def run(
     if json:
         from gbeam.report.facts import facts
 
-        show("", given.signed(facts(answer, files=files)), json)
+        show("", loaded.signed(facts(answer, files=files)), json)
     list_files(None if json else folder, files)
     for name, failure in answer.unfinished.items():
         complain(f"motion.{name} {failure.outcome}: {failure.message}")
@@ -101,22 +101,22 @@ def _import_leaves() -> None:
 
 
 def models(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = None, json: Json = False) -> int:
-    """The same scenario by every model, compared with the exact one.
+    """Compute a scenario by every model, and compare them with the exact one.
 
     Peak, residual vibration, its phase and the cost. A model that diverges or cannot answer has a row that says why.
     The exact model in three dimensions takes minutes. With --out also writes models.json and a plot. Exit status: 0
     done, 1 exact has no answer to compare with, 2 the input is wrong.
     """
-    given = read("models", scenario, overrides, out)
+    loaded = read("models", scenario, overrides, out)
 
     from gbeam.analysis.model_study import compare_models
     from gbeam.figures import figures_of
     from gbeam.report.facts import facts as facts_of
     from gbeam.report.study import models as report
 
-    with Watch() as watch, given.placing():
-        study = compare_models(given.case, progress=watch)
-    facts = given.signed(facts_of(study))
+    with Watch() as watch, loaded.placing():
+        study = compare_models(loaded.case, progress=watch)
+    facts = loaded.signed(facts_of(study))
     write(out, "models", facts, figures_of(study))
     if json:
         show("", facts, json)

@@ -59,8 +59,8 @@ def campbell(
     wrong, such as a motion without a hub.
     """
     folder = folder_of(out, scenario, default=report or not json)
-    given = read("campbell", scenario, overrides, folder)
-    name, chosen = given.motion(motion, kind="hub")
+    loaded = read("campbell", scenario, overrides, folder)
+    name, chosen = loaded.motion(motion, kind="hub")
     low = 0.0 if start is None else number("--from", start, "angular rate")
     high = None if end is None else number("--to", end, "angular rate")
     if orders < 0:
@@ -72,9 +72,9 @@ def campbell(
     from gbeam.report.facts import facts as facts_of
     from gbeam.report.steady import campbell as words
 
-    with Watch(), given.placing(to="--to", modes="--modes"):
-        diagram = questions.campbell(given.case, name, start=low, end=high, modes=modes, orders=orders)
-    facts = given.signed(facts_of(diagram))
+    with Watch(), loaded.placing(to="--to", modes="--modes"):
+        diagram = questions.campbell(loaded.case, name, start=low, end=high, modes=modes, orders=orders)
+    facts = loaded.signed(facts_of(diagram))
 
     from gbeam.guards.units import unit_of
 
@@ -83,7 +83,7 @@ def campbell(
 
     from gbeam.figures import steady
 
-    figures = {"campbell": partial(steady.campbell, diagram, given.case.title, (1 / size, unit))}
+    figures = {"campbell": partial(steady.campbell, diagram, loaded.case.title, (1 / size, unit))}
     files = write(folder, "campbell", facts, figures, report=report)
     show(words.text(diagram, unit, size), facts, json)
     if not json:
@@ -116,7 +116,7 @@ def critical_speed(
     map also as CSV and plot; with --report also critical_speed.html.
     """
     folder = folder_of(out, scenario, default=report)
-    given = read("critical-speed", scenario, overrides, folder)
+    loaded = read("critical-speed", scenario, overrides, folder)
     upper = None if to is None else number("--to", to, KINDS[vary])
     if upper is not None and not upper > 0:
         raise InputError("--to", f"is {to}", "give a value above zero, where the search ends")
@@ -125,16 +125,16 @@ def critical_speed(
     if masses is not None:
         if vary != "rate":
             raise InputError("--masses", f"stands beside --vary {vary}", "a map is of hub rates")
-        return critical_map(given, motion, masses, positions, upper, folder, json, report)
-    name, _ = given.motion(motion, kind="hub")
-    time = given.time(at)
+        return critical_map(loaded, motion, masses, positions, upper, folder, json, report)
+    name, _ = loaded.motion(motion, kind="hub")
+    time = loaded.time(at)
 
     from gbeam.report.facts import facts as facts_of
     from gbeam.report.steady import critical as words
 
-    with Watch() as watch, given.placing():
-        critical = questions.critical_speed(given.case, name, time, vary=vary, upper=upper, progress=watch)
-    facts = given.signed(facts_of(critical))
+    with Watch() as watch, loaded.placing():
+        critical = questions.critical_speed(loaded.case, name, time, vary=vary, upper=upper, progress=watch)
+    facts = loaded.signed(facts_of(critical))
     write(folder, "critical_speed", facts, report=report)
     show(words.text(critical, name), facts, json)
     return 0
@@ -209,11 +209,11 @@ def linearize(
 
     With --out writes linear.json and linear.mat. Exit status: 0 done, 1 there is no equilibrium, 2 the input is wrong.
     """
-    given = read("linearize", scenario, overrides, out)
-    name, chosen = given.motion(motion, kind="" if rate is None else "hub")
-    time = given.time(at)
+    loaded = read("linearize", scenario, overrides, out)
+    name, chosen = loaded.motion(motion, kind="" if rate is None else "hub")
+    time = loaded.time(at)
     steady = None if rate is None else number("--rate", rate, "angular rate")
-    points = given.case.beam.named_points
+    points = loaded.case.beam.named_points
     stations = [points[text] if text in points else number("--strain-at", text, "length") for text in strain_at]
     for option, beside, both in (
         ("--balanced", "--modes", modes is not None and balanced is not None),
@@ -227,10 +227,10 @@ def linearize(
     from gbeam.report.steady import state_space as report
 
     with naming("--strain-at"):
-        gauges = surface_gauges(given.case.beam, stations)
+        gauges = surface_gauges(loaded.case.beam, stations)
     options = {"order": "--balanced", "modes": "--modes", "inputs": "--inputs", "outputs": "--outputs"}
-    with Watch(), given.placing(**options):
-        system = linearize(given.case.assemble(), chosen, time, rate=steady, gauges=gauges, name=name)
+    with Watch(), loaded.placing(**options):
+        system = linearize(loaded.case.assemble(), chosen, time, rate=steady, gauges=gauges, name=name)
         system = system.select(inputs=_names(inputs), outputs=_names(outputs))
         if modes is not None or balanced is not None:
             from gbeam.analysis.control import reduction
@@ -239,8 +239,8 @@ def linearize(
                 system = reduction.modal_truncation(system, modes)
             elif balanced is not None:
                 system, _ = reduction.balanced_truncation(system, balanced)
-    system = replace(system, provenance=given.case.provenance)
-    facts = given.signed(facts_of(system) | {"gauges": [asdict(gauge) for gauge in gauges]})
+    system = replace(system, provenance=loaded.case.provenance)
+    facts = loaded.signed(facts_of(system) | {"gauges": [asdict(gauge) for gauge in gauges]})
 
     def make(hidden: Path) -> None:
         system.to_mat(hidden / "linear.mat")

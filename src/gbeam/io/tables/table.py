@@ -58,7 +58,7 @@ class Table:
     rows: Sequence[int] | None = None
 
     def place(self, i: int) -> str:
-        """Where sample `i` is in the file, in words."""
+        """Place of sample `i` in the file, in words."""
         return f"sample {i + 1}" if self.rows is None else f"row {self.rows[i]}"
 
     def counted(self, count: int) -> str:
@@ -67,12 +67,12 @@ class Table:
 
     def column(self, axis: str, name: str) -> Column:
         """Find a column by its name, or else by an alias."""
-        found = [one for one in self.columns if one.name == name]
-        found = found or [one for one in self.columns if name in one.aliases]
-        if len(found) == 1:
-            return found[0]
-        if found:
-            raise InputError(f"record.{axis}", f"names {name!r}, given {len(found)} times", "name each column once")
+        columns = [one for one in self.columns if one.name == name]
+        columns = columns or [one for one in self.columns if name in one.aliases]
+        if len(columns) == 1:
+            return columns[0]
+        if columns:
+            raise InputError(f"record.{axis}", f"names {name!r}, given {len(columns)} times", "name each column once")
         names = [one.name for one in self.columns]
         every = [*names, *(alias for one in self.columns for alias in one.aliases)]
         close = difflib.get_close_matches(name, every, n=1)

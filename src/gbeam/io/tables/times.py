@@ -60,16 +60,16 @@ def _since(first: _Reading, now: _Reading) -> int:
 
 
 def _reading(text: str) -> _Reading | None:
-    found = _CLOCK.fullmatch(text)
-    if found is None:
+    match = _CLOCK.fullmatch(text)
+    if match is None:
         return None
-    day = _day(found["date"]) if found["date"] else int(found["day"]) if found["day"] else None
-    if found["date"] and day is None:
+    day = _day(match["date"]) if match["date"] else int(match["day"]) if match["day"] else None
+    if match["date"] and day is None:
         return None
-    ahead = found["ahead"] or "+0"
-    minutes = int(found["minute"]) - (60 * int(ahead) + int(f"{ahead[0]}{found['also'] or 0}"))
-    seconds = 3600 * int(found["hour"]) + 60 * minutes + int(found["second"])
-    return day, seconds * _SECOND + int((found["fraction"] or "").ljust(9, "0"))
+    ahead = match["ahead"] or "+0"
+    minutes = int(match["minute"]) - (60 * int(ahead) + int(f"{ahead[0]}{match['also'] or 0}"))
+    seconds = 3600 * int(match["hour"]) + 60 * minutes + int(match["second"])
+    return day, seconds * _SECOND + int((match["fraction"] or "").ljust(9, "0"))
 
 
 @lru_cache(maxsize=2)  # days of a record

@@ -161,7 +161,7 @@ class Course:
         return begin, end
 
     def derivatives(self, t: Any, order: int) -> tuple[tuple[Any, ...], ...]:
-        """Of the rate of axis 1 and of the angles of axes 2 and 3 at times `t` (s), each up to `order`."""
+        """Series of the rate of axis 1 and of the angles of axes 2 and 3 at times `t` (s), each up to `order`."""
         return tuple(series.derivatives() for series in self._pose(as_array(t), order))
 
     def _pose(self, t: Any, order: int) -> Pose:

@@ -41,13 +41,13 @@ class Axes:
 
     @property
     def rates(self) -> Any:
-        """Of the three axes, (..., 3) rad/s."""
+        """Rates of the three axes, (..., 3) rad/s."""
         rates = self.rate1, self.rate2, self.rate3
         return namespace(*rates).stack(rates, axis=-1)
 
     @property
     def accelerations(self) -> Any:
-        """Of the three axes, (..., 3) rad/s²."""
+        """Accelerations of the three axes, (..., 3) rad/s²."""
         accelerations = self.acceleration1, self.acceleration2, self.acceleration3
         return namespace(*accelerations).stack(accelerations, axis=-1)
 

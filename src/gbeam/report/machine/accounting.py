@@ -34,12 +34,12 @@ def lines(accounting: Accounting) -> Iterator[str]:
         turned = f", as a vector {percent(peak.error)}" if peak.error > abs(peak.ratio - 1) + 0.01 else ""
         apart = peak.time_machine - peak.time
         later = f", {abs(1e3 * apart):.0f} ms {'later' if apart > 0 else 'earlier'}" if abs(apart) >= _APART else ""
-        made = f"{in_g(peak.reproduced)} ({change(peak.ratio)}{turned}{later})"
+        size = f"{in_g(peak.reproduced)} ({change(peak.ratio)}{turned}{later})"
         if math.isfinite(peak.instant_error):
-            made += f", {percent(peak.instant_error if peak.instant_error > _NONE else 0.0)} off at the same instant"
+            size += f", {percent(peak.instant_error if peak.instant_error > _NONE else 0.0)} off at the same instant"
         yield (
             f"load peak {in_g(peak.load)} at {peak.time:.2f} s: "
-            f"{f'not reproduced, {made}: {peak.reason}' if peak.reason else made}"
+            f"{f'not reproduced, {size}: {peak.reason}' if peak.reason else size}"
         )
     if len(accounting.peaks) > SHOWN:
         yield f"load peaks {len(accounting.peaks) - SHOWN} more: see --json"

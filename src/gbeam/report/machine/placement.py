@@ -1,4 +1,4 @@
-"""Where to put the specimen."""
+"""Words of a placement of the specimen."""
 
 from __future__ import annotations
 

@@ -22,14 +22,14 @@ def tracked(driven: Driven) -> str:
 
 def followed(facts: Mapping[str, Any]) -> str:
     """Both errors in words, from their JSON."""
-    error, own = facts["tracking_error"], facts.get("flight_error")
+    error, of_flight = facts["tracking_error"], facts.get("flight_error")
     if error["max"] is None or math.isnan(error["max"]):
         return "the target is held all the time"
-    if own is None:
+    if of_flight is None:
         return f"target followed {_within(error)}"
-    if math.isclose(own["max"], error["max"], rel_tol=1e-6, abs_tol=_EXACT):
-        return f"flight's own load followed {_within(own)}"  # the target does not round it
-    return f"target followed {_within(error)}; the flight's own load, whose corners it rounds, {_within(own)}"
+    if math.isclose(of_flight["max"], error["max"], rel_tol=1e-6, abs_tol=_EXACT):
+        return f"flight's own load followed {_within(of_flight)}"  # the target does not round it
+    return f"target followed {_within(error)}; the flight's own load, whose corners it rounds, {_within(of_flight)}"
 
 
 def _within(error: Mapping[str, Any]) -> str:

@@ -132,10 +132,10 @@ def _cases(facts: Facts, values: Mapping[str, Any], outcomes: Any) -> str:
     rows: list[list[Value]] = []
     for at in np.ndindex(outcomes.shape):
         place = dict(zip(dimensions, at, strict=True))
-        own = [each["values"][place["sample" if each["distribution"] else each["path"]]] for each in parameters]
+        coordinates = [each["values"][place["sample" if each["distribution"] else each["path"]]] for each in parameters]
         done = outcomes[at] == "done"
         figures = [float(each[at]) for each in values.values()]
-        rows.append([*map(_tick, own), *figures, Cell(str(outcomes[at]), "" if done else "bad")])
+        rows.append([*map(_tick, coordinates), *figures, Cell(str(outcomes[at]), "" if done else "bad")])
         if len(rows) == _CASES:
             break
     head = [_labelled(each["path"], each["unit"]) for each in parameters]

@@ -73,14 +73,14 @@ def table(
 ) -> str:
     """A table whose columns are numbers, to the right with four digits, but for those of `words`."""
     texts = set(words)
-    made = [[_cell(value, column not in texts) for column, value in enumerate(row)] for row in rows]
-    if not made:
+    cells = [[_cell(value, column not in texts) for column, value in enumerate(row)] for row in rows]
+    if not cells:
         return ""
     top = "".join(
         f'<th scope="col"{_class("" if column in texts else "number")}>{_breaking(name)}</th>' if name else "<td></td>"
         for column, name in enumerate(head)
     )
-    body = "".join(f"<tr>{''.join(row)}</tr>" for row in made)
+    body = "".join(f"<tr>{''.join(row)}</tr>" for row in cells)
     title = f"<caption>{escaped(caption)}</caption>" if caption else ""
     top = f"<thead><tr>{top}</tr></thead>" if any(head) else ""
     return f'<div class="gbeam-wide"><table>{title}{top}<tbody>{body}</tbody></table></div>'

@@ -90,8 +90,8 @@ def _page_of(file: Path) -> str:
 
 def file_in(folder: Path) -> Path:
     """The one result of a folder."""
-    found = [folder / "result.nc"] if (folder / "result.nc").is_file() else sorted(folder.glob("*.json"))
-    if len(found) != 1:
-        named = ", ".join(each.name for each in found[:4])
-        raise InputError(str(folder), f"holds several results, {named}" if found else "holds no result", _FIX)
-    return found[0]
+    candidates = [folder / "result.nc"] if (folder / "result.nc").is_file() else sorted(folder.glob("*.json"))
+    if len(candidates) != 1:
+        named = ", ".join(each.name for each in candidates[:4])
+        raise InputError(str(folder), f"holds several results, {named}" if candidates else "holds no result", _FIX)
+    return candidates[0]

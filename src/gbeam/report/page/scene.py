@@ -40,7 +40,7 @@ def motion(name: str, environment: str, variables: Variables, numbers: Numbers) 
     time, some = of("time"), of("outline_time")
     index = np.searchsorted(time, some - 1e-12).clip(max=len(time) - 1)  # of the response's own times
     outline = of("outline")
-    made: dict[str, Any] = {
+    header: dict[str, Any] = {
         "name": name,
         "environment": environment,
         **shape(of("point"), of("outline_width"), of("outline_thickness"), of("outline_round")),
@@ -52,21 +52,21 @@ def motion(name: str, environment: str, variables: Variables, numbers: Numbers) 
     stress = of("stress")
     if stress is not None and np.isfinite(stress).all():
         largest = float(np.max(stress))
-        made["stress"] = {"at": of("section").tolist(), "values": numbers.add(stress[index]), "largest": largest}
+        header["stress"] = {"at": of("section").tolist(), "values": numbers.add(stress[index]), "largest": largest}
     actual = of("load_actual")
     load = of("root_acceleration") if actual is None else actual
-    made["load"], made["largestLoad"] = numbers.add(load[index]), _largest(load)
+    header["load"], header["largestLoad"] = numbers.add(load[index]), _largest(load)
     if actual is not None:
-        made["reference"] = numbers.add(of("load_reference")[index])
-        made["controlPoint"] = float(of("control_point"))
-        made["axes"], made["arm"] = numbers.add(of("axis_angle")[index]), float(of("arm"))
-        made["span"] = [max(float(of("flight_from")), float(time[0])), min(float(of("flight_to")), float(time[-1]))]
+        header["reference"] = numbers.add(of("load_reference")[index])
+        header["controlPoint"] = float(of("control_point"))
+        header["axes"], header["arm"] = numbers.add(of("axis_angle")[index]), float(of("arm"))
+        header["span"] = [max(float(of("flight_from")), float(time[0])), min(float(of("flight_to")), float(time[-1]))]
     if of("attitude") is not None:
-        made["attitude"] = numbers.add(of("attitude"))
+        header["attitude"] = numbers.add(of("attitude"))
     if of("hub_radius") is not None:
-        made["radius"], made["mounting"] = float(of("hub_radius")), np.ravel(of("hub_mounting")).tolist()
-        made["angle"] = numbers.add(of("hub_angle")[index])
-    return made
+        header["radius"], header["mounting"] = float(of("hub_radius")), np.ravel(of("hub_mounting")).tolist()
+        header["angle"] = numbers.add(of("hub_angle")[index])
+    return header
 
 
 def shape(points: Floats, width: Floats, thickness: Floats, is_round: Any) -> dict[str, Any]:

@@ -83,7 +83,7 @@ def optimum_body(facts: Facts, viewer: str, drawn: str) -> str:
 
 
 def sensitivity_body(facts: Facts, viewer: str, drawn: str) -> str:
-    """Of each figure the values that it depends on, those that matter most first."""
+    """Values that each figure depends on, the strongest first."""
     parts = []
     for name, each in facts["measures"].items():
         value = f"{number(known(each['value']))} {raised(each['unit'])}".rstrip()

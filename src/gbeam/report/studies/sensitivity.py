@@ -20,9 +20,9 @@ def text(sensitivity: Sensitivity) -> str:
         ] + [""]
     exact = s.methods.count("exact")
     if exact:
-        own = "" if np.isnan(s.run_error) else f"; the run's own estimated error: {percent(s.run_error)}"
+        of_run = "" if np.isnan(s.run_error) else f"; the run's own estimated error: {percent(s.run_error)}"
         lines.append(
-            f"{exact} of {len(s.methods)} parameters by the exact derivative of the run, its steps held fixed{own}."
+            f"{exact} of {len(s.methods)} parameters by the exact derivative of the run, its steps held fixed{of_run}."
         )
     if exact < len(s.methods):
         lines.append("± is how far the differences of second and fourth order are apart.")

@@ -39,7 +39,7 @@ def _headed(name: str, unit: str) -> str:
 
 
 def _cases(sweep: Sweep) -> list[list[str]]:
-    """Of a grid: the parameters and the figures of every case, and how it ended where not all are done."""
+    """Parameters and figures of every case of a grid, and its outcome where not all are done."""
     rows = []
     for at in np.ndindex(sweep.outcome.shape):
         places = [each.values[i] for each, i in zip(sweep.parameters, at, strict=True)]

@@ -76,7 +76,7 @@ _FELT = 0.1  # of the flight's largest spectrum: an axis with less is no part of
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Sizes(Part):
-    """How large displacements are over the times compared, per station and direction."""
+    """Sizes of displacements over the times compared, per station and direction."""
 
     peak: Floats = quantity("m", "largest displacement", "axis")
     rms: Floats = quantity("m", "root mean square displacement", "axis")
@@ -121,7 +121,7 @@ class Statistics(Part):
 
     @property
     def trend_difference(self) -> Floats:
-        """Of the tip, centrifuge less flight, (t, 3) m."""
+        """Difference of the tip, centrifuge less flight, (t, 3) m."""
         return self.trend_centrifuge - self.trend_flight
 
 

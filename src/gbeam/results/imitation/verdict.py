@@ -102,14 +102,14 @@ def _largest(flight: str, machine: str, load: PeakPair) -> str:
 
 
 def _tip(flight: str, machine: str, tip: PeakPair, within: float) -> str:
-    made = metres(tip.machine)
+    deflection = metres(tip.machine)
     if not math.isfinite(tip.ratio):
-        return f"tip: not moved by {flight}, by up to {made} on {machine}"
+        return f"tip: not moved by {flight}, by up to {deflection} on {machine}"
     begin = f"tip: {flight}'s peak {metres(tip.flight)} at {tip.time_flight:.2f} s"
     when = f" at {tip.time_machine:.2f} s" if abs(tip.time_machine - tip.time_flight) > _APART else ""
     if abs(tip.ratio - 1) <= within:
-        return f"{begin} reproduced as {made} ({change(tip.ratio)}){when}"
-    return f"{begin} not reproduced: {made} on {machine} ({change(tip.ratio)}){when}"
+        return f"{begin} reproduced as {deflection} ({change(tip.ratio)}){when}"
+    return f"{begin} not reproduced: {deflection} on {machine} ({change(tip.ratio)}){when}"
 
 
 def _load_peaks(accounting: Accounting) -> str:

@@ -88,9 +88,9 @@ class Record(Table):
 
     @model_validator(mode="after")
     def _rates_together(self) -> Record:
-        given = [name for name in ("p", "q", "r", "rate_unit") if getattr(self, name) is not None]
-        if given and len(given) < 4:
-            missing = next(name for name in ("p", "q", "r", "rate_unit") if name not in given)
+        keys = [name for name in ("p", "q", "r", "rate_unit") if getattr(self, name) is not None]
+        if keys and len(keys) < 4:
+            missing = next(name for name in ("p", "q", "r", "rate_unit") if name not in keys)
             hint = 'give p, q and r ("0" for none) and rate_unit = "rad/s" or "deg/s"'
-            refuse([((), wrong(f"{missing} is missing beside {given[0]}", hint, mark="key"))])
+            refuse([((), wrong(f"{missing} is missing beside {keys[0]}", hint, mark="key"))])
         return self

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 def edited(source: Source, table: Path, changes: Mapping[str, str | float]) -> str:
     """Return the text with some entries of one table set to other text."""
     text = source.text
-    given = ", ".join(f"{path_text((*table, key))}={value}" for key, value in changes.items())
-    refusal = InputError(source.name, "is written in a way that cannot be changed here", f"write it yourself: {given}")
+    lines = ", ".join(f"{path_text((*table, key))}={value}" for key, value in changes.items())
+    refusal = InputError(source.name, "is written in a way that cannot be changed here", f"write it yourself: {lines}")
     if written_at(parse(source.name, text), table) is None:
         raise refusal
     for key, value in changes.items():

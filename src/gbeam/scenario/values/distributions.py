@@ -134,10 +134,10 @@ def quantities(parts: Sequence[str]) -> tuple[list[float], str]:
             raise InputError("", f"has {part.strip()!r}, which is no number", 'write it such as "4 g/s"')
         values.append(float(match[1]))
         units.append(match[2])
-    given = sorted({unit for unit in units if unit})
-    if len(given) > 1:
-        raise InputError("", f"has values in {' and in '.join(given)}", "write them in one unit")
-    return values, given[0] if given else ""
+    named = sorted({unit for unit in units if unit})
+    if len(named) > 1:
+        raise InputError("", f"has values in {' and in '.join(named)}", "write them in one unit")
+    return values, named[0] if named else ""
 
 
 def written(value: float, unit: str) -> str:
