@@ -118,10 +118,10 @@ def changes(before: str, after: str) -> str:
         then, now = ({path_text(path): value for path, value in _leaves(parse(NAME, text))} for text in (before, after))
     except GbeamError:
         return ""
-    changes = [f"{path} = {_shown(value)}" for path, value in now.items() if then.get(path) != value]
-    changes += [f"no {path}" for path in then if path not in now]
-    more = f", and {len(changes) - CHANGES} more" if len(changes) > CHANGES else ""
-    return ", ".join(changes[:CHANGES]) + more if changes else "as before"
+    lines = [f"{path} = {_shown(value)}" for path, value in now.items() if then.get(path) != value]
+    lines += [f"no {path}" for path in then if path not in now]
+    more = f", and {len(lines) - CHANGES} more" if len(lines) > CHANGES else ""
+    return ", ".join(lines[:CHANGES]) + more if lines else "as before"
 
 
 def _shown(value: Any) -> str:
@@ -131,16 +131,16 @@ def _shown(value: Any) -> str:
 
 def records(data: Any, folder: Path) -> list[Path]:
     """The files that a scenario names, all of which must be records of the folder."""
-    problems = []
+    files = []
     for path, value in _leaves(data):
         if path[-1] == "file":
             if not isinstance(value, str):
                 raise InputError(path_text(path), "is no text", "give the name of a record")
             try:
-                problems.append(regular(folder, value))
+                files.append(regular(folder, value))
             except InputError as error:
                 raise InputError(path_text(path), f"{value[:100]!r} {error.problem}", error.fix) from None
-    return problems
+    return files
 
 
 def problems(error: GbeamError) -> list[dict[str, Any]]:

@@ -8,6 +8,7 @@ never pays for the import.
 from __future__ import annotations
 
 import dataclasses
+import inspect
 import sys
 from collections.abc import Callable
 from typing import Any, TypeVar, dataclass_transform
@@ -81,6 +82,27 @@ def assign(instance: Any, **fields: Any) -> None:
     """Set the fields of a record in its own ``__init__`` or ``__post_init__``."""
     for name, value in fields.items():
         object.__setattr__(instance, name, value)
+
+
+def arguments_of(value: Any) -> dict[str, Any] | None:
+    """Return the arguments by which an object is made again: what it says of them, its fields, or its attributes of
+    their names; None of one that does not know them.
+    """
+    if hasattr(value, "arguments"):
+        return dict(value.arguments)
+    if not dataclasses.is_dataclass(value) or isinstance(value, type):
+        return None
+    if type(value).__dataclass_params__.init:  # type: ignore[attr-defined]
+        return {each.name: getattr(value, each.name) for each in dataclasses.fields(value) if each.init}
+    names = list(inspect.signature(type(value)).parameters)
+    return {name: getattr(value, name) for name in names} if all(hasattr(value, name) for name in names) else None
+
+
+def altered(value: Any, **changes: Any) -> Any:
+    """Return an object made again with other arguments."""
+    if hasattr(value, "altered"):
+        return value.altered(**changes)
+    return type(value)(**{**(arguments_of(value) or {}), **changes})
 
 
 def register_all(register: Callable[[type], None]) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import os
-import re
 import types
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from inspect import Parameter, signature
@@ -13,7 +12,7 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_
 from gbeam.arrays.namespace import has_unit
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.kinds import kind_of_argument
-from gbeam.guards.units import UnitError, in_si
+from gbeam.guards.units import BEGINNING, UnitError, in_si
 from gbeam.printable import shortened
 from gbeam.progress import Bar
 
@@ -52,7 +51,6 @@ F = TypeVar("F", bound=Callable[..., Any])
 Test = Callable[[Any], bool]
 _SEQUENCES = (list, tuple, Sequence, Iterable, Collection)
 _MAPPINGS = (dict, Mapping)
-_NUMBER = re.compile(r"\s*[+-]?\s*(\.?\d|inf|nan)", re.IGNORECASE)  # that a text begins with: 20 mm
 _NUMERIC = ("f", "i", "u")  # NumPy's letters for kinds of numbers
 _OF_NUMBERS = (float, int, Any)
 _PLAIN = (str, bytes, bool, int, float, complex, type(None), list, tuple, dict, set)  # shown as they are
@@ -190,7 +188,7 @@ def _is_number(value: Any, texts: bool) -> bool:
     if isinstance(value, (float, int)) or _kind(value) in _NUMERIC:
         return True
     if isinstance(value, str):
-        return texts and not _NUMBER.match(value)
+        return texts and not BEGINNING.match(value)
     return not hasattr(value, "dtype") and not isinstance(value, type) and hasattr(value, "__float__")
 
 
@@ -237,7 +235,7 @@ def _refused(name: str, value: Any, hint: Any, texts: bool) -> InputError:
     else:
         shown = shortened(repr(value), 60) if isinstance(value, _PLAIN) else f"of type {type(value).__name__}"
     wanted = _described(hint)
-    in_si = " in SI" if isinstance(value, str) and _NUMBER.match(value) and "whole" not in wanted else ""
+    in_si = " in SI" if isinstance(value, str) and BEGINNING.match(value) and "whole" not in wanted else ""
     return InputError(name, f"is {shown}", f"give {wanted}{in_si}")
 
 

@@ -59,8 +59,8 @@ m mm cm km µm um g kg mg s ms us min h rad mrad deg rev rpm Hz kHz g0 N kN MN W
 psi ksi Msi % watt meter metre millimeter gram kilogram second millisecond minute hour radian degree revolution hertz
 newton pascal inch foot pound percent
 """
+BEGINNING = re.compile(r"\s*[+-]?\s*(\.?\d|inf|nan)", re.IGNORECASE)  # of a text that gives a number: 20 mm
 # A number and what follows it: its unit, or nothing.
-_BEGINNING = re.compile(r"\s*[+-]?\s*(\.?\d|inf|nan)", re.IGNORECASE)
 NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*", re.DOTALL)
 # pint's tokenizer drops what it does not know ("5 m$", "5 m # note"), so the letters are checked first.
 _UNIT = re.compile(r"[\w°%()*/^+\-·.⁻⁰¹²³⁴-⁹ ]+")
@@ -118,7 +118,7 @@ def in_si(value: Any, kind: str) -> Any:
     Raises UnitError where one is of another kind. What is neither stays what it is.
     """
     if isinstance(value, str):
-        return quantity(value, kind) if _BEGINNING.match(value) else value
+        return quantity(value, kind) if BEGINNING.match(value) else value
     if hasattr(value, "magnitude") and hasattr(value, "dimensionality"):  # of pint
         unit, number = f"{value.units:~P}", value.magnitude
         if not unit and not KINDS[kind].unit:

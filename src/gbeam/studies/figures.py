@@ -62,7 +62,7 @@ def _segments(path: str) -> list[str]:
 
 
 def _fits(ends: Sequence[str], path: Sequence[str]) -> bool:
-    """Whether a path, in which ``*`` is any name, can end in these keys."""
+    """Return whether a path, in which ``*`` is any name, can end in these keys."""
     if len(ends) > len(path):
         # A name may have dots of its own.
         return any(each.startswith("*") for each in path)

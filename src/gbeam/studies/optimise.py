@@ -158,11 +158,11 @@ def _goal(facts: Facts, case: Case, minimise: str, subject_to: Sequence[str]) ->
     required: list[tuple[str, Keys, float, float]] = []
     for text in subject_to:
         if text.strip() == LIMITS:
-            machine = list(_machine_limits(facts))
-            if not machine:
+            limits = list(_machine_limits(facts))
+            if not limits:
                 fix = "give the machine's, or name figures: tip.z.max_abs <= 2 mm"
                 raise InputError(SUBJECT, "names limits, of which the scenario has none", fix)
-            required += machine
+            required += limits
             continue
         match = _BOUND.fullmatch(text)
         if match is None:

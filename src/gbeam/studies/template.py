@@ -7,16 +7,16 @@ with, which have the names of a scenario's keys: ``beam.section.width``, ``motio
 from __future__ import annotations
 
 import hashlib
-import inspect
 import os
 import pickle
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from gbeam.analysis.case import Case
+from gbeam.arrays.tree import altered, arguments_of
 from gbeam.errors import InputError
 from gbeam.guards.kinds import KINDS, kind_of_argument
 from gbeam.guards.names import advise
@@ -52,7 +52,7 @@ class ScenarioTemplate:
 
     @property
     def imitations(self) -> dict[str, bool]:
-        """Whether limits of acceptance are set, by the name of each centrifuge that tracks a flight."""
+        """Centrifuges that track a flight, by name, each with whether limits of acceptance are set."""
         machines = {name: each for name, each in self.scenario.motion.items() if isinstance(each, Centrifuge)}
         return {name: bool(each.limits_of_acceptance) for name, each in machines.items() if each.tracks}
 
@@ -123,7 +123,7 @@ class CaseTemplate:
 
     @property
     def imitations(self) -> dict[str, bool]:
-        """Whether limits of acceptance are set, by the name of each centrifuge that tracks a flight."""
+        """Centrifuges that track a flight, by name, each with whether limits of acceptance are set."""
         return {name: bool(self.case.accept.get(name)) for name in self.case.tracks}
 
     @property
@@ -206,20 +206,6 @@ def template_of(
     return ScenarioTemplate(scenario_of(given, overrides, distributions=distributions))
 
 
-def arguments_of(node: Any) -> dict[str, Any] | None:
-    """Return the arguments by which an object is made again; None of one that does not know them."""
-    if isinstance(node, Mapping):
-        return dict(node)
-    if hasattr(node, "arguments"):
-        return dict(node.arguments)
-    if not is_dataclass(node) or isinstance(node, type):
-        return None
-    if type(node).__dataclass_params__.init:  # type: ignore[attr-defined]
-        return {each.name: getattr(node, each.name) for each in fields(node) if each.init}
-    names = [name for name in inspect.signature(type(node)).parameters]
-    return {name: getattr(node, name) for name in names} if all(hasattr(node, name) for name in names) else None
-
-
 def _below(node: Any, kind: str) -> dict[Any, tuple[Any, str]]:
     """Children of a node by name or number, each with its kind of quantity; none where they are not known.
 
@@ -228,7 +214,7 @@ def _below(node: Any, kind: str) -> dict[Any, tuple[Any, str]]:
     if isinstance(node, (tuple, list)) or np.ndim(node):
         return {k: (each, kind) for k, each in enumerate(node)}
     owner = type(node).__name__
-    arguments = arguments_of(node) or {}
+    arguments = dict(node) if isinstance(node, Mapping) else arguments_of(node) or {}
     return {name: (each, kind_of_argument(owner, name) or kind) for name, each in arguments.items()}
 
 
@@ -251,7 +237,7 @@ def _with(node: Any, kind: str, wanted: Any, path: Path) -> Any:
     if np.ndim(node):
         return np.array([*every.values()])
     try:
-        return node.altered(**changed) if hasattr(node, "altered") else type(node)(**every)
+        return altered(node, **changed)
     except InputError as error:
         raise error.within(path_text(path)) from None
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gbeam.analysis.control.linearization import linearize
-from gbeam.arrays.tree import assign
+from gbeam.arrays.tree import altered
 from gbeam.errors import InputError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.hub import Hub
@@ -84,12 +84,7 @@ class Commands:
 
 def driven(hub: Hub, profile: Profile) -> Hub:
     """The hub under a command, mounted as it is."""
-    if hub.free:
-        springs = {"stiffness": hub.stiffness, "damping": hub.damping}
-        commanded = Hub(radius=hub.radius, torque=profile, inertia=hub.inertia, **springs)
-    else:
-        commanded = Hub(radius=hub.radius, rate=profile, inertia=hub.inertia)
-    assign(commanded, mount=hub.mount)
+    commanded: Hub = altered(hub, **{"torque" if hub.free else "rate": profile})
     return commanded
 
 

@@ -181,7 +181,7 @@ class Hub:
             stiffness=stiffness,
             damping=damping,
             free=free,
-            setting_angle=None if setting_angle is None else as_array(finite("setting_angle", setting_angle)),
+            setting_angle=None if setting_angle is None else as_array(setting_angle),
         )
         # Gravity turns in base axes with the hub: only then does the motion of the base need the angle.
         times, angles = self._angles() if gravity is not None and not free else (np.zeros(1), np.zeros(1))
