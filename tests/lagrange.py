@@ -28,22 +28,20 @@ quickly_compiled = partial(jax.jit, compiler_options={"xla_backend_optimization_
 
 @record
 class Complete:
-    """The complete kinetic energy of a field, and its strain energy."""
+    """The complete kinetic energy of a structure's particles, and its strain energy."""
 
-    inertia: Any
-    elasticity: Any
+    structure: Structure
 
     @property
     def size(self) -> int:
-        slopes = self.inertia.field.strain_slopes()
-        return int(slopes.axial.shape[1])
+        return self.structure.size
 
     def particles(self, q: Array) -> Array:
-        return self.inertia.positions(q)
+        return self.structure.particles.positions(q)
 
     @property
     def mass(self) -> Array:
-        return self.inertia.mass
+        return self.structure.mass
 
     def kinetic(self, u: Array, q: Array, qd: Array) -> Array:
         """J; 2009 (9), 2020 (5). u = (v_O, ω)."""
@@ -54,7 +52,7 @@ class Complete:
         return _half_m_v_squared(self.mass, u, r, rd)
 
     def potential(self, q: Array) -> Array:
-        return self.elasticity.energy(q)
+        return 0.5 * q @ self.structure.coefficients.stiffness @ q
 
 
 @record
@@ -121,7 +119,7 @@ def second_order(energy: Complete) -> Quadratic:
 
 def energy_of(structure: Structure) -> Complete | Quadratic:
     """The energy of a structure's model: complete, or truncated where the model is linear."""
-    complete = Complete(structure.inertia, structure.elasticity)
+    complete = Complete(structure)
     return second_order(complete) if structure.linear else complete
 
 

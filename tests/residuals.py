@@ -59,10 +59,9 @@ def on_hub(
 
 def gravity_potential(structure: Structure, hub: Hub, y: Array) -> Array:
     """Energy of the beam in the hub's gravity, J; of a linear model to second order in q."""
-    places = structure.places if structure.linear else structure.inertia
-    assert places is not None
     mount, total = hub.mount, structure.mass.sum()
-    x, y_, z = mount.R_HB @ (structure.mass @ places.positions(y[1:])) + total * mount.radius * np.array([1.0, 0, 0])
+    first = structure.mass @ structure.particles.positions(y[1:])
+    x, y_, z = mount.R_HB @ first + total * mount.radius * np.array([1.0, 0, 0])
     c, s = np.cos(y[0]), np.sin(y[0])
     return -mount.gravity @ np.stack([c * x - s * y_, s * x + c * y_, z])
 
@@ -74,9 +73,10 @@ def virtual_work(structure: Structure, q: Array) -> np.ndarray:
     """
     work, values = structure.work, structure.load_values
     assert work is not None and values is not None
-    place, attitude = work.field.position, work.field.rotation
+    place, attitude = work.field.positions, work.field.rotation
     r, R, slope, turn = place(q), attitude(q), jacobian(place, q), jacobian(attitude, q)
     spin = np.einsum("pabi,pcb->paci", turn, R)
+    spin = 0.5 * (spin - np.swapaxes(spin, 1, 2))  # of polynomials, whose products leave a symmetric part
     angle = np.stack([spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0]], axis=1)
     axes = np.where(work.follower[:, None, None], R, np.eye(3))
     force, moment = (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,6 @@ import pytest
 import gbeam as gb
 from gbeam.analysis.accuracy.correction import RESOLVED, OfSamples, Sampled, Vibration, complete_residual, operator
 from gbeam.analysis.accuracy.response_errors import Parts, Quantities, lacking
-from gbeam.mechanics.equations import sampled
 from gbeam.mechanics.equations.hub import free_hub, ground_of
 from gbeam.motion.bases.base import Base
 
@@ -244,25 +242,24 @@ def test_error_of_a_mode_beside_a_mass_is_that_against_its_frequency_equation() 
     np.testing.assert_allclose(five.errors.shapes, five.frequency / truth.frequency[:5] - 1, rtol=0.05, atol=1e-7)
 
 
-def test_a_model_is_expanded_by_numpy_as_it_is_by_jax() -> None:
+def test_coefficients_about_a_bent_beam_are_the_derivatives_of_its_residual() -> None:
     structure = laden("exact")
-    (q,) = states(structure.size, 1, 0.05, 7)
-    compiled, plain = (replace(structure, compiled=how).about(q) for how in (True, False))
-    np.testing.assert_allclose(plain[1], compiled[1], rtol=1e-9, atol=1e-9 * np.abs(compiled[1]).max())
-    for name in ("mass", "stiffness", "gyroscopic", "k_ww", "k_al", "k_a", "f_ww", "f_al", "f_a"):
-        ours, theirs = (getattr(each[0], name) for each in (plain, compiled))
-        np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-8 * max(np.abs(theirs).max(), 1e-12), err_msg=name)
-    np.testing.assert_allclose(plain[0].loads.slope, compiled[0].loads.slope, rtol=0, atol=1e-7)
+    (q,), still = states(structure.size, 1, 0.05, 7), np.zeros(structure.size)
+    a, w, al = states(3, 3, 1.0, 8)
+    about, elastic = structure.about(q)
 
+    def complete(x: np.ndarray) -> np.ndarray:
+        dq, qd, qdd = np.split(x, 3)
+        return structure.equations.residual(q + dq, qd, qdd, a, w, al, structure.load_values)
 
-@pytest.mark.parametrize("offset", [(0.0, 0.0, 0.0), (0.0, 0.05, 0.02)])
-def test_a_clamped_exact_field_is_expanded_by_its_tangents_as_by_its_places(offset: tuple[float, float, float]) -> None:
-    body = gb.PointMass(LENGTH, 0.1, offset=offset)
-    inertia = gb.assemble(gb.Beam(LENGTH, *PLAIN[:2], [body]), "exact", axial=1, y=2, z=2).inertia
-    (q,) = states(5, 1, 0.3, 3)
-    by_places = sampled.about(inertia.positions, q, np.full(5, 0.003))
-    for ours, theirs in zip(sampled.places_about(inertia, q), by_places, strict=True):
-        np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-8)
+    def linear(x: np.ndarray) -> np.ndarray:
+        dq, qd, qdd = np.split(x, 3)
+        return about.residual(dq, qd, qdd, a, w, al, structure.load_values) + elastic
+
+    none = np.concatenate([still] * 3)
+    np.testing.assert_allclose(linear(none), complete(none), rtol=1e-9, atol=1e-9 * np.abs(elastic).max())
+    ours, theirs = jacobian(linear, none), jacobian(complete, none)
+    np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-9 * np.abs(theirs).max())
 
 
 def test_shapes_are_added_until_they_are_enough() -> None:

@@ -28,7 +28,6 @@ from gbeam import (
     trapezoid,
     vector,
 )
-from gbeam.analysis.response.outcome import turned_out_of_plane
 
 from ..specimens import TIP, appendage
 from .helpers import ALUMINIUM, EI, LENGTH, LINE, OMEGA, SECTION, made, strip
@@ -253,20 +252,6 @@ def test_a_start_that_no_beam_would_keep_is_warned_of() -> None:
         flight = Flight(x=constant(share * critical))
         answer = simulate(structure, flight, ResponseSettings(duration=0.1, step=0.01))
         assert any("not stable" in it for it in answer.warnings) == expected
-
-
-def test_how_far_the_tangent_turns_out_of_one_plane() -> None:
-    """A run warns of it: straight back lies the pole of the exact field's rotation vector."""
-    structure = strip("exact", (1, 2, 2))
-    about_y, about_z = (np.asarray(it)[-1] for it in (structure.field.angle_y, structure.field.angle_z))
-    oblique = 3.0 * (about_y + about_z) / (about_y @ about_y + about_z @ about_z)  # |φ| = 3√2 / … at the tip
-    one_plane = np.outer(np.linspace(0, 1, 5), about_y / (about_y @ about_y)) * 3.0
-    assert turned_out_of_plane(structure, one_plane) == 0.0
-    both = np.stack([one_plane[-1], oblique])
-    assert turned_out_of_plane(structure, both) == pytest.approx(
-        max(np.hypot(it @ about_y, it @ about_z) for it in both), rel=0.05
-    )
-    assert turned_out_of_plane(strip("FOAM"), np.ones((2, 7))) == 0.0
 
 
 @pytest.mark.parametrize("kind", ["base", "load"])

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from gbeam import Model, PointMass, assemble
-from gbeam.mechanics.fields.basis import bending_shapes, quadrature
-from gbeam.mechanics.fields.exact import exact_field
+from gbeam.mechanics.fields.basis import bending_shapes
 
 from ..differences import along
 from ..lagrange import Complete, energy_of, second_order
@@ -96,7 +95,7 @@ def test_point_body_adds_its_own_energy() -> None:
     u, q, qd = np.split(states(16, 1, 0.3, seed=6)[0], [6, 11])
     v = u[:3] + np.cross(u[3:], np.array([LENGTH, 0, 0]) + bare.displacement(q)[-1])
     v = v + along(lambda q: bare.displacement(q)[-1], q, qd)
-    with_, without = (Complete(s.inertia, s.elasticity).kinetic(u, q, qd) for s in (loaded, bare))
+    with_, without = (Complete(s).kinetic(u, q, qd) for s in (loaded, bare))
     np.testing.assert_allclose(with_ - without, 0.5 * 0.7 * v @ v, rtol=1e-10)
 
 
@@ -112,9 +111,3 @@ def test_rotary_inertia_of_a_tip_body() -> None:
     about = np.outer(slope, slope)
     wanted = np.block([[inertia[2] * about, none], [none, inertia[1] * about]])
     np.testing.assert_allclose(with_ - without, wanted, atol=1e-12)
-
-
-def test_exact_field_wants_the_quadrature_nodes_first() -> None:
-    rule = quadrature(1.0, 8)
-    with pytest.raises(ValueError, match="start with the quadrature nodes"):
-        exact_field(1.0, rule, np.array([1.0]), (1, 1, 1))

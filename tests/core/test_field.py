@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.interpolate import BarycentricInterpolator
+from scipy.linalg import expm
 
 from gbeam import Model, Structure, assemble
-from gbeam.mechanics.fields.basis import bar_shapes, bending_shapes, legendre_shapes, quadrature
-from gbeam.mechanics.fields.exact import exact_field
-from gbeam.mechanics.fields.projected import projected_field
+from gbeam.mechanics.fields.basis import bar_shapes, bending_shapes, closed_forms, legendre_shapes, quadrature
+from gbeam.mechanics.fields.components import split
+from gbeam.mechanics.fields.projected import ProjectedField, projected_field
 from gbeam.mechanics.fields.rooted import RootedField
-from gbeam.mechanics.fields.rotation import Field, rotation_matrix
+from gbeam.mechanics.fields.rotation import rotation_matrix
+from gbeam.mechanics.fields.strains import StrainField, strain_field
 
 from ..differences import hessian, jacobian
 from ..lagrange import quickly_compiled
@@ -43,9 +45,11 @@ def bent(structure: Structure, seed: int, strain: float = 0.01, angle: float = 0
 
 
 def sampled(structure: Structure, q: np.ndarray) -> tuple[Any, ...]:
+    """Places and rotations of the points, strains at the nodes, and the energy."""
     field = structure.field
-    assert field is not None
-    return field.position(q), field.rotation(q), field.strains(q), structure.strain_energy(q)
+    assert isinstance(field, StrainField)
+    strains = [part + np.zeros(len(field.rest[0])) for part in field.strain(q)]
+    return field.positions(q), field.rotation(q), strains, structure.strain_energy(q)
 
 
 def nodes_of(structure: Structure) -> np.ndarray:
@@ -69,7 +73,7 @@ def test_exact_axis_has_slope_one_plus_strain_along_the_section_normal(seed: int
     position, rotation, strains, _ = sampled(structure, bent(structure, seed))
     x, n = nodes_of(structure), structure.first_station
     slope = np.stack([BarycentricInterpolator(x, np.asarray(position)[:n, i]).derivative(x) for i in range(3)], axis=1)
-    np.testing.assert_allclose(slope, (1 + np.asarray(strains.axial))[:, None] * rotation[:n, :, 0], atol=1e-7)
+    np.testing.assert_allclose(slope, strains[0][:, None] * rotation[:n, :, 0], atol=1e-7)
 
 
 def test_exact_field_in_a_plane_is_the_integral_of_cosine_and_sine() -> None:
@@ -81,7 +85,7 @@ def test_exact_field_in_a_plane_is_the_integral_of_cosine_and_sine() -> None:
     strain = legendre_shapes(fine, LENGTH, 2).slope @ q[:2] * LENGTH
     tip = [np.mean((1 + strain) * f(angle)) * LENGTH for f in (np.cos, np.sin)]
     np.testing.assert_allclose(position[-1], [*tip, 0], atol=1e-7)  # the midpoint rule's own error
-    np.testing.assert_allclose(strains.about_y, 0, atol=1e-15)
+    np.testing.assert_allclose(strains[4], 0, atol=1e-15)
 
 
 def test_planar_and_spatial_forms_agree_in_either_plane() -> None:
@@ -110,17 +114,16 @@ def test_turning_the_bending_plane_of_a_round_beam_turns_the_field_and_keeps_the
 
 @pytest.mark.parametrize("seed", range(3))
 def test_exact_frame_is_the_integral_of_its_curvatures_without_torsion(seed: int) -> None:
-    """R' = R [κ]× with κ = (0, κ_y, κ_z) from `strains`, integrated independently, gives the same frame and tip."""
+    """R' = R [κ]× with κ = (0, κ_y, κ_z) from `strain`, integrated independently, gives the same frame and tip."""
     structure = exact(2, 3, 3)
     position, rotation, strains, _ = sampled(structure, bent(structure, seed, angle=0.5))
     x = nodes_of(structure)
-    kappa = (strains.axial, strains.about_y, strains.about_z)
-    axial, about_y, about_z = (BarycentricInterpolator(x, np.asarray(k)) for k in kappa)
+    stretch, about_y, about_z = (BarycentricInterpolator(x, strains[k]) for k in (0, 4, 5))
 
     def rates(s: float, y: np.ndarray) -> np.ndarray:
         R, ky, kz = y[3:].reshape(3, 3), about_y(s), about_z(s)
         bend = np.array([[0, -kz, ky], [kz, 0, 0], [-ky, 0, 0]])
-        return np.concatenate([(1 + axial(s)) * R[:, 0], (R @ bend).ravel()])
+        return np.concatenate([stretch(s) * R[:, 0], (R @ bend).ravel()])
 
     start = np.concatenate([np.zeros(3), np.eye(3).ravel()])
     end = solve_ivp(rates, (0, LENGTH), start, method="DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
@@ -135,7 +138,7 @@ def test_exact_field_is_smooth_through_small_angles() -> None:
 
     def tip(size: Any) -> Any:
         q = size * direction
-        return jnp.concatenate([structure.field.position(q)[-1], structure.field.strains(q).about_y[:1]])
+        return structure.field.positions(q)[-1]
 
     second = quickly_compiled(jax.jacfwd(jax.jacfwd(tip)))
     for switch in (1e-2, 1e-1):  # φ² = 1e-4 and 1e-2 at the tip
@@ -164,9 +167,10 @@ def test_projected_field_is_the_sum_of_shapes_and_the_foreshortening() -> None:
         for at in x
     ]
     for foreshortening in (True, False):
-        field = projected_field(LENGTH, quadrature(LENGTH, 20), x, counts, foreshortening=foreshortening)
+        rule, families = quadrature(LENGTH, 20), closed_forms(LENGTH, counts)
+        field = projected_field(rule, x, counts, families, foreshortening=foreshortening)
         wanted = np.stack([x + s - foreshortening * np.array(short), v, w], axis=1)
-        np.testing.assert_allclose(field.position(q), wanted, atol=1e-7)
+        np.testing.assert_allclose(field.places().positions(q), wanted, atol=1e-7)
 
 
 @pytest.mark.parametrize(
@@ -204,8 +208,8 @@ def test_projected_sections_follow_the_torsion_free_frame_to_second_order(moving
         return np.stack([unit, end, np.cross(unit, end)], axis=1)
 
     def error(scale: float) -> float:
-        rotation = sampled(structure, scale * q)[1][-2]
-        return float(np.abs(np.asarray(rotation) - torsion_free(scale * q)).max())
+        rotation = structure.field.rotation(scale * q)[-2]
+        return float(np.abs(rotation - torsion_free(scale * q)).max())
 
     assert error(0.1) / error(0.05) == pytest.approx(8, rel=0.3)
 
@@ -238,58 +242,52 @@ def test_displacement_history_is_that_of_its_moments() -> None:
             np.testing.assert_allclose(history[i], structure.displacement(q[i]), atol=1e-14)
 
 
-# --- Taylor polynomials at the straight beam
+# --- polynomials at the straight beam
+
+NODES = 8
+RULE = quadrature(LENGTH, NODES)
+POINTS = np.concatenate([RULE.node, [PLACE, LENGTH]])
+MOVE, TURN = SPRINGS.directions()
 
 
-def _fields() -> dict[str, Field]:
-    rule = quadrature(LENGTH, 6)
-    x = np.concatenate([rule.node, [PLACE, LENGTH]])
-    inner: dict[str, Field] = {
-        "FOAM": projected_field(LENGTH, rule, x, (1, 2, 2), foreshortening=True),
-        "TLAM": projected_field(LENGTH, rule, x, (1, 2, 2), foreshortening=False),
-        "exact": exact_field(LENGTH, rule, x, (1, 2, 2)),
-        "exact in a plane": exact_field(LENGTH, rule, x, (1, 2, 0)),
-    }
-    rooted = {
-        f"{name} on springs": RootedField(field, x, *SPRINGS.directions(), linear=name == "TLAM")
-        for name, field in inner.items()
-    }
-    return inner | rooted
+def projected(name: str) -> ProjectedField:
+    counts = (1, 2, 2)
+    return projected_field(RULE, POINTS, counts, closed_forms(LENGTH, counts), foreshortening=name == "FOAM")
 
 
-FIELDS = _fields()
+@pytest.mark.parametrize("rooted", [False, True], ids=["clamped", "on springs"])
+@pytest.mark.parametrize("name", ["FOAM", "TLAM"])
+def test_polynomials_are_the_derivatives_of_places_and_rotations(name: str, rooted: bool) -> None:
+    inner = projected(name)
+    field = RootedField(inner, POINTS, MOVE, TURN, linear=name == "TLAM") if rooted else inner
+    springs = MOVE.shape[1] if rooted else 0
 
+    def position(q: np.ndarray) -> np.ndarray:
+        """The root turns and moves what the inner field places; of TLAM to first order."""
+        beam, root = q[: len(q) - springs], q[len(q) - springs :]
+        r = inner.places().positions(beam)
+        if not rooted:
+            return r
+        return r @ rotation_matrix(TURN @ root).T + MOVE @ root
 
-@pytest.mark.parametrize("name", FIELDS)
-def test_polynomials_are_the_derivatives_of_places_rotations_and_strains(name: str) -> None:
-    field = FIELDS[name]
-    places, turns, slopes = field.places(), field.turns(), field.strain_slopes()
+    places, turns = field.places(), field.turns()
     zero = np.zeros(places.first.shape[-1])
-    np.testing.assert_allclose(places.r0, field.position(zero), atol=1e-12)
-    np.testing.assert_allclose(places.first, jacobian(field.position, zero), atol=1e-12)
-    np.testing.assert_allclose(places.second, hessian(field.position, zero), atol=1e-11)
+    np.testing.assert_allclose(places.r0, position(zero), atol=1e-12)
+    np.testing.assert_allclose(places.first, jacobian(position, zero), atol=1e-12)
+    if name == "FOAM":
+        np.testing.assert_allclose(places.second, hessian(position, zero), atol=1e-11)
+    else:
+        assert not places.second.any()
     np.testing.assert_allclose(field.rotation(zero), np.broadcast_to(np.eye(3), (len(places.r0), 3, 3)), atol=1e-15)
     np.testing.assert_allclose(turns.first, jacobian(field.rotation, zero), atol=1e-12)
     np.testing.assert_allclose(turns.second, hessian(field.rotation, zero), atol=1e-11)
-    for i, slope in enumerate(slopes):
-        if np.size(slope):
-            strain = jacobian(lambda q, i=i: field.strains(q)[i], zero)
-            np.testing.assert_allclose(slope, strain, atol=1e-12)
 
 
-@pytest.mark.parametrize("name", FIELDS)
-def test_a_field_at_some_points_is_the_field_there(name: str) -> None:
-    field = FIELDS[name]
-    at = np.array([2, 5, 7])
-    some, q = field.sampled(at), states(field.places().first.shape[-1], 1, 0.2, seed=4)[0]
-    np.testing.assert_allclose(some.position(q), field.position(q)[at], atol=1e-14)
-    np.testing.assert_allclose(some.rotation(q), field.rotation(q)[at], atol=1e-14)
-    np.testing.assert_allclose(some.places().second, field.places().second[at], atol=1e-14)
-
-
-def test_places_follow_their_polynomial() -> None:
+@pytest.mark.parametrize("order", [1, 2], ids=["linear", "with second derivatives"])
+def test_places_follow_their_polynomial(order: int) -> None:
     """Positions, velocities and accelerations along a path, by differentiating the path."""
-    places = FIELDS["exact on springs"].places()
+    places = projected("FOAM").places()
+    places = places if order == 2 else replace(places, second=None)
     q, qd, qdd = states(places.first.shape[-1], 3, 0.3, seed=6)
 
     def path(t: Any) -> Any:
@@ -302,20 +300,128 @@ def test_places_follow_their_polynomial() -> None:
     np.testing.assert_allclose(places.slopes(q), jacobian(places.positions, q), atol=1e-12)
 
 
+# --- the field of strains: all six, clamped and on springs, on the axis and off it
+
+FINE = quadrature(LENGTH, 20)
+
+
+def strained(plane: bool = False, springs: bool = True, offset: bool = True) -> StrainField:
+    """Field of two polynomials for each strain, or for stretch and one curvature, at the nodes and two points more."""
+    chosen = [0, 5] if plane else range(6)
+    count, extra = 2 * len(chosen), MOVE.shape[1] if springs else 0
+    strains = np.zeros((6, len(FINE.node), count + extra))
+    for i, k in enumerate(chosen):
+        strains[k, :, 2 * i : 2 * i + 2] = legendre_shapes(FINE.node, LENGTH, 2).slope
+    still = np.zeros((3, count))
+    root = (np.concatenate([still, each], axis=1) for each in (MOVE, TURN)) if springs else (None, None)
+    field = strain_field(FINE, np.append(FINE.node, [PLACE, LENGTH]), strains, *root)
+    arms = np.random.default_rng(3).normal(size=(len(field.cumulative), 3))
+    return replace(field, offset=arms) if offset else field
+
+
+FIELDS = {
+    "in space": strained(offset=False, springs=False),
+    "in space, on springs, off the axis": strained(),
+    "in a plane": strained(plane=True, springs=False),
+}
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_strain_fields_derivatives_are_those_of_places_and_rotations(name: str) -> None:
+    """First and second, about a state where sections turn by about a radian."""
+    field = FIELDS[name][-3:]
+    q = states(field.size, 1, 0.3, seed=4)[0]
+    places, rotation, turns = field.curved(q)
+    np.testing.assert_allclose(places.r0, field.positions(q), atol=1e-12)
+    np.testing.assert_allclose(rotation, field.rotation(q), atol=1e-12)
+    np.testing.assert_allclose(places.first, jacobian(field.positions, q), atol=LENGTH * SPECTRAL)
+    np.testing.assert_allclose(places.second, hessian(field.positions, q), atol=LENGTH * SPECTRAL)
+    np.testing.assert_allclose(turns.first, jacobian(field.rotation, q), atol=SPECTRAL)
+    np.testing.assert_allclose(turns.second, hessian(field.rotation, q), atol=SPECTRAL)
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_strain_fields_motions_are_those_of_their_places(name: str) -> None:
+    field = FIELDS[name][-3:]
+    q, qd, qdd = states(field.size, 3, 0.3, seed=6)
+
+    def path(t: Any) -> Any:
+        return field.positions(q + qd * t[0] + qdd * t[0] ** 2 / 2)
+
+    start = np.zeros(1)
+    derivatives = path(start), jacobian(path, start)[..., 0], hessian(path, start)[..., 0, 0]
+    for ours, theirs in zip(field.paths(q, qd, qdd), derivatives, strict=True):
+        np.testing.assert_allclose(ours, theirs, atol=LENGTH * SPECTRAL)
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_forces_come_back_as_motion_goes_out(name: str) -> None:
+    """Generalised forces are the transpose of the motion: F·δr + M·δθ, at one time and at many."""
+    field = FIELDS[name][-3:]
+    q = states(field.size, 4, 0.3, seed=7)
+    force, moment = np.random.default_rng(8).normal(size=(2, 4, 3, 3))
+    moved, angle = field.jacobians(q)
+    wanted = np.einsum("tpa,tpai->ti", force, moved) + np.einsum("tpa,tpai->ti", moment, angle)
+    np.testing.assert_allclose(field.along(q, split(force), split(moment)), wanted, atol=1e-11)
+    np.testing.assert_allclose(field.along(q[2], split(force[2]), split(moment[2])), wanted[2], atol=1e-11)
+
+
+@pytest.mark.parametrize("turns", [0.4, 3.0])
+def test_even_strains_make_a_helix(turns: float) -> None:
+    """Twist and both curvatures even along the beam: a screw, by the exponential of a matrix, however far it turns."""
+    field = strained(springs=False, offset=False)
+    strain = np.array([1.03, 0.02, -0.01, 0.3, -0.7, 0.6]) * np.where(np.arange(6) < 3, 1, turns * 2 * np.pi / LENGTH)
+    q = np.zeros(field.size)
+    q[::2] = (strain - field.rest[:, -1]) * LENGTH
+    x, y, z = strain[3:]
+    rate = np.zeros((4, 4))
+    rate[:3, :3], rate[:3, 3] = [[0, -z, y], [z, 0, -x], [-y, x, 0]], strain[:3]
+    for at, r, rotation in zip([PLACE, LENGTH], field.positions(q)[-2:], field.rotation(q)[-2:], strict=True):
+        end = expm(rate * at)
+        tolerance = 1e-9 if turns < 1 else 1e-4  # steps of a tenth of a turn
+        np.testing.assert_allclose(r, end[:3, 3], atol=LENGTH * tolerance)
+        np.testing.assert_allclose(rotation, end[:3, :3], atol=tolerance)
+
+
+def test_steps_along_the_beam_are_of_sixth_order() -> None:
+    """Frames of curvatures that differ along the beam, by the order at which their error falls with the nodes."""
+    q = states(6, 1, 1.0, seed=2)[0]
+
+    def frame(nodes: int) -> np.ndarray:
+        rule = quadrature(LENGTH, nodes)
+        strains = np.zeros((6, nodes, 6))
+        for i, k in enumerate((3, 4, 5)):
+            strains[k, :, 2 * i : 2 * i + 2] = legendre_shapes(rule.node, LENGTH, 2).slope * 2
+        return strain_field(rule, np.array([LENGTH]), strains).rotation(q)[-1]
+
+    truth, sizes = frame(120), np.array([6, 12])
+    coarse, fine = (np.abs(frame(nodes) - truth).max() for nodes in sizes)
+    assert np.log2(coarse / fine) == pytest.approx(6, abs=1.5)
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_a_field_at_some_points_is_the_field_there(name: str) -> None:
+    field, at = FIELDS[name], np.array([2, 5, 7])
+    q = states(field.size, 1, 0.2, seed=4)[0]
+    np.testing.assert_allclose(field[at].positions(q), field.positions(q)[at], atol=1e-14)
+    np.testing.assert_allclose(field[at].rotation(q), field.rotation(q)[at], atol=1e-14)
+    np.testing.assert_allclose(field.rotation(q, at), field.rotation(q)[at], atol=1e-14)
+
+
 def test_a_field_is_the_same_under_jax() -> None:
     """The same lines serve JAX's arrays: positions and rotations compiled, and their derivatives by JAX."""
-    field = FIELDS["exact in a plane on springs"]
-    q = states(field.places().first.shape[-1], 1, 0.2, seed=5)[0]
+    field = FIELDS["in a plane"][-2:]
+    q = states(field.size, 1, 0.2, seed=5)[0]
 
     @quickly_compiled
-    def compiled(field: Field, q: Any) -> Any:
+    def compiled(field: StrainField, q: Any) -> Any:
         def both(q: Any) -> Any:
-            return field.position(q), field.rotation(q)
+            return field.positions(q), field.rotation(q)
 
         return both(q), jax.jacfwd(both)(q)
 
     (r, R), (dr, dR) = compiled(field, q)
-    np.testing.assert_allclose(r, field.position(q), atol=1e-13)
+    np.testing.assert_allclose(r, field.positions(q), atol=1e-13)
     np.testing.assert_allclose(R, field.rotation(q), atol=1e-13)
-    np.testing.assert_allclose(dr, jacobian(field.position, q), atol=1e-12)
+    np.testing.assert_allclose(dr, jacobian(field.positions, q), atol=1e-12)
     np.testing.assert_allclose(dR, jacobian(field.rotation, q), atol=1e-12)

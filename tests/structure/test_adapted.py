@@ -58,7 +58,7 @@ def test_axial_shapes_with_a_tip_mass() -> None:
 def test_they_keep_the_closed_forms_normalisation_and_sign() -> None:
     plain = assemble(Beam(LENGTH, BOX, METAL), Model("CFOAM", 2, 3, 3))
     adapted = assemble(Beam(LENGTH, BOX, METAL), Model("CFOAM", 2, 3, 3, "adapted"))
-    for name in ("shapes", "slopes", "node_slope_s"):
+    for name in ("shapes", "slopes", "node_slopes"):
         np.testing.assert_allclose(getattr(adapted.field, name), getattr(plain.field, name), atol=1e-8)
 
 

@@ -12,15 +12,15 @@ from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import NODES, refuse_more
-from gbeam.mechanics.equations.inertia import Elasticity, Inertia, weighed
+from gbeam.mechanics.equations.inertia import inertia_of
 from gbeam.mechanics.equations.linear import coefficients, damping_matrix
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.adapted import adapted_shapes
-from gbeam.mechanics.fields.basis import Families, Quadrature, quadrature
-from gbeam.mechanics.fields.exact import exact_field
+from gbeam.mechanics.fields.basis import Families, Quadrature, closed_forms, polynomials, quadrature
 from gbeam.mechanics.fields.projected import projected_field
-from gbeam.mechanics.fields.rooted import RootedField
-from gbeam.mechanics.fields.rotation import Field, Strains
+from gbeam.mechanics.fields.rooted import Field, RootedField
+from gbeam.mechanics.fields.strains import StrainField, bending_strains, strain_field
+from gbeam.mechanics.fields.taylor import Places, Polynomials
 from gbeam.mechanics.models import KINDS, Kind, Model
 from gbeam.mechanics.structure import Sections, Source, Structure
 from gbeam.motion.profiles.piecewise import constant
@@ -102,25 +102,34 @@ def assembled(
     bodies = [m.at for m in beam.masses]
     loaded = [load.at for load in beam.loads if load.at is not None]
     x = np.concatenate([rule.node, bodies, loaded, at])
+    move, turn = beam.root.directions()
+    springs = [*beam.root.springs.values()]
+    still = np.zeros((3, sum(counts)))
+    move, turn = (np.concatenate([still, each], axis=1) for each in (move, turn))
+    shapes_of = families or (polynomials if row.exact else closed_forms)(beam.length, counts)
+    strains = np.pad(bending_strains(rule, counts, shapes_of), ((0, 0), (0, 0), (0, len(springs))))
+    field: Field
     if row.exact:
-        field: Field = exact_field(beam.length, rule, x, counts, families)
+        field = strain_field(rule, x, strains, move, turn)
     else:
-        field = projected_field(beam.length, rule, x, counts, foreshortening=row.foreshortening, families=families)
-    springs = beam.root.springs
-    if springs:
-        field = RootedField(field, x, *beam.root.directions(), linear=not row.foreshortening)
-    inertia, station = _inertia(beam, field, rule)
-    elasticity = Elasticity(field, _rigidity(beam, rule))
+        field = projected_field(rule, x, counts, shapes_of, foreshortening=row.foreshortening)
+        if springs:
+            field = RootedField(field, x, *beam.root.directions(), linear=not row.foreshortening)
+    particles, mass, station = particles_of(beam, field, rule)
+    inertia = inertia_of(particles, mass)
+    stiffness = stiffness_of(beam, rule, strains)
     history = _history(beam)
     work, loaded_at = None, np.zeros(0, int)
     if beam.loads:
         work, loaded_at = load_work(beam, field, rule, len(rule.node) + len(bodies))
-    places = inertia.places()
+    rest = np.zeros(len(stiffness))
+    places, geometric = inertia.about(rest)
     c = coefficients(
-        inertia.mass,
+        mass,
         places,
-        elasticity.stiffness(),
-        loads=None if work is None else work.first_order(len(beam.loads)),
+        stiffness,
+        geometric=geometric,
+        loads=None if work is None else work.about(len(beam.loads), rest),
     )
     first_station, ratio = len(rule.node) + len(bodies) + len(loaded), beam.damping_ratio
     return Structure(
@@ -129,16 +138,15 @@ def assembled(
         hub_force=row.hub_force,
         counts=counts,
         length=beam.length,
-        mass=inertia.mass,
+        mass=mass,
         places=places,
         stations=at,
-        station_places=field.places()[first_station:],
+        station_places=places_at_rest(field, slice(first_station, None)),
         coefficients=c.damped(damping_matrix(0.0 if ratio is None else ratio, c.mass, c.stiffness)),
-        weighed=weighed(inertia),
-        elasticity=elasticity,
+        inertia=inertia,
         field=field,
         first_station=first_station,
-        sections=sections_of(beam, at, field, (inertia.mass, station), loaded_at, first_station),
+        sections=sections_of(beam, at, rule.cumulative(x), (mass, station), loaded_at, first_station),
         history=history,
         work=work,
         load_values=None if history is None else history(np.zeros(())),
@@ -190,8 +198,16 @@ def _stations(beam: Beam, stations: ArrayLike) -> Array:
     return np.append(positions[positions < beam.length], beam.length)
 
 
-def _inertia(beam: Beam, field: Field, rule: Quadrature) -> tuple[Inertia, Array]:
-    """The beam's quadrature points and its bodies' particles, and the index of each one's point in the field."""
+def places_at_rest(field: Field, at: Any) -> Places:
+    """Places of some of a field's points about the straight beam, (p, 3); of an exact field to first order."""
+    if isinstance(field, StrainField):
+        some, rest = field[at], np.zeros(field.size)
+        return Places(some.positions(rest), some.slopes(rest))
+    return field.places()[at]
+
+
+def particles_of(beam: Beam, field: Field, rule: Quadrature) -> tuple[StrainField | Places, Array, Array]:
+    """The beam's quadrature points and its bodies' particles: their field, their masses kg, and each one's point."""
     nodes, area = len(rule.node), beam.section.at(rule.node).area
     station, mass, offset = [np.arange(nodes)], [beam.material.density * area * rule.weight], [np.zeros((nodes, 3))]
     for k, body in enumerate(beam.masses):
@@ -201,20 +217,28 @@ def _inertia(beam: Beam, field: Field, rule: Quadrature) -> tuple[Inertia, Array
         offset.append(places)
     xp = namespace(*mass, *offset)
     off_axis = xp is not np or any(place.any() for place in offset)
-    at = np.concatenate(station)
-    return Inertia(field.sampled(at), xp.concatenate(mass), xp.concatenate(offset) if off_axis else None), at
+    at, arm = np.concatenate(station), xp.concatenate(offset)
+    if isinstance(field, StrainField):
+        particles: StrainField | Places = replace(field[at], offset=arm if off_axis else None)
+    else:
+        axis = field.places()[at]
+        particles = field.turns()[at].carry(axis, arm) if off_axis else axis
+    return particles, xp.concatenate(mass), at
 
 
-def _rigidity(beam: Beam, rule: Quadrature) -> Strains:
-    """EA, EI_y, EI_z times the quadrature's weights, and the springs of the root."""
+def stiffness_of(beam: Beam, rule: Quadrature, strains: Array) -> Array:
+    """Second derivatives (n, n) of the energy ½ ∫ EA ε² + EI_y κ_y² + EI_z κ_z² dx + ½ Σ k s² of strains (6, g, n), the
+    root's springs last (2009 (10); 2020 (8), corrected).
+    """
     springs = [*beam.root.springs.values()]
     axial, about_y, about_z = beam.rigidities(rule.node)
-    return Strains(
-        axial * rule.weight,
-        about_y * rule.weight,
-        about_z * rule.weight,
-        namespace(*springs).asarray(springs, dtype=float) if springs else np.zeros(0),
-    )
+    parts = []
+    for rigidity, shapes in zip((axial, about_y, about_z), strains[[0, 4, 5]], strict=True):
+        parts.append(shapes.T @ ((rigidity * rule.weight)[:, None] * shapes))
+    xp = namespace(*springs, *parts)
+    n = strains.shape[2]
+    held = xp.concatenate([np.zeros(n - len(springs)), xp.asarray(springs, dtype=float)])
+    return sum(parts[1:], start=parts[0]) + xp.diag(held)
 
 
 def _history(beam: Beam) -> LoadHistory | None:
@@ -242,19 +266,21 @@ def load_work(beam: Beam, field: Field, rule: Quadrature, first: int) -> tuple[L
         which.append(np.full(len(station[-1]), k))
     at, of_load = np.concatenate(station), np.concatenate(which)
     follower = np.array([load.follower for load in beam.loads])[of_load]
-    return LoadWork(field.sampled(at), of_load, np.concatenate(weight), follower), at
+    loaded = field[at] if isinstance(field, StrainField) else Polynomials(field.places()[at], field.turns()[at])
+    return LoadWork(loaded, of_load, np.concatenate(weight), follower), at
 
 
 def sections_of(
     beam: Beam,
     at: Array,
-    field: Field,
+    until: Array,
     particles: tuple[Array, Array],
     loaded: Array,
     first: int,
 ) -> Sections:
-    """Sections at the root, on the base's side of its springs, and at the stations, with what is outboard of each."""
-    until = np.asarray(field.cumulative)
+    """Sections at the root, on the base's side of its springs, and at the stations, with what is outboard of each;
+    `until` (points, g) integrates from the root to the field's points.
+    """
     nodes = until.shape[1]
     weight, x = until[-1], until.sum(axis=1)  # the tip is the last point: the whole integral
     share = 1 - np.concatenate([np.zeros((1, nodes)), until[first:]]) / weight

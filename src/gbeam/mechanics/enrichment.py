@@ -221,7 +221,7 @@ class Enrichment:
                 np.arange(springs) + starts[-1],
             ]
         )
-        return replace(rich, compiled=False), index.astype(int)
+        return rich, index.astype(int)
 
 
 def own_families(structure: Structure, beam: Beam, rule: Quadrature) -> Families:

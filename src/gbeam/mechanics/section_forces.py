@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import is_jax, namespace
-from gbeam.mechanics.equations.sampled import paths
-from gbeam.mechanics.fields.rotation import cross, skew
+from gbeam.mechanics.fields.components import cross, joined, split
+from gbeam.mechanics.fields.rotation import skew
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
@@ -28,7 +28,7 @@ from gbeam.results.response import BaseMotion
 from gbeam.structure.section import extreme_stresses, worst_fibre
 
 Array = Any
-_BLOCK = 256  # times handled together: what stays in a cache, and one compiled shape for complete models
+_BLOCK = 256  # times handled together: what stays in a cache
 
 
 def section_forces(
@@ -86,15 +86,12 @@ def sections(
     qd: Array,
     qdd: Array,
     values: Array | None,
-    *,
-    compiled: bool = True,
 ) -> tuple[Array, ...]:
     """Force and moment (t, s, 3) in base and in section axes, and acceleration (or specific force), at `outboard` over
     times.
     """
     count = outboard.mass.shape[0] - 1
-    moving = _of_polynomial if structure.linear else _of_field if compiled else _of_samples
-    particles, stations, turned, loaded = moving(structure, count, q, qd, qdd)
+    particles, stations = structure.particles.paths(q, qd, qdd), structure.output[-count:].paths(q, qd, qdd)
     xp = namespace(q, particles[0], base.a_WO_B)
     root = (xp.zeros_like(stations[0][:, :1]),) * 3
     stations = tuple(xp.concatenate(pair, axis=1) for pair in zip(root, stations, strict=True))
@@ -103,60 +100,21 @@ def sections(
     mass = xp.asarray(outboard.mass)
     force, about_root = -mass @ a_particles, -mass @ _cross(xp, particles[0], a_particles)
     if structure.work is not None and values is not None:
-        at, rotation = loaded
-        pull, turn = structure.work.forces(rotation, values)
+        loaded = structure.work.field
+        pull, turn = structure.work.forces(loaded.rotation(q), values)
         share = xp.asarray(outboard.loaded)
-        force, about_root = force + share @ pull, about_root + share @ (_cross(xp, at, pull) + turn)
+        force, about_root = force + share @ pull, about_root + share @ (_cross(xp, loaded.positions(q), pull) + turn)
     moment = about_root - _cross(xp, stations[0], force)
-    unturned = xp.broadcast_to(xp.eye(3), (*turned.shape[:1], 1, 3, 3))
-    rotation = xp.concatenate([unturned, turned], axis=1)
+    straight = xp.broadcast_to(xp.eye(3), (len(q), 1, 3, 3))
+    turned = xp.broadcast_to(xp.eye(3), (len(q), count, 3, 3))
+    if structure.field is not None:
+        turned = structure.field.rotation(q, slice(-count, None))
+    rotation = xp.concatenate([straight, turned], axis=1)
 
     def inward(vectors: Array) -> Array:
         return xp.einsum("tsji,tsj->tsi", rotation, vectors)
 
     return force, moment, inward(force), inward(moment), a_stations
-
-
-def _of_polynomial(structure: Structure, count: int, q: Array, qd: Array, qdd: Array) -> tuple[Any, ...]:
-    """Paths of particles and of the last `count` stations, rotations there, places and rotations of loaded points."""
-    particles, stations = structure.places.paths(q, qd, qdd), structure.station_places[-count:].paths(q, qd, qdd)
-    if structure.field is None:
-        xp = namespace(q)
-        return particles, stations, xp.broadcast_to(xp.eye(3), (len(q), count, 3, 3)), None
-    loaded = None
-    if structure.work is not None:
-        loaded = structure.load_places.positions(q), structure.work.field.rotation(q)
-    return particles, stations, structure.field.rotation(q, slice(-count, None)), loaded
-
-
-def _of_field(structure: Structure, count: int, q: Array, qd: Array, qdd: Array) -> tuple[Any, ...]:
-    """Motions of a complete field's points, by JAX; by NumPy where nothing moves."""
-    if not is_jax(q) and not np.any(qd) and not np.any(qdd):
-        return _of_samples(structure, count, q, qd, qdd)
-    from gbeam.mechanics.equations.dalembert import paths as compiled_paths
-
-    assert structure.field is not None
-    traced, size = is_jax(q), len(q)
-    padded = [x if traced else np.concatenate([x, np.repeat(x[-1:], -size % _BLOCK, axis=0)]) for x in (q, qd, qdd)]
-    stations = structure.field.sampled(slice(-count, None))
-    particles, points = compiled_paths(structure.inertia, stations, *padded)
-    if not traced:
-        particles, points = (tuple(np.asarray(x)[:size] for x in each) for each in (particles, points))
-    loaded = None
-    if structure.work is not None:
-        loaded = structure.work.field.position(q), structure.work.field.rotation(q)
-    return particles, points, stations.rotation(q), loaded
-
-
-def _of_samples(structure: Structure, count: int, q: Array, qd: Array, qdd: Array) -> tuple[Any, ...]:
-    """Motions of a complete field's points by NumPy."""
-    assert structure.field is not None and structure.inertia is not None
-    stations = structure.field.sampled(slice(-count, None))
-    particles, points = (paths(place, q, qd, qdd) for place in (structure.inertia.positions, stations.position))
-    loaded = None
-    if structure.work is not None:
-        loaded = structure.work.field.position(q), structure.work.field.rotation(q)
-    return particles, points, stations.rotation(q), loaded
 
 
 def absolute_accelerations(xp: Any, base: Base, r: Array, rd: Array, rdd: Array) -> Array:
@@ -171,7 +129,7 @@ def absolute_accelerations(xp: Any, base: Base, r: Array, rd: Array, rdd: Array)
 
 def _cross(xp: Any, left: Array, right: Array) -> Array:
     """left × right, (..., 3)."""
-    return xp.stack(cross(*(xp.moveaxis(each, -1, 0) for each in (left, right))), axis=-1)
+    return joined(xp, cross(split(left), split(right)), np.broadcast_shapes(left.shape[:-1], right.shape[:-1]))
 
 
 def about_the_hub(loads: Loads, motion: Motion | None, alpha_WB_B: Array) -> Loads:

@@ -7,29 +7,28 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import holds_jax, is_jax, namespace
+from gbeam.arrays.namespace import holds_jax, is_jax
 from gbeam.arrays.tree import Value, record, static
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
-from gbeam.mechanics.equations import sampled
+from gbeam.mechanics.equations.dalembert import Complete, CompleteHub
 from gbeam.mechanics.equations.hub import FreeHub, free_hub, ground_of
+from gbeam.mechanics.equations.inertia import Inertia
 from gbeam.mechanics.equations.linear import (
     Coefficients,
     Geometric,
-    LoadTerms,
     coefficients,
     damping_matrix,
     rest_modes,
 )
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
-from gbeam.mechanics.fields.rotation import Field
+from gbeam.mechanics.fields.rooted import Field
+from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.numerics.eigen import positive_definite
 
 if TYPE_CHECKING:
-    from gbeam.mechanics.equations.dalembert import Complete, CompleteHub
-    from gbeam.mechanics.equations.inertia import Elasticity, Inertia, Weighed
     from gbeam.structure.beam import Beam
 
 Array = Any
@@ -80,8 +79,8 @@ class Structure:
         Of the stations.
     coefficients : Coefficients
         Of the linear equations about the straight structure.
-    weighed, elasticity : Weighed and Elasticity, or None
-        Of a displacement field: particles and strain energy without truncation; None for a structure of particles.
+    inertia : Inertia or None
+        Particles of a displacement field, without truncation; None for a structure of particles.
     field : Field or None
         Its points are the quadrature nodes, the bodies, the loaded points and the stations.
     first_station : int
@@ -100,8 +99,6 @@ class Structure:
         What is implausible in the beam; every result has them.
     source : Source or None
         What it was made of; None for a structure of particles, whose errors of shapes and model are unknown.
-    compiled : bool
-        Whether a complete model is expanded by JAX, to rounding; else by NumPy, to nine digits.
 
     Examples
     --------
@@ -122,8 +119,7 @@ class Structure:
     stations: Array
     station_places: Places
     coefficients: Coefficients
-    weighed: Weighed | None = None
-    elasticity: Elasticity | None = None
+    inertia: Inertia | None = None
     field: Field | None = None
     first_station: int = static(default=0)
     sections: Sections | None = None
@@ -133,7 +129,6 @@ class Structure:
     damping_ratio: Any = None
     warnings: tuple[str, ...] = static(default=())
     source: Source | None = static(default=None)
-    compiled: bool = static(default=True)
 
     def __repr__(self) -> str:
         shapes = ", ".join(f"{n} {way}" for n, way in zip(self.counts, ("axial", "y", "z"), strict=True) if n)
@@ -236,11 +231,6 @@ class Structure:
         return is_jax(c.mass) or is_jax(c.damping) or is_jax(c.stiffness)
 
     @property
-    def inertia(self) -> Inertia | None:
-        """The particles of the displacement field; None for a structure of particles."""
-        return None if self.weighed is None else self.weighed.inertia
-
-    @property
     def holds_jax(self) -> bool:
         """Whether any array of it is JAX's, or traced by it."""
         return holds_jax(self)
@@ -250,11 +240,8 @@ class Structure:
         """The equations of motion on a prescribed base."""
         if self.linear:
             return self.coefficients
-        from gbeam.mechanics.equations.dalembert import Complete
-
-        assert self.weighed is not None and self.elasticity is not None
-        stiffness = self.coefficients.stiffness if self.elasticity.field.linear_strains else None
-        return Complete(self.weighed, self.elasticity, self.coefficients.damping, stiffness, self.work)
+        assert self.inertia is not None
+        return Complete(self.inertia, self.coefficients.damping, self.coefficients.stiffness, self.work)
 
     def on_free_hub(self, hub: Any) -> FreeHub | CompleteHub:
         """The equations with the angle of a free hub as one more coordinate.
@@ -265,8 +252,6 @@ class Structure:
         """
         if self.linear:
             return free_hub(self.coefficients, hub.mount, ground_of(hub), hub_force=self.hub_force)
-        from gbeam.mechanics.equations.dalembert import CompleteHub
-
         return CompleteHub(self.equations, hub.mount, ground_of(hub))  # type: ignore[arg-type]
 
     def about(self, q: Array) -> tuple[Coefficients, Array]:
@@ -274,31 +259,11 @@ class Structure:
         c = self.coefficients
         if self.linear:
             return c, c.stiffness @ q
-        assert self.inertia is not None and self.elasticity is not None
-        if not self.compiled:
-            return self._expanded(q)
-        from gbeam.mechanics.equations.compiled import elastic_about, loads_about, places_about
-
-        xp = namespace(c.mass, q)
-        places = Places(*(xp.asarray(x) for x in places_about(self.inertia, q)))
-        elastic, stiffness = c.stiffness @ q, c.stiffness
-        if not self.elasticity.field.linear_strains:
-            elastic, stiffness = (xp.asarray(x) for x in elastic_about(self.elasticity, q))
-        loads = None
-        if self.work is not None:
-            loads = LoadTerms(*(xp.asarray(x) for x in loads_about(self.work, q, self.load_values)))
-        return coefficients(self.mass, places, stiffness, damping=c.damping, loads=loads), elastic
-
-    def _expanded(self, q: Array) -> tuple[Coefficients, Array]:
-        """Expand a complete model by NumPy."""
-        assert self.inertia is not None and self.elasticity is not None
-        c = self.coefficients
-        elastic, stiffness = sampled.elastic_about(self.elasticity, q, c.stiffness)
-        loads = None
-        if self.work is not None and self.load_values is not None:
-            loads = LoadTerms(*sampled.loads_about(self.work, q, len(self.load_values)))
-        places = Places(*sampled.places_about(self.inertia, q))
-        return coefficients(self.mass, places, stiffness, damping=c.damping, loads=loads), elastic
+        assert self.inertia is not None
+        places, geometric = self.inertia.about(q)
+        loads = None if self.work is None or self.load_values is None else self.work.about(len(self.load_values), q)
+        about = coefficients(self.mass, places, c.stiffness, damping=c.damping, geometric=geometric, loads=loads)
+        return about, c.stiffness @ q
 
     @property
     def rest(self) -> tuple[Array, Array]:
@@ -310,21 +275,21 @@ class Structure:
         return self if self.history is None else replace(self, load_values=self.history(np.asarray(float(time))))
 
     @property
-    def load_places(self) -> Places:
-        """Places of the loaded points, to second order."""
-        assert self.work is not None
-        return self.work.field.places()
+    def particles(self) -> StrainField | Places:
+        """Places of the particles: an exact field, or polynomials."""
+        return self.places if self.linear or self.inertia is None else self.inertia.field
+
+    @property
+    def output(self) -> StrainField | Places:
+        """Places of the stations: an exact field, or polynomials."""
+        if isinstance(self.field, StrainField):
+            return self.field[self.first_station :]
+        return self.station_places
 
     @property
     def axes_without_shapes(self) -> tuple[int, ...]:
         """Axes across the beam, 1 for y and 2 for z, along which no station moves."""
         return tuple(axis for axis in (1, 2) if not np.any(self.station_places.first[:, axis]))
-
-    @property
-    def station_field(self) -> Field:
-        """The field at the stations."""
-        assert self.field is not None
-        return self.field.sampled(slice(self.first_station, None))
 
     def strain_energy(self, q: Array) -> Array:
         """Strain energy at coordinates `q` (n,), J."""
@@ -332,24 +297,12 @@ class Structure:
 
     def station_slopes(self, q: Array) -> Array:
         """Derivatives of the stations' places with respect to coordinates `q` (n,), (s, 3, n)."""
-        if self.linear:
-            return self.station_places.slopes(q)
-        if is_jax(q):
-            import jax
-
-            return jax.jacfwd(self.station_field.position)(q)
-        return sampled.slopes(self.station_field.position, q)
+        return self.output.slopes(q)
 
     def displacement(self, q: Array) -> Array:
         """Displacement of the stations relative to the base axes at coordinates `q` (..., n), (..., s, 3) m."""
-        if self.linear:
-            return self.station_places.positions(q) - self.station_places.r0
-        return self.station_field.position(q) - self.station_places.r0
+        return self.output.positions(q) - self.station_places.r0
 
     def tip(self, q: Array) -> Array:
         """Displacement of the tip, the last station, likewise at coordinates `q` (..., n), (..., 3) m."""
-        last = self.station_places[-1:]
-        if self.linear:
-            return (last.positions(q) - last.r0)[..., 0, :]
-        assert self.field is not None
-        return (self.field.sampled(slice(-1, None)).position(q) - last.r0)[..., 0, :]
+        return (self.output[-1:].positions(q) - self.station_places.r0[-1:])[..., 0, :]

@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.integrate.equations import LinearTerms
-from gbeam.mechanics.assembly import load_work, sections_of
+from gbeam.mechanics.assembly import load_work, places_at_rest, sections_of
 from gbeam.mechanics.enrichment import enrichment, own_families
-from gbeam.mechanics.equations.linear import LoadTerms, coefficients, damping_matrix, geometric_of
+from gbeam.mechanics.equations.inertia import inertia_of
+from gbeam.mechanics.equations.linear import LoadTerms, coefficients, damping_matrix
 from gbeam.mechanics.equations.virtual_work import LoadWork
 from gbeam.mechanics.fields.basis import Families, Quadrature
-from gbeam.mechanics.fields.strained import StrainedField
-from gbeam.mechanics.fields.taylor import Places
+from gbeam.mechanics.fields.strains import StrainField, strain_field
 from gbeam.mechanics.structure import Structure
 from gbeam.structure.beam import Beam
 
@@ -132,11 +132,11 @@ class _Parts:
         self.cumulative, self.at_nodes = rule.cumulative(self.points), rule.cumulative(x)
         self.move, self.turn = beam.root.directions()
 
-    def field(self, strains: Array) -> StrainedField:
+    def field(self, strains: Array) -> StrainField:
         """The field of shapes with some strains (m, n)."""
         nodal, root = np.split(strains, [6 * len(self.rule.node)])
         shaped = nodal.reshape(6, -1, strains.shape[1])
-        return StrainedField(self.points, self.cumulative, self.at_nodes, shaped, self.move @ root, self.turn @ root)
+        return strain_field(self.rule, self.points, shaped, self.move @ root, self.turn @ root)
 
     def particles(self, *, thick: bool) -> tuple[Array, Array, Array]:
         """Point, mass and offset of every particle; of a thick beam's section four have its rotary inertia."""
@@ -172,8 +172,8 @@ class _Parts:
             return self.pulled(onto @ each, onto @ np.cross(arm, each, axis=0))
 
         def of(strains: Array) -> Array:
-            field = self.field(strains)
-            return inertia(field.displacements(), field.angles(self.cumulative))
+            moved, turned = self.field(strains).jacobians(np.zeros(strains.shape[1]))
+            return inertia(np.moveaxis(moved, 0, 1), np.moveaxis(turned, 0, 1))
 
         still = np.zeros((3, len(self.points), 3))
         even = still + np.eye(3)[:, None]
@@ -191,9 +191,9 @@ class _Parts:
             answers.append(flexibility * of(answers[-1]))
         return np.concatenate(answers, axis=1)
 
-    def work(self, field: StrainedField) -> tuple[LoadWork, Any]:
+    def work(self, field: StrainField) -> tuple[LoadWork, Any]:
         """The loads on a field, and the points where they act."""
-        return load_work(self.beam, field, self.rule, self.first)  # type: ignore[arg-type]
+        return load_work(self.beam, field, self.rule, self.first)
 
     def theory(self, families: Families) -> Theory:
         """Both theories, with own shapes."""
@@ -203,20 +203,19 @@ class _Parts:
         blocks += [self.others(answers, family) for family in (SHEAR, TWIST)]
         ends = np.cumsum([0, *(block.shape[1] for block in blocks)]).tolist()
         thick, slender = np.concatenate(blocks, axis=1), blocks[0]
-        field, count, nodes = self.field(thick), len(self.beam.masses), len(self.rule.node)
-        bodies = slice(nodes, nodes + count)
-        offset = np.array([body.offset for body in self.beam.masses]).reshape(count, 3)
-        arms = np.cross(field.angles(self.cumulative[bodies]), offset.T[..., None], axis=0)
+        nodes = len(self.rule.node)
+        bodies = self.field(thick)[nodes : nodes + len(self.beam.masses)]
+        offset = np.array([body.offset for body in self.beam.masses]).reshape(-1, 3)
         _, about_y, about_z = self.beam.rigidities(self.rule.node)
         models = self.model(slender, thick=False), self.model(thick, thick=True)
         count_own = strains.shape[1]
         return Theory(
             *models,
             {"shear": slice(ends[1], ends[2]), "twist": slice(ends[2], ends[3])},
-            field.strains[4:],
+            thick[4 * nodes : 6 * nodes].reshape(2, nodes, -1),
             np.stack([about_y, about_z]) * self.rule.weight,
             self.rule.node,
-            np.moveaxis(field.displacements()[:, bodies] + arms, 0, 1),
+            replace(bodies, offset=offset).slopes(np.zeros(thick.shape[1])),
             self.beam,
             count_own,
             _beyond(*models, count_own),
@@ -251,20 +250,15 @@ class _Parts:
 
     def model(self, strains: Array, *, thick: bool) -> Structure:
         """The linear structure with shapes of some strains (m, n)."""
-        structure, beam = self.structure, self.beam
+        structure, beam, rest = self.structure, self.beam, np.zeros(strains.shape[1])
         field, (at, mass, offset) = self.field(strains), self.particles(thick=thick)
-        axis = field.places()
-        angles = np.moveaxis(field.angles(self.cumulative), 0, 1)
-        places = Places(axis.r0[at] + offset, axis.first[at] + np.cross(angles[at], offset[..., None], axis=1))
-        weights = np.stack([mass, *(mass * places.r0.T)])
-        onto = (at == np.arange(len(self.points))[:, None]).T
-        bent = field.weighted(weights @ onto, np.einsum("kp,pc,pi->kci", weights, offset, onto))
+        places, geometric = inertia_of(replace(field[at], offset=offset), mass).about(rest)
         stiffness = strains.T @ (np.where(self.known, self.stiffness, 0.0)[:, None] * strains)
         work, loaded, loads = None, np.zeros(0, int), None
         if beam.loads:
             work, loaded = self.work(field)
             loads = _load_terms(work, field, loaded, len(beam.loads))
-        c = coefficients(mass, places, stiffness, geometric=geometric_of(bent[0], bent[1:]), loads=loads)
+        c = coefficients(mass, places, stiffness, geometric=geometric, loads=loads)
         ratio: Any = beam.damping_ratio
         if isinstance(ratio, tuple):
             ratio = (*ratio, *[ratio[-1]] * (strains.shape[1] - len(ratio)))
@@ -275,13 +269,12 @@ class _Parts:
             hub_force=True,
             mass=mass,
             places=places,
-            station_places=axis[self.first_station :],
+            station_places=places_at_rest(field, slice(self.first_station, None)),
             coefficients=c.damped(damping_matrix(0.0 if ratio is None else ratio, c.mass, c.stiffness)),
-            weighed=None,
-            elasticity=None,
-            field=field,  # type: ignore[arg-type]
+            inertia=None,
+            field=field,
             first_station=self.first_station,
-            sections=sections_of(beam, structure.stations, field, (mass, at), loaded, self.first_station),  # type: ignore[arg-type]
+            sections=sections_of(beam, structure.stations, self.cumulative, (mass, at), loaded, self.first_station),
             work=work,
             source=None,
             warnings=(),
@@ -303,12 +296,10 @@ def _beyond(slender: Structure, thick: Structure, count: int) -> tuple[Array, Li
     return difference(few.mass, more.mass), LinearTerms(velocity, stiffness, force)
 
 
-def _load_terms(work: LoadWork, field: StrainedField, at: Array, count: int) -> LoadTerms:
+def _load_terms(work: LoadWork, field: StrainField, at: Array, count: int) -> LoadTerms:
     """The generalised forces of the loads to first order: of some points at a time."""
     parts = []
     for some in np.array_split(np.arange(len(at)), -(-len(at) // CHUNK)):
-        places, turns = field.sampled(at[some]).curved()
-        straight = np.broadcast_to(np.eye(3), (len(some), 3, 3))
-        acting = LoadWork(work.field, work.load[some], work.weight[some], work.follower[some])
-        parts.append(acting.about(count, places, straight, turns.first, turns.second))
+        acting = LoadWork(field[at[some]], work.load[some], work.weight[some], work.follower[some])
+        parts.append(acting.about(count, np.zeros(field.size)))
     return LoadTerms(sum(part.constant for part in parts), sum(part.slope for part in parts))

@@ -15,9 +15,7 @@ from numpy.typing import NDArray
 from gbeam.integrate.driver import integrate
 from gbeam.integrate.equations import LinearEquations, LinearTerms
 from gbeam.integrate.schemes import gauss
-from gbeam.mechanics.equations import sampled
-from gbeam.mechanics.equations.hub import FreeHub, ground_of
-from gbeam.mechanics.section_forces import absolute_accelerations
+from gbeam.mechanics.equations.hub import FreeHub
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.numerics.eigen import symmetric_modes
@@ -51,24 +49,12 @@ class Sampled:
 
 def complete_residual(structure: Structure, at: Sampled) -> Floats:
     """Residual (t, first + n) of a structure's complete equations; a free hub's row comes first."""
-    assert structure.inertia is not None and structure.elasticity is not None
-    c, inertia = structure.coefficients, structure.inertia
-    r, rd, rdd = sampled.paths(inertia.positions, at.p, at.pd, at.pdd)
-    force = np.asarray(inertia.mass)[:, None] * absolute_accelerations(np, at.base, r, rd, rdd)
-    beam = sampled.inertia_forces(inertia, at.p, force)
-    beam += sampled.elastic_forces(structure.elasticity, at.p, c.stiffness) + at.pd @ c.damping
-    total, about = np.zeros((2, len(at.p), 3))
-    if structure.work is not None and at.loads is not None:
-        along, total, about = sampled.load_forces(structure.work, at.p, at.loads)
-        beam -= along
     if at.hub is None:
-        return beam
-    mount, ground = at.motion.mount, ground_of(at.motion)
-    axis, root = mount.R_HB[2], mount.radius * mount.R_HB[0]
-    moment = np.cross(r, force).sum(axis=1) - about
-    turning = ground.torque(*at.hub.T) - at.motion.torque(at.time)
-    turning = turning + moment @ axis + (force.sum(axis=1) - total) @ np.cross(axis, root)
-    return np.concatenate([turning[:, None], beam], axis=1)
+        base = at.base
+        values = structure.equations.residual(at.p, at.pd, at.pdd, base.a_WO_B, base.w_WB_B, base.alpha_WB_B, at.loads)
+        return np.asarray(values)
+    y, yd, ydd = (np.concatenate([at.hub[:, [k]], x], axis=1) for k, x in enumerate((at.p, at.pd, at.pdd)))
+    return np.asarray(structure.on_free_hub(at.motion).residual(y, yd, ydd, at.motion.torque(at.time), at.loads))
 
 
 def linear_residual(structure: Structure, at: Sampled) -> Floats:

@@ -133,7 +133,7 @@ def quantities(structure: Structure, at: Sampled) -> Quantities:
     """Tip, root loads and stress at a solution, by NumPy for complete models too."""
     assert structure.sections is not None
     force, moment, section_force, section_moment, _ = sections(
-        structure, structure.sections, at.base, at.p, at.pd, at.pdd, at.loads, compiled=False
+        structure, structure.sections, at.base, at.p, at.pd, at.pdd, at.loads
     )
     tip = structure.displacement(at.p)[:, -1]
     pair = extreme_stresses(structure.sections.values, section_force, section_moment)

@@ -28,7 +28,6 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.assembly import at_stations
 from gbeam.mechanics.equations.residuals import OnBase, OnHub
-from gbeam.mechanics.fields.rooted import RootedField
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Sections, Structure
@@ -139,11 +138,9 @@ def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
         names += [(f"q_{group}_{k + 1}", unit) for k in range(count)]
     if structure.field is None:  # particles, whose coordinates are whatever they were given by
         names += [(f"q_{k + 1}", "1") for k in range(structure.size)]
-    if isinstance(structure.field, RootedField):
-        springs = np.concatenate([structure.field.move, structure.field.turn])  # one direction in each column
-        ways = [("translation", "m", axis) for axis in "xyz"] + [("rotation", "rad", axis) for axis in "xyz"]
-        for way, unit, axis in (ways[i] for i in np.abs(springs).argmax(axis=0)):
-            names.append((f"q_root_{way}_{axis}", unit))
+    if structure.source is not None:
+        springs = structure.source.beam.root.springs
+        names += [(f"q_root_{way}", "m" if way.startswith("translation") else "rad") for way in springs]
     rates = [Signal("hub_rate" if name == "hub_angle" else f"rate_{name}", f"{unit}/s") for name, unit in names]
     return tuple([Signal(*pair) for pair in names] + rates)
 

@@ -12,8 +12,6 @@ from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.steady.definiteness import Loss, worst_loss
 from gbeam.guards.limits import BOUNDLESS
 from gbeam.integrate.equations import Trajectory
-from gbeam.mechanics.fields.exact import ExactField
-from gbeam.mechanics.fields.rooted import RootedField
 from gbeam.mechanics.structure import Structure
 from gbeam.results.errors import Errors
 from gbeam.results.parts import Peaks
@@ -23,7 +21,6 @@ from gbeam.results.result import Floats
 MANY = 100  # steps between two of the results' times, above which a run says why
 GROWN = math.log(1e3)  # a crookedness of a thousandth of the beam's length is its length then
 NOTICED = math.log(2)  # what grows less has hardly had the time
-_NEAR = np.radians(160.0)  # of the pole at 180 degrees
 
 
 def describe(
@@ -89,11 +86,6 @@ def describe(
         warnings.append(
             f"the displacement reaches {peaks.max_size:.4g} m, and no particle rests farther than "
             f"{structure.length:.4g} m from the root: places to second order in the coordinates may not hold so far"
-        )
-    if (turned := turned_out_of_plane(structure, q)) > _NEAR:
-        warnings.append(
-            f"the beam's tangent turns by {np.degrees(turned):.0f}° out of one plane: straight back, at 180°, its "
-            "rotation vector has a pole, and near it the shapes converge slowly; check with more of them"
         )
     return "done", "", tuple(warnings)
 
@@ -168,15 +160,3 @@ def _yielding(structure: Structure, peaks: Peaks) -> list[str]:
         f"{stress.time[worst]:.4g} s, above the yield strength, {1e-6 * strength:.4g} MPa: the material yields, and "
         "the response, which is elastic, means nothing from there on"
     ]
-
-
-def turned_out_of_plane(structure: Structure, q: Floats) -> float:
-    """Largest angle by which the exact field's tangent turns, rad; zero where the beam stays in one plane."""
-    field = structure.field.inner if isinstance(structure.field, RootedField) else structure.field
-    if not isinstance(field, ExactField) or field.planar:
-        return 0.0
-    beam = q[:, : field.angle_y.shape[1]]
-    vector = np.stack([(beam @ np.asarray(angle).T).ravel() for angle in (field.angle_y, field.angle_z)])
-    across, _ = np.linalg.eigvalsh(vector @ vector.T)
-    in_plane = across <= (1e-6 * np.pi) ** 2 * vector.shape[1]
-    return 0.0 if in_plane else float(np.linalg.norm(vector, axis=0).max())

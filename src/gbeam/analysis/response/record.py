@@ -18,6 +18,7 @@ from gbeam.analysis.response.settings import NOT_ESTIMATED, ResponseSettings
 from gbeam.analysis.response.stepping import joined
 from gbeam.arrays.namespace import is_jax
 from gbeam.integrate.equations import Trajectory
+from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
@@ -43,14 +44,15 @@ def outline_of(structure: Structure, motion: Motion, time: Floats, q: Floats) ->
     if structure.field is None or structure.source is None:
         return None
     beam = structure.source.beam
-    places = np.asarray(structure.field.places().r0)[:, 0]
+    field = structure.field
+    outline: Any = field if isinstance(field, StrainField) else field.places()
+    places = np.asarray(outline.positions(np.zeros(structure.size)))[:, 0]
     x, index = np.unique(np.round(places / beam.length, 9), return_index=True)
     spread = np.unique(np.linspace(0, len(x) - 1, POINTS - 1).round().astype(int))
     chosen = index[spread]
     some = np.unique(np.linspace(0, len(time) - 1, TIMES).round().astype(int))
     rest = places[chosen]
-    moved = np.asarray(structure.field.sampled(chosen).position(q[some]))
-    moved = moved - np.asarray(structure.field.places().r0)[chosen]
+    moved = np.asarray(outline[chosen].positions(q[some]) - outline[chosen].positions(np.zeros(structure.size)))
     # The field has no point at the root: the nodes next to it lie within a hundredth of the length.
     root = moved[:, 0] - (moved[:, 1] - moved[:, 0]) * (rest[0] / (rest[1] - rest[0]))
     if not structure.source.beam.root.springs:

@@ -7,7 +7,6 @@ so by exp ∫ Re λ dt: a load that acts for a moment does nothing, whatever its
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -59,12 +58,12 @@ def worst_loss(structure: Structure, time: Array, base: BaseMotion, q: Array) ->
     """Stretch of a run in which a disturbance grows most, about q (t, n) of a complete model unless on its way to
     stability.
     """
-    c, slow = structure.coefficients, replace(structure, compiled=False)
+    c = structure.coefficients
     loads = None if c.loads is None or structure.history is None else structure.history(time)
     drive = Drive(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
 
     def matrices(i: int) -> tuple[Array, Array, Array]:
-        about = c if structure.linear else expanded(slow, q[i])[0]
+        about = c if structure.linear else expanded(structure, q[i])[0]
         return about.mass, *about.frozen(*drive.at(i))
 
     def loss(part: Array) -> Loss | None:

@@ -10,7 +10,6 @@ import numpy as np
 from gbeam.analysis.steady.frequency_errors import Richer, doubtful
 from gbeam.analysis.steady.operating_point import Linear, OperatingPoint, linear_matrices, operating_point
 from gbeam.guards.arguments import typed
-from gbeam.mechanics.equations.sampled import slopes
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
@@ -21,10 +20,7 @@ from gbeam.results.result import Complex, Floats
 
 def _sensitivity(structure: Structure, q: Any) -> tuple[Floats, Floats]:
     """Derivatives of the particles' places with respect to q, (k, 3, n), and of the stations', (s, 3, n)."""
-    if structure.linear:
-        return structure.places.slopes(q), structure.station_slopes(q)
-    assert structure.inertia is not None
-    return slopes(structure.inertia.positions, q), structure.station_slopes(q)
+    return structure.particles.slopes(q), structure.station_slopes(q)
 
 
 def directions(structure: Structure, point: OperatingPoint, coordinates: Complex | Floats) -> tuple[str, ...]:

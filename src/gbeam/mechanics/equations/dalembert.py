@@ -1,37 +1,30 @@
-"""The equations of a complete model (CFOAM, exact): D'Alembert's sum over the particles of its field, by JAX.
+"""The equations of a complete model (CFOAM, exact): D'Alembert's sum over the particles of its field.
 
-Σ m (∂r/∂q)·a + ∂U/∂q + C q̇ = Q, a = a_O + α × r + ω × (ω × r) + 2 ω × ṙ + r̈: one pull-back of the particles' inertia
-forces along their places. On a free hub the moment of the same forces about the axis is the hub's row. The key of a
-compiled function is sizes, never values.
+Σ m (∂r/∂q)·a + K q + C q̇ = Q. On a free hub the moment of the same forces about the axis is the hub's row. All arrays
+may have leading axes: at one instant the sums are compiled by JAX for time steps, over many they are NumPy's.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-import jax
-import jax.numpy as jnp
-
-import gbeam.arrays.jax_setup  # noqa: F401
+from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.equations.hub import FreeHub, Ground, free_hub
-from gbeam.mechanics.equations.inertia import Elasticity, Weighed
+from gbeam.mechanics.equations.inertia import Inertia
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.equations.virtual_work import LoadWork
-from gbeam.mechanics.fields.rotation import cross
 
 Array = Any
-Components = tuple[Any, ...]  # three arrays, along x, y and z
 
 
 @record
 class Complete:
-    """The equations of a complete model; `stiffness` (n, n) is given where the energy is quadratic."""
+    """The equations of a complete model; `damping` and `stiffness` (n, n) are constant."""
 
-    inertia: Weighed
-    elasticity: Elasticity
+    inertia: Inertia
     damping: Array
-    stiffness: Array | None
+    stiffness: Array
     work: LoadWork | None
 
     @property
@@ -41,7 +34,7 @@ class Complete:
 
     def strain_energy(self, q: Array) -> Array:
         """U, J."""
-        return self.elasticity.energy(q)
+        return 0.5 * q @ self.stiffness @ q
 
     def residual(
         self,
@@ -53,40 +46,16 @@ class Complete:
         alpha_WB_B: Array,
         load_values: Array | None = None,
     ) -> Array:
-        """Residual (n,) on a base with given acceleration (or specific force), angular velocity and angular
-        acceleration (3,).
+        """Residual (..., n) on a base with given acceleration (or specific force), angular velocity and angular
+        acceleration (..., 3).
         """
-        _, force, pull_back, _ = self.inertia_forces(q, qd, qdd, a_WO_B, w_WB_B, alpha_WB_B)
-        (along,) = pull_back(force)
-        return along + self.inside(q, qd) - self.generalised(q, load_values)[6:]
-
-    def inertia_forces(
-        self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array
-    ) -> tuple[Components, Components, Any, Array]:
-        """Points and inertia forces as three arrays (p,), which compile faster than (p, 3), their pull-back to q, and
-        the resultant (3,) N.
-        """
-        place = self.inertia.points
-        r, pull_back = jax.vjp(place, q)
-
-        def moving(q: Array, qd: Array) -> Components:
-            return jax.jvp(place, (q,), (qd,))[1]
-
-        rd, rdd = jax.jvp(moving, (q, qd), (qd, qdd))
-        turning = tuple(turned + 2 * v for turned, v in zip(cross(w, r), rd, strict=True))
-        relative = tuple(map(sum, zip(cross(alpha, r), cross(w, turning), rdd, strict=True)))
-        return r, self.inertia.forces(relative, a), pull_back, self.inertia.total(relative, a)
+        along, _, _ = self.inertia.forces(q, qd, qdd, a_WO_B, w_WB_B, alpha_WB_B)
+        along = along + self.inside(q, qd)
+        return along if self.work is None or load_values is None else along - self.work.generalised(q, load_values)[0]
 
     def inside(self, q: Array, qd: Array) -> Array:
-        """Elastic and damping forces on the coordinates, (n,)."""
-        elastic = self.stiffness @ q if self.stiffness is not None else jax.grad(self.elasticity.energy)(q)
-        return elastic + self.damping @ qd
-
-    def generalised(self, q: Array, load_values: Array | None) -> Array:
-        """Resultant of the loads at the root, then their forces on the coordinates, (6 + n,)."""
-        if self.work is None or load_values is None:
-            return jnp.zeros(6 + self.size)
-        return self.work.generalised(q, load_values)
+        """Elastic and damping forces on the coordinates, (..., n)."""
+        return q @ self.stiffness + qd @ self.damping
 
 
 @record
@@ -98,22 +67,20 @@ class CompleteHub:
     ground: Ground
 
     def residual(self, y: Array, yd: Array, ydd: Array, torque: Array, load_values: Array | None = None) -> Array:
-        """Residual (n + 1,) of hub and beam under a torque on the hub, N m, and load components (loads, 6)."""
-        q, qd, qdd = y[1:], yd[1:], ydd[1:]
-        outward, onward, axis = self.mount.R_HB  # the hub's axes in those of the base
-        a_x, a_y, a_z = self.mount.root_acceleration(y[0], yd[0], ydd[0])
-        a = a_x * outward + a_y * onward + a_z * axis
-        r, force, pull_back, resultant = self.system.inertia_forces(q, qd, qdd, a, yd[0] * axis, ydd[0] * axis)
-        (beam,) = pull_back(force)
+        """Residual (..., n + 1) of hub and beam under a torque on the hub, N m, and load components (..., loads, 6)."""
+        xp = namespace(y, torque, self.mount.R_HB)
+        (angle, q), (rate, qd), (change, qdd) = ((each[..., 0], each[..., 1:]) for each in (y, yd, ydd))
+        _, onward, axis = self.mount.R_HB  # the hub's axes in those of the base
+        base = self.mount.base(angle, rate, change)
+        beam, force, moment = self.system.inertia.forces(q, qd, qdd, base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
         beam = beam + self.system.inside(q, qd)
-        # Of the forces about the axis: about the root, and of their resultant there, e × r_O being along y of the hub.
-        about = sum(e * jnp.sum(moment) for e, moment in zip(axis, cross(r, force), strict=True))
-        about = about + self.mount.radius * onward @ resultant
-        turning = self.ground.torque(y[0], yd[0], ydd[0]) + about - torque
         if self.system.work is not None and load_values is not None:
-            forces = self.system.generalised(q, load_values)
-            turning, beam = turning - self._twist() @ forces[:6], beam - forces[6:]
-        return jnp.concatenate([turning[None], beam])
+            along, pull, turn = self.system.work.generalised(q, load_values)
+            beam, force, moment = beam - along, force - pull, moment - turn
+        # About the root, and of the resultant there, e × r_O being along y of the hub.
+        about = moment @ axis + self.mount.radius * (force @ onward)
+        turning = self.ground.torque(angle, rate, change) + about - torque
+        return xp.concatenate([turning[..., None], beam], axis=-1)
 
     def about(self, c: Coefficients) -> FreeHub:
         """Put a linear model on the hub's rim."""
@@ -121,30 +88,8 @@ class CompleteHub:
 
     def momentum(self, y: Array, yd: Array) -> Array:
         """Angular momentum of hub and beam about the axis, N m s."""
-        inertia = self.system.inertia.inertia
-        r, rd = jax.jvp(inertia.positions, (y[1:],), (yd[1:],))
-        lever = jnp.cross(self.mount.R_HB[2], r + self.mount.radius * self.mount.R_HB[0])
-        return self.ground.inertia * yd[0] + jnp.sum(inertia.mass[:, None] * lever * (lever * yd[0] + rd))
-
-    def _twist(self) -> Array:
-        return jnp.concatenate([self.mount.radius * jnp.asarray(self.mount.R_HB)[1], jnp.asarray(self.mount.R_HB)[2]])
-
-
-@jax.jit
-def paths(inertia: Any, field: Any, q: Any, qd: Any, qdd: Any) -> tuple[tuple[Any, Any, Any], tuple[Any, Any, Any]]:
-    """Places, velocities and accelerations (t, p, 3) of particles and of a field's points over times, q, qd, qdd (t,
-    n).
-    """
-
-    def place(q: Any) -> tuple[Any, Any]:
-        return inertia.positions(q), field.position(q)
-
-    def moving(q: Any, qd: Any) -> Any:
-        return jax.jvp(place, (q,), (qd,))
-
-    def at(q: Any, qd: Any, qdd: Any) -> Any:
-        (r, rd), (_, rdd) = jax.jvp(moving, (q, qd), (qd, qdd))
-        return tuple(zip(r, rd, rdd, strict=True))
-
-    particles, points = jax.vmap(at)(q, qd, qdd)
-    return particles, points
+        inertia = self.system.inertia
+        xp = namespace(y, inertia.mass)
+        r, rd, _ = inertia.field.paths(y[1:], yd[1:], xp.zeros_like(y[1:]))
+        lever = xp.cross(self.mount.R_HB[2], r + self.mount.radius * self.mount.R_HB[0])
+        return self.ground.inertia * yd[0] + xp.sum(inertia.mass[:, None] * lever * (lever * yd[0] + rd))

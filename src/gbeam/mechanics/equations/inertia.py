@@ -1,14 +1,14 @@
-"""Inertia and elasticity: the particles of a displacement field, and its strain energy."""
+"""The inertia of a complete model: the particles of its field, and what their motions and forces sum to."""
 
 from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
-from gbeam.mechanics.fields.rotation import Field, Strains
+from gbeam.mechanics.equations.linear import Geometric, geometric_of
+from gbeam.mechanics.fields.components import Vector, add, cross, joined, mapped, scaled, split, swept
+from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import Places
 
 Array = Any
@@ -16,97 +16,54 @@ Array = Any
 
 @record
 class Inertia:
-    """The particles of a field, quadrature points and bodies: masses (p,) kg and offsets (p, 3) m from the axis,
-    section axes.
+    """Particles (p,) kg of a field, quadrature points and bodies; `pairs` CᵀmC (G, G) kg and `first` Cᵀm (G,) kg where
+    their places are constant sums C t of the field's tangents, else None and m.
     """
 
-    field: Field
+    field: StrainField | Places
     mass: Array
-    offset: Array | None
-
-    def positions(self, q: Array) -> Array:
-        """Positions of the particles at coordinates (..., n), base axes, (..., particles, 3) m."""
-        r = self.field.position(q)
-        if self.offset is None:
-            return r
-        xp = namespace(r, self.offset)
-        if xp is not np:
-            return r + xp.einsum("...kij,kj->...ki", self.field.rotation(q), self.offset)
-        off = self.off_axis  # few: the sections of the others need not turn
-        r[..., off, :] += self.arms(q, off)
-        return r
-
-    @property
-    def off_axis(self) -> Array:
-        """Indices of the particles off the axis."""
-        return np.flatnonzero(np.any(self.offset != 0, axis=1))
-
-    def arms(self, q: Array, at: Array) -> Array:
-        """From the axis to some particles at coordinates (..., n), base axes, (..., len(at), 3) m."""
-        offset: Any = self.offset
-        return np.einsum("...kij,kj->...ki", self.field.rotation(q, at), offset[at])
-
-    def places(self) -> Places:
-        """Taylor polynomial of the positions at the straight beam."""
-        axis = self.field.places()
-        return axis if self.offset is None else self.field.turns().carry(axis, self.offset)
-
-
-@record
-class Weighed:
-    """The particles as time steps read them: where their places are constant combinations C t(q) of points, the masses
-    enter as `pairs` CᵀmC (p, p) kg and `first` Cᵀm (p,) kg.
-    """
-
-    inertia: Inertia
     pairs: Array | None
     first: Array
 
-    def points(self, q: Array) -> tuple[Array, Array, Array]:
-        """The points at coordinates (n,), by components (p,)."""
-        if self.pairs is not None:
-            return self.inertia.field.components(q)
-        r = self.inertia.positions(q)
-        return r[:, 0], r[:, 1], r[:, 2]
-
-    def forces(self, relative: Any, root: Array) -> tuple[Array, ...]:
-        """Inertia forces on the points by components (p,), of accelerations relative to the root's, and that, (3,)."""
+    def forces(self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array) -> tuple[Array, Array, Array]:
+        """Forces Σ m (∂r/∂q)·a on the coordinates (..., n), and resultant of m a and moment about the root (..., 3), of
+        particles on a base with acceleration (or specific force), angular velocity and angular acceleration (..., 3):
+        a = a_O + α × r + ω × (ω × r) + 2 ω × ṙ + r̈.
+        """
+        field: Any = self.field
         if self.pairs is None:
-            relative_forces = [self.first * a for a in relative]
-        else:  # which is symmetric
-            relative_forces = list(namespace(self.pairs, *relative).stack(relative) @ self.pairs)
-        return tuple(f + self.first * a for f, a in zip(relative_forces, root, strict=True))
+            r, rd, rdd = field.components(q, qd, qdd)
+        else:
+            tangents = field.moving(q, qd, qdd)
+            r, rd, rdd = tangents.t, tangents.td, tangents.tdd
+        rate, change = (split(each[..., None, :]) for each in (w, alpha))
+        relative = add(swept(rate, change, r), scaled(2.0, cross(rate, rd)), rdd)
+        root = scaled(self.first, split(a[..., None, :]))
+        if self.pairs is None:
+            force = add(scaled(self.mass, relative), root)
+            along = field.along(q, force)
+            total: Vector = tuple(part.sum(axis=-1) for part in force)
+        else:
+            force = add(mapped(relative, self.pairs), root)
+            along = field.pulled(tangents, force)
+            total = tuple(part @ self.first + self.mass.sum() * a[..., axis] for axis, part in enumerate(relative))
+        moment = [part.sum(axis=-1) for part in cross(r, force)]
+        xp, shape = namespace(self.mass, q, a), total[0].shape
+        return along, joined(xp, total, shape), joined(xp, tuple(moment), shape)
 
-    def total(self, relative: Any, root: Array) -> Array:
-        """Their resultant, (3,) N."""
-        xp = namespace(self.first, root, *relative)
-        return xp.stack(relative) @ self.first + self.inertia.mass.sum() * root
+    def about(self, q: Array) -> tuple[Places, Geometric | None]:
+        """Places of the particles about coordinates (n,), and their geometric stiffness unless they have second
+        derivatives.
+        """
+        if isinstance(self.field, Places):
+            return Places(self.field.positions(q), self.field.slopes(q), self.field.second), None
+        places, bent = self.field.about(q, self.mass)
+        return places, geometric_of(bent[0], bent[1:])
 
 
-def weighed(inertia: Inertia) -> Weighed:
-    """Weigh the particles at the points of their field."""
-    field, mass = inertia.field, inertia.mass
-    if inertia.offset is not None or not field.cumulates:
-        return Weighed(inertia, None, mass)
-    return Weighed(inertia, field.cumulative.T @ (mass[:, None] * field.cumulative), field.cumulative.T @ mass)
-
-
-@record
-class Elasticity:
-    """Strain energy U = ½ ∫ EA ε² + EI_y κ_y² + EI_z κ_z² dx + ½ Σ k s² (2009 (10); 2020 (8), corrected); rigidities
-    times weights (g,).
-    """
-
-    field: Field
-    rigidity: Strains
-
-    def energy(self, q: Array) -> Array:
-        """Strain energy at coordinates (n,), J."""
-        parts = [(k * e**2).sum() for k, e in zip(self.rigidity, self.field.strains(q), strict=True)]
-        return 0.5 * (parts[0] + parts[1] + parts[2] + parts[3])
-
-    def stiffness(self) -> Array:
-        """Second derivatives of the energy at the straight beam, (n, n)."""
-        slopes = self.field.strain_slopes()
-        parts = [b.T @ (k[:, None] * b) for k, b in zip(self.rigidity, slopes, strict=True) if len(k)]
-        return sum(parts[1:], start=parts[0])
+def inertia_of(field: StrainField | Places, mass: Array) -> Inertia:
+    """Inertia of the particles of a field."""
+    if isinstance(field, Places) or field.offset is not None:
+        return Inertia(field, mass, None, mass)
+    c = field.cumulative
+    return Inertia(field, mass, c.T @ (mass[:, None] * c), c.T @ mass)

@@ -12,8 +12,9 @@ import numpy as np
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.equations.linear import LoadTerms
-from gbeam.mechanics.fields.rotation import Field
-from gbeam.mechanics.fields.taylor import EPSILON, Places
+from gbeam.mechanics.fields.components import cross, joined, split
+from gbeam.mechanics.fields.strains import StrainField
+from gbeam.mechanics.fields.taylor import EPSILON, Places, Polynomials
 
 Array = Any
 
@@ -24,28 +25,24 @@ class LoadWork:
     follows.
     """
 
-    field: Field
+    field: StrainField | Polynomials
     load: Array
     weight: Array
     follower: Array
 
-    def generalised(self, q: Array, values: Array) -> Array:
-        """Resultant force N and moment N m at the root, base axes, then the forces on the coordinates, (6 + n,), by
-        JAX.
+    def generalised(self, q: Array, values: Array) -> tuple[Array, Array, Array]:
+        """Forces on the coordinates (..., n) of loads with components (..., loads, 6), and their resultant force N and
+        moment N m at the root, base axes, (..., 3).
         """
-        import jax
-        import jax.numpy as jnp
+        force, moment = self.forces(self.field.rotation(q), values)
+        along = self.field.along(q, split(force), split(moment))
+        return along, *self.resultant(self.field.positions(q), force, moment)
 
-        def place(q: Array) -> tuple[Array, Array]:
-            return self.field.position(q), self.field.rotation(q)
-
-        (r, rotation), pull_back = jax.vjp(place, q)
-        force, moment = self.forces(rotation, values)
-        # δR = [δθ]× R, so that ½ [M]× R : δR = M·δθ. The columns of [M]× R are M × those of R.
-        turning = 0.5 * jnp.cross(moment[:, :, None], rotation, axis=1)
-        (along,) = pull_back((force, turning))
-        total = jnp.sum(jnp.cross(r, force) + moment, axis=0)
-        return jnp.concatenate([jnp.sum(force, axis=0), total, along])
+    @staticmethod
+    def resultant(r: Array, force: Array, moment: Array) -> tuple[Array, Array]:
+        """Force and moment at the root of forces and moments (..., p, 3) at places, (..., 3)."""
+        turn = joined(namespace(r, force), cross(split(r), split(force)), force.shape[:-1])
+        return force.sum(axis=-2), (turn + moment).sum(axis=-2)
 
     def forces(self, rotation: Array, values: Array) -> tuple[Array, Array]:
         """Forces and moments at the loaded points, base axes, given their sections' rotations, (..., p, 3) each."""
@@ -62,16 +59,14 @@ class LoadWork:
         xp = namespace(rotation, self.weight)
         return xp.where(xp.asarray(self.follower)[:, None, None], rotation, xp.eye(3))
 
-    def first_order(self, count: int) -> LoadTerms:
-        """The generalised forces of `count` loads' unit components, to first order in q about the straight beam."""
-        places, turns = self.field.places(), self.field.turns()
-        xp = namespace(places.first, self.weight)
-        straight = xp.broadcast_to(xp.eye(3), (len(places.r0), 3, 3))
-        return self.about(count, places, straight, turns.first, turns.second)
+    def about(self, count: int, q: Array) -> LoadTerms:
+        """The generalised forces of `count` loads' unit components, to first order about coordinates (n,)."""
+        places, rotation, turns = self.field.curved(q)
+        return self.terms(count, places, rotation, turns.first, turns.second)
 
-    def about(self, count: int, places: Places, rotation: Array, turn: Array, bend: Array) -> LoadTerms:
-        """Load terms about any coordinates, from places, section rotations (p, 3, 3) and their first and second
-        derivatives there.
+    def terms(self, count: int, places: Places, rotation: Array, turn: Array, bend: Array) -> LoadTerms:
+        """Load terms about coordinates from places, section rotations (p, 3, 3) and their first and second derivatives
+        there.
         """
         xp = namespace(places.first, rotation, self.weight)
         r, slope, second = places.r0, places.first, places.second
@@ -82,17 +77,17 @@ class LoadWork:
         def rows(columns: Array) -> Array:
             return xp.swapaxes(columns, 1, 2)
 
-        def cross(left: Array, right: Array, form: str) -> Array:
+        def across(left: Array, right: Array, form: str) -> Array:
             return xp.einsum(f"abd,{form}", epsilon, left, right)
 
         def angle(outer: Array, inner: Array, form: str) -> Array:
             """θ of [θ]× = outer innerᵀ."""
             return -0.5 * xp.einsum("abe,pab...->pe...", epsilon, xp.einsum(form, outer, inner))
 
-        force = [rows(axes), cross(r, axes, "pb,pdc->pca"), xp.einsum("pai,pac->pci", slope, axes)]
+        force = [rows(axes), across(r, axes, "pb,pdc->pca"), xp.einsum("pai,pac->pci", slope, axes)]
         force_slope = [
             rows(turned),
-            cross(slope, axes, "pbj,pdc->pcaj") + cross(r, turned, "pb,pdcj->pcaj"),
+            across(slope, axes, "pbj,pdc->pcaj") + across(r, turned, "pb,pdcj->pcaj"),
             xp.einsum("paij,pac->pcij", second, axes) + xp.einsum("pai,pacj->pcij", slope, turned),
         ]
         # A moment works along θ_i of [θ_i]× = ∂R/∂q_i Rᵀ.

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record, static
-from gbeam.mechanics.fields.basis import Families, Quadrature, closed_forms
-from gbeam.mechanics.fields.rotation import Strains, about_x, at_nodes, block, rotation_matrix
+from gbeam.mechanics.fields.basis import Families, Quadrature
+from gbeam.mechanics.fields.rotation import rotation_matrix
 from gbeam.mechanics.fields.taylor import Places, Turns, exponential
 
 Array = Any
@@ -27,24 +26,8 @@ class ProjectedField:
     slopes: Array
     node_slopes: Array
     curvatures: Array
-    node_slope_s: Array
     cumulative: Array
     foreshortening: bool = static()
-
-    def position(self, q: Array) -> Array:
-        """Positions of the points of the axis at coordinates (..., n), (..., points, 3) m."""
-        xp = namespace(self.x, q)
-        s, v, w = at_nodes(self.shapes, q)
-        along = self.x + s
-        if self.foreshortening:
-            # 2009 (3): w_c = −½ ∫ v'² dx, in both planes.
-            square = (at_nodes(self.node_slopes, q) ** 2).sum(axis=0)
-            along = along - 0.5 * square @ self.cumulative.T
-        return xp.stack([along, v, w], axis=-1)
-
-    def components(self, q: Array) -> tuple[Array, Array, Array]:
-        """None: see `cumulates`."""
-        raise TypeError("the positions of this field are no plain sums of nodal vectors")
 
     def rotation(self, q: Array, at: Any = slice(None)) -> Array:
         """Rotations (..., points, 3, 3) of sections to second order: they follow the tangent, whose slopes the strain
@@ -57,35 +40,6 @@ class ProjectedField:
         (v, w), (bend_v, bend_w) = at_nodes(self.node_slopes, q), at_nodes(self.curvatures, q)
         twist = 0.5 * (v * bend_w - w * bend_v) @ self.cumulative[at].T
         return arc @ about_x(twist)
-
-    def strains(self, q: Array) -> Strains:
-        """Strains s', −w'', v'' at the quadrature nodes: linear (2009 (10); 2020 (8), corrected)."""
-        bend_v, bend_w = at_nodes(self.curvatures, q)
-        return Strains(q @ self.node_slope_s.T, -bend_w, bend_v)
-
-    def sampled(self, at: Any) -> ProjectedField:
-        """The field at some of the points."""
-        return replace(
-            self,
-            x=self.x[at],
-            shapes=self.shapes[:, at],
-            slopes=self.slopes[:, at],
-            cumulative=self.cumulative[at],
-        )
-
-    @property
-    def cumulates(self) -> bool:
-        """The positions are no plain sums of nodal vectors."""
-        return False
-
-    @property
-    def linear_strains(self) -> bool:
-        """The strains are linear in q."""
-        return True
-
-    def strain_slopes(self) -> Strains:
-        """Derivatives of the strains, (g, n) each."""
-        return Strains(self.node_slope_s, -self.curvatures[1], self.curvatures[0])
 
     def places(self) -> Places:
         """The positions, which are a polynomial of second degree."""
@@ -118,31 +72,46 @@ def _products(xp: Any, left: Array, right: Array) -> Array:
 
 
 def projected_field(
-    length: float,
-    rule: Quadrature,
-    x: np.ndarray,
-    counts: tuple[int, int, int],
-    *,
-    foreshortening: bool,
-    families: Families | None = None,
+    rule: Quadrature, x: np.ndarray, counts: tuple[int, int, int], families: Families, *, foreshortening: bool
 ) -> ProjectedField:
     """Build the field of TLAM (without foreshortening), FOAM, SFOAM and CFOAM at points (p,) m."""
     n = sum(counts)
     starts = (0, counts[0], counts[0] + counts[1])
 
     def at(points: np.ndarray) -> list[list[np.ndarray]]:
-        shapes = [family(points) for family in families or closed_forms(length, counts)]
+        shapes = [family(points) for family in families]
         return [[block(f, i, n) for f in shape] for shape, i in zip(shapes, starts, strict=True)]
 
     s, v, w = at(x)
-    node_s, node_v, node_w = at(rule.node)
+    _, node_v, node_w = at(rule.node)
     return ProjectedField(
         x=x,
         shapes=np.stack([s[0], v[0], w[0]]),
         slopes=np.stack([s[1], v[1], w[1]]),
         node_slopes=np.stack([node_v[1], node_w[1]]),
         curvatures=np.stack([node_v[2], node_w[2]]),
-        node_slope_s=node_s[1],
         cumulative=rule.cumulative(x),
         foreshortening=foreshortening,
     )
+
+
+def block(shapes: np.ndarray, start: int, total: int) -> np.ndarray:
+    """Place (points, k) shape values in columns start … start + k of (points, total)."""
+    out = np.zeros((shapes.shape[0], total))
+    out[:, start : start + shapes.shape[1]] = shapes
+    return out
+
+
+def at_nodes(stacked: Array, q: Array) -> Array:
+    """Values (m, ..., g) of m families of shapes, stacked (m, g, n), at coordinates (..., n): one matrix product."""
+    xp = namespace(stacked, q)
+    families, nodes, n = stacked.shape
+    values = q @ xp.reshape(stacked, (families * nodes, n)).T
+    return xp.moveaxis(xp.reshape(values, (*q.shape[:-1], families, nodes)), -2, 0)
+
+
+def about_x(angle: Array) -> Array:
+    """Rotation matrices (..., 3, 3) about x."""
+    xp = namespace(angle)
+    c, s, o = xp.cos(angle), xp.sin(angle), xp.zeros_like(angle)
+    return xp.stack([xp.stack([o + 1, o, o], -1), xp.stack([o, c, -s], -1), xp.stack([o, s, c], -1)], -2)

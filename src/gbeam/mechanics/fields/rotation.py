@@ -1,78 +1,15 @@
-"""Rotation matrices of rotation vectors, smooth through zero; what the fields share."""
+"""Rotation matrices of rotation vectors, smooth through zero."""
 
 from __future__ import annotations
 
 from functools import cache
-from typing import Any, NamedTuple, Protocol
+from typing import Any
 
 import numpy as np
 
 from gbeam.arrays.namespace import is_jax, namespace
-from gbeam.mechanics.fields.taylor import Places, Turns
 
 Array = Any
-
-
-class Strains(NamedTuple):
-    """Axial strain and curvatures about y and z, 1/m, at the nodes (g,); `root` (springs,) is the stretch of the
-    springs, m or rad.
-    """
-
-    axial: Array
-    about_y: Array
-    about_z: Array
-    root: Array = np.zeros(0)
-
-
-class Field(Protocol):
-    """A displacement field sampled at the points it was built for."""
-
-    @property
-    def cumulative(self) -> Array:
-        """Weights (points, g) that integrate nodal values from the root to each point, m."""
-        ...
-
-    def position(self, q: Array) -> Array:
-        """Positions r of the points of the axis at coordinates (..., n), base axes, (..., points, 3) m."""
-        ...
-
-    def rotation(self, q: Array, at: Any = slice(None)) -> Array:
-        """Rotation matrices R_BS of the sections at all points, or `at` some, (..., points, 3, 3)."""
-        ...
-
-    def strains(self, q: Array) -> Strains:
-        """Strains that store energy, at the quadrature nodes."""
-        ...
-
-    def sampled(self, at: Any) -> Field:
-        """The field at some of the points."""
-        ...
-
-    @property
-    def linear_strains(self) -> bool:
-        """Whether the strains are linear in q."""
-        ...
-
-    @property
-    def cumulates(self) -> bool:
-        """Whether the positions are ``cumulative @ components(q)``, component by component."""
-        ...
-
-    def components(self, q: Array) -> tuple[Array, Array, Array]:
-        """Nodal vectors at coordinates (..., n), where the field cumulates them, by components (..., g)."""
-        ...
-
-    def places(self) -> Places:
-        """Taylor polynomial of the positions at the straight beam."""
-        ...
-
-    def turns(self) -> Turns:
-        """Taylor polynomial of the rotations at the straight beam."""
-        ...
-
-    def strain_slopes(self) -> Strains:
-        """Derivatives of the strains at the straight beam, (g, n) each."""
-        ...
 
 
 def rotation_matrix(angle: Array) -> Array:
@@ -88,11 +25,6 @@ def skew(xp: Any, w: Array) -> Array:
     x, y, z = w[..., 0], w[..., 1], w[..., 2]
     o = xp.zeros_like(x)
     return xp.stack([xp.stack([o, -z, y], -1), xp.stack([z, o, -x], -1), xp.stack([-y, x, o], -1)], -2)
-
-
-def cross(w: Any, r: Any) -> tuple[Array, Array, Array]:
-    """w × r of two vectors or many, by components."""
-    return w[1] * r[2] - w[2] * r[1], w[2] * r[0] - w[0] * r[2], w[0] * r[1] - w[1] * r[0]
 
 
 def sine_cosine(angle: Array) -> tuple[Array, Array]:
@@ -168,34 +100,3 @@ def exponential_of(square: Array) -> tuple[Array, Array, Array]:
     sinc = xp.where(small, 1 - square / 6 * (1 - square / 20 * (1 - square / 42)), sine / theta)
     versine = xp.where(small, 0.5 - square / 24 * (1 - square / 30 * (1 - square / 56)), (1 - cosine) / theta**2)
     return sinc, versine, 1 - square * versine
-
-
-def one_minus_sinc(square: Array) -> Array:
-    """(1 − sin φ/φ)/φ² of φ², smooth through zero."""
-    xp = namespace(square)
-    small = xp.abs(square) < 1e-2
-    theta = xp.sqrt(xp.where(small, 1.0, square))
-    series = (1 - square / 20 * (1 - square / 42 * (1 - square / 72 * (1 - square / 110)))) / 6
-    return xp.where(small, series, (1 - xp.sin(theta) / theta) / theta**2)
-
-
-def about_x(angle: Array) -> Array:
-    """Rotation matrices (..., 3, 3) about x."""
-    xp = namespace(angle)
-    c, s, o = xp.cos(angle), xp.sin(angle), xp.zeros_like(angle)
-    return xp.stack([xp.stack([o + 1, o, o], -1), xp.stack([o, c, -s], -1), xp.stack([o, s, c], -1)], -2)
-
-
-def block(shapes: np.ndarray, start: int, total: int) -> np.ndarray:
-    """Place (points, k) shape values in columns start … start + k of (points, total)."""
-    out = np.zeros((shapes.shape[0], total))
-    out[:, start : start + shapes.shape[1]] = shapes
-    return out
-
-
-def at_nodes(stacked: Array, q: Array) -> Array:
-    """Values (m, ..., g) of m families of shapes, stacked (m, g, n), at coordinates (..., n): one matrix product."""
-    xp = namespace(stacked, q)
-    families, nodes, n = stacked.shape
-    values = q @ xp.reshape(stacked, (families * nodes, n)).T
-    return xp.moveaxis(xp.reshape(values, (*q.shape[:-1], families, nodes)), -2, 0)

@@ -8,6 +8,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
+from gbeam.mechanics.fields.components import NONE, Vector, absent, cross, joined, split
 
 
 @record
@@ -50,6 +51,22 @@ class Places:
             return self.positions(q), self._linear(qd), self._linear(qdd)
         return self.positions(q), self._sum(qd, _outer(q, qd)), self._sum(qdd, _outer(q, qdd) + _outer(qd, qd))
 
+    def components(self, q: Any, qd: Any, qdd: Any) -> tuple[Vector, Vector, Vector]:
+        """Places, velocities and accelerations by components (..., p)."""
+        r, rd, rdd = (split(each) for each in self.paths(q, qd, qdd))
+        return r, rd, rdd
+
+    def along(self, q: Any, push: Vector) -> Any:
+        """Generalised forces (..., n) of forces on the points, by components (..., p)."""
+        xp, (points, axes, n) = namespace(self.first, q), self.first.shape
+        force = joined(xp, push, (*q.shape[:-1], points))
+        flat = xp.reshape(force, (*q.shape[:-1], points * axes))
+        straight = flat @ xp.reshape(self.first, (-1, n))
+        if self.second is None:
+            return straight
+        curved = xp.reshape(flat @ xp.reshape(self.second, (points * axes, n * n)), (*q.shape[:-1], n, n))
+        return straight + xp.sum(curved * q[..., None, :], axis=-1)
+
     def _linear(self, q: Any) -> Any:
         """J·q of (..., n)."""
         points, axes, n = self.first.shape
@@ -80,6 +97,10 @@ class Turns:
         """The polynomials of some of the sections."""
         return Turns(self.first[chosen], self.second[chosen])
 
+    def slopes(self, q: Any) -> Any:
+        """∂R/∂q at coordinates (..., n), (..., p, 3, 3, n)."""
+        return self.first + namespace(self.first, q).einsum("pabij,...j->...pabi", self.second, q)
+
     def after(self, other: Turns) -> Turns:
         """The product R_self R_other."""
         xp = namespace(self.first, other.first)
@@ -94,6 +115,42 @@ class Turns:
             places.first + xp.einsum("pabi,pb->pai", self.first, offset),
             places.second + xp.einsum("pabij,pb->paij", self.second, offset),
         )
+
+
+@record
+class Polynomials:
+    """Places and rotations of points on sections where both are the polynomials: those of CFOAM."""
+
+    places: Places
+    turns: Turns
+
+    def __getitem__(self, chosen: Any) -> Polynomials:
+        """The polynomials of some of the points."""
+        return Polynomials(self.places[chosen], self.turns[chosen])
+
+    def positions(self, q: Any) -> Any:
+        """Places at coordinates (..., n), (..., p, 3) m."""
+        return self.places.positions(q)
+
+    def rotation(self, q: Any) -> Any:
+        """Rotation matrices at coordinates (..., n), (..., p, 3, 3)."""
+        xp = namespace(self.turns.first, q)
+        return xp.eye(3) + xp.einsum("...pabi,...i->...pab", (self.turns.slopes(q) + self.turns.first) / 2, q)
+
+    def along(self, q: Any, push: Vector, turn: Vector = NONE) -> Any:
+        """Generalised forces (..., n) of forces and moments on the points, by components (..., p)."""
+        straight = self.places.along(q, push)
+        if all(map(absent, turn)):
+            return straight
+        # δR = [δθ]× R, so that ½ [M]× R : δR = M·δθ. The columns of [M]× R are M × those of R.
+        xp, rotation = namespace(self.turns.first, q), self.rotation(q)
+        columns = [joined(xp, cross(turn, split(rotation[..., d])), rotation.shape[:-2]) for d in range(3)]
+        return straight + 0.5 * xp.einsum("...pad,...padi->...i", xp.stack(columns, axis=-1), self.turns.slopes(q))
+
+    def curved(self, q: Any) -> tuple[Places, Any, Turns]:
+        """Places about coordinates (n,) to second order, rotations (p, 3, 3), and the derivatives of these."""
+        places = Places(self.positions(q), self.places.slopes(q), self.places.second)
+        return places, self.rotation(q), Turns(self.turns.slopes(q), self.turns.second)
 
 
 EPSILON = np.zeros((3, 3, 3))  # Levi-Civita's symbol

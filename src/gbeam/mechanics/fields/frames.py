@@ -1,0 +1,186 @@
+"""Rotations along a beam from its curvatures, R' = R [κ]×: angles in a plane, sixth-order steps out of it."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.tree import record
+from gbeam.mechanics.fields.basis import Quadrature
+from gbeam.mechanics.fields.components import (
+    UNTURNED,
+    Rotation,
+    Vector,
+    absent,
+    add,
+    cross,
+    dot,
+    mapped,
+    plane_rotation,
+    scaled,
+    turned,
+)
+from gbeam.mechanics.fields.rotation import exponential_of, sine_cosine
+
+Array = Any
+_GAUSS = np.sqrt(15) / 10 * np.array([-1.0, 0.0, 1.0]) + 0.5
+# i, j and k times a quaternion: its components in another order, with signs.
+_UNITS = (((1, 0, 3, 2), (-1, 1, -1, 1)), ((2, 3, 0, 1), (-1, 1, 1, -1)), ((3, 2, 1, 0), (-1, -1, 1, 1)))
+_ROOT = 10  # nodes along the turn of a root about several axes: R(sφ), s from 0 to 1, to rounding
+
+
+@record
+class Frames:
+    """Steps from section to section, of `size` (i,) m, with three curvatures in each from those at the nodes, `onto`
+    (3 i, G); which frames are those of the nodes (G,) and of the points (p,), and the `angles` of both from curvatures
+    that turn about one axis, (G, G) and (p, G).
+    """
+
+    size: Array
+    onto: Array
+    nodes: Array
+    points: Array
+    node_angles: Array
+    angles: Array
+
+    def at(self, curvatures: Vector, *, points: bool) -> Rotation:
+        """Rotations (..., G) of the sections at the nodes, or (..., p) at the points, by curvatures (..., G)."""
+        about = [axis for axis in range(3) if not absent(curvatures[axis])]
+        if not about:
+            return UNTURNED
+        if len(about) == 1:
+            angle = curvatures[about[0]] @ (self.angles if points else self.node_angles).T
+            sine, cosine = sine_cosine(angle)
+            return plane_rotation(about[0], cosine, sine)
+        parts = tuple(curvatures[axis] for axis in about)
+        turns = _differentiable() if any(map(is_jax, parts)) else _turns
+        return _matrix(turns(tuple(about), points, self, parts))
+
+    def between(self, curvatures: Vector) -> Array:
+        """Unit quaternions (4, ..., 1 + i) of the sections between the steps, the root's first (Magnus' expansion)."""
+        shape = next(part.shape for part in curvatures if not absent(part))
+        xp = namespace(*curvatures)
+        count = len(self.size)
+        stages: list[list[Any]] = [[], [], []]
+        for part in curvatures:
+            values = None if absent(part) else xp.reshape(part @ self.onto.T, (*shape[:-1], 3, count))
+            for k, stage in enumerate(stages):
+                stage.append(0 if values is None else values[..., k, :])
+        first, middle, last = (scaled(self.size, (stage[0], stage[1], stage[2])) for stage in stages)
+        a1, a2 = middle, scaled(np.sqrt(15) / 3, add(last, scaled(-1.0, first)))
+        a3 = scaled(10 / 3, add(last, scaled(-2.0, middle), first))
+        c1 = _bracket(a1, a2)
+        c2 = scaled(-1 / 60, _bracket(a1, add(scaled(2.0, a3), c1)))
+        outer = _bracket(add(scaled(-20.0, a1), scaled(-1.0, a3), c1), add(a2, c2))
+        step = add(a1, scaled(1 / 12, a3), scaled(1 / 240, outer))
+        sinc, _, cosine = exponential_of(dot(step, step) / 4)
+        x, y, z = scaled(sinc / 2, step)
+        turns = xp.stack([cosine, *(xp.broadcast_to(part, cosine.shape) for part in (x, y, z))])
+        reach = 1
+        while reach < count:  # products of all steps up to each one, doubling how many
+            after = _product(turns[..., :-reach], turns[..., reach:])
+            turns = xp.concatenate([turns[..., :reach], after], axis=-1)
+            reach *= 2
+        start = xp.stack([xp.zeros((*cosine.shape[:-1], 1)) + one for one in (1, 0, 0, 0)])
+        return xp.concatenate([start, turns], axis=-1)
+
+
+def _turns(about: tuple[int, ...], points: bool, frames: Frames, parts: tuple[Array, ...]) -> tuple[Array, ...]:
+    """Unit quaternions of the nodes' sections, or the points', by the curvatures about some axes."""
+    chosen = frames.points if points else frames.nodes
+    return tuple(frames.between(_spread(about, parts))[..., chosen])
+
+
+def _spread(about: tuple[int, ...], parts: tuple[Array, ...]) -> Vector:
+    x, y, z = (parts[about.index(axis)] if axis in about else 0 for axis in range(3))
+    return x, y, z
+
+
+@cache
+def _differentiable() -> Any:
+    """The quaternions for JAX, which then differentiates no steps: they turn by the integral of R δκ."""
+    import jax
+
+    turns = jax.custom_jvp(_turns, nondiff_argnums=(0, 1))
+
+    @turns.defjvp
+    def _(about: tuple[int, ...], points: bool, primals: Any, tangents: Any) -> Any:
+        frames, parts = primals
+        nodes = turns(about, False, frames, parts)
+        w, *v = turns(about, True, frames, parts) if points else nodes
+        turning = turned(_matrix(nodes), _spread(about, tangents[1]))
+        half = scaled(0.5, mapped(turning, frames.angles if points else frames.node_angles))
+        change = add(scaled(w, half), cross(half, (v[0], v[1], v[2])))
+        return (w, *v), (-dot(half, (v[0], v[1], v[2])), *change)
+
+    return turns
+
+
+def _bracket(left: Vector, right: Vector) -> Vector:
+    """Commutator, with the sign of R' = R [κ]×."""
+    return cross(right, left)
+
+
+def _product(p: Array, q: Array) -> Array:
+    """Products of quaternions (4, ...)."""
+    total = p[0] * q
+    for part, (order, signs) in zip(p[1:], _UNITS, strict=True):
+        total = total + part * (np.reshape(signs, (4, *[1] * part.ndim)) * q[np.array(order)])
+    return total
+
+
+def _matrix(turn: tuple[Array, ...]) -> Rotation:
+    """Rotation matrices of unit quaternions."""
+    w, x, y, z = turn
+    return (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
+
+
+def root_rule(move: Array, turn: Array) -> tuple[Array, Array, Array]:
+    """Nodes of a root that moves and turns by columns (3, n): weights (r,) of all that is outboard, weights (r, r) from
+    node to node, and which of them turn.
+
+    The turn is that of a piece of unit length without extent, bent evenly.
+    """
+    about = int(np.any(turn, axis=1).sum())
+    moves, turns = int(np.any(move)), 0 if not about else (1 if about == 1 else _ROOT)
+    xi, w = np.polynomial.legendre.leggauss(max(turns, 1))
+    values = np.linalg.inv(np.polynomial.legendre.legvander(xi, len(xi) - 1))
+    inner = np.polynomial.legendre.legvander(xi, len(xi)) @ np.polynomial.legendre.legint(values, lbnd=-1) / 2
+    weights = np.concatenate([np.ones(moves), w[:turns] / 2])
+    onto = np.zeros((moves + turns, moves + turns))
+    onto[moves:, moves:] = inner[:turns, :turns]
+    return weights, onto, np.arange(moves + turns) >= moves
+
+
+def frames_along(
+    rule: Quadrature, x: Array, turning: Array, root: Array, cumulative: Array, node_cumulative: Array
+) -> Frames:
+    """Frames at the quadrature nodes and at points (p,) m of a beam behind the nodes of its root, some of them
+    `turning` (r,), with their weights between each other, `root` (r, r).
+    """
+    before = len(turning)
+    stops = np.unique(np.concatenate([rule.edges, rule.node, x]))
+    size = np.diff(stops)
+    inner = (stops[:-1] + _GAUSS[:, None] * size).ravel()
+    onto = np.concatenate([np.zeros((len(inner), before)), rule.interpolation(inner)], axis=1)
+    nodes, points = np.searchsorted(stops, rule.node), np.searchsorted(stops, x)
+    if turning.any():
+        places = root[turning][:, turning].sum(axis=1)
+        steps = np.diff(np.concatenate([[0.0], places, [1.0]]))
+        even = np.zeros(before + len(rule.node))
+        even[np.flatnonzero(turning)[0]] = 1.0
+        shape = (3, len(steps), len(even))
+        onto = np.concatenate([np.broadcast_to(even, shape), onto.reshape(3, len(size), -1)], axis=1)
+        onto, size = onto.reshape(-1, len(even)), np.concatenate([steps, size])
+        nodes, points = nodes + len(steps), points + len(steps)
+        of_root = np.where(turning, np.cumsum(turning), 0)
+    else:
+        of_root = np.zeros(before, dtype=int)
+    return Frames(size, onto, np.concatenate([of_root, nodes]), points, node_cumulative, cumulative)

@@ -1,0 +1,294 @@
+"""The geometrically exact field of a beam that stretches, shears, twists and bends: shapes are strains.
+
+r' = R (e₁ + ε) and R' = R [κ]×, with ε = (stretch, shears along y and z) and κ = (twist, curvatures about y and z),
+sums of shapes given by their values at the quadrature nodes; a strain without shapes is rigid. A shape turns all that
+is outboard of it, so that with C, the weights that integrate from the root to a node,
+
+    ω = C R κ̇,  α = C (R κ̈ + ω × R κ̇),  t = R (e₁ + ε),  ṫ = ω × t + R ε̇,  ẗ = α × t + ω × (ω × t) + 2 ω × R ε̇ + R ε̈,
+
+and motions of the points are integrals of t, ṫ and ẗ: nothing is differentiated, there is no limit to the rotation, and
+the strain energy is quadratic. Motion goes out, forces come back: F and M on the nodes do work on ε and κ by Rᵀ F and
+Rᵀ (M + Cᵀ (t × F)). A root on springs is one node that moves, and nodes that turn, before those of the beam.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record, static
+from gbeam.mechanics.fields.basis import Families, Quadrature
+from gbeam.mechanics.fields.components import (
+    NONE,
+    Rotation,
+    Vector,
+    absent,
+    add,
+    cross,
+    joined,
+    mapped,
+    plus,
+    scaled,
+    split,
+    swept,
+    turned,
+    turned_back,
+)
+from gbeam.mechanics.fields.frames import Frames, frames_along, root_rule
+from gbeam.mechanics.fields.taylor import EPSILON, Places, Turns
+
+Array = Any
+
+
+class Tangents(NamedTuple):
+    """Rotations of the nodes' sections and t there, with its rates, and the rates of turning Rκ̇ and its derivative."""
+
+    rotation: Rotation
+    t: Vector
+    td: Vector = NONE
+    tdd: Vector = NONE
+    turn: Vector = NONE
+    turnd: Vector = NONE
+
+
+@record
+class StrainField:
+    """Points (p,) of a beam by strains (6, G, n) at the nodes, and their values `rest` (6, G) at rest; `offset` (p, 3)
+    m from the axis, section axes, or None; `shaped` tells which strains have shapes, `present` which are there at all.
+    """
+
+    cumulative: Array
+    node_cumulative: Array
+    strains: Array
+    rest: Array
+    frames: Frames
+    offset: Array | None = None
+    shaped: tuple[bool, ...] = static(default=(True,) * 6)
+    present: tuple[bool, ...] = static(default=(True,) * 6)
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return int(self.strains.shape[-1])
+
+    def __getitem__(self, at: Any) -> StrainField:
+        """The field at some of the points."""
+        frames = replace(self.frames, points=self.frames.points[at], angles=self.frames.angles[at])
+        offset = None if self.offset is None else self.offset[at]
+        return replace(self, cumulative=self.cumulative[at], frames=frames, offset=offset)
+
+    # --- motion goes out
+
+    def strain(self, q: Array) -> tuple[Any, ...]:
+        """Stretch and shears, twist and curvatures at the nodes at coordinates (..., n), each (..., G)."""
+        parts = []
+        for part, rest, shaped, present in zip(self._sums(q), self.rest, self.shaped, self.present, strict=True):
+            parts.append(0 if not present else part + rest if shaped else rest + 0 * q[..., :1])
+        return tuple(parts)
+
+    def _sums(self, q: Array) -> tuple[Any, ...]:
+        """Sums of shapes at the nodes; of each strain, 0 where it has none."""
+        chosen = [k for k in range(6) if self.shaped[k]]
+        xp, nodes = namespace(self.strains, self.offset, q), self.strains.shape[1]
+        flat = xp.reshape(self.strains[np.array(chosen, dtype=int)], (-1, self.size))
+        values = xp.reshape(q @ flat.T, (*q.shape[:-1], len(chosen), nodes))
+        return tuple(values[..., chosen.index(k), :] if k in chosen else 0 for k in range(6))
+
+    def tangents(self, q: Array) -> Tangents:
+        """Rotations and t at the nodes at coordinates (..., n)."""
+        strain = self.strain(q)
+        rotation = self.frames.at(strain[3:], points=False)
+        return Tangents(rotation, turned(rotation, strain[:3]))
+
+    def moving(self, q: Array, qd: Array, qdd: Array) -> Tangents:
+        """Rotations, t and its rates at the nodes."""
+        rotation, t, *_ = self.tangents(q)
+        rate, change = (tuple(self._sums(x)) for x in (qd, qdd))
+        stretching, turn = turned(rotation, rate[:3]), turned(rotation, rate[3:])
+        w = mapped(turn, self.node_cumulative)
+        turnd = add(turned(rotation, change[3:]), cross(w, turn))
+        alpha = mapped(turnd, self.node_cumulative)
+        td = add(cross(w, t), stretching)
+        tdd = add(swept(w, alpha, t), scaled(2.0, cross(w, stretching)), turned(rotation, change[:3]))
+        return Tangents(rotation, t, td, tdd, turn, turnd)
+
+    def _at_points(self, q: Array) -> Rotation:
+        return self.frames.at(self.strain(q)[3:], points=True)
+
+    def _arms(self, q: Array) -> Vector:
+        """From the axis to the points."""
+        return turned(self._at_points(q), split(self.offset))
+
+    def components(self, q: Array, qd: Array, qdd: Array) -> tuple[Vector, Vector, Vector]:
+        """Places, velocities and accelerations of the points relative to the base axes, by components (..., p)."""
+        tangents = self.moving(q, qd, qdd)
+        r, rd, rdd = (mapped(each, self.cumulative) for each in (tangents.t, tangents.td, tangents.tdd))
+        if self.offset is None:
+            return r, rd, rdd
+        arm, w = self._arms(q), mapped(tangents.turn, self.cumulative)
+        alpha = mapped(tangents.turnd, self.cumulative)
+        return add(r, arm), add(rd, cross(w, arm)), add(rdd, swept(w, alpha, arm))
+
+    def paths(self, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
+        """Places, velocities and accelerations of the points relative to the base axes, (..., p, 3) each."""
+        xp, shape = namespace(self.strains, self.offset, q), (*q.shape[:-1], len(self.cumulative))
+        r, rd, rdd = (joined(xp, each, shape) for each in self.components(q, qd, qdd))
+        return r, rd, rdd
+
+    def positions(self, q: Array) -> Array:
+        """Places of the points at coordinates (..., n), base axes, (..., p, 3) m."""
+        r = mapped(self.tangents(q).t, self.cumulative)
+        if self.offset is not None:
+            r = add(r, self._arms(q))
+        return joined(namespace(self.strains, self.offset, q), r, (*q.shape[:-1], len(self.cumulative)))
+
+    def rotation(self, q: Array, at: Any = slice(None)) -> Array:
+        """Rotation matrices R_BS of the sections at all points, or `at` some, (..., p, 3, 3)."""
+        field = self[at]
+        xp, shape = namespace(self.strains, self.offset, q), (*q.shape[:-1], len(field.cumulative))
+        return xp.stack([joined(xp, row, shape) for row in field._at_points(q)], axis=-2)
+
+    # --- forces come back
+
+    def pulled(self, tangents: Tangents, force: Vector, moment: Vector = NONE) -> Array:
+        """Generalised forces (..., n) of forces on t and moments on the sections at the nodes."""
+        lever = mapped(cross(tangents.t, force), self.node_cumulative.T)
+        inward = (
+            *turned_back(tangents.rotation, force),
+            *turned_back(tangents.rotation, add(moment, lever)),
+        )
+        parts = [part @ self.strains[k] for k, part in enumerate(inward) if self.shaped[k] and not absent(part)]
+        return sum(parts[1:], start=parts[0])
+
+    def along(self, q: Array, push: Vector, turn: Vector = NONE) -> Array:
+        """Generalised forces (..., n) of forces and moments on the points, base axes, by components (..., p)."""
+        if self.offset is not None:
+            turn = add(turn, cross(self._arms(q), push))
+        return self.pulled(self.tangents(q), mapped(push, self.cumulative.T), mapped(turn, self.cumulative.T))
+
+    # --- how it changes
+
+    def _slopes(self, q: Array) -> tuple[Tangents, Vector, Vector, Vector]:
+        """Tangents, and by coordinate Rε, Rκ and the angle of turning at the nodes (..., G, n)."""
+        tangents = self.tangents(q)
+        rotation: Any = tuple(
+            tuple(part if isinstance(part, int) else part[..., None] for part in row) for row in tangents.rotation
+        )
+        s, t, u, x, y, z = (part if shaped else 0 for part, shaped in zip(self.strains, self.shaped, strict=True))
+        strain, turn = (turned(rotation, each) for each in ((s, t, u), (x, y, z)))
+        return tangents, strain, turn, self._summed(self.node_cumulative, turn)
+
+    @staticmethod
+    def _summed(matrix: Array, vector: Vector) -> Vector:
+        x, y, z = (0 if absent(part) else matrix @ part for part in vector)
+        return x, y, z
+
+    def slopes(self, q: Array) -> Array:
+        """∂r/∂q of the points at coordinates (..., n), (..., p, 3, n)."""
+        return self.jacobians(q)[0]
+
+    def jacobians(self, q: Array) -> tuple[Array, Array]:
+        """∂r/∂q of the points, and the angles by which their sections turn with q, (..., p, 3, n) each."""
+        xp, shape = namespace(self.strains, self.offset, q), (*q.shape[:-1], len(self.cumulative), self.size)
+        tangents, strain, turn, angle = self._slopes(q)
+        x, y, z = (part if absent(part) else part[..., None] for part in tangents.t)
+        first = self._summed(self.cumulative, add(cross(angle, (x, y, z)), strain))
+        at_points = self._summed(self.cumulative, turn)
+        if self.offset is not None:
+            arm: Any = tuple(part if absent(part) else part[..., None] for part in self._arms(q))
+            first = add(first, cross(at_points, arm))
+        slopes, angles = (xp.swapaxes(joined(xp, each, shape), -1, -2) for each in (first, at_points))
+        return slopes, angles
+
+    def weighted(self, q: Array, weight: Array, arm: Array | None = None) -> Array:
+        """Sums Σ w ∂²r/∂q² of the points with weights (k, p), or Σ w ∂²r/∂q² of the axis and Σ ∂²R/∂q² a with arms Ra
+        (k, 3, p), base axes; (k, 3, n, n).
+        """
+        tangents, strain, turn, angle = self._slopes(q)
+        xp, n = namespace(self.strains, self.offset, q), self.size
+        if arm is None:
+            arm = xp.zeros((len(weight), 3, weight.shape[-1]))
+            if self.offset is not None:
+                arm = weight[:, None] * joined(xp, self._arms(q), weight.shape[-1:]).T
+        at_nodes = weight @ self.cumulative
+        along = arm @ self.cumulative
+        levers = [part if absent(part) else at_nodes * part for part in tangents.t]
+        moved = [part if absent(part) else part @ self.node_cumulative for part in levers]
+        along = xp.stack([plus(part, along[:, axis]) for axis, part in enumerate(moved)], axis=1)
+        out = [xp.zeros((len(weight), n, n)) for _ in range(3)]
+
+        def add_to(onto: int, by: Array, left: Array, right: Array) -> None:
+            if not (absent(left) or absent(right)):
+                out[onto] = out[onto] + (left.T[None] * by[:, None]) @ right
+
+        for a, b, c in np.argwhere(EPSILON):  # R' ε = θ × ε
+            add_to(a, EPSILON[a, b, c] * at_nodes, angle[b], strain[c])
+        for a in range(3):  # θ × (κ × d) = κ (θ·d) − d (θ·κ)
+            for b in range(3):
+                add_to(a, along[:, b], angle[b], turn[a])
+                add_to(a, -along[:, a], angle[b], turn[b])
+        whole = xp.stack(out, axis=1)
+        return whole + xp.swapaxes(whole, -1, -2)
+
+    def about(self, q: Array, mass: Array) -> tuple[Places, Array]:
+        """Places of particles (p,) kg about coordinates (n,), to first order, and Σ m ∂²r/∂q² and Σ m r_b ∂²r/∂q²,
+        (4, 3, n, n).
+        """
+        xp = namespace(self.strains, self.offset, q, mass)
+        r = self.positions(q)
+        return Places(r, self.slopes(q)), self.weighted(q, xp.concatenate([mass[None], mass * r.T]))
+
+    def curved(self, q: Array) -> tuple[Places, Array, Turns]:
+        """Places of the points about coordinates (n,) to second order, their sections' rotations (p, 3, 3), and the
+        derivatives of these.
+        """
+        xp, count = namespace(self.strains, self.offset, q), len(self.cumulative)
+        slopes, angle = self.jacobians(q)
+        rotation, even = self.rotation(q), xp.eye(count)
+        second = self.weighted(q, even)
+        turn = xp.einsum("abc,pbi,pcd->padi", EPSILON, angle, rotation)
+        columns = [self.weighted(q, 0 * even, xp.einsum("pa,pk->kap", rotation[:, :, d], even)) for d in range(3)]
+        return Places(self.positions(q), slopes, second), rotation, Turns(turn, xp.stack(columns, axis=2))
+
+
+def strain_field(
+    rule: Quadrature, x: Array, strains: Array, move: Array | None = None, turn: Array | None = None
+) -> StrainField:
+    """Field of a straight beam at points (p,) m, by the values (6, g, n) of its shapes at the quadrature nodes; its
+    root moves and turns by columns (3, n).
+    """
+    n = strains.shape[-1]
+    shift, spin = (np.zeros((3, n)) if each is None else each for each in (move, turn))
+    weights, root, turning = root_rule(shift, spin)
+    before, nodes = len(weights), len(rule.node)
+    of_root = np.where(
+        turning[:, None], np.concatenate([0 * shift, spin])[:, None], np.concatenate([shift, 0 * spin])[:, None]
+    )
+    whole = np.concatenate([of_root, strains], axis=1)
+    rest = np.zeros((6, before + nodes))
+    rest[0, before:] = 1.0
+    cumulative, node_cumulative = (
+        np.concatenate([np.tile(weights, (len(at), 1)), rule.cumulative(at)], axis=1) for at in (x, rule.node)
+    )
+    node_cumulative = np.concatenate([np.concatenate([root, np.zeros((before, nodes))], axis=1), node_cumulative])
+    frames = frames_along(rule, x, turning, root, cumulative, node_cumulative)
+    shaped = tuple(bool(np.any(each)) for each in whole)
+    present = tuple(has or bool(np.any(each)) for has, each in zip(shaped, rest, strict=True))
+    return StrainField(cumulative, node_cumulative, whole, rest, frames, None, shaped, present)
+
+
+def bending_strains(rule: Quadrature, counts: tuple[int, int, int], families: Families) -> Array:
+    """Values (6, g, n) of the shapes of stretch and of bending along y and z: the slopes of the axial family, and the
+    curvatures of the others.
+    """
+    nodes = len(rule.node)
+    out = np.zeros((6, nodes, sum(counts)))
+    stretch, along_y, along_z = (family(rule.node) for family in families)
+    first, second = counts[0], counts[0] + counts[1]
+    out[0, :, :first] = stretch.slope
+    out[5, :, first:second] = along_y.curvature
+    out[4, :, second:] = -along_z.curvature  # bending towards +z turns about −y
+    return out
