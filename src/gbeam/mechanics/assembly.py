@@ -20,7 +20,7 @@ from gbeam.mechanics.fields.basis import Families, Quadrature, closed_forms, pol
 from gbeam.mechanics.fields.projected import projected_field
 from gbeam.mechanics.fields.rooted import Field, RootedField
 from gbeam.mechanics.fields.strains import StrainField, bending_strains, strain_field
-from gbeam.mechanics.fields.taylor import Places, Polynomials
+from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.models import KINDS, Kind, Model
 from gbeam.mechanics.structure import Sections, Source, Structure
 from gbeam.motion.profiles.piecewise import constant
@@ -141,7 +141,7 @@ def assembled(
         mass=mass,
         places=places,
         stations=at,
-        station_places=places_at_rest(field, slice(first_station, None)),
+        station_places=field.points(slice(first_station, None)).at_rest(),
         coefficients=c.damped(damping_matrix(0.0 if ratio is None else ratio, c.mass, c.stiffness)),
         inertia=inertia,
         field=field,
@@ -198,14 +198,6 @@ def _stations(beam: Beam, stations: ArrayLike) -> Array:
     return np.append(positions[positions < beam.length], beam.length)
 
 
-def places_at_rest(field: Field, at: Any) -> Places:
-    """Places of some of a field's points about the straight beam, (p, 3); of an exact field to first order."""
-    if isinstance(field, StrainField):
-        some, rest = field[at], np.zeros(field.size)
-        return Places(some.positions(rest), some.slopes(rest))
-    return field.places()[at]
-
-
 def particles_of(beam: Beam, field: Field, rule: Quadrature) -> tuple[StrainField | Places, Array, Array]:
     """The beam's quadrature points and its bodies' particles: their field, their masses kg, and each one's point."""
     nodes, area = len(rule.node), beam.section.at(rule.node).area
@@ -218,12 +210,7 @@ def particles_of(beam: Beam, field: Field, rule: Quadrature) -> tuple[StrainFiel
     xp = namespace(*mass, *offset)
     off_axis = xp is not np or any(place.any() for place in offset)
     at, arm = np.concatenate(station), xp.concatenate(offset)
-    if isinstance(field, StrainField):
-        particles: StrainField | Places = replace(field[at], offset=arm if off_axis else None)
-    else:
-        axis = field.places()[at]
-        particles = field.turns()[at].carry(axis, arm) if off_axis else axis
-    return particles, xp.concatenate(mass), at
+    return field.points(at, arm if off_axis else None), xp.concatenate(mass), at
 
 
 def stiffness_of(beam: Beam, rule: Quadrature, strains: Array) -> Array:
@@ -266,8 +253,7 @@ def load_work(beam: Beam, field: Field, rule: Quadrature, first: int) -> tuple[L
         which.append(np.full(len(station[-1]), k))
     at, of_load = np.concatenate(station), np.concatenate(which)
     follower = np.array([load.follower for load in beam.loads])[of_load]
-    loaded = field[at] if isinstance(field, StrainField) else Polynomials(field.places()[at], field.turns()[at])
-    return LoadWork(loaded, of_load, np.concatenate(weight), follower), at
+    return LoadWork(field.sections(at), of_load, np.concatenate(weight), follower), at
 
 
 def sections_of(

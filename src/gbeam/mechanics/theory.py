@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.integrate.equations import LinearTerms
-from gbeam.mechanics.assembly import load_work, places_at_rest, sections_of
+from gbeam.mechanics.assembly import load_work, sections_of
 from gbeam.mechanics.enrichment import enrichment, own_families
 from gbeam.mechanics.equations.inertia import inertia_of
 from gbeam.mechanics.equations.linear import LoadTerms, coefficients, damping_matrix
@@ -215,7 +215,7 @@ class _Parts:
             thick[4 * nodes : 6 * nodes].reshape(2, nodes, -1),
             np.stack([about_y, about_z]) * self.rule.weight,
             self.rule.node,
-            replace(bodies, offset=offset).slopes(np.zeros(thick.shape[1])),
+            bodies.points(slice(None), offset).slopes(np.zeros(thick.shape[1])),
             self.beam,
             count_own,
             _beyond(*models, count_own),
@@ -252,7 +252,7 @@ class _Parts:
         """The linear structure with shapes of some strains (m, n)."""
         structure, beam, rest = self.structure, self.beam, np.zeros(strains.shape[1])
         field, (at, mass, offset) = self.field(strains), self.particles(thick=thick)
-        places, geometric = inertia_of(replace(field[at], offset=offset), mass).about(rest)
+        places, geometric = inertia_of(field.points(at, offset), mass).about(rest)
         stiffness = strains.T @ (np.where(self.known, self.stiffness, 0.0)[:, None] * strains)
         work, loaded, loads = None, np.zeros(0, int), None
         if beam.loads:
@@ -269,7 +269,7 @@ class _Parts:
             hub_force=True,
             mass=mass,
             places=places,
-            station_places=places_at_rest(field, slice(self.first_station, None)),
+            station_places=field.points(slice(self.first_station, None)).at_rest(),
             coefficients=c.damped(damping_matrix(0.0 if ratio is None else ratio, c.mass, c.stiffness)),
             inertia=None,
             field=field,

@@ -18,7 +18,6 @@ from gbeam.analysis.response.settings import NOT_ESTIMATED, ResponseSettings
 from gbeam.analysis.response.stepping import joined
 from gbeam.arrays.namespace import is_jax
 from gbeam.integrate.equations import Trajectory
-from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
@@ -45,7 +44,7 @@ def outline_of(structure: Structure, motion: Motion, time: Floats, q: Floats) ->
         return None
     beam = structure.source.beam
     field = structure.field
-    outline: Any = field if isinstance(field, StrainField) else field.places()
+    outline = field.points(slice(None))
     places = np.asarray(outline.positions(np.zeros(structure.size)))[:, 0]
     x, index = np.unique(np.round(places / beam.length, 9), return_index=True)
     spread = np.unique(np.linspace(0, len(x) - 1, POINTS - 1).round().astype(int))

@@ -10,13 +10,13 @@ from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.fields.basis import Families, Quadrature
 from gbeam.mechanics.fields.rotation import rotation_matrix
-from gbeam.mechanics.fields.taylor import Places, Turns, exponential
+from gbeam.mechanics.fields.taylor import Expanded, Places, Turns, exponential
 
 Array = Any
 
 
 @record
-class ProjectedField:
+class ProjectedField(Expanded):
     """The field (x + s − ½∫(v'² + w'²), v, w) of TLAM (without the integral), FOAM, SFOAM and CFOAM, 2009 (2), (3),
     (11), 2020 (7), (12): shapes and slopes (3, points, n), nodal slopes and curvatures (2, g, n).
     """

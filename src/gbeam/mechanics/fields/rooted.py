@@ -9,13 +9,13 @@ from gbeam.arrays.tree import record, static
 from gbeam.mechanics.fields.projected import ProjectedField
 from gbeam.mechanics.fields.rotation import rotation_matrix
 from gbeam.mechanics.fields.strains import StrainField
-from gbeam.mechanics.fields.taylor import EPSILON, Places, Turns, exponential
+from gbeam.mechanics.fields.taylor import EPSILON, Expanded, Places, Turns, exponential
 
 Array = Any
 
 
 @record
-class RootedField:
+class RootedField(Expanded):
     """A field on a root that springs hold: moved by p and turned by R(φ), whose components are the last coordinates, m
     and rad.
     """

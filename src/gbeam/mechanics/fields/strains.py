@@ -80,6 +80,19 @@ class StrainField:
         offset = None if self.offset is None else self.offset[at]
         return replace(self, cumulative=self.cumulative[at], frames=frames, offset=offset)
 
+    def points(self, at: Any, offset: Array | None = None) -> StrainField:
+        """The field of points fixed to the sections `at`, `offset` (p, 3) m from the axis, section axes."""
+        return replace(self[at], offset=offset)
+
+    def sections(self, at: Any) -> StrainField:
+        """The field of some sections."""
+        return self.points(at)
+
+    def at_rest(self) -> Places:
+        """Places about the straight beam, to first order."""
+        rest = np.zeros(self.size)
+        return Places(self.positions(rest), self.slopes(rest))
+
     # --- motion goes out
 
     def strain(self, q: Array) -> tuple[Any, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,10 @@ class Places:
     def __getitem__(self, chosen: Any) -> Places:
         """The polynomials of some of the points."""
         return Places(self.r0[chosen], self.first[chosen], None if self.second is None else self.second[chosen])
+
+    def at_rest(self) -> Places:
+        """The polynomials themselves, which are those about the straight beam."""
+        return self
 
     def slopes(self, q: Any) -> Any:
         """∂r/∂q = J + H q at coordinates (..., n), (..., p, 3, n)."""
@@ -151,6 +156,22 @@ class Polynomials:
         """Places about coordinates (n,) to second order, rotations (p, 3, 3), and the derivatives of these."""
         places = Places(self.positions(q), self.places.slopes(q), self.places.second)
         return places, self.rotation(q), Turns(self.turns.slopes(q), self.turns.second)
+
+
+class Expanded:
+    """A field whose points and sections follow the polynomials `places` and `turns` of second degree."""
+
+    places: Callable[[], Places]
+    turns: Callable[[], Turns]
+
+    def points(self, at: Any, offset: Any = None) -> Places:
+        """Places of points fixed to the sections `at`, `offset` (p, 3) m from the axis, section axes."""
+        places = self.places()[at]
+        return places if offset is None else self.turns()[at].carry(places, offset)
+
+    def sections(self, at: Any) -> Polynomials:
+        """Places and rotations of some sections."""
+        return Polynomials(self.places()[at], self.turns()[at])
 
 
 EPSILON = np.zeros((3, 3, 3))  # Levi-Civita's symbol
