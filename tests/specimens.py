@@ -5,6 +5,7 @@ Those of the literature are validation.published.specimens'; these have bodies, 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -40,9 +41,15 @@ STRIP_LENGTH, STRIP_DENSITY, STRIP_YOUNG = zhang2020.LENGTH, zhang2020.DENSITY, 
 
 @cache
 def laden(kind: str) -> Structure:
-    """The same with all there is: a tip mass, a body off its axis, root springs, loads, both directions of bending."""
-    axial = 0 if kind == "SFOAM" else 1
-    return assemble(appendage(TIP, BODY, damping_ratio=0.01, root=SPRINGS, loads=LOADS), Model(kind, axial, 1, 1))
+    """The same with all there is: a tip mass, a body off its axis, root springs, loads, both directions of bending; as
+    a thick beam with every strain and rotary inertia.
+    """
+    beam = appendage(TIP, BODY, damping_ratio=0.01, root=SPRINGS, loads=LOADS)
+    if kind == "thick":
+        section = BOX.altered(torsion_constant=2e-8, shear_coefficient_y=0.8, shear_coefficient_z=0.7)
+        beam = replace(beam, section=section, material=replace(METAL, poissons_ratio=0.3), rotary_inertia=True)
+        return assemble(beam, "exact", axial=1, y=1, z=1, twist=1, shear_y=1, shear_z=1)
+    return assemble(beam, Model(kind, 0 if kind == "SFOAM" else 1, 1, 1))
 
 
 def states(size: int, count: int, scale: float, seed: int) -> np.ndarray:

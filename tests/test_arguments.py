@@ -83,6 +83,7 @@ class Given:
                     "root": gb.Root(),
                     "damping_ratio": 0.01,
                     "points": [gb.Point("camera", 0.1)],
+                    "rotary_inertia": True,
                 },
             ),
             "Case": (
@@ -116,7 +117,10 @@ class Given:
                 (2700.0, 70e9),
                 {"yield_strength": 1e8, "fatigue_exponent": 5.0, "poissons_ratio": 0.3, "shear_modulus": 26e9},
             ),
-            "Model": (("FOAM", 1, 1, 1), {"shapes": "clamped-free", "automatic": False}),
+            "Model": (
+                ("exact", 1, 1, 1),
+                {"shapes": "clamped-free", "automatic": False, "twist": 1, "shear_y": 1, "shear_z": 1},
+            ),
             "Point": (("camera", 0.1), {}),
             "PointMass": ((0.1, 0.1), {"inertia": (0.0, 0.0, 0.0), "offset": (0.0, 0.0, 0.0), "name": "body"}),
             "ResponseSettings": (
@@ -132,7 +136,10 @@ class Given:
             "SmoothStep": ((1.0, 1.0, 0.0), {}),
             "SplineProfile": ((1.0, [0.0] * 12), {"start": 0.0}),
             "Sum": (((gb.constant(1.0), gb.constant(2.0)),), {}),
-            "assemble": ((self.beam, "FOAM", (0.1,)), {"axial": 0, "y": 1, "z": 1, "shapes": "clamped-free"}),
+            "assemble": (
+                (self.beam, "FOAM", (0.1,)),
+                {"axial": 0, "y": 1, "z": 1, "shapes": "clamped-free", "twist": 0, "shear_y": 0, "shear_z": 0},
+            ),
             "balanced_truncation": ((self.system, 2), {}),
             "buckling_acceleration": ((self.structure,), {"upper": None, "progress": None}),
             "build_target": (

@@ -273,7 +273,7 @@ def test_shapes_are_added_until_they_are_enough() -> None:
     assert few.q.shape[1] == 2 and few.errors.displacement.shapes > 0.05
     assert any("raise model.modes" in warning for warning in few.warnings)
     assert enough.q.shape[1] > 7 and enough.errors.displacement.shapes < 1e-3 and not enough.warnings
-    assert gb.assemble(beam, "FOAM").counts == (1, 3, 3) and gb.assemble(beam, "SFOAM").counts == (0, 3, 3)
+    assert gb.assemble(beam, "FOAM").counts[:3] == (1, 3, 3) and gb.assemble(beam, "SFOAM").counts[:3] == (0, 3, 3)
 
 
 def test_a_run_without_its_estimate_is_the_same_run_and_says_so() -> None:

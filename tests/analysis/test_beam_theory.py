@@ -14,6 +14,7 @@ from scipy.interpolate import BSpline
 from scipy.optimize import brentq
 
 import gbeam as gb
+from gbeam.analysis.accuracy.estimate import BEYOND
 from gbeam.analysis.steady.loss import _lost
 from gbeam.analysis.steady.operating_point import REST
 from gbeam.mechanics.theory import theory_of
@@ -91,7 +92,7 @@ def test_a_deflection_states_shear(kind: str) -> None:
     assert found.errors.displacement.beam_theory == pytest.approx(expected, rel=2e-3)
     assert found.errors.loads.beam_theory < 1e-9 and found.errors.stress.beam_theory < 1e-9
     (warning,) = found.warnings
-    assert warning.endswith("mostly from the theory of slender beams (shear); no model here goes beyond it")
+    assert warning.endswith("mostly from the theory of slender beams (shear); " + BEYOND)
 
 
 def test_a_body_off_the_axis_twists_the_beam() -> None:
@@ -250,7 +251,7 @@ def test_a_strip_on_edge_buckles_sideways() -> None:
         rest = gb.static(loaded(force))
         assert rest.stable and any("buckle sideways" in each for each in rest.warnings) != stays
     found = gb.critical_load(loaded(1.0))
-    assert found.value is None and "with shear and twist, which no model here has" in found.warnings[-1]
+    assert found.value is None and "with shear and twist, which this model has not" in found.warnings[-1]
     assert float(found.warnings[-1].split("estimated ")[1].split()[0]) == pytest.approx(true, rel=0.02)
 
 

@@ -18,7 +18,7 @@ from scipy.integrate._ivp import dop853_coefficients as dop853
 
 from gbeam import Structure
 from gbeam.integrate.newton import accelerations
-from gbeam.mechanics.equations.inertia import inertia_of
+from gbeam.mechanics.equations.inertia import Particles, Sections, inertia_of
 from gbeam.mechanics.equations.residuals import OnHub
 from gbeam.motion import Base
 
@@ -63,23 +63,34 @@ def virtual_work_of_inertia(
     return inertia + jacobian(energy.potential, q)
 
 
-def spatial_state(seed: int, scale: float = 0.5) -> tuple[Any, ...]:
+def spatial_state(name: str, seed: int, scale: float = 0.5) -> tuple[Any, ...]:
     """q, q̇ and q̈ of the laden beam, and a base."""
     a, w, al = states(3, 3, scale, seed)
-    return *states(laden("CFOAM").size, 3, scale, seed + 10), Base(a, w, al)
+    return *states(laden(name).size, 3, scale, seed + 10), Base(a, w, al)
 
 
-@pytest.mark.parametrize("name", COMPLETE)
+@pytest.mark.parametrize("name", [*COMPLETE, "thick"])
 @pytest.mark.parametrize("seed", range(2))
 def test_complete_models_are_dalemberts_principle_in_the_world(name: str, seed: int) -> None:
-    structure, (q, qd, qdd, base) = laden(name), spatial_state(seed)
+    structure, (q, qd, qdd, base) = laden(name), spatial_state(name, seed)
     got = on_base(structure, q, qd, qdd, base) - structure.coefficients.damping @ qd
     wanted = virtual_work_of_inertia(structure, q, qd, qdd, base)
     np.testing.assert_allclose(got, wanted, atol=IDENTITY * np.abs(wanted).max())
 
 
+@pytest.mark.parametrize("name", ["exact", "thick"])
+def test_parts_of_the_inertia_are_its_particles(name: str) -> None:
+    """Sections by their mass and moments of inertia, bodies off the axis as particles."""
+    inertia, (a, w, alpha) = laden(name).inertia, states(3, 3, 2.0, seed=8)
+    assert inertia is not None and [type(part) for part in inertia.parts] == [Sections, Particles]
+    motion = *states(laden(name).size, 3, 0.3, seed=9), a, w, alpha
+    ours, theirs = inertia.forces(*motion), replace(inertia, parts=(Particles(inertia.field, inertia.mass),))
+    for each, other in zip(ours, theirs.forces(*motion), strict=True):
+        np.testing.assert_allclose(each, other, rtol=0, atol=1e-11 * np.abs(other).max())
+
+
 def test_coefficients_are_the_whole_truth_for_a_truncated_energy() -> None:
-    structure, (q, qd, qdd, base) = laden("FOAM"), spatial_state(3, 1.0)
+    structure, (q, qd, qdd, base) = laden("FOAM"), spatial_state("FOAM", 3, 1.0)
     c = structure.coefficients
     velocity, stiffness, load = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
     linear = c.mass @ qdd + velocity @ qd + stiffness @ q - load
@@ -90,7 +101,7 @@ def test_coefficients_are_the_whole_truth_for_a_truncated_energy() -> None:
 @pytest.mark.parametrize("name", COMPLETE)
 def test_coefficients_of_a_complete_model_are_its_linearisation(name: str) -> None:
     """What they leave is of second order: a quarter at half the state."""
-    structure, (q, qd, qdd, base) = laden(name), spatial_state(5)
+    structure, (q, qd, qdd, base) = laden(name), spatial_state(name, 5)
     c = structure.coefficients
     velocity, stiffness, load = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
 
@@ -282,7 +293,7 @@ def test_driven_hub_gains_the_momentum_of_the_torque(name: str) -> None:
 
 def test_body_off_the_axis_is_in_all_of_them() -> None:
     """The laden beam carries a body with inertia off the axis; without its mass the residual differs."""
-    loaded, (q, qd, qdd, base) = laden("CFOAM"), spatial_state(0)
+    loaded, (q, qd, qdd, base) = laden("CFOAM"), spatial_state("CFOAM", 0)
     off_axis = np.abs(loaded.places.r0[:, 1:]).any(axis=1) | (np.abs(loaded.places.r0[:, 0] - BODY.at) < 1)
     off_axis = off_axis & (np.arange(len(loaded.mass)) >= len(loaded.mass) - 7)
     bare = replace(loaded, inertia=inertia_of(loaded.particles, np.where(off_axis, 0.0, loaded.mass)))

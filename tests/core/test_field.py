@@ -39,7 +39,7 @@ def exact(strain: int = 2, y: int = 3, z: int = 3) -> Structure:
 
 def bent(structure: Structure, seed: int, strain: float = 0.01, angle: float = 0.8) -> np.ndarray:
     """Random coordinates of the exact field: strains of per cents, rotations of the order of a radian."""
-    count = structure.counts
+    count = structure.counts[:3]
     scale = np.repeat([strain, angle, angle], count)
     return states(sum(count), 1, 1.0, seed)[0] * scale
 
@@ -155,7 +155,7 @@ def test_rotation_matrix_is_the_exponential() -> None:
 
 
 def test_projected_field_is_the_sum_of_shapes_and_the_foreshortening() -> None:
-    x, counts = np.array([2.0, 5.0]), (2, 2, 2)
+    x, counts = np.array([2.0, 5.0]), (2, 2, 2, 0, 0, 0)
     q = states(6, 1, 0.3, seed=7)[0]
     s, v, w = (
         shapes(x, LENGTH, 2).value @ part
@@ -251,7 +251,7 @@ MOVE, TURN = SPRINGS.directions()
 
 
 def projected(name: str) -> ProjectedField:
-    counts = (1, 2, 2)
+    counts = (1, 2, 2, 0, 0, 0)
     return projected_field(RULE, POINTS, counts, closed_forms(LENGTH, counts), foreshortening=name == "FOAM")
 
 

@@ -57,7 +57,12 @@ def test_table_of_models() -> None:
     assert [k for k, row in KINDS.items() if not row.hub_force] == ["SFOAM"]
     assert [k for k, row in KINDS.items() if not row.axial] == ["SFOAM"]
     structure = assemble(appendage(TIP), Model("SFOAM", 0, 2, 0))
-    assert (structure.linear, structure.hub_force, structure.counts, structure.size) == (True, False, (0, 2, 0), 2)
+    assert (structure.linear, structure.hub_force, structure.counts, structure.size) == (
+        True,
+        False,
+        (0, 2, 0, 0, 0, 0),
+        2,
+    )
 
 
 def test_stations_end_with_the_tip_once() -> None:

@@ -26,7 +26,7 @@ def test_builds(name: str) -> None:
     built = build(scenario)
     assert list(built.motions) == list(scenario.motion)
     assert built.beam.length == scenario.beam.length
-    assert built.model.counts == (scenario.model.modes.axial, scenario.model.modes.y, scenario.model.modes.z)
+    assert built.model.counts[:3] == (scenario.model.modes.axial, scenario.model.modes.y, scenario.model.modes.z)
 
 
 def test_tip_mass_variants() -> None:

@@ -71,7 +71,7 @@ def test_their_sign_is_that_of_the_root_whatever_the_nodes_are() -> None:
     """The third shape's curvature changes its sign within 1 mm of this root, between the first nodes of two rules."""
     root = Root(rotation_y=50.0, rotation_z=100.0, translation_z=1e4)
     beam, tip = Beam(0.3, Section.rectangle(0.02, 0.004), Material(2700.0, 70e9), root=root), np.array([0.3])
-    shapes = [adapted_shapes(beam, quadrature(0.3, nodes), (0, 3, 3)) for nodes in (20, 24, 30)]
+    shapes = [adapted_shapes(beam, quadrature(0.3, nodes), (0, 3, 3, 0, 0, 0)) for nodes in (20, 24, 30)]
     for along in (1, 2):
         first, *others = (each[along](tip).value for each in shapes)
         for other in others:

@@ -98,4 +98,4 @@ def test_what_they_refuse(old: str, new: str, place: str, words: str) -> None:
 def test_a_section_at_a_right_angle_needs_shapes_along_z() -> None:
     only_z = TEXT.replace("y = 2, z = 2", "y = 0, z = 2").replace('"30 deg"', '"90 deg"')
     only_z = only_z[: only_z.index("[motion.free]")] + '[response]\nduration = "2 s"\n'
-    assert build(loads(only_z)).model.counts == (1, 0, 2)
+    assert build(loads(only_z)).model.counts == (1, 0, 2, 0, 0, 0)

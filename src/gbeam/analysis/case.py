@@ -14,7 +14,7 @@ from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.assembly import assemble
-from gbeam.mechanics.fields.basis import quadrature
+from gbeam.mechanics.fields.basis import FAMILIES, quadrature
 from gbeam.mechanics.models import Model
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
@@ -126,14 +126,14 @@ def describe(case: Case) -> Description:
     >>> case = gb.read_scenario("examples/f16_8g_turn.toml")
     >>> description = gb.describe(case)
     >>> print(f"{description.mass:.4f} kg, {description.duration} s, {description.counts}")
-    0.0648 kg, 15.99 s, (1, 3, 3)
+    0.0648 kg, 15.99 s, {'axial': 1, 'y': 3, 'z': 3}
     """
     structure, beam, settings = case.assemble(), case.beam, case.response
     span = settings.start, settings.start + settings.duration
     doubts = [input_warnings(structure, motion, name=name, span=span) for name, motion in case.motions.items()]
     frequencies, modes = structure.rest
     # Which group of coordinates moves most says along which axis a mode bends.
-    groups = np.repeat(("axial", "y", "z"), structure.counts)
+    groups = np.repeat(FAMILIES, structure.counts)
     rule = quadrature(beam.length, 4, beam.section.stations)
     return Description(
         title=case.title,
@@ -141,7 +141,7 @@ def describe(case: Case) -> Description:
         mass=beam.material.density * float(np.sum(beam.section.at(rule.node).area * rule.weight)),
         bodies=tuple((body.at, body.mass) for body in beam.masses),
         model=case.model.kind,
-        counts=case.model.counts,
+        counts={name: n for name, n in zip(FAMILIES, case.model.counts, strict=True) if n or name in FAMILIES[:3]},
         frequency=np.asarray(frequencies)[:MODES] / (2 * np.pi),
         direction=tuple(str(groups[i]) for i in np.abs(modes[: len(groups)]).argmax(axis=0)[:MODES]),
         motions={name: motion.kind for name, motion in case.motions.items()},

@@ -33,11 +33,11 @@ PATIENCE = 5.0  # s: what took longer is not run again to time it without compil
 
 def counterpart(model: Model, kind: str) -> Model:
     """The model of another kind with the same shapes; the reference with enough of its own."""
-    axial, y, z = model.counts
+    axial, y, z = model.counts[:3]
     if kind == REFERENCE:
         axial, y, z = max(axial, CONVERGED[0]), *(max(n, CONVERGED[1]) if n else 0 for n in (y, z))
         return replace(model, kind=kind, axial=axial, y=y, z=z)
-    return replace(model, kind=kind, axial=axial if KINDS[kind].axial else 0)
+    return replace(model, kind=kind, axial=axial if KINDS[kind].axial else 0, twist=0, shear_y=0, shear_z=0)
 
 
 @typed

@@ -16,17 +16,16 @@ from gbeam.mechanics.equations.inertia import inertia_of
 from gbeam.mechanics.equations.linear import coefficients, damping_matrix
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.adapted import adapted_shapes
-from gbeam.mechanics.fields.basis import Families, Quadrature, closed_forms, polynomials, quadrature
+from gbeam.mechanics.fields.basis import Counts, Families, Quadrature, closed_forms, polynomials, quadrature
 from gbeam.mechanics.fields.projected import projected_field
 from gbeam.mechanics.fields.rooted import Field, RootedField
-from gbeam.mechanics.fields.strains import StrainField, bending_strains, strain_field
-from gbeam.mechanics.fields.taylor import Places
+from gbeam.mechanics.fields.strains import shaped_strains, strain_field
 from gbeam.mechanics.models import KINDS, Kind, Model
 from gbeam.mechanics.structure import Sections, Source, Structure
 from gbeam.motion.profiles.piecewise import constant
 from gbeam.structure.attachments import TIP
 from gbeam.structure.beam import Beam
-from gbeam.structure.plausibility import implausible_beam, refuse_disparate
+from gbeam.structure.plausibility import implausible_beam, refuse_disparate, refuse_unknown
 
 Array = Any
 
@@ -41,6 +40,9 @@ def assemble(
     y: int = 0,
     z: int = 0,
     shapes: str | None = None,
+    twist: int = 0,
+    shear_y: int = 0,
+    shear_z: int = 0,
 ) -> Structure:
     """Put a beam into a model.
 
@@ -50,7 +52,7 @@ def assemble(
     model : Model or str
         A model, or the kind of one with the numbers of its shapes: ``assemble(beam, "FOAM", axial=1, y=3, z=3)``.
     stations : (s,) positions along the beam where displacements are put out, m; the tip is always added last
-    axial, y, z, shapes
+    axial, y, z, shapes, twist, shear_y, shear_z
         Of the model where only its kind is given, see :class:`Model`; without any number those of :meth:`Model.of`.
 
     Returns
@@ -61,7 +63,8 @@ def assemble(
     ------
     InputError
         If a station lies off the beam, the list of damping ratios does not fit the model, the section has too many
-        stations to integrate between, or numbers do not hold a body or a spring beside the beam.
+        stations to integrate between, numbers do not hold a body or a spring beside the beam, or the beam lacks what
+        twist and shear need.
 
     Examples
     --------
@@ -71,11 +74,14 @@ def assemble(
     array([0.1, 0.2, 0.3])
     """
     if isinstance(model, str):
-        has_counts = axial or y or z
-        model = Model(model, axial, y, z, shapes or "clamped-free") if has_counts else Model.of(model, shapes)
+        if any((axial, y, z, twist, shear_y, shear_z)):
+            model = Model(model, axial, y, z, shapes or "clamped-free", False, twist, shear_y, shear_z)
+        else:
+            model = Model.of(model, shapes)
     row, counts = model.row, model.counts
     _refuse_traced_places(beam, adapted=model.shapes == "adapted")
     refuse_disparate(beam)
+    refuse_unknown(beam, twist=model.twist > 0, shear_y=model.shear_y > 0, shear_z=model.shear_z > 0)
     at = _stations(beam, stations)
     bodies = [m.at for m in beam.masses]
     adapted = model.shapes == "adapted"
@@ -91,7 +97,7 @@ def assemble(
 def assembled(
     beam: Beam,
     kind: str,
-    counts: tuple[int, int, int],
+    counts: Counts,
     rule: Quadrature,
     at: Array,
     families: Families | None,
@@ -107,7 +113,7 @@ def assembled(
     still = np.zeros((3, sum(counts)))
     move, turn = (np.concatenate([still, each], axis=1) for each in (move, turn))
     shapes_of = families or (polynomials if row.exact else closed_forms)(beam.length, counts)
-    strains = np.pad(bending_strains(rule, counts, shapes_of), ((0, 0), (0, 0), (0, len(springs))))
+    strains = np.pad(shaped_strains(rule, shapes_of), ((0, 0), (0, 0), (0, len(springs))))
     field: Field
     if row.exact:
         field = strain_field(rule, x, strains, move, turn)
@@ -115,8 +121,10 @@ def assembled(
         field = projected_field(rule, x, counts, shapes_of, foreshortening=row.foreshortening)
         if springs:
             field = RootedField(field, x, *beam.root.directions(), linear=not row.foreshortening)
-    particles, mass, station = particles_of(beam, field, rule)
-    inertia = inertia_of(particles, mass)
+    station, mass, offset = particles_of(beam, rule, rotary=beam.rotary_inertia)
+    off_axis = namespace(offset) is not np or offset.any()
+    line = len(station) - sum(len(body.particles()[0]) for body in beam.masses)
+    inertia = inertia_of(field.points(station, offset if off_axis else None), mass, line, len(rule.node))
     stiffness = stiffness_of(beam, rule, strains)
     history = _history(beam)
     work, loaded_at = None, np.zeros(0, int)
@@ -159,7 +167,8 @@ def assembled(
 def at_stations(structure: Structure, stations: ArrayLike) -> Structure:
     """Return the same structure of a beam with other stations of output, m; the tip is added last."""
     assert structure.source is not None
-    model = Model(structure.kind, *structure.counts, structure.source.shapes)
+    axial, y, z, *others = structure.counts
+    model = Model(structure.kind, axial, y, z, structure.source.shapes, False, *others)
     return replace(assemble(structure.source.beam, model, stations), load_values=structure.load_values)
 
 
@@ -198,34 +207,45 @@ def _stations(beam: Beam, stations: ArrayLike) -> Array:
     return np.append(positions[positions < beam.length], beam.length)
 
 
-def particles_of(beam: Beam, field: Field, rule: Quadrature) -> tuple[StrainField | Places, Array, Array]:
-    """The beam's quadrature points and its bodies' particles: their field, their masses kg, and each one's point."""
-    nodes, area = len(rule.node), beam.section.at(rule.node).area
-    station, mass, offset = [np.arange(nodes)], [beam.material.density * area * rule.weight], [np.zeros((nodes, 3))]
+# Particles in place of a section, in radii of gyration: of its mass, centre and second moments.
+TRIANGLE = np.sqrt(2) * np.array([(np.cos(angle), np.sin(angle)) for angle in 2 * np.pi / 3 * np.arange(3)])
+
+
+def particles_of(beam: Beam, rule: Quadrature, *, rotary: bool) -> tuple[Array, Array, Array]:
+    """Point, mass kg and offset m from the axis of every particle of the beam and its bodies; the sections, which come
+    first, are one each, or three where they have `rotary` inertia.
+    """
+    nodes, section = len(rule.node), beam.section.at(rule.node)
+    line = beam.material.density * section.area * rule.weight
+    station, mass, offset = [np.arange(nodes)], [line], [np.zeros((nodes, 3))]
+    if rotary:
+        xp = namespace(section.area, section.inertia_y, section.inertia_z)
+        gyration = [xp.sqrt(moment / section.area) for moment in (section.inertia_z, section.inertia_y)]
+        station, mass = station * 3, [line / 3] * 3
+        offset = [xp.stack([0 * line, *(r * g for r, g in zip(at, gyration, strict=True))], axis=1) for at in TRIANGLE]
     for k, body in enumerate(beam.masses):
         masses, places = body.particles()
         station.append(np.full(len(masses), nodes + k))
         mass.append(masses)
         offset.append(places)
     xp = namespace(*mass, *offset)
-    off_axis = xp is not np or any(place.any() for place in offset)
-    at, arm = np.concatenate(station), xp.concatenate(offset)
-    return field.points(at, arm if off_axis else None), xp.concatenate(mass), at
+    return np.concatenate(station), xp.concatenate(mass), xp.concatenate(offset)
 
 
 def stiffness_of(beam: Beam, rule: Quadrature, strains: Array) -> Array:
-    """Second derivatives (n, n) of the energy ½ ∫ EA ε² + EI_y κ_y² + EI_z κ_z² dx + ½ Σ k s² of strains (6, g, n), the
-    root's springs last (2009 (10); 2020 (8), corrected).
+    """Second derivatives (n, n) of the energy ½ ∫ Σ rigidity · strain² dx + ½ Σ k s² of strains (6, g, n), the root's
+    springs last (2009 (10); 2020 (8), corrected; with shear and twist Timoshenko's).
     """
     springs = [*beam.root.springs.values()]
-    axial, about_y, about_z = beam.rigidities(rule.node)
-    parts = []
-    for rigidity, shapes in zip((axial, about_y, about_z), strains[[0, 4, 5]], strict=True):
-        parts.append(shapes.T @ ((rigidity * rule.weight)[:, None] * shapes))
+    parts = [
+        shapes.T @ ((rigidity * rule.weight)[:, None] * shapes)
+        for rigidity, shapes in zip(beam.stiffnesses(rule.node), strains, strict=True)
+        if shapes.any()
+    ]
     xp = namespace(*springs, *parts)
     n = strains.shape[2]
     held = xp.concatenate([np.zeros(n - len(springs)), xp.asarray(springs, dtype=float)])
-    return sum(parts[1:], start=parts[0]) + xp.diag(held)
+    return sum(parts, start=xp.diag(held))
 
 
 def _history(beam: Beam) -> LoadHistory | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -10,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.mechanics.assembly import assembled
-from gbeam.mechanics.fields.adapted import Space, adapted_shapes, space
+from gbeam.mechanics.fields.adapted import GROUPS, Space, adapted_shapes, spaces_of
 from gbeam.mechanics.fields.basis import (
     Array,
+    Counts,
     Families,
     Family,
     Quadrature,
@@ -26,11 +28,10 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.structure.beam import Beam
 
-LEVELS = (2, 3, 3)  # of the sequence, along x, y, z
+LEVELS = (2, 3, 3, 2)  # of the sequence, along x, y, z, and about x
 APART = 3e-6  # of the longest period: the square of a frequency farther off takes the digits of the lowest
 NEW = 1e-6  # of a vector's length: less of it is nothing that the others have not
 TENSION = 1.0  # N L²/EI: from there on the axial force bends the shapes
-Spaces = tuple[Space, Space, Space]
 
 
 def axial_force(beam: Beam, rule: Quadrature, along: Array, spin: Array) -> Array:
@@ -48,59 +49,71 @@ def axial_force(beam: Beam, rule: Quadrature, along: Array, spin: Array) -> Arra
 
 
 def enriched_shapes(
-    beam: Beam, spaces: Spaces, own: Families, force: Array | None = None
-) -> tuple[Families, tuple[int, int, int]]:
+    beam: Beam, spaces: Sequence[Space], families: Families, force: Array | None = None
+) -> tuple[Families, Counts]:
     """The given shapes and then those that they lack, also under an axial force (g,) N, and how many are new in each
-    direction.
+    family.
     """
     least = APART**2 * max(_period(beam, of, along) for along, of in enumerate(spaces))
-    enriched = [_enriched(beam, spaces[along], own[along], along, force, least) for along in range(3)]
-    (s, a), (v, b), (w, c) = enriched
-    return (s, v, w), (a, b, c)
+    both, counts = list(families), [0] * 6
+    for along, of in enumerate(spaces):
+        for family, added in _lacking(beam, of, families, along, force, least).items():
+            both[family], counts[family] = _joined(families[family], added), added(of.rule.node).value.shape[1]
+    (s, v, w, t, a, b), (axial, y, z, twist, shear_y, shear_z) = both, counts
+    return (s, v, w, t, a, b), (axial, y, z, twist, shear_y, shear_z)
 
 
-def _enriched(
-    beam: Beam, of: Space, family: Family, along: int, force: Array | None, least: float
-) -> tuple[Family, int]:
-    nodes = len(of.rule.node)
-    nodal = family(of.rule.node)
-    strain = nodal.slope if of.axial else nodal.curvature
-    size, count = len(of.stiffness), strain.shape[1]
+def _lacking(
+    beam: Beam, of: Space, families: Families, along: int, force: Array | None, least: float
+) -> dict[int, Family]:
+    """New shapes of each family of a space that lacks some."""
+    nodes, size = len(of.rule.node), len(of.stiffness)
+    sprung = nodes * len(of.families)
     # The root's motion has coordinates of its own.
-    basis = np.concatenate([np.eye(size)[:, nodes:], np.pad(strain, ((0, size - nodes), (0, 0)))], axis=1)
+    columns = [np.eye(size)[:, sprung:]]
+    for family in of.families:
+        shapes = families[family](of.rule.node)
+        strain = shapes.curvature if family in (1, 2) else shapes.slope
+        columns.append(np.zeros((size, strain.shape[1])))
+        columns[-1][of.block(family)] = strain
     root = np.sqrt(of.stiffness)[:, None]
-    known = np.linalg.qr(root * basis)[0]
+    known = np.linalg.qr(root * np.concatenate(columns, axis=1))[0]
 
     def shortest(vectors: Array) -> float:
         """Square of the shortest period, over 4π², of vectors that are orthonormal in energy."""
         return float(np.linalg.eigvalsh((vectors / root).T @ of.mass @ (vectors / root))[0]) if vectors.size else np.inf
 
     least = min(least, shortest(known) / 10)
-    loads, added = _loads(beam, of, along), []
+    loads = _loads(beam, of, along)
+    added: dict[int, list[Array]] = {family: [] for family in of.families}
     for flexibility in _flexibilities(of, force):
         vectors = flexibility @ loads
         for _ in range(LEVELS[along]):
             for vector in (root * vectors).T:
                 length = np.linalg.norm(vector)
-                rest = vector - known @ (known.T @ vector)
-                rest = rest - known @ (known.T @ rest)
-                if not np.linalg.norm(rest) > NEW * length:
-                    continue
-                rest = rest / np.linalg.norm(rest)
-                wider = np.concatenate([known, rest[:, None]], axis=1)
-                # Beside a spring of the root a bend close to it turns the beam likewise: what is left has no inertia.
-                if shortest(wider) > least:
-                    known = wider
-                    added.append(rest)
+                for family in of.families:
+                    rest = np.zeros(size)
+                    rest[of.block(family)] = vector[of.block(family)]
+                    rest = rest - known @ (known.T @ rest)
+                    rest = rest - known @ (known.T @ rest)
+                    if not np.linalg.norm(rest) > NEW * length:
+                        continue
+                    rest = rest / np.linalg.norm(rest)
+                    wider = np.concatenate([known, rest[:, None]], axis=1)
+                    # Beside a spring of the root a bend close to it turns the beam likewise: what is left has no
+                    # inertia.
+                    if shortest(wider) > least:
+                        known = wider
+                        added[family].append(rest)
             vectors = flexibility @ (of.mass @ vectors)
-    more = of.family(np.stack(added, axis=1) / root) if added else None
+    return {family: of.family(family, np.stack(each, axis=1) / root) for family, each in added.items() if each}
 
+
+def _joined(family: Family, more: Family) -> Family:
     def both(x: Array) -> Shapes:
-        if more is None:
-            return family(x)
         return Shapes(*(np.concatenate(pair, axis=1) for pair in zip(family(x), more(x), strict=True)))
 
-    return (family if count == 0 and more is None else both), len(added)
+    return both
 
 
 def _period(beam: Beam, of: Space, along: int) -> float:
@@ -125,14 +138,14 @@ def _flexibilities(of: Space, force: Array | None) -> list[Array]:
 def bends(of: Space, force: Array) -> bool:
     """Whether an axial force (g,) is large enough beside the stiffness to change the shapes."""
     size = np.abs(force).max() * of.length**2 / np.min(of.stiffness[: len(force)] / of.rule.weight)
-    return not of.axial and bool(size >= TENSION)
+    return of.bends and bool(size >= TENSION)
 
 
 def _loads(beam: Beam, of: Space, along: int) -> Array:
     """Generalised forces (n, k) of what loads the beam: accelerations, even and growing along it, and its loads."""
-    x, line = of.rule.node, beam.material.density * beam.section.at(of.rule.node).area * of.rule.weight
+    x = of.rule.node
     value, slope = of.sensitivity(x)
-    uniform, growing = line @ value, (line * x) @ value
+    uniform, growing = of.line @ value + of.turning @ slope, (of.line * x) @ value + (of.turning * x) @ slope
     columns = []
     for body in beam.masses:
         moved, turned = of.sensitivity(np.array([body.at]))
@@ -178,7 +191,7 @@ class Enrichment:
         breaks = [*beam.section.stations, *marks]
         panels = len(quadrature(beam.length, 1, breaks).edges) - 1
         self.rule = quadrature(beam.length, max(PER_PANEL, -(-(NODES + 2 * max(counts)) // panels)), breaks)
-        self.spaces = space(beam, self.rule, 0), space(beam, self.rule, 1), space(beam, self.rule, 2)
+        self.spaces = spaces_of(beam, self.rule, counts)
         self.families, self.new = enriched_shapes(beam, self.spaces, own_families(structure, beam, self.rule), force)
         self.beam = beam
         self._made: dict[Any, tuple[Structure, NDArray[np.int_]]] = {}
@@ -200,12 +213,13 @@ class Enrichment:
 
     def _model(self, kind: str, directions: tuple[bool, bool, bool]) -> tuple[Structure, NDArray[np.int_]]:
         model_counts = self.structure.counts
-        counts = [
-            n + (more if wanted else 0) for n, more, wanted in zip(model_counts, self.new, directions, strict=True)
-        ]
-        if not KINDS[kind].axial:
-            counts[0] = 0
-        s, v, w = (_first(family, count) for family, count in zip(self.families, counts, strict=True))
+        wanted = [False] * 6
+        for group, along in zip(GROUPS, (*directions, True), strict=True):
+            for family in group:
+                wanted[family] = along
+        axial, *others = (n + more * new for n, more, new in zip(model_counts, self.new, wanted, strict=True))
+        counts: Any = (axial if KINDS[kind].axial else 0, *others)
+        families: Any = tuple(_first(family, count) for family, count in zip(self.families, counts, strict=True))
         ratio = self.beam.damping_ratio
         springs = len(self.beam.root.springs)
         if isinstance(ratio, tuple):
@@ -213,7 +227,7 @@ class Enrichment:
         beam = replace(self.beam, damping_ratio=ratio)
         at = np.asarray(self.structure.stations)
         shapes = self.structure.source.shapes  # type: ignore[union-attr]
-        rich = assembled(beam, kind, (counts[0], counts[1], counts[2]), self.rule, at, (s, v, w), shapes)
+        rich = assembled(beam, kind, counts, self.rule, at, families, shapes)
         starts = np.cumsum([0, *counts])
         index = np.concatenate(
             [

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
+from gbeam.mechanics.fields.basis import FAMILIES, Counts
 
 
 @dataclass(frozen=True)
@@ -23,6 +24,7 @@ class Kind:
 
 FIRST, FIRST_EXACT = (1, 3), (2, 4)  # automatic numbers of shapes along and across the beam
 MOST = 9  # across it
+TORSION = 'kind = "exact" with modes.twist has torsion'
 SHAPES = ("clamped-free", "adapted")
 KINDS = {
     "TLAM": Kind(foreshortening=False),
@@ -44,23 +46,26 @@ class Model:
         TLAM, FOAM, SFOAM (as printed: no axial coordinates, Q_θ dropped), CFOAM or exact. FOAM with ``axial=0`` is
         the Lagrangian form of SFOAM.
     axial, y, z : int
-        Numbers of axial shapes and of bending shapes along y and along z; for exact: strain shapes, and rotation
-        shapes for bending along y and along z.
+        Numbers of axial shapes and of bending shapes along y and along z; for exact: shapes of the stretch and of the
+        curvatures.
     shapes : str
         clamped-free: those of the bare uniform beam (for exact, polynomials). adapted: the modes at rest of the beam
         with its tapers, bodies and root springs.
+    twist, shear_y, shear_z : int
+        Numbers of shapes of the twist and of the shear strains, of exact only; a strain without shapes is rigid.
     automatic : bool
         Whether the numbers are gbeam's own, which a study raises until what they leave out is small.
 
     Raises
     ------
     InputError
-        If the kind or the shapes are unknown, a number is negative, or there is no coordinate.
+        If the kind or the shapes are unknown, a number is negative or of shapes that the kind has not, or there is no
+        coordinate.
 
     Examples
     --------
-    >>> gb.Model("FOAM", axial=1, y=2, z=2).counts
-    (1, 2, 2)
+    >>> gb.Model("exact", axial=1, z=3, twist=2).counts
+    (1, 0, 3, 2, 0, 0)
     """
 
     kind: str
@@ -69,6 +74,9 @@ class Model:
     z: int = 0
     shapes: str = "clamped-free"
     automatic: bool = False
+    twist: int = 0
+    shear_y: int = 0
+    shear_z: int = 0
 
     @classmethod
     def of(cls, kind: str, shapes: str | None = None) -> Model:
@@ -86,17 +94,18 @@ class Model:
         return cls(kind, axial if row.axial else 0, across, across, shapes or default, automatic=True)
 
     def richer(self) -> Model | None:
-        """Add two shapes across the beam, and one along it; None where that is too many."""
+        """Add two shapes across the beam, and one of each other strain; None where that is too many."""
         if max(self.y, self.z) + 2 > MOST:
             return None
         y, z = (n + 2 if n else 0 for n in (self.y, self.z))
-        return replace(self, axial=self.axial + 1 if self.axial else 0, y=y, z=z)
+        axial, twist, shear_y, shear_z = (n + 1 if n else 0 for n in (self.axial, *self.counts[3:]))
+        return replace(self, axial=axial, y=y, z=z, twist=twist, shear_y=shear_y, shear_z=shear_z)
 
     def __post_init__(self) -> None:
         for name, value, choices in (("kind", self.kind, tuple(KINDS)), ("shapes", self.shapes, SHAPES)):
             if value not in choices:
                 raise InputError(name, f"is {value!r}", f"choose one of {', '.join(choices)}")
-        for name, count in zip(("axial", "y", "z"), self.counts, strict=True):
+        for name, count in zip(FAMILIES, self.counts, strict=True):
             if not isinstance(count, int) or count < 0:
                 raise InputError(f"modes.{name}", f"is {count!r}", "give a whole number, 0 or more")
         if sum(self.counts) == 0:
@@ -107,11 +116,15 @@ class Model:
                 f"is {self.axial} for SFOAM, which has no axial coordinates",
                 "give 0, or use FOAM",
             )
+        for name, count in zip(FAMILIES[3:], self.counts[3:], strict=True):
+            if count and not self.row.exact:
+                fix = 'give 0, or kind = "exact"'
+                raise InputError(f"modes.{name}", f"is {count} for {self.kind}, which has no such strain", fix)
 
     @property
-    def counts(self) -> tuple[int, int, int]:
-        """Numbers of shapes: axial, along y, along z."""
-        return self.axial, self.y, self.z
+    def counts(self) -> Counts:
+        """Numbers of shapes: axial, along y, along z, of twist, of shear along y and along z."""
+        return self.axial, self.y, self.z, self.twist, self.shear_y, self.shear_z
 
     @property
     def row(self) -> Kind:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import holds_jax, is_traced
+from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.plausibility import implausible_values, times
 from gbeam.motion.protocol import Motion
@@ -73,14 +74,14 @@ def _without_shapes(structure: Structure, base: Any, where: str, span: tuple[flo
 
 
 def _twisting(structure: Structure, span: tuple[float, float]) -> Iterator[str]:
-    """Moments about the beam's axis, which no model here turns by."""
-    if structure.field is None or structure.history is None:
+    """Moments about the beam's axis of a model that does not turn by them."""
+    if structure.field is None or structure.history is None or structure.counts[3]:
         return
     values = _largest_loads(structure.history, span)[:, 3:]
     for i in np.flatnonzero(values[:, 0] > NOTICED * values.max(initial=0.0)):
         yield (
-            f"beam.loads[{i}].moment twists the beam about x with up to {values[i, 0]:.3g} N m: no model here has "
-            "torsion, and none turns by it"
+            f"beam.loads[{i}].moment twists the beam about x with up to {values[i, 0]:.3g} N m, and "
+            f"{structure.kind} does not turn by it: {TORSION}"
         )
 
 

@@ -23,6 +23,7 @@ from gbeam.mechanics.equations.linear import (
     rest_modes,
 )
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
+from gbeam.mechanics.fields.basis import FAMILIES, Counts
 from gbeam.mechanics.fields.rooted import Field
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import Places
@@ -67,7 +68,7 @@ class Structure:
         Whether the polynomial of the places is the whole model: equations linear on a prescribed base.
     hub_force : bool
         Whether a free hub feels Q_θ.
-    counts : (axial, along y, along z)
+    counts : (axial, along y, along z, of twist, of shear along y, along z)
         Numbers of shapes; the root's springs come after them.
     length : float
         m; of particles, the largest distance of one from the root.
@@ -112,7 +113,7 @@ class Structure:
     kind: str = static()
     linear: bool = static()
     hub_force: bool = static()
-    counts: tuple[int, int, int] = static()
+    counts: Counts = static()
     length: float
     mass: Array
     places: Places
@@ -131,7 +132,7 @@ class Structure:
     source: Source | None = static(default=None)
 
     def __repr__(self) -> str:
-        shapes = ", ".join(f"{n} {way}" for n, way in zip(self.counts, ("axial", "y", "z"), strict=True) if n)
+        shapes = ", ".join(f"{n} {way}" for n, way in zip(self.counts, FAMILIES, strict=True) if n)
         size = "traced" if self.traced else f"{float(self.coefficients.rigid[0]):.4g} kg"
         return f"Structure({self.kind}, {self.size} coordinates{f' ({shapes})' if shapes else ''}, {size})"
 
@@ -200,7 +201,7 @@ class Structure:
             kind=kind,
             linear=True,
             hub_force=True,
-            counts=(0, 0, 0),
+            counts=(0,) * 6,
             length=float(np.linalg.norm(np.asarray(r0), axis=-1).max()),
             mass=mass,
             places=places,

@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.integrate.equations import LinearTerms
-from gbeam.mechanics.assembly import load_work, sections_of
+from gbeam.mechanics.assembly import load_work, particles_of, sections_of
 from gbeam.mechanics.enrichment import enrichment, own_families
 from gbeam.mechanics.equations.inertia import inertia_of
 from gbeam.mechanics.equations.linear import LoadTerms, coefficients, damping_matrix
 from gbeam.mechanics.equations.virtual_work import LoadWork
 from gbeam.mechanics.fields.basis import Families, Quadrature
-from gbeam.mechanics.fields.strains import StrainField, strain_field
+from gbeam.mechanics.fields.strains import STRAINS, StrainField, shaped_strains, strain_field
 from gbeam.mechanics.structure import Structure
 from gbeam.structure.beam import Beam
 
@@ -62,7 +62,6 @@ LEVELS = 2  # of Krylov's sequence
 SLENDEREST = 1500.0
 CHUNK = 64  # loaded points whose second derivatives are held at a time
 SLENDER, SHEAR, TWIST = (0, 4, 5), (1, 2), (3,)  # strains: stretch, shear along y and z, twist, curvatures
-CORNERS = np.array([(1, 1), (1, -1), (-1, 1), (-1, -1)])  # particles of a thick section, in radii of gyration
 
 
 class Theory(NamedTuple):
@@ -110,21 +109,18 @@ class _Parts:
 
     def __init__(self, structure: Structure, beam: Beam, rule: Quadrature) -> None:
         self.structure, self.beam, self.rule = structure, beam, rule
-        x, material, section = rule.node, beam.material, beam.section.at(rule.node)
-        axial, about_y, about_z = beam.rigidities(x)
-        in_shear = [
-            material.rigidity * section.area * k for k in beam.section.shear_coefficients(x, float(material.ratio))
-        ]
-        torsion = material.rigidity * beam.section.torsion_constant(x)
+        x, section = rule.node, beam.section.at(rule.node)
+        strained = [strain for strain, count in zip(STRAINS, structure.counts, strict=True) if count]
+        self.modelled = tuple({*SLENDER, *strained})
         springs = np.array([*beam.root.springs.values()], dtype=float)
-        nodal = np.stack([axial, *in_shear, torsion, about_y, about_z]) * rule.weight
+        nodal = np.stack(beam.stiffnesses(x)) * rule.weight
         self.stiffness = np.concatenate([nodal.ravel(), springs])
         self.families = np.append(np.repeat(np.arange(6), len(x)), [SLENDER[0]] * len(springs))
-        self.line = material.density * section.area * rule.weight
-        self.gyration = np.sqrt(np.stack([section.inertia_z, section.inertia_y]) / section.area)
-        slender = beam.length > SLENDEREST * self.gyration.max(axis=1)
+        gyration = np.sqrt(np.stack([section.inertia_z, section.inertia_y]) / section.area)
+        slender = beam.length > SLENDEREST * gyration.max(axis=1)
+        stiff = [strain for strain, each in zip(SHEAR, slender, strict=True) if each and strain not in self.modelled]
         # Without its torsion constant a section does not twist.
-        self.known = ~np.isnan(self.stiffness) & ~np.isin(self.families, np.array(SHEAR)[slender])
+        self.known = ~np.isnan(self.stiffness) & ~np.isin(self.families, stiff)
         loaded = [load.at for load in beam.loads if load.at is not None]
         self.first = len(x) + len(beam.masses)
         self.first_station = self.first + len(loaded)
@@ -138,19 +134,6 @@ class _Parts:
         shaped = nodal.reshape(6, -1, strains.shape[1])
         return strain_field(self.rule, self.points, shaped, self.move @ root, self.turn @ root)
 
-    def particles(self, *, thick: bool) -> tuple[Array, Array, Array]:
-        """Point, mass and offset of every particle; of a thick beam's section four have its rotary inertia."""
-        nodes, corners = len(self.rule.node), CORNERS if thick else 0 * CORNERS[:1]
-        y, z = (corners.T[..., None] * self.gyration[:, None]).reshape(2, -1)
-        at = [np.tile(np.arange(nodes), len(corners))]
-        mass, offset = [np.tile(self.line / len(corners), len(corners))], [np.stack([0 * y, y, z], axis=-1)]
-        for k, body in enumerate(self.beam.masses):
-            masses, places = body.particles()
-            at.append(np.full(len(masses), nodes + k))
-            mass.append(masses)
-            offset.append(places)
-        return np.concatenate(at), np.concatenate(mass), np.concatenate(offset)
-
     def pulled(self, force: Array, moment: Array) -> Array:
         """Generalised forces (m, k) on the strains of forces and moments (3, points, k) at the points."""
         slope, angle = self.cumulative.T @ force, self.cumulative.T @ moment
@@ -163,7 +146,7 @@ class _Parts:
 
     def answers(self, own: Array) -> Array:
         """Static answers (m, k) of the thick beam: to the inertia of its own shapes, to accelerations and loads."""
-        at, mass, offset = self.particles(thick=True)
+        at, mass, offset = particles_of(self.beam, self.rule, rotary=True)
         arm = offset.T[..., None]
         onto = at == np.arange(len(self.points))[:, None]  # (points, particles)
 
@@ -199,15 +182,16 @@ class _Parts:
         """Both theories, with own shapes."""
         strains = self.own(families)
         answers = self.answers(strains)
-        blocks = [np.concatenate([strains, self.others(answers, SLENDER, strains)], axis=1)]
-        blocks += [self.others(answers, family) for family in (SHEAR, TWIST)]
+        blocks = [np.concatenate([strains, self.others(answers, self.modelled, strains)], axis=1)]
+        lacking = (tuple(set(family) - set(self.modelled)) for family in (SHEAR, TWIST))
+        blocks += [self.others(answers, family) for family in lacking]
         ends = np.cumsum([0, *(block.shape[1] for block in blocks)]).tolist()
         thick, slender = np.concatenate(blocks, axis=1), blocks[0]
         nodes = len(self.rule.node)
         bodies = self.field(thick)[nodes : nodes + len(self.beam.masses)]
         offset = np.array([body.offset for body in self.beam.masses]).reshape(-1, 3)
         _, about_y, about_z = self.beam.rigidities(self.rule.node)
-        models = self.model(slender, thick=False), self.model(thick, thick=True)
+        models = self.model(slender, rotary=self.beam.rotary_inertia), self.model(thick, rotary=True)
         count_own = strains.shape[1]
         return Theory(
             *models,
@@ -223,16 +207,13 @@ class _Parts:
 
     def own(self, families: Families) -> Array:
         """Strains (m, n) of the structure's own coordinates."""
-        s, v, w = (family(self.rule.node) for family in families)
-        nodes = len(self.rule.node)
-        columns = [(0, s.slope), (5, v.curvature), (4, -w.curvature)]
-        strains = np.zeros((len(self.stiffness), self.structure.size))
-        start = 0
-        for family, values in columns:
-            strains[family * nodes : (family + 1) * nodes, start : start + values.shape[1]] = values
-            start += values.shape[1]
-        strains[6 * nodes :, start:] = np.eye(len(self.move.T))
-        return strains
+        nodal = shaped_strains(self.rule, families)
+        strains = nodal.reshape(-1, nodal.shape[2])
+        springs = self.move.shape[1]
+        out = np.zeros((len(self.stiffness), strains.shape[1] + springs))
+        out[: len(strains), : strains.shape[1]] = strains
+        out[len(strains) :, strains.shape[1] :] = np.eye(springs)
+        return out
 
     def others(self, answers: Array, families: tuple[int, ...], own: Array | None = None) -> Array:
         """The part of some answers in families of strains, without that of own shapes, orthonormal in energy."""
@@ -248,10 +229,10 @@ class _Parts:
                 known = np.concatenate([known, (rest / np.linalg.norm(rest))[:, None]], axis=1)
         return np.where(root > 0, known[:, first:] / np.where(root > 0, root, 1), 0.0)
 
-    def model(self, strains: Array, *, thick: bool) -> Structure:
+    def model(self, strains: Array, *, rotary: bool) -> Structure:
         """The linear structure with shapes of some strains (m, n)."""
         structure, beam, rest = self.structure, self.beam, np.zeros(strains.shape[1])
-        field, (at, mass, offset) = self.field(strains), self.particles(thick=thick)
+        field, (at, mass, offset) = self.field(strains), particles_of(beam, self.rule, rotary=rotary)
         places, geometric = inertia_of(field.points(at, offset), mass).about(rest)
         stiffness = strains.T @ (np.where(self.known, self.stiffness, 0.0)[:, None] * strains)
         work, loaded, loads = None, np.zeros(0, int), None

@@ -24,7 +24,7 @@ def to_json(case: Description) -> dict[str, Any]:
             "masses": [{"at": at, "mass": mass} for at, mass in case.bodies],
             "total_mass": case.total_mass,
         },
-        "model": {"kind": case.model, "modes": dict(zip(("axial", "y", "z"), case.counts, strict=True))},
+        "model": {"kind": case.model, "modes": dict(case.counts)},
         "modes": [
             {"frequency": float(frequency), "direction": direction}
             for frequency, direction in zip(case.frequency, case.direction, strict=True)
@@ -48,7 +48,7 @@ def to_json(case: Description) -> dict[str, Any]:
 def text(case: Description) -> str:
     """Description on a few lines."""
     added = f", {case.total_mass:.4g} kg with {len(case.bodies)} added" if case.bodies else ""
-    counts = ", ".join(f"{count} {name}" for name, count in zip(("axial", "y", "z"), case.counts, strict=True))
+    counts = ", ".join(f"{count} {name}" for name, count in case.counts.items())
     modes = ", ".join(f"{f:.4g} ({d})" for f, d in zip(case.frequency, case.direction, strict=True))
     step = "auto" if case.step is None else f"{1e3 * case.step:.4g} ms"
     lines = [

@@ -87,8 +87,8 @@ class Description(Part):
         Of the beam without its bodies, kg.
     bodies : tuple of (position m, mass kg)
     model : str
-    counts : tuple of int
-        Numbers of shapes: axial, along y, along z.
+    counts : mapping of str to int
+        Numbers of shapes: axial, along y and along z, and those of twist and shear that the model has.
     frequency : (k,)
         Lowest natural frequencies of the beam on a base at rest, Hz.
     direction : tuple of (k,) str
@@ -115,7 +115,7 @@ class Description(Part):
     mass: float
     bodies: tuple[tuple[float, float], ...]
     model: str
-    counts: tuple[int, int, int]
+    counts: Mapping[str, int]
     frequency: Floats
     direction: tuple[str, ...]
     motions: Mapping[str, str]

@@ -156,7 +156,17 @@ def _beam(parts: Collector, table: schema.Beam) -> Beam | None:
     if section is None or material is None or root is None or None in [*masses, *loads, *points]:
         return None
     return parts.attempt(
-        "beam", Beam, table.length, section, material, masses, table.damping_ratio, root, loads, points
+        "beam",
+        Beam,
+        table.length,
+        section,
+        material,
+        masses,
+        table.damping_ratio,
+        root,
+        loads,
+        points,
+        table.rotary_inertia,
     )
 
 
@@ -178,8 +188,7 @@ def _model(parts: Collector, table: schema.Model) -> Model | None:
 
     if table.modes is None:
         return parts.attempt("model", Model.of, table.kind, table.shapes)
-    counts = table.modes.axial, table.modes.y, table.modes.z
-    return parts.attempt("model", Model, table.kind, *counts, table.shapes or "clamped-free")
+    return parts.attempt("model", Model, table.kind, shapes=table.shapes or "clamped-free", **table.modes.model_dump())
 
 
 def _response(parts: Collector, table: schema.Response, motions: Mapping[str, Motion]) -> ResponseSettings | None:

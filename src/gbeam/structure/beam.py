@@ -44,6 +44,8 @@ class Beam(Value):
     loads : sequence of Load
     points : sequence of Point
         Named points of output; a mass with a name is one at its place. The tip is ``tip``.
+    rotary_inertia : bool
+        Whether the sections resist turning by their own second moments; without it each is a point on the axis.
 
     Raises
     ------
@@ -67,6 +69,7 @@ class Beam(Value):
     root: Root = field(default_factory=Root)
     loads: Sequence[Load] = field(default=())
     points: Sequence[Point] = field(default=())
+    rotary_inertia: bool = False
 
     def __post_init__(self) -> None:
         possible("length", "length", positive("length", self.length, "m"))
@@ -130,6 +133,15 @@ class Beam(Value):
         section, modulus = self.section.at(x), self.material.youngs_modulus
         flat = 1 / (1 - self.material.ratio**2) if self.section.plate else 1.0
         return modulus * section.area, modulus * section.inertia_y * flat, modulus * section.inertia_z
+
+    def stiffnesses(self, x: ArrayLike) -> tuple[Any, ...]:
+        """EA, kGA along y and along z N, GJ, EI_y and EI_z N m² at positions `x`, m: against stretch and shears, twist
+        and curvatures about y and z; GJ is NaN where the torsion constant is not known.
+        """
+        axial, about_y, about_z = self.rigidities(x)
+        shear, area, ratio = self.material.rigidity, self.section.at(x).area, self.material.ratio
+        in_shear = (shear * area * k for k in self.section.shear_coefficients(x, ratio))
+        return axial, *in_shear, shear * self.section.torsion_constant(x), about_y, about_z
 
 
 def assumptions(beam: Beam) -> tuple[str, ...]:

@@ -47,6 +47,27 @@ def refuse_disparate(beam: Beam) -> None:
             raise InputError(where, problem, f"numbers hold both up to {DISPARATE:g} times; is its unit right?")
 
 
+def refuse_unknown(beam: Beam, *, twist: bool, shear_y: bool, shear_z: bool) -> None:
+    """Raise InputError where a beam lacks a stiffness, or the inertia, of strains that a model has."""
+    if not (twist or shear_y or shear_z):
+        return
+    material, section = beam.material, beam.section
+    if material.shear_modulus is None and material.poissons_ratio is None:
+        fix = "give it, or poissons_ratio of an isotropic material"
+        raise InputError("material.shear_modulus", "is missing, and the model has twist or shear", fix)
+    if twist and "torsion_constant" not in section.dimensions and section.shape == "general":
+        fix = "give J of the torque G J α', or modes.twist = 0"
+        raise InputError("section.torsion_constant", "is missing, and the model has twist", fix)
+    for axis, needed in (("y", shear_y), ("z", shear_z)):
+        name = f"shear_coefficient_{axis}"
+        if needed and name not in section.dimensions and section.shape == "general":
+            fix = f"give k of the shear force k G A γ, or modes.shear_{axis} = 0"
+            raise InputError(f"section.{name}", "is missing, and the model has shear", fix)
+    if twist and not beam.rotary_inertia:
+        fix = "set it to true: a beam that twists has no other inertia"
+        raise InputError("rotary_inertia", "is false, and the model has twist", fix)
+
+
 def _shares(beam: Beam) -> Iterator[tuple[str, float, str, str, float]]:
     """Bodies and springs: place, value, unit, what it brings, and how often the beam has as much."""
     mass, length, inertia = _mass(beam), beam.length, "moment of inertia"

@@ -1,4 +1,5 @@
-"""Errors of the theory of slender beams: by shear, rotary inertia, twist and plate action, which no model here has.
+"""Errors of the theory of slender beams: by shear, rotary inertia and twist, unless the model has them, and by plate
+action.
 
 The solution is put into the linear equations of the thick beam; what they leave of it beyond those of the slender one
 is answered by the thick beam, without plate action and with it: the larger counts.

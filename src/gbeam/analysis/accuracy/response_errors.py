@@ -143,17 +143,16 @@ def quantities(structure: Structure, at: Sampled) -> Quantities:
 def driven(more: Enrichment, lifted: Callable[[Structure, IntArray], Sampled]) -> tuple[bool, bool, bool]:
     """Whether new shapes along x, y and z would be moved by a solution, lifted into a structure that has them."""
     structure = more.structure
-    if all(structure.counts):
+    if all(structure.counts[:3]):
         return True, True, True
-    kind = structure.kind if structure.linear else "FOAM"
-    rich, index = more.model(kind)
+    rich, index = more.model(structure.kind)
     at = lifted(rich, index)
     residual = linear_residual(rich, at)
     counts = np.cumsum([0, *rich.counts])
     largest = [np.abs(residual[:, a:b]).max(initial=0.0) for a, b in pairwise(counts)]
     c = rich.coefficients
     limit = IDLE * max(np.abs(at.p @ c.stiffness).max(), *largest)
-    axial, along_y, along_z = (n > 0 or size > limit for n, size in zip(structure.counts, largest, strict=True))
+    axial, along_y, along_z = (n > 0 or size > limit for n, size in zip(structure.counts[:3], largest, strict=False))
     return axial, along_y, along_z
 
 

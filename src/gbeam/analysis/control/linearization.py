@@ -28,6 +28,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.assembly import at_stations
 from gbeam.mechanics.equations.residuals import OnBase, OnHub
+from gbeam.mechanics.fields.basis import FAMILIES
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Sections, Structure
@@ -132,9 +133,9 @@ class Outputs:
 
 def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
     """Names and units of (y, ẏ)."""
-    units = ("1", "rad", "rad") if structure.kind == "exact" else ("m", "m", "m")
+    units = ("1", "rad", "rad", "rad", "1", "1") if structure.kind == "exact" else ("m",) * 6
     names = [("hub_angle", "rad")] if first else []
-    for group, unit, count in zip(("axial", "y", "z"), units, structure.counts, strict=True):
+    for group, unit, count in zip(FAMILIES, units, structure.counts, strict=True):
         names += [(f"q_{group}_{k + 1}", unit) for k in range(count)]
     if structure.field is None:  # particles, whose coordinates are whatever they were given by
         names += [(f"q_{k + 1}", "1") for k in range(structure.size)]

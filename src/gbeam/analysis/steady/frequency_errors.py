@@ -19,6 +19,7 @@ from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.equations.hub import free_hub
 from gbeam.mechanics.equations.residuals import OnHub
+from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
 from gbeam.motion.bases.base import Base
@@ -43,7 +44,7 @@ def doubtful(errors: FrequencyErrors) -> tuple[str, ...]:
     if errors.unseen:
         named = ", ".join(f"{each:.4g}" for each in errors.unseen[:SHOWN])
         more = f" and {len(errors.unseen) - SHOWN} more" if len(errors.unseen) > SHOWN else ""
-        said.append(f"there are modes of bending and twist at {named} Hz{more} besides: no model here has torsion")
+        said.append(f"there are modes of bending and twist at {named} Hz{more} besides: {TORSION}")
     return tuple(said)
 
 
@@ -59,7 +60,7 @@ class Richer:
     """A structure's model with more shapes, the exact one, and the thick beam, on the base where it turns fastest."""
 
     def __init__(self, structure: Structure, base: Base) -> None:
-        more, (_, along_y, along_z) = enrichment(structure, base), structure.counts
+        more, (_, along_y, along_z, *_) = enrichment(structure, base), structure.counts
         directions = True, along_y > 0, along_z > 0
         self.structure, self.theory = structure, theory_of(structure)
         self.exact = more.model("exact", directions=directions)

@@ -94,7 +94,7 @@ def judged(critical: Critical, path: Path, progress: Progress = None) -> Critica
         return critical
     if critical.value is None:
         return replace(critical, warnings=critical.warnings + _unseen(critical, path, progress))
-    at, (_, along_y, along_z) = critical.value, structure.counts
+    at, (_, along_y, along_z, *_) = critical.value, structure.counts
     more, directions = enrichment(structure, path(at)[1]), (True, along_y > 0, along_z > 0)
 
     def lost(kind: str) -> float:
@@ -131,7 +131,7 @@ def _unseen(critical: Critical, path: Path, progress: Progress) -> tuple[str, ..
     if math.isinf(lost):
         return ()
     return (
-        f"with shear and twist, which no model here has, the equilibrium is lost at an estimated {lost:.4g} "
+        f"with shear and twist, which this model has not, the equilibrium is lost at an estimated {lost:.4g} "
         f"{critical.unit}",
     )
 

@@ -17,6 +17,7 @@ from gbeam.analysis.steady.operating_point import OperatingPoint, on_base, opera
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.enrichment import enrichment
+from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
@@ -77,7 +78,7 @@ def _sideways(point: OperatingPoint) -> tuple[str, ...]:
     at = point.base, point.residual.unpack(point.u)[1]
     if not keeps(point.about, *at) or keeps(theory_of(point.structure).thick.coefficients, *at):
         return ()
-    return ("a beam that twists would not stay there, but buckle sideways: no model here has torsion",)
+    return (f"a beam that twists would not stay there, but buckle sideways: {TORSION}",)
 
 
 def _doubtful(errors: Errors) -> tuple[str, ...]:

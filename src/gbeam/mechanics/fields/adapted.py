@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.mechanics.fields.basis import Families, Family, Quadrature, Shapes
+from gbeam.mechanics.fields.basis import Counts, Families, Family, Quadrature, Shapes
+from gbeam.mechanics.fields.strains import STRAINS
 from gbeam.structure.beam import Beam
 
 Array = NDArray[np.float64]
@@ -37,63 +38,94 @@ def _family(rule: Quadrature, nodal: Array, length: float, *, axial: bool) -> Fa
 
 
 class Space(NamedTuple):
-    """All displacements in one direction that nodal curvatures (strains, of a bar) and the free root make; K (n,) is
-    diagonal.
+    """All motions in one direction, or about x, that nodal strains of some families and the free root make; K (n,) is
+    diagonal, and `line` (g,) kg and `turning` (g,) kg m² are the inertia of the sections.
     """
 
     rule: Quadrature
     length: float
-    axial: bool
+    families: tuple[int, ...]
+    line: Array
+    turning: Array
     mass: Array
     stiffness: Array
     sensitivity: Callable[[Array], tuple[Array, Array]]
 
-    def family(self, modes: Array) -> Family:
-        """The shapes that columns (n, k) are without the root's motion."""
-        return _family(self.rule, modes[: len(self.rule.node)], self.length, axial=self.axial)
+    @property
+    def bends(self) -> bool:
+        """Whether curvatures are among the strains."""
+        return self.families[0] in (1, 2)
+
+    def block(self, family: int) -> slice:
+        """Place of a family's nodal strains among all."""
+        start, nodes = self.families.index(family), len(self.rule.node)
+        return slice(start * nodes, (start + 1) * nodes)
+
+    def family(self, family: int, modes: Array) -> Family:
+        """The shapes of one family that columns (n, k) are."""
+        return _family(self.rule, modes[self.block(family)], self.length, axial=family not in (1, 2))
 
 
-_HELD = (("translation_x", ""), ("translation_y", "rotation_z"), ("translation_z", "rotation_y"))
+GROUPS = ((0,), (1, 4), (2, 5), (3,))  # families that move the beam along x, y and z, and turn it about x
+_HELD = (("translation_x", ""), ("translation_y", "rotation_z"), ("translation_z", "rotation_y"), ())
 
 
-def space(beam: Beam, rule: Quadrature, along: int) -> Space:
-    """The space of displacements along x, y or z (0, 1, 2); the panels of the rule end at corners and bodies."""
-    area, (axial, about_y, about_z) = beam.section.at(rule.node).area, beam.rigidities(rule.node)
-    rigidity = (axial, about_z, about_y)[along]
+def spaces_of(beam: Beam, rule: Quadrature, counts: Counts) -> tuple[Space, ...]:
+    """Spaces of displacements along x, y and z, and about x of a model that twists, without strains that are rigid."""
+    return tuple(space(beam, rule, along, counts) for along in range(4 if counts[3] else 3))
+
+
+def space(beam: Beam, rule: Quadrature, along: int, counts: Counts) -> Space:
+    """The space of displacements along x, y or z (0, 1, 2), or about x (3); the panels of the rule end at corners and
+    bodies.
+    """
+    first, *others = GROUPS[along]
+    families = (first, *(family for family in others if counts[family]))
+    section, stiffnesses = beam.section.at(rule.node), beam.stiffnesses(rule.node)
+    line = beam.material.density * section.area * rule.weight
+    about = (0 * line, section.inertia_z, section.inertia_y, section.inertia_y + section.inertia_z)[along]
+    turning = beam.material.density * about * rule.weight * beam.rotary_inertia
     springs = beam.root.springs
     held = [springs.get(name) for name in _HELD[along]]
     free = [i for i, k in enumerate(held) if k is not None]
     sums = rule.cumulative(rule.node)
 
     def sensitivity(x: Array) -> tuple[Array, Array]:
+        """Displacements and the sections' angles (points, n)."""
         first = rule.cumulative(x)
-        value, slope = (first, 0 * first) if along == 0 else (first @ sums, first)
-        root_value, root_slope = np.stack([x**0, x], axis=1)[:, free], np.stack([0 * x, x**0], axis=1)[:, free]
-        return np.concatenate([value, root_value], axis=1), np.concatenate([slope, root_slope], axis=1)
+        move, turn = {0: (first, 0 * first), 3: (0 * first, first)}.get(along, (first @ sums, first))
+        value, angle = [move, *[first] * len(families[1:])], [turn, *[0 * first] * len(families[1:])]
+        if held:
+            value.append(np.stack([x**0, x], axis=1)[:, free])
+            angle.append(np.stack([0 * x, x**0], axis=1)[:, free])
+        return np.concatenate(value, axis=1), np.concatenate(angle, axis=1)
 
-    value, _ = sensitivity(rule.node)
-    mass = value.T @ ((beam.material.density * area * rule.weight)[:, None] * value)
+    value, angle = sensitivity(rule.node)
+    mass = value.T @ (line[:, None] * value) + angle.T @ (turning[:, None] * angle)
     for body in beam.masses:
-        value, slope = sensitivity(np.array([body.at]))
+        value, angle = sensitivity(np.array([body.at]))
         for m, o in zip(*body.particles(), strict=True):
-            # A particle off the axis moves with the section's slope: f + o_x f' across, −o_along f' along the beam.
-            mass += m * sum(np.outer(d, d) for d in (value[0] + o[0] * slope[0], o[along] * slope[0]))
-    stiffness = np.concatenate([rigidity * rule.weight, [held[i] for i in free]])
-    return Space(rule, beam.length, along == 0, mass, stiffness, sensitivity)
+            # A particle off the axis moves with the section's angle: f + o_x f' across, −o_along f' along the beam.
+            arms = (
+                (o[1] * angle[0], o[2] * angle[0]) if along == 3 else (value[0] + o[0] * angle[0], o[along] * angle[0])
+            )
+            mass += m * sum(np.outer(d, d) for d in arms)
+    strained = [stiffnesses[STRAINS[family]] * rule.weight for family in families]
+    stiffness = np.concatenate([*strained, [held[i] for i in free]])
+    return Space(rule, beam.length, families, line, turning, mass, stiffness, sensitivity)
 
 
-def adapted_shapes(beam: Beam, rule: Quadrature, counts: tuple[int, int, int]) -> Families:
+def adapted_shapes(beam: Beam, rule: Quadrature, counts: Counts) -> Families:
     """Modes at rest of the beam, direction by direction, from M κ = μ K κ with μ = 1/ω²: K is diagonal, M nearly
     singular.
     """
-
-    def family(along: int) -> Family:
-        count = counts[along]
-        if not count:
-            return lambda x: Shapes(*np.zeros((3, len(x), 0)))
-        of = space(beam, rule, along)
+    families: list[Family] = [lambda x: Shapes(*np.zeros((3, len(x), 0)))] * 6
+    for of in spaces_of(beam, rule, counts):
         scale = 1 / np.sqrt(of.stiffness)
-        modes = np.linalg.eigh(scale[:, None] * of.mass * scale)[1][:, len(scale) - count :]
-        return of.family(scale[:, None] * modes[:, ::-1])
-
-    return family(0), family(1), family(2)
+        modes = scale[:, None] * np.linalg.eigh(scale[:, None] * of.mass * scale)[1][:, ::-1]
+        for family in of.families:
+            if counts[family]:
+                families[family] = of.family(family, modes[:, : counts[family]])
+    axial, along_y, along_z, *others = families
+    twist, shear_y, shear_z = others
+    return axial, along_y, along_z, twist, shear_y, shear_z

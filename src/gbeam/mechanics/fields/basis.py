@@ -22,7 +22,10 @@ class Shapes(NamedTuple):
 
 
 Family = Callable[[Array], Shapes]
-Families = tuple[Family, Family, Family]  # of the axial displacement, the one along y, the one along z
+Counts = tuple[int, int, int, int, int, int]
+FAMILIES = ("axial", "y", "z", "twist", "shear_y", "shear_z")  # of shapes, as the coordinates come
+# Of the axial displacement, those along y and z, the twist, and the displacements by shear along y and z.
+Families = tuple[Family, Family, Family, Family, Family, Family]
 
 
 def bar_shapes(x: Array, length: float, count: int) -> Shapes:
@@ -86,24 +89,32 @@ def legendre_bending(x: Array, length: float, count: int) -> Shapes:
     return Shapes(np.stack(value, axis=-1) if count else turn.value, turn.value, turn.slope)
 
 
-def closed_forms(length: float, counts: tuple[int, int, int]) -> Families:
-    """Fixed-free bar shapes and clamped-free bending shapes: those of the bare uniform beam."""
-    axial, along_y, along_z = counts
-    return (
-        lambda x: bar_shapes(x, length, axial),
-        lambda x: bending_shapes(x, length, along_y),
-        lambda x: bending_shapes(x, length, along_z),
-    )
+def closed_forms(length: float, counts: Counts) -> Families:
+    """Fixed-free bar shapes and clamped-free bending shapes: those of the bare uniform beam, which is rigid in twist
+    and shear.
+    """
+
+    def family(shapes: Callable[[Array, float, int], Shapes], count: int) -> Family:
+        return lambda x: shapes(x, length, count)
+
+    axial, along_y, along_z, *others = counts
+    twist, shear_y, shear_z = (family(legendre_shapes, count) for count in others)
+    bending = family(bending_shapes, along_y), family(bending_shapes, along_z)
+    return family(bar_shapes, axial), *bending, twist, shear_y, shear_z
 
 
-def polynomials(length: float, counts: tuple[int, int, int]) -> Families:
+def polynomials(length: float, counts: Counts) -> Families:
     """Legendre polynomials as strains and as curvatures, for the exact field."""
-    axial, along_y, along_z = counts
-    return (
-        lambda x: Shapes(*(length * part for part in legendre_shapes(x, length, axial))),
-        lambda x: legendre_bending(x, length, along_y),
-        lambda x: legendre_bending(x, length, along_z),
-    )
+
+    def strain(count: int) -> Family:
+        return lambda x: Shapes(*(length * part for part in legendre_shapes(x, length, count)))
+
+    def curvature(count: int) -> Family:
+        return lambda x: legendre_bending(x, length, count)
+
+    axial, along_y, along_z, twist, shear_y, shear_z = counts
+    bending = curvature(along_y), curvature(along_z)
+    return strain(axial), *bending, strain(twist), strain(shear_y), strain(shear_z)
 
 
 class Quadrature(NamedTuple):

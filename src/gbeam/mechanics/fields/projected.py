@@ -72,14 +72,14 @@ def _products(xp: Any, left: Array, right: Array) -> Array:
 
 
 def projected_field(
-    rule: Quadrature, x: np.ndarray, counts: tuple[int, int, int], families: Families, *, foreshortening: bool
+    rule: Quadrature, x: np.ndarray, counts: tuple[int, ...], families: Families, *, foreshortening: bool
 ) -> ProjectedField:
     """Build the field of TLAM (without foreshortening), FOAM, SFOAM and CFOAM at points (p,) m."""
     n = sum(counts)
     starts = (0, counts[0], counts[0] + counts[1])
 
     def at(points: np.ndarray) -> list[list[np.ndarray]]:
-        shapes = [family(points) for family in families]
+        shapes = [family(points) for family in families[:3]]
         return [[block(f, i, n) for f in shape] for shape, i in zip(shapes, starts, strict=True)]
 
     s, v, w = at(x)

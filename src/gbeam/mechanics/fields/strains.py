@@ -44,7 +44,9 @@ Array = Any
 
 
 class Tangents(NamedTuple):
-    """Rotations of the nodes' sections and t there, with its rates, and the rates of turning Rκ̇ and its derivative."""
+    """Rotations of the nodes' sections and t there, with its rates, the rates of turning Rκ̇ and its derivative, and the
+    sections' angular velocities and accelerations.
+    """
 
     rotation: Rotation
     t: Vector
@@ -52,6 +54,8 @@ class Tangents(NamedTuple):
     tdd: Vector = NONE
     turn: Vector = NONE
     turnd: Vector = NONE
+    w: Vector = NONE
+    alpha: Vector = NONE
 
 
 @record
@@ -126,7 +130,7 @@ class StrainField:
         alpha = mapped(turnd, self.node_cumulative)
         td = add(cross(w, t), stretching)
         tdd = add(swept(w, alpha, t), scaled(2.0, cross(w, stretching)), turned(rotation, change[:3]))
-        return Tangents(rotation, t, td, tdd, turn, turnd)
+        return Tangents(rotation, t, td, tdd, turn, turnd, w, alpha)
 
     def _at_points(self, q: Array) -> Rotation:
         return self.frames.at(self.strain(q)[3:], points=True)
@@ -293,15 +297,16 @@ def strain_field(
     return StrainField(cumulative, node_cumulative, whole, rest, frames, None, shaped, present)
 
 
-def bending_strains(rule: Quadrature, counts: tuple[int, int, int], families: Families) -> Array:
-    """Values (6, g, n) of the shapes of stretch and of bending along y and z: the slopes of the axial family, and the
-    curvatures of the others.
-    """
-    nodes = len(rule.node)
-    out = np.zeros((6, nodes, sum(counts)))
-    stretch, along_y, along_z = (family(rule.node) for family in families)
-    first, second = counts[0], counts[0] + counts[1]
-    out[0, :, :first] = stretch.slope
-    out[5, :, first:second] = along_y.curvature
-    out[4, :, second:] = -along_z.curvature  # bending towards +z turns about −y
-    return out
+# Strain of each family, in the order of the families: bending towards +z turns about −y.
+STRAINS = (0, 5, 4, 3, 1, 2)
+
+
+def shaped_strains(rule: Quadrature, families: Families) -> Array:
+    """Values (6, g, n) of the strains of shapes: the curvatures of the bending families, the slopes of the others."""
+    columns = []
+    for strain, family in zip(STRAINS, families, strict=True):
+        shape = family(rule.node)
+        values = {4: -shape.curvature, 5: shape.curvature}.get(strain, shape.slope)
+        columns.append(np.zeros((6, *values.shape)))
+        columns[-1][strain] = values
+    return np.concatenate(columns, axis=2)

@@ -151,12 +151,16 @@ class General(Flat):
     extreme_fibre_y: Lengths | None = Field(default=None, description="outer fibre along y, for stress")
     extreme_fibre_z: Lengths | None = Field(default=None, description="outer fibre along z, for stress")
     torsion_constant: SecondMoments | None = Field(
-        default=None, description="J of the torque G J α', for the stated error only: no model here has torsion"
+        default=None,
+        description="J of the torque G J α', for modes.twist and for the stated error of a model without twist",
     )
     shear_coefficient_y: Ratios | None = Field(
-        default=None, description="k of the shear force k G A γ along y, for the stated error only; 1/2 where left out"
+        default=None,
+        description="k of the shear force k G A γ along y, for modes.shear_y; in the stated error 1/2 where left out",
     )
-    shear_coefficient_z: Ratios | None = Field(default=None, description="k of the shear force along z, likewise")
+    shear_coefficient_z: Ratios | None = Field(
+        default=None, description="k of the shear force along z, for modes.shear_z, likewise"
+    )
 
 
 def _shape(section: Any) -> str | None:
@@ -193,7 +197,7 @@ class Material(Table):
     )
     shear_modulus: Pressure | None = Field(
         default=None,
-        description="for the stated error only: no model here has shear; E/(2 (1 + ν)) where left out",
+        description="of twist and shear, in exact and in the stated error; E/(2 (1 + ν)) where left out",
     )
 
 
@@ -259,4 +263,9 @@ class Beam(Table):
     )
     points: tuple[Point, ...] = Field(
         default=(), max_length=ENTRIES, description="points of output beside the tip: [ { name, at } ]"
+    )
+    rotary_inertia: StrictBool = Field(
+        default=False,
+        description="true if the sections resist turning by their own second moments, as those of a stout beam and of "
+        "one that twists do; without it each is a point on the axis",
     )

@@ -32,9 +32,12 @@ Count = Annotated[StrictInt, Field(ge=0, le=SHAPES)]
 class Modes(Table):
     """Numbers of shape functions."""
 
-    axial: Count = Field(description="axial shapes; for `exact` strain shapes")
-    y: Count = Field(description="bending shapes along y; for `exact` rotation shapes for bending along y")
-    z: Count = Field(description="bending shapes along z; for `exact` rotation shapes for bending along z")
+    axial: Count = Field(description="axial shapes; for `exact` of the stretch")
+    y: Count = Field(description="bending shapes along y; for `exact` of the curvature")
+    z: Count = Field(description="bending shapes along z; for `exact` of the curvature")
+    twist: Count = Field(default=0, description="shapes of the twist, of `exact` only; needs beam.rotary_inertia")
+    shear_y: Count = Field(default=0, description="shapes of the shear strain along y, of `exact` only")
+    shear_z: Count = Field(default=0, description="shapes of the shear strain along z, of `exact` only")
 
 
 class Model(Table):
@@ -46,7 +49,8 @@ class Model(Table):
     )
     modes: Modes | None = Field(
         default=None,
-        description="numbers of shapes: { axial, y, z }; where left out, `run` raises them until they are enough",
+        description="numbers of shapes: { axial, y, z, twist, shear_y, shear_z }; where left out, `run` raises "
+        "those of axial, y and z until they are enough",
     )
     shapes: Literal["clamped-free", "adapted"] | None = Field(
         default=None,
