@@ -18,7 +18,7 @@ from scipy.integrate._ivp import dop853_coefficients as dop853
 
 from gbeam import Structure
 from gbeam.integrate.newton import accelerations
-from gbeam.mechanics.equations.inertia import Particles, Sections, inertia_of
+from gbeam.mechanics.equations.inertia import Bodies, Particles, inertia_of
 from gbeam.mechanics.equations.residuals import OnHub
 from gbeam.motion import Base
 
@@ -79,12 +79,12 @@ def test_complete_models_are_dalemberts_principle_in_the_world(name: str, seed: 
 
 
 @pytest.mark.parametrize("name", ["exact", "thick"])
-def test_parts_of_the_inertia_are_its_particles(name: str) -> None:
+def test_sections_and_bodies_have_the_inertia_of_their_particles(name: str) -> None:
     """Sections by their mass and moments of inertia, bodies off the axis as particles."""
     inertia, (a, w, alpha) = laden(name).inertia, states(3, 3, 2.0, seed=8)
-    assert inertia is not None and [type(part) for part in inertia.parts] == [Sections, Particles]
+    assert inertia is not None and isinstance(inertia.same, Bodies)
     motion = *states(laden(name).size, 3, 0.3, seed=9), a, w, alpha
-    ours, theirs = inertia.forces(*motion), replace(inertia, parts=(Particles(inertia.field, inertia.mass),))
+    ours, theirs = inertia.forces(*motion), replace(inertia, same=Particles(inertia.field, inertia.mass))
     for each, other in zip(ours, theirs.forces(*motion), strict=True):
         np.testing.assert_allclose(each, other, rtol=0, atol=1e-11 * np.abs(other).max())
 

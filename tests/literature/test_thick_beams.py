@@ -87,14 +87,22 @@ def test_adapted_shapes_have_timoshenkos_frequencies_at_once() -> None:
 
 def test_a_shaft_turns_a_disc_by_saint_venants_torsion() -> None:
     moment = 2e-3
-    structure = gb.assemble(beam(masses=[gb.PointMass(LENGTH, 0.5, inertia=(moment, 1e-3, 1e-3))]), "exact", twist=8)
+    structure = gb.assemble(
+        beam(masses=[gb.PointMass(LENGTH, 0.5, inertia=(moment, 1e-3, 1e-3))]), "exact", [LENGTH / 3], twist=8
+    )
 
     def at_disc(w: float) -> float:
         k = w * np.sqrt(POLAR / TORSION)
         return float(TORSION * k * np.cos(k * LENGTH) - moment * w**2 * np.sin(k * LENGTH))
 
     expected = roots(at_disc, 8 / LENGTH * np.sqrt(TORSION / POLAR), 2)
-    np.testing.assert_allclose(gb.modes(structure).frequency[:2], expected, rtol=1e-7)
+    computed = gb.modes(structure)
+    np.testing.assert_allclose(computed.frequency[:2], expected, rtol=1e-7)
+    assert computed.direction[:2] == ("twist", "twist") and computed.twist is not None
+    # The shape is a sine, and its edge moves by 1 where it moves most.
+    sine = np.sin(2 * np.pi * expected[0] * np.sqrt(POLAR / TORSION) * structure.stations)
+    assert computed.twist[0, 0] / computed.twist[0, 1] == pytest.approx(sine[0] / sine[1], rel=1e-6)
+    assert np.abs(computed.edge[0]).max() == pytest.approx(1.0) and not np.abs(computed.shape[0]).any()
 
 
 def test_a_mass_off_the_axis_bends_and_twists_the_beam() -> None:

@@ -104,8 +104,15 @@ export class BeamMesh {
     this.move(null, 1, null, 1);
   }
 
-  /** Put the beam where displacements (points × 3, m; null: straight) times a factor take it, and colour it by shares. */
-  move(displacement: ArrayLike<number> | null, factor: number, shares: ArrayLike<number> | null, grey: number): void {
+  /** Put the beam where displacements (points × 3, m; null: straight) times a factor take it, turn its sections by twist
+   * (points, rad) times it, and colour it by shares. */
+  move(
+    displacement: ArrayLike<number> | null,
+    factor: number,
+    shares: ArrayLike<number> | null,
+    grey: number,
+    twist: ArrayLike<number> | null = null,
+  ): void {
     const { points } = this.shape;
     const place = (k: number): Vector => [
       points[k]! + (displacement ? factor * displacement[3 * k]! : 0),
@@ -116,9 +123,12 @@ export class BeamMesh {
     for (let k = 0; k <= last; k++) {
       const [before, here, after] = [place(Math.max(k - 1, 0)), place(k), place(Math.min(k + 1, last))];
       const [y, z] = frame([after[0] - before[0], after[1] - before[1], after[2] - before[2]]);
+      const angle = twist ? factor * twist[k]! : 0;
+      const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
       const colour = shares ? shade(shares[k]!) : ([grey, grey, grey] as const);
       for (let j = 0; j < this.around; j++) {
-        const [a, b] = this.sections[k]![j]!;
+        const [v, w] = this.sections[k]![j]!;
+        const [a, b] = [v * cos - w * sin, v * sin + w * cos];
         for (let i = 0; i < 3; i++) {
           const n = 3 * (k * this.around + j) + i;
           this.positions[n] = here[i]! + a * y[i]! + b * z[i]!;

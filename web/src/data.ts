@@ -23,6 +23,8 @@ export interface Motion {
   bodies: [number, number][];
   time: Ref;
   displacement: Ref;
+  /** Angles of the sections about the beam's axis. */
+  twist?: Ref;
   largest: number;
   /** Whether it is a mode's shape, whose size means nothing. */
   relative?: boolean;
@@ -50,6 +52,8 @@ export interface Modes {
   labels: string[];
   real: Ref;
   imaginary: Ref;
+  /** Real and imaginary angles of the sections about the beam's axis, rad for shapes in m. */
+  twist?: [Ref, Ref];
 }
 
 export interface Series {

@@ -116,9 +116,11 @@ export class Panel {
     const { motion, numbers } = this;
     this.deflection = settings.factor * motion.largest;
     const place = locate(view(numbers, motion.time), t);
+    const points = motion.points.length;
     interpolate(view(numbers, motion.displacement), this.now.length, place, this.now);
     const coloured = this.colour(settings, place);
-    this.beam.move(this.now, settings.factor, coloured ? this.shares : null, dark ? 0.75 : 0.55);
+    const twist = motion.twist && interpolate(view(numbers, motion.twist), points, place, new Float32Array(points));
+    this.beam.move(this.now, settings.factor, coloured ? this.shares : null, dark ? 0.75 : 0.55, twist);
     this.ghost.group.visible = settings.ghost;
     const angles = motion.axes ?? motion.angle ?? motion.attitude;
     if (this.whole && angles) {

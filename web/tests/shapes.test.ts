@@ -3,7 +3,7 @@ import { describe, expect, it } from "vitest";
 import { BeamMesh, corners, frame } from "../src/beam";
 import { centrifuge, hub } from "../src/carriers";
 import { shade } from "../src/colours";
-import { view } from "../src/data";
+import { type Ref, view } from "../src/data";
 import { shapes } from "../src/modes";
 import { along } from "../src/panel";
 import { visible } from "../src/viewer";
@@ -90,6 +90,23 @@ it("moves a mode's shape by Re(shape e^iφ), the same after every period", () =>
   expect([...rows.slice(0, 6)]).toEqual([0, 0, 0, 0, 0, expect.closeTo(0.3, 6)]);
   expect(rows[12 * 6 + 4]).toBeCloseTo(-0.15, 6); // a quarter of a period later
   expect(rows[48 * 6 + 5]).toBeCloseTo(0.3, 6);
+});
+
+it("turns the sections of a mode with twist, and none by more than 0.6 rad", () => {
+  const modes = {
+    points: [0, 2], width: [1, 1], thickness: [1, 1], round: false, labels: ["1"],
+    real: { at: 0, shape: [1, 2, 3] }, imaginary: { at: 0, shape: [1, 2, 3] },
+    twist: [{ at: 6, shape: [1, 2] }, { at: 8, shape: [1, 2] }] as [Ref, Ref],
+  };
+  const { header, numbers: made } = shapes(modes, 0, new Float32Array([0, 0, 0, 0, 0, 0, 0, 10, 0, 0]), 2);
+  const motion = header.scene!.motions[0]!;
+  expect([...view(made, motion.twist!).slice(0, 2)]).toEqual([0, expect.closeTo(0.6, 6)]);
+  const beam = new BeamMesh({ points: [0, 2], width: [2, 2], thickness: [1, 1], round: false }, false);
+  beam.move([0, 0, 0, 0, 0, 0], 1, null, 1, [0, Math.PI / 2]);
+  const mesh = beam.group.children[0] as unknown as { geometry: { getAttribute(name: string): { array: Float32Array } } };
+  const places = mesh.geometry.getAttribute("position").array;
+  // A quarter of a turn brings the corners from (±1, ±0.5) to (∓0.5, ±1).
+  for (let k = 4; k < 8; k++) expect(Math.abs(places[3 * k + 1]!)).toBeCloseTo(0.5, 6);
 });
 
 it("has a colour for every share, and for none", () => {

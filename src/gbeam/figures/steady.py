@@ -65,8 +65,9 @@ def modes(result: Modes, title: str = "") -> Figure:
     along, at = scale_of("m", result.stations)
     lines = []
     for k in range(min(SHOWN, len(result.frequency))):
-        shape = result.shape[k, :, "xyz".index(result.direction[k])]
-        label = f"{result.frequency[k]:.4g} Hz, {result.direction[k]}"
+        way = result.direction[k]
+        shape = result.edge[k] if way == "twist" else result.shape[k, :, "xyz".index(way)]
+        label = f"{result.frequency[k]:.4g} Hz, {way}"
         real = Line(along * result.stations, shape.real, label, colour=k, marks=_few(result.stations))
         lines.append(real)
         if np.abs(shape.imag).max() > 1e-6:

@@ -45,10 +45,7 @@ def _inverse_jacobian(residual: Any, t: Tableau, z: Array, inputs: Any, x: Array
     """Inverse Jacobian (s n, s n) of a step, the residual's derivatives being those between its stages."""
     q, qd, qdd = (jnp.mean(values, axis=0) for values in (t.w_q @ z + t.c_q @ x, t.w_v @ z + t.c_v @ x, x))
     between = jax.tree.map(lambda leaf: jnp.mean(leaf, axis=0), inputs)
-    # One after the other: what the forces on q̇ and q̈ do not depend on is not carried along.
-    k = jax.jacfwd(lambda q: residual(q, qd, qdd, between))(q)
-    c = jax.jacfwd(lambda qd: residual(q, qd, qdd, between))(qd)
-    m = jax.jacfwd(lambda qdd: residual(q, qd, qdd, between))(qdd)
+    k, c, m = jax.jacfwd(lambda q, qd, qdd: residual(q, qd, qdd, between), argnums=(0, 1, 2))(q, qd, qdd)
     return jnp.linalg.inv(jnp.kron(t.c_q, k) + jnp.kron(t.c_v, c) + jnp.kron(jnp.eye(len(x)), m))
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import holds_jax, is_jax
+from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.arrays.tree import Value, record, static
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -299,6 +299,16 @@ class Structure:
     def station_slopes(self, q: Array) -> Array:
         """Derivatives of the stations' places with respect to coordinates `q` (n,), (s, 3, n)."""
         return self.output.slopes(q)
+
+    def station_twist(self, q: Array) -> Array | None:
+        """Derivatives of the angles of the stations' sections about the beam's axis at coordinates `q` (n,), (s, n);
+        None of a model without twist.
+        """
+        if not self.counts[3] or not isinstance(self.field, StrainField):
+            return None
+        field = self.field[self.first_station :]
+        along, (_, angles) = field.rotation(q)[..., 0], field.jacobians(q)
+        return namespace(angles).einsum("sa,san->sn", along, angles)
 
     def displacement(self, q: Array) -> Array:
         """Displacement of the stations relative to the base axes at coordinates `q` (..., n), (..., s, 3) m."""

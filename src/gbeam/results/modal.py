@@ -48,7 +48,7 @@ class Modes(Figured):
         key=None,
         note="one of each pair, with the positive imaginary part",
     )
-    direction: tuple[str, ...] = quantity("", "direction in which the beam moves most", "mode", note="x, y or z")
+    direction: tuple[str, ...] = quantity("", "direction in which the beam moves most", "mode", note="x, y, z or twist")
     coordinates: Complex = quantity(
         "", "generalised coordinates, of unit mass-weighted length", "mode", "coordinate", name=None, key=None
     )
@@ -93,6 +93,23 @@ class Modes(Figured):
         default_factory=lambda: np.empty(0),
     )
     round: bool = quantity("", "whether the section is round", name="section_round", key="section.round", default=False)
+    twist: Complex | None = quantity(
+        "rad/m",
+        "angle of the section about the beam's axis, for shapes in m",
+        "mode",
+        "station",
+        optional=True,
+        note="of a mode in the direction twist the section's edge has the largest displacement, 1; None of a model "
+        "without twist",
+        default=None,
+    )
+
+    @property
+    def edge(self) -> Complex:
+        """Displacement of the section's outermost fibre by twist, in the size of the shape, (k, s)."""
+        if self.twist is None:
+            return np.zeros(self.shape.shape[:2], dtype=complex)
+        return self.twist * outermost(self.width, self.thickness, is_round=self.round)
 
     @property
     @declared("Hz", "natural frequency", "mode")
@@ -123,8 +140,18 @@ class Modes(Figured):
         modes = [f"{f:.4g} Hz {way}" for f, way in zip(self.frequency, self.direction, strict=True)]
         more = f" and {len(modes) - SHOWN} more" if len(modes) > SHOWN else ""
         lines = [f"Modes{of} ({self.model}) at {self.time:.4g} s: {', '.join(modes[:SHOWN])}{more}"]
-        lines += [f"{e.kind} along {e.direction}, growing with {e.growth_rate:.4g} 1/s" for e in self.instabilities]
+        lines += [f"{e.kind} {along(e.direction)}, growing with {e.growth_rate:.4g} 1/s" for e in self.instabilities]
         return self._with_warnings(*lines)
+
+
+def along(direction: str) -> str:
+    """Words for the direction of a mode: along z, or in twist."""
+    return f"in {direction}" if direction == "twist" else f"along {direction}"
+
+
+def outermost(width: Floats, thickness: Floats, *, is_round: bool) -> Floats:
+    """Distance of the outermost fibre from the axis of sections with some extents, m."""
+    return width / 2 if is_round else np.hypot(width, thickness) / 2
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -35,6 +35,7 @@ from gbeam.mechanics.structure import Sections, Structure
 from gbeam.motion.bases.base import mapped
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.series import complex_step
+from gbeam.results.modal import along
 from gbeam.results.state_space import ACCURATE, Gauge, Signal, StateSpace, import_control
 from gbeam.structure.attachments import TIP
 from gbeam.structure.beam import Beam, fibre_strain, names_at
@@ -318,7 +319,7 @@ def linearize(
             frequency, errors = pole_errors(structure, point, linear)
             warnings += doubtful(errors) if errors.within(ACCURATE) == 0 else ()
         warnings += tuple(
-            f"the operating point is not stable: {each.kind} along {each.direction}, growing with "
+            f"the operating point is not stable: {each.kind} {along(each.direction)}, growing with "
             f"{each.growth_rate:.4g} 1/s"
             for each in modes_at(structure, point, linear).instabilities
         )

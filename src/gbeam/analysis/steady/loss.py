@@ -24,6 +24,7 @@ from gbeam.numerics.eigen import stability_margin, symmetric_modes
 from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Critical
 from gbeam.results.errors import ErrorEstimate
+from gbeam.results.modal import along
 from gbeam.results.result import Floats
 
 SCAN = 64  # points at which a loss is looked for before its root is closed in on
@@ -75,8 +76,8 @@ def first_loss_along(
         parts = ((each + each.T) / 2 for each in (linear.stiffness, linear.mass))  # the rest stores no energy
         lowest = symmetric_modes(*parts)[1][:, :1]
         direction = directions(structure, point, lowest)[0]
-    along = f" along {direction}" if direction else ""
-    return answer(root, kind, direction, f"{structure.kind}: {kind}{along} at {root:.6g} {unit}")
+    way = f" {along(direction)}" if direction else ""
+    return answer(root, kind, direction, f"{structure.kind}: {kind}{way} at {root:.6g} {unit}")
 
 
 # Shares of the critical value at which richer models are looked at, from below.

@@ -14,7 +14,7 @@ from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import ZERO, eigenvalues, growth_limit
-from gbeam.results.modal import Instability, Modes
+from gbeam.results.modal import Instability, Modes, outermost
 from gbeam.results.result import Complex, Floats
 
 
@@ -24,9 +24,23 @@ def _sensitivity(structure: Structure, q: Any) -> tuple[Floats, Floats]:
 
 
 def directions(structure: Structure, point: OperatingPoint, coordinates: Complex | Floats) -> tuple[str, ...]:
-    """Axis along which each mode (n, k) moves the structure most."""
-    moved = np.concatenate(_sensitivity(structure, point.q)) @ coordinates
-    return tuple("xyz"[i] for i in np.abs(moved).max(axis=0).argmax(axis=0))
+    """Axis along which each mode (n, k) moves the structure most, or twist where that moves the sections' edges more
+    than their centres.
+    """
+    particles, stations = _sensitivity(structure, point.q)
+    ways = ["xyz"[i] for i in np.abs(np.concatenate([particles, stations]) @ coordinates).max(axis=0).argmax(axis=0)]
+    twist = structure.station_twist(point.q)
+    if twist is not None:
+        twisted, moved = (np.abs(each @ coordinates) for each in (_extent(structure)[:, None] * twist, stations))
+        more = twisted.max(axis=0) > moved.max(axis=(0, 1))
+        ways = ["twist" if each else way for way, each in zip(ways, more, strict=True)]
+    return tuple(ways)
+
+
+def _extent(structure: Structure) -> Floats:
+    """Distance of the outermost fibres from the axis at the stations, m."""
+    drawn = _drawn(structure)
+    return outermost(drawn["width"], drawn["thickness"], is_round=drawn["round"])
 
 
 def modes_at(
@@ -54,8 +68,11 @@ def modes_at(
     growing, _, grows = pick(~zero & real & (value.real > 0))
     shape = np.moveaxis(stations @ coordinates, -1, 0)
     # Turn each shape so that its largest component is 1.
-    flat = shape.reshape(len(shape), shape.shape[1] * shape.shape[2])  # there may be no mode at all
-    largest = flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)]
+    largest, turns = _largest(shape), structure.station_twist(point.q)
+    twist = None if turns is None else (turns @ coordinates).T
+    if twist is not None:
+        largest = np.where(np.array(direction) == "twist", _largest(twist * _extent(structure)), largest)
+    scale = np.where(largest == 0, 1, largest)
     flutter = oscillating.real > growth_limit(oscillating, size)
     return Modes(
         motion=name,
@@ -67,7 +84,8 @@ def modes_at(
         direction=direction,
         coordinates=coordinates.T,
         stations=np.asarray(structure.stations),
-        shape=shape / np.where(largest == 0, 1, largest)[:, None, None],
+        shape=shape / scale[:, None, None],
+        twist=None if twist is None else twist / scale[:, None],
         equilibrium=np.asarray(structure.displacement(point.q)),
         instabilities=tuple(
             [Instability("divergence", float(v.real), 0.0, d) for v, d in zip(growing, grows, strict=True)]
@@ -81,6 +99,12 @@ def modes_at(
         damping_given=structure.damping_ratio is not None,
         overdamped=np.sort(value[~zero & real & (value.real < 0)].real),
     )
+
+
+def _largest(shape: Complex) -> Complex:
+    """The component of each mode (k, ...) that is largest."""
+    flat = shape.reshape(len(shape), -1) if shape.size else np.ones((len(shape), 1))
+    return flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)]
 
 
 @typed

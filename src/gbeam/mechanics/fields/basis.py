@@ -104,17 +104,20 @@ def closed_forms(length: float, counts: Counts) -> Families:
 
 
 def polynomials(length: float, counts: Counts) -> Families:
-    """Legendre polynomials as strains and as curvatures, for the exact field."""
+    """Legendre polynomials as strains, and over the length as twist and curvatures, for the exact field."""
 
     def strain(count: int) -> Family:
         return lambda x: Shapes(*(length * part for part in legendre_shapes(x, length, count)))
+
+    def turn(count: int) -> Family:
+        return lambda x: legendre_shapes(x, length, count)
 
     def curvature(count: int) -> Family:
         return lambda x: legendre_bending(x, length, count)
 
     axial, along_y, along_z, twist, shear_y, shear_z = counts
     bending = curvature(along_y), curvature(along_z)
-    return strain(axial), *bending, strain(twist), strain(shear_y), strain(shear_z)
+    return strain(axial), *bending, turn(twist), strain(shear_y), strain(shear_z)
 
 
 class Quadrature(NamedTuple):

@@ -26,6 +26,7 @@ from gbeam.mechanics.fields.components import (
 from gbeam.mechanics.fields.rotation import exponential_of, sine_cosine
 
 Array = Any
+Turn = tuple[Array, ...]  # a quaternion by components
 _GAUSS = np.sqrt(15) / 10 * np.array([-1.0, 0.0, 1.0]) + 0.5
 # i, j and k times a quaternion: its components in another order, with signs.
 _UNITS = (((1, 0, 3, 2), (-1, 1, -1, 1)), ((2, 3, 0, 1), (-1, 1, 1, -1)), ((3, 2, 1, 0), (-1, -1, 1, 1)))
@@ -46,18 +47,21 @@ class Frames:
     node_angles: Array
     angles: Array
 
-    def at(self, curvatures: Vector, *, points: bool) -> Rotation:
-        """Rotations (..., G) of the sections at the nodes, or (..., p) at the points, by curvatures (..., G)."""
+    def at(self, curvatures: Vector, *, points: bool) -> tuple[Rotation, Rotation]:
+        """Rotations (..., G) of the sections at the nodes and, where they are wanted, (..., p) at the points, by
+        curvatures (..., G).
+        """
         about = [axis for axis in range(3) if not absent(curvatures[axis])]
         if not about:
-            return UNTURNED
+            return UNTURNED, UNTURNED
         if len(about) == 1:
-            angle = curvatures[about[0]] @ (self.angles if points else self.node_angles).T
-            sine, cosine = sine_cosine(angle)
-            return plane_rotation(about[0], cosine, sine)
-        parts = tuple(curvatures[axis] for axis in about)
-        turns = _differentiable() if any(map(is_jax, parts)) else _turns
-        return _matrix(turns(tuple(about), points, self, parts))
+            onto = (self.node_angles, self.angles) if points else (self.node_angles,)
+            at = [plane_rotation(about[0], *reversed(sine_cosine(curvatures[about[0]] @ each.T))) for each in onto]
+        else:
+            parts = tuple(curvatures[axis] for axis in about)
+            turns = _differentiable() if any(map(is_jax, parts)) else _turns
+            at = [_matrix(each) for each in turns(tuple(about), points, self, parts)]
+        return at[0], at[-1]
 
     def between(self, curvatures: Vector) -> Array:
         """Unit quaternions (4, ..., 1 + i) of the sections between the steps, the root's first (Magnus' expansion)."""
@@ -88,10 +92,10 @@ class Frames:
         return xp.concatenate([start, turns], axis=-1)
 
 
-def _turns(about: tuple[int, ...], points: bool, frames: Frames, parts: tuple[Array, ...]) -> tuple[Array, ...]:
-    """Unit quaternions of the nodes' sections, or the points', by the curvatures about some axes."""
-    chosen = frames.points if points else frames.nodes
-    return tuple(frames.between(_spread(about, parts))[..., chosen])
+def _turns(about: tuple[int, ...], points: bool, frames: Frames, parts: tuple[Array, ...]) -> tuple[Turn, ...]:
+    """Unit quaternions of the nodes' sections, and the points' if wanted, by the curvatures about some axes."""
+    between = frames.between(_spread(about, parts))
+    return tuple(tuple(between[..., each]) for each in ((frames.nodes, frames.points) if points else (frames.nodes,)))
 
 
 def _spread(about: tuple[int, ...], parts: tuple[Array, ...]) -> Vector:
@@ -109,12 +113,13 @@ def _differentiable() -> Any:
     @turns.defjvp
     def _(about: tuple[int, ...], points: bool, primals: Any, tangents: Any) -> Any:
         frames, parts = primals
-        nodes = turns(about, False, frames, parts)
-        w, *v = turns(about, True, frames, parts) if points else nodes
-        turning = turned(_matrix(nodes), _spread(about, tangents[1]))
-        half = scaled(0.5, mapped(turning, frames.angles if points else frames.node_angles))
-        change = add(scaled(w, half), cross(half, (v[0], v[1], v[2])))
-        return (w, *v), (-dot(half, (v[0], v[1], v[2])), *change)
+        at = turns(about, points, frames, parts)
+        turning = turned(_matrix(at[0]), _spread(about, tangents[1]))
+        changes = []
+        for (w, x, y, z), onto in zip(at, (frames.node_angles, frames.angles), strict=False):
+            half = scaled(0.5, mapped(turning, onto))
+            changes.append((-dot(half, (x, y, z)), *add(scaled(w, half), cross(half, (x, y, z)))))
+        return at, tuple(changes)
 
     return turns
 
@@ -132,7 +137,7 @@ def _product(p: Array, q: Array) -> Array:
     return total
 
 
-def _matrix(turn: tuple[Array, ...]) -> Rotation:
+def _matrix(turn: Turn) -> Rotation:
     """Rotation matrices of unit quaternions."""
     w, x, y, z = turn
     return (

@@ -44,12 +44,13 @@ Array = Any
 
 
 class Tangents(NamedTuple):
-    """Rotations of the nodes' sections and t there, with its rates, the rates of turning Rκ̇ and its derivative, and the
-    sections' angular velocities and accelerations.
+    """Rotations of the nodes' sections and t there, the points' arms from the axis, the rates of t, those of turning Rκ̇
+    and its derivative, and the sections' angular velocities and accelerations.
     """
 
     rotation: Rotation
     t: Vector
+    arm: Vector = NONE
     td: Vector = NONE
     tdd: Vector = NONE
     turn: Vector = NONE
@@ -115,14 +116,15 @@ class StrainField:
         return tuple(values[..., chosen.index(k), :] if k in chosen else 0 for k in range(6))
 
     def tangents(self, q: Array) -> Tangents:
-        """Rotations and t at the nodes at coordinates (..., n)."""
+        """Rotations and t at the nodes at coordinates (..., n), and arms of points off the axis."""
         strain = self.strain(q)
-        rotation = self.frames.at(strain[3:], points=False)
-        return Tangents(rotation, turned(rotation, strain[:3]))
+        rotation, at_points = self.frames.at(strain[3:], points=self.offset is not None)
+        arm = NONE if self.offset is None else turned(at_points, split(self.offset))
+        return Tangents(rotation, turned(rotation, strain[:3]), arm)
 
     def moving(self, q: Array, qd: Array, qdd: Array) -> Tangents:
-        """Rotations, t and its rates at the nodes."""
-        rotation, t, *_ = self.tangents(q)
+        """Rotations, t and its rates at the nodes, and arms."""
+        rotation, t, arm, *_ = self.tangents(q)
         rate, change = (tuple(self._sums(x)) for x in (qd, qdd))
         stretching, turn = turned(rotation, rate[:3]), turned(rotation, rate[3:])
         w = mapped(turn, self.node_cumulative)
@@ -130,22 +132,18 @@ class StrainField:
         alpha = mapped(turnd, self.node_cumulative)
         td = add(cross(w, t), stretching)
         tdd = add(swept(w, alpha, t), scaled(2.0, cross(w, stretching)), turned(rotation, change[:3]))
-        return Tangents(rotation, t, td, tdd, turn, turnd, w, alpha)
-
-    def _at_points(self, q: Array) -> Rotation:
-        return self.frames.at(self.strain(q)[3:], points=True)
-
-    def _arms(self, q: Array) -> Vector:
-        """From the axis to the points."""
-        return turned(self._at_points(q), split(self.offset))
+        return Tangents(rotation, t, arm, td, tdd, turn, turnd, w, alpha)
 
     def components(self, q: Array, qd: Array, qdd: Array) -> tuple[Vector, Vector, Vector]:
         """Places, velocities and accelerations of the points relative to the base axes, by components (..., p)."""
-        tangents = self.moving(q, qd, qdd)
+        return self.carried(self.moving(q, qd, qdd))
+
+    def carried(self, tangents: Tangents) -> tuple[Vector, Vector, Vector]:
+        """Places, velocities and accelerations of the points by those of the tangents."""
         r, rd, rdd = (mapped(each, self.cumulative) for each in (tangents.t, tangents.td, tangents.tdd))
         if self.offset is None:
             return r, rd, rdd
-        arm, w = self._arms(q), mapped(tangents.turn, self.cumulative)
+        arm, w = tangents.arm, mapped(tangents.turn, self.cumulative)
         alpha = mapped(tangents.turnd, self.cumulative)
         return add(r, arm), add(rd, cross(w, arm)), add(rdd, swept(w, alpha, arm))
 
@@ -157,16 +155,16 @@ class StrainField:
 
     def positions(self, q: Array) -> Array:
         """Places of the points at coordinates (..., n), base axes, (..., p, 3) m."""
-        r = mapped(self.tangents(q).t, self.cumulative)
-        if self.offset is not None:
-            r = add(r, self._arms(q))
+        tangents = self.tangents(q)
+        r = add(mapped(tangents.t, self.cumulative), tangents.arm)
         return joined(namespace(self.strains, self.offset, q), r, (*q.shape[:-1], len(self.cumulative)))
 
     def rotation(self, q: Array, at: Any = slice(None)) -> Array:
         """Rotation matrices R_BS of the sections at all points, or `at` some, (..., p, 3, 3)."""
         field = self[at]
         xp, shape = namespace(self.strains, self.offset, q), (*q.shape[:-1], len(field.cumulative))
-        return xp.stack([joined(xp, row, shape) for row in field._at_points(q)], axis=-2)
+        _, at_points = field.frames.at(field.strain(q)[3:], points=True)
+        return xp.stack([joined(xp, row, shape) for row in at_points], axis=-2)
 
     # --- forces come back
 
@@ -182,9 +180,13 @@ class StrainField:
 
     def along(self, q: Array, push: Vector, turn: Vector = NONE) -> Array:
         """Generalised forces (..., n) of forces and moments on the points, base axes, by components (..., p)."""
-        if self.offset is not None:
-            turn = add(turn, cross(self._arms(q), push))
-        return self.pulled(self.tangents(q), mapped(push, self.cumulative.T), mapped(turn, self.cumulative.T))
+        tangents = self.tangents(q)
+        return self.pulled(tangents, *self.at_nodes(tangents, push, turn))
+
+    def at_nodes(self, tangents: Tangents, push: Vector, turn: Vector = NONE) -> tuple[Vector, Vector]:
+        """Forces on t and moments on the sections at the nodes of forces and moments on the points."""
+        turn = add(turn, cross(tangents.arm, push))
+        return mapped(push, self.cumulative.T), mapped(turn, self.cumulative.T)
 
     # --- how it changes
 
@@ -215,7 +217,7 @@ class StrainField:
         first = self._summed(self.cumulative, add(cross(angle, (x, y, z)), strain))
         at_points = self._summed(self.cumulative, turn)
         if self.offset is not None:
-            arm: Any = tuple(part if absent(part) else part[..., None] for part in self._arms(q))
+            arm: Any = tuple(part if absent(part) else part[..., None] for part in tangents.arm)
             first = add(first, cross(at_points, arm))
         slopes, angles = (xp.swapaxes(joined(xp, each, shape), -1, -2) for each in (first, at_points))
         return slopes, angles
@@ -229,7 +231,7 @@ class StrainField:
         if arm is None:
             arm = xp.zeros((len(weight), 3, weight.shape[-1]))
             if self.offset is not None:
-                arm = weight[:, None] * joined(xp, self._arms(q), weight.shape[-1:]).T
+                arm = weight[:, None] * joined(xp, tangents.arm, weight.shape[-1:]).T
         at_nodes = weight @ self.cumulative
         along = arm @ self.cumulative
         levers = [part if absent(part) else at_nodes * part for part in tangents.t]

@@ -208,7 +208,10 @@ def modes_in(facts: Facts, _: Facts | None = None) -> Modes:
         for key in ("shape", "shape_imaginary")
     )
     eigenvalue = size * (-ratio + 1j * np.sqrt(1 - ratio**2))
-    return _read(Modes, facts, eigenvalue=eigenvalue, shape=real + 1j * imaginary)
+    twist = None
+    if rows and "twist" in rows[0]:
+        twist = _column(rows, "twist") + 1j * _column(rows, "twist_imaginary")
+    return _read(Modes, facts, eigenvalue=eigenvalue, shape=real + 1j * imaginary, twist=twist)
 
 
 def _campbell(facts: Facts, _: Facts) -> Campbell:

@@ -93,6 +93,11 @@ def shapes(modes: Modes, numbers: Numbers) -> dict[str, Any]:
         "labels": [f"{i}: {number(frequency)} Hz, {way}" for i, (frequency, way) in enumerate(ways, 1)],
         "real": numbers.add(modes.shape.real[:, some]),
         "imaginary": numbers.add(modes.shape.imag[:, some]),
+        **(
+            {}
+            if modes.twist is None
+            else {"twist": [numbers.add(part[:, some]) for part in (modes.twist.real, modes.twist.imag)]}
+        ),
     }
 
 

@@ -12,6 +12,7 @@ from gbeam.report import words
 from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, table
 from gbeam.report.steady.modes import RESTING, ROUNDING
 from gbeam.report.words import number, percent
+from gbeam.results.modal import along
 
 Facts = Mapping[str, Any]
 
@@ -25,7 +26,7 @@ def modes_body(facts: Facts, viewer: str, drawn: str) -> str:
     where = f"motion {facts['motion']} at {number(facts['time'])} s, model {facts['model']}"
     parts = [paragraph(f"{where}, base turning at {number(rate)} rad/s, Coriolis coupling {coupling}")]
     growing = [
-        f"{each['kind']} along {each['direction']}: grows by {number(each['growth_rate'])} per second"
+        f"{each['kind']} {along(each['direction'])}: grows by {number(each['growth_rate'])} per second"
         for each in facts["instabilities"]
     ]
     parts += [listed(growing, "bad"), heading("Modes"), modes_table(facts)]
