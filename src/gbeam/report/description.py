@@ -4,45 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.report.words import ends, xyz
 from gbeam.results.description import Description, RecordSummary, Vector
 from gbeam.results.result import part_words
-
-
-def to_json(case: Description) -> dict[str, Any]:
-    """Description as JSON; SI, frequencies in Hz."""
-    return {
-        "title": case.title,
-        "beam": {
-            "length": case.length,
-            "mass": case.mass,
-            "masses": [{"at": at, "mass": mass} for at, mass in case.bodies],
-            "total_mass": case.total_mass,
-        },
-        "model": {"kind": case.model, "modes": dict(case.counts)},
-        "modes": [
-            {"frequency": float(frequency), "direction": direction}
-            for frequency, direction in zip(case.frequency, case.direction, strict=True)
-        ],
-        "motions": {
-            name: {"kind": kind, **({"tracks": case.tracks[name]} if name in case.tracks else {})}
-            for name, kind in case.motions.items()
-        },
-        "records": {name: _record(record) for name, record in case.records.items()},
-        "response": {
-            "start": case.start,
-            "duration": case.duration,
-            "step": "auto" if case.step is None else case.step,
-            "integrator": case.integrator,
-        },
-        "distributions": dict(case.distributions),
-        "warnings": list(case.warnings),
-    }
 
 
 def text(case: Description) -> str:
@@ -69,14 +35,6 @@ def text(case: Description) -> str:
         lines.append(f"  {'drawn' if i == 0 else '':<9} {path}: {drawn}; here its centre")
     lines += [f"  warning: {each}" for each in case.warnings]
     return "\n".join([*lines, "Scenario valid."])
-
-
-def _record(record: RecordSummary) -> dict[str, Any]:
-    vectors = {name: xyz(getattr(record, name)) for name in ("smallest", "largest", "peak")}
-    level = None if record.level is None else asdict(record.level) | {"load": xyz(record.level.load)}
-    columns = dict(zip("xyz", record.columns, strict=True))
-    spans = {"span": ends(record.span), "whole": ends(record.whole)}
-    return asdict(record) | vectors | spans | {"columns": columns, "level": level, "notes": list(record.notes)}
 
 
 def _lines(record: RecordSummary) -> Iterator[str]:

@@ -57,16 +57,6 @@ def columns(heads: list[str], rows: list[list[str]]) -> list[str]:
     return ["  ".join(row).rstrip() for row in cells]
 
 
-def xyz(values: Iterable[float]) -> dict[str, float]:
-    """The components of a vector by their axes."""
-    return {axis: float(value) for axis, value in zip("xyz", values, strict=True)}
-
-
-def ends(span: tuple[float, float]) -> dict[str, float]:
-    """First and last time of a stretch, s."""
-    return dict(zip(("start", "end"), span, strict=True))
-
-
 def number(value: float, digits: int = 4) -> str:
     """Write a number with significant digits; a dash where there is none."""
     if not math.isfinite(value):

@@ -22,21 +22,19 @@ ORDERS = ("first", "total")
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Statistics(Part):
-    """Estimates of a figure's distribution at every point of a sweep's grid.
+    """Estimates of a figure's distribution at every point of a sweep's grid."""
 
-    Parameters
-    ----------
-    names : tuple of str
-        mean, standard deviation, 5 %, median and 95 % (quantiles); or probability, of what is true or not.
-    values : (..., len(names), 3)
-        Estimate, and the ends of its interval of 95 % confidence; NaN where there are too few draws for one.
-    count : (...) int
-        Draws with a figure.
-    """
-
-    names: tuple[str, ...]
-    values: Floats
-    count: NDArray[np.int_]
+    names: tuple[str, ...] = labels(
+        "mean, standard deviation, quantiles (5 %, median, 95 %); or probability, of what is true or not", "statistic"
+    )
+    values: Floats = quantity(
+        "",
+        "estimate, and the ends of its interval of 95 % confidence; NaN of too few draws",
+        "...",
+        "statistic",
+        "bound",
+    )
+    count: NDArray[np.int_] = quantity("", "draws with a figure", "...")
 
     def __getitem__(self, name: str) -> Floats:
         """Estimate of one name and its bounds, (..., 3)."""
@@ -45,22 +43,13 @@ class Statistics(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Indices(Part):
-    """Sobol indices of a figure: which share of its variance each parameter makes.
+    """Sobol indices of a figure: which share of its variance each parameter makes."""
 
-    Parameters
-    ----------
-    parameters : tuple of str
-        Paths, d of them.
-    values : (..., d, 2, 3)
-        First order (by itself) and total (with all that it acts together with): estimate and ends of its interval of
-        95 % confidence.
-    count : (...) int
-        Base samples of which all cases have a figure.
-    """
-
-    parameters: tuple[str, ...]
-    values: Floats
-    count: NDArray[np.int_]
+    parameters: tuple[str, ...] = labels("paths", "parameter")
+    values: Floats = quantity(
+        "", "share by itself (first) and with all that it acts with (total)", "...", "parameter", "order", "bound"
+    )
+    count: NDArray[np.int_] = quantity("", "base samples of which all cases have a figure", "...")
 
 
 SAMPLE = "sample"  # the dimension of what is drawn from distributions
@@ -81,7 +70,6 @@ class Parameter(Part):
     )
     drawn: str = quantity("", "distribution that the values are drawn from; empty for a grid", key=None, default="")
 
-    @property
     @declared("", "distribution that the values are drawn from", role="fact")
     def distribution(self) -> str | None:
         """The distribution; None for a grid."""
@@ -156,19 +144,15 @@ class Sweep(Figured):
         "Sobol indices of the measures, of what the sampler saltelli draws", key=None, default_factory=dict
     )
 
-    @property
     @declared("", "figures by name", "measure", role="rows", key="measures")
     def measured(self) -> Mapping[str, Measured]:
-        """The measures by name, with their units."""
         return {name: Measured(self.units[name], values) for name, values in self.measures.items()}
 
-    @property
     @declared("", "units of the histories by name", role="fact", key="histories")
     def recorded(self) -> Mapping[str, Mapping[str, str]]:
         """The histories' units by name; their values are in files only."""
         return {name: {"unit": self.units[name]} for name in self.histories}
 
-    @property
     @declared("", "estimates by name with their bounds; lists along the grid", role="fact", key="statistics")
     def estimates(self) -> Mapping[str, Mapping[str, Any]]:
         """Every estimate by name with its bounds; lists along the grid, and along the times of a history."""
@@ -177,7 +161,6 @@ class Sweep(Figured):
             for name, each in self.statistics.items()
         }
 
-    @property
     @declared("", "Sobol indices by measure, parameter and order; lists along the grid", role="fact", key="indices")
     def shares(self) -> Mapping[str, Mapping[str, Any]]:
         """First and total index of every parameter with its bounds; lists along the grid."""
@@ -189,13 +172,10 @@ class Sweep(Figured):
             for name, each in self.indices.items()
         }
 
-    @property
     @declared("", "dimensions of every list", role="fact")
     def dimensions(self) -> tuple[str, ...]:
-        """Names of the dimensions of every array."""
         return tuple(dict.fromkeys(parameter.dimension for parameter in self.parameters))
 
-    @property
     @declared("", "how many cases ended how", role="fact")
     def counts(self) -> dict[str, int]:
         """Numbers of cases by their outcome; ``done`` first."""
@@ -309,11 +289,9 @@ class Sensitivity(Figured):
         "values of the scenario that may not be a little more or less, and why; they have no derivative", default=()
     )
 
-    @property
     @declared("", "figures, and the parameters that matter most to each first", "measure", role="rows", name=None,
               key="measures")  # fmt: skip
     def effects(self) -> Mapping[str, Effects]:
-        """Every figure by its name, with the parameters' effects on it, the largest first."""
         return {
             name: Effects(float(self.figures[k]), self.units[k], tuple(self._effect(k, j) for j in self.ranked(name)))
             for k, name in enumerate(self.measures)
@@ -324,7 +302,6 @@ class Sensitivity(Figured):
         slope, relative, error = (float(each[k, j]) for each in (self.derivatives, self.relative, self.errors))
         return Effect(path, float(value), unit, slope, relative, error, method, bool(self.kinks[k, j]))
 
-    @property
     @declared("", "relative change of the measure over that of the parameter", "measure", "parameter", key=None)
     def relative(self) -> Floats:
         """Relative change of each figure over that of each parameter, p/f ∂f/∂p, (m, p); NaN where a figure is zero."""

@@ -18,7 +18,7 @@ import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from operator import attrgetter
-from typing import Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
 
 Role = Literal["variable", "coordinate", "labels", "fact", "part", "rows"]
 INSIDE = "."  # name or key of a part whose fields stand among those of the record that has it
@@ -26,7 +26,7 @@ INSIDE = "."  # name or key of a part whose fields stand among those of the reco
 NAMES = {"axis": ("x", "y", "z"), "ends": ("start", "end"), "end": ("root", "tip")}
 BESIDE = attrgetter("unit")  # unit of a field of a record whose field `unit` says it
 _METADATA = "declared"
-_METHOD = TypeVar("_METHOD", bound=Callable[[Any], Any])
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True)
@@ -73,6 +73,11 @@ class Declaration:
     flags: tuple[str, ...] = ()
     optional: bool = False
 
+    @property
+    def sentence(self) -> str:
+        """The words and the note."""
+        return f"{self.words[:1].upper()}{self.words[1:]}{f'; {self.note}' if self.note else ''}."
+
 
 def quantity(
     unit: str | Callable[[Any], str] | dict[str, str],
@@ -112,6 +117,21 @@ def labels(words: str, *dim: str, key: str | None = None, **more: Any) -> Any:
     return quantity("", words, *dim, role="labels", key=key, **more)
 
 
+class Declared(property, Generic[_T]):
+    """A property with its declaration, which is its docstring where the getter has none."""
+
+    def __init__(self, getter: Callable[[Any], _T], declaration: Declaration) -> None:
+        super().__init__(getter)
+        self.declaration = declaration
+        unit = declaration.unit if isinstance(declaration.unit, str) else ""
+        size = " ".join(filter(None, (_shape(declaration), unit)))
+        self.__doc__ = getter.__doc__ or ", ".join(filter(None, (declaration.sentence[:-1], size))) + "."
+
+    if TYPE_CHECKING:  # which knows the type of a property by its decorator alone
+
+        def __get__(self, record: Any, kind: type | None = None, /) -> _T: ...  # type: ignore[override]
+
+
 def declared(
     unit: str | Callable[[Any], str] | dict[str, str],
     words: str,
@@ -120,14 +140,9 @@ def declared(
     name: str | None = "",
     key: str | None = "",
     optional: bool = False,
-) -> Callable[[_METHOD], _METHOD]:
-    """Declare what a property, whose getter this decorates, gives."""
-
-    def declare(method: _METHOD) -> _METHOD:
-        setattr(method, _METADATA, Declaration(words, unit, dims, role, name, key, optional=optional))
-        return method
-
-    return declare
+) -> Callable[[Callable[[Any], _T]], Declared[_T]]:
+    """Make a declared property of a getter."""
+    return lambda getter: Declared(getter, Declaration(words, unit, dims, role, name, key, optional=optional))
 
 
 def declarations(kind: type) -> Iterator[tuple[str, Declaration]]:
@@ -137,9 +152,8 @@ def declarations(kind: type) -> Iterator[tuple[str, Declaration]]:
             yield each.name, each.metadata[_METADATA]
     for base in reversed(kind.__mro__):
         for name, value in vars(base).items():
-            declaration = getattr(getattr(value, "fget", None), _METADATA, None)
-            if declaration is not None:
-                yield name, declaration
+            if isinstance(value, Declared):
+                yield name, value.declaration
 
 
 def parameters(kind: type) -> str:
@@ -148,7 +162,7 @@ def parameters(kind: type) -> str:
     for name, annotation in vars(kind).get("__annotations__", {}).items():
         each = getattr(vars(kind).get(name), "metadata", {}).get(_METADATA)
         if each is not None:
-            lines += [f"{name} : {_type_words(annotation, each)}", f"    {_sentence(each)}"]
+            lines += [f"{name} : {_type_words(annotation, each)}", f"    {each.sentence}"]
     return "\n".join(lines)
 
 
@@ -165,19 +179,18 @@ def _indented(section: str) -> str:
     return "\n".join(f"    {line}" for line in section.splitlines())
 
 
-def _sentence(each: Declaration) -> str:
-    words = each.words[:1].upper() + each.words[1:]
-    return f"{words}; {each.note}." if each.note else f"{words}."
-
-
 def _type_words(annotation: str, each: Declaration) -> str:
     kinds = {"Floats": "", "Complex": "complex", "Flags": "bool"}
     base, _, none = annotation.partition(" | None")
     words = kinds.get(base, re.sub(r"tuple\[(\w+), \.\.\.\]", r"tuple of \1", base)) + (" or None" if none or _ else "")
-    dims = [dim.rstrip("_") for dim in each.dims]
-    shape = f"({', '.join(dims)}{',' if len(dims) == 1 else ''})" if dims else ""
     unit = each.unit if isinstance(each.unit, str) else ""
-    return ", ".join(filter(None, (" ".join(filter(None, (shape if base in kinds else "", words.strip()))), unit)))
+    shape = _shape(each) if base in kinds else ""
+    return ", ".join(filter(None, (" ".join(filter(None, (shape, words.strip()))), unit)))
+
+
+def _shape(each: Declaration) -> str:
+    dims = [dim.rstrip("_") for dim in each.dims]
+    return f"({', '.join(dims)}{',' if len(dims) == 1 else ''})" if dims else ""
 
 
 def annotation(kind: type, name: str) -> str:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import ClassVar
 
+from gbeam.results.declared import declared, fact, part, rows
+from gbeam.results.declared import quantity as entry  # a record has a field of that name
 from gbeam.results.result import Floats, Part
 
 Vector = tuple[float, float, float]
@@ -12,123 +15,90 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Level(Part):
-    """The longest stretch of a record in which the load is near 1 g.
+    """The longest stretch of a record in which the load is near 1 g."""
 
-    Parameters
-    ----------
-    start, end : float
-        s.
-    load : tuple of float
-        Its mean, base axes, m/s².
-    """
-
-    start: float
-    end: float
-    load: Vector
+    start: float = entry("s", "start")
+    end: float = entry("s", "end")
+    load: Vector = entry("m/s^2", "its mean, base axes", "axis")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class RecordSummary(Part):
-    """A flight's record as its file has it, in base axes.
+    """A flight's record as its file has it, in base axes."""
 
-    Parameters
-    ----------
-    file : str
-    columns : tuple of str
-        Of x, y and z, with their signs.
-    quantity : str
-        specific-force or acceleration.
-    samples : int
-        Of the part that is flown.
-    rate : float
-        Hz.
-    span, whole : tuple of float
-        First and last time of the part, and of the file, s.
-    smallest, largest : tuple of float
-        Of x, y and z, m/s².
-    peak : tuple of float
-        The load where it is largest in size, m/s².
-    time_of_peak : float
-        s.
-    level : Level or None
-        None where the load is nowhere near 1 g, or is no specific force.
-    clock : str
-        Time of day of the file at zero seconds; empty where its times are numbers.
-    notes : tuple of str
-        What was done to it, and what looks odd.
-    """
+    file: str = fact("the file")
+    columns: tuple[str, str, str] = entry("", "columns of x, y and z, with their signs", "axis")
+    quantity: str = fact("specific-force or acceleration")
+    samples: int = fact("number of samples of the part that is flown")
+    rate: float = fact("sample rate", "Hz")
+    span: tuple[float, float] = entry("s", "first and last time of the part that is flown", "ends")
+    whole: tuple[float, float] = entry("s", "first and last time of the file", "ends")
+    smallest: Vector = entry("m/s^2", "smallest load", "axis")
+    largest: Vector = entry("m/s^2", "largest load", "axis")
+    peak: Vector = entry("m/s^2", "the load where it is largest in size", "axis")
+    time_of_peak: float = entry("s", "its time")
+    level: Level | None = part(
+        "longest stretch near 1 g; None where it is nowhere, or the load is no specific force", default=None
+    )
+    clock: str = fact("time of day at zero seconds; empty where times are numbers", default="")
+    notes: tuple[str, ...] = fact("what was done to it, and what looks odd", default=())
 
-    file: str
-    columns: tuple[str, str, str]
-    quantity: str
-    samples: int
-    rate: float
-    span: tuple[float, float]
-    whole: tuple[float, float]
-    smallest: Vector
-    largest: Vector
-    peak: Vector
-    time_of_peak: float
-    level: Level | None = None
-    clock: str = ""
-    notes: tuple[str, ...] = ()
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Body(Part):
+    """A mass on the beam."""
+
+    at: float = entry("m", "position from the root")
+    mass: float = entry("kg", "mass")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Kind(Part):
+    """Kind of a motion, and the flight that a centrifuge tracks."""
+
+    kind: str = fact("kind of the motion")
+    tracks: str = fact("name of the flight that it tracks", optional=True)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Description(Part):
-    """Meaning of a case.
+    """Meaning of a case; where a value has a distribution, the rest is said of its centre."""
 
-    Parameters
-    ----------
-    title : str
-    length : float
-        Of the beam, m.
-    mass : float
-        Of the beam without its bodies, kg.
-    bodies : tuple of (position m, mass kg)
-    model : str
-    counts : mapping of str to int
-        Numbers of shapes: axial, along y and along z, and those of twist and shear that the model has.
-    frequency : (k,)
-        Lowest natural frequencies of the beam on a base at rest, Hz.
-    direction : tuple of (k,) str
-        axial, y or z.
-    motions : mapping of str to str
-        Kind of each motion, by name.
-    tracks : mapping of str to str
-        Name of the flight that each centrifuge tracks.
-    records : mapping of str to RecordSummary
-        Of the flights that have one, by name.
-    start, duration : float
-        Of the response, s.
-    step : float or None
-        s; None for an automatic one.
-    integrator : str
-    warnings : tuple of str
-        What is implausible.
-    distributions : mapping of str to str
-        Of the values that have one, by path; the rest is said of their centres.
-    """
+    json_rows: ClassVar[dict[str, str]] = {"mode": "modes"}
 
-    title: str
-    length: float
-    mass: float
-    bodies: tuple[tuple[float, float], ...]
-    model: str
-    counts: Mapping[str, int]
-    frequency: Floats
-    direction: tuple[str, ...]
-    motions: Mapping[str, str]
-    start: float
-    duration: float
-    step: float | None
-    integrator: str
-    tracks: Mapping[str, str] = field(default_factory=dict)
-    records: Mapping[str, RecordSummary] = field(default_factory=dict)
-    warnings: tuple[str, ...] = ()
-    distributions: Mapping[str, str] = field(default_factory=dict)
+    title: str = fact("title of the scenario")
+    length: float = fact("length of the beam", "m", key="beam.length")
+    mass: float = fact("mass of the beam without its bodies", "kg", key="beam.mass")
+    bodies: tuple[tuple[float, float], ...] = fact("position, m, and mass, kg, of each body", key=None)
+    model: str = fact("kind of the model", key="model.kind")
+    counts: Mapping[str, int] = fact(
+        "numbers of shapes: axial, along y and along z, and those of twist and shear that the model has",
+        key="model.modes",
+    )
+    frequency: Floats = entry("Hz", "lowest natural frequencies of the beam on a base at rest", "mode")
+    direction: tuple[str, ...] = entry("", "axial, y or z", "mode")
+    motions: Mapping[str, str] = fact("kind of each motion, by name", key=None)
+    start: float = fact("start of the response", "s", key="response.start")
+    duration: float = fact("duration of the response", "s", key="response.duration")
+    step: float | None = fact("time step; None for an automatic one", "s", key=None)
+    integrator: str = fact("integrator", key="response.integrator")
+    tracks: Mapping[str, str] = fact("name of the flight that each centrifuge tracks", key=None, default_factory=dict)
+    records: Mapping[str, RecordSummary] = rows("records of flights, by name", "motion", default_factory=dict)
+    warnings: tuple[str, ...] = fact("what is implausible", default=())
+    distributions: Mapping[str, str] = fact("distribution of each value that has one, by path", default_factory=dict)
 
-    @property
+    @declared("", "bodies on the beam", "body", role="rows", key="beam.masses")
+    def masses(self) -> tuple[Body, ...]:
+        return tuple(Body(at, mass) for at, mass in self.bodies)
+
+    @declared("kg", "mass of the beam with its bodies", key="beam.total_mass")
     def total_mass(self) -> float:
-        """Mass of the beam with its bodies, kg."""
         return self.mass + sum(mass for _, mass in self.bodies)
+
+    @declared("", "kinds of motions, by name", "motion", role="rows", key="motions")
+    def kinds(self) -> Mapping[str, Kind]:
+        return {name: Kind(kind, self.tracks.get(name, "")) for name, kind in self.motions.items()}
+
+    @declared("s", "time step, or auto", role="fact", key="response.step")
+    def step_or_auto(self) -> float | str:
+        return "auto" if self.step is None else self.step

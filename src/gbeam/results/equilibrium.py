@@ -43,16 +43,12 @@ class Deflection(Figured):
                                name=None, key=None, default=None)  # fmt: skip
     errors: Errors = part("of displacement, root loads and stress", name=None, default_factory=Errors)
 
-    @property
     @declared("", "forces, moments and stresses of the sections", role="part", name=None, key="loads", optional=True)
     def carried(self) -> Loads | None:
-        """Loads of the sections, without a dimension of time."""
         return None if self.loads is None else replace(at_place(self.loads, 0), stations=self.loads.stations)
 
-    @property
     @declared("m", "displacement of the tip relative to the base axes", "axis", name=None)
     def tip(self) -> Floats:
-        """Displacement of the tip, (3,) m."""
         return self.displacement[-1]
 
     def __repr__(self) -> str:
@@ -87,14 +83,11 @@ class Critical(Result):
         note="that of the model is infinite where the exact one keeps its equilibrium to three times the value",
     )
 
-    @property
     @declared(LOST, "critical value by what is raised", role="fact", name=None, key=INSIDE)
     def by_name(self) -> dict[str, float | None]:
-        """The critical value by what is raised."""
         names = dict(zip(("hub rate", "acceleration along x", "load factor"), LOST, strict=True))
         return {names[self.quantity]: self.value}
 
-    @property
     @declared("", "estimated error from too few shapes", name=None)
     def error_estimate(self) -> float:
         """Error of the value from too few shapes, a fraction; NaN where there is no estimate."""

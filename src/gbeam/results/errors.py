@@ -114,17 +114,8 @@ class FrequencyErrors(Part):
 
 @dataclass(frozen=True)
 class StepErrors:
-    """Estimated errors of the time steps as fractions of the largest size; NaN where there is no estimate.
+    """Estimated errors of the time steps as fractions of the largest size; NaN where there is no estimate."""
 
-    Parameters
-    ----------
-    displacement : float
-        Of the tip's displacement.
-    loads : float
-        Of the root's force and moment, the larger of both.
-    stress : float
-    """
-
-    displacement: float = math.nan
-    loads: float = math.nan
+    displacement: float = math.nan  # of the tip
+    loads: float = math.nan  # of the root's force and moment, the larger of both
     stress: float = math.nan

@@ -24,13 +24,11 @@ class LimitUse:
     allowed: float = entry(BESIDE, "limit", note="infinite where none is given")
     time: float = entry("s", "time of its use")
 
-    @property
     @declared("", "used over allowed")
     def share(self) -> float:
         """Used over allowed; zero where no limit is given."""
         return self.used / self.allowed
 
-    @property
     @declared("", "whether more is used than allowed")
     def exceeded(self) -> bool:
         """Whether more is used than allowed, beyond rounding."""
@@ -134,12 +132,10 @@ class AxesResult(Part):
         default=None,
     )
 
-    @property
     @declared(
         "", "stretches in which the target is held", "episode", role="rows", name="not_followed_", key="not_followed"
     )
     def held(self) -> tuple[Held, ...]:
-        """The episodes as records."""
         return tuple(Held(*each) for each in self.episodes)
 
     @property
@@ -209,36 +205,30 @@ class Driven:
     time: Floats
     axes: AxesResult | None
 
-    @property
     @declared("s", "time from the start to the flight", role="fact", name=None, optional=True)
     def spin_up(self) -> float:
         """Time from the start to the flight, s; zero at idle, NaN without a machine."""
         return math.nan if self.axes is None else max(float(self.axes.span[0] - self.time[0]), 0.0)
 
-    @property
     @declared("s", "time from the flight to the end", role="fact", name=None, optional=True)
     def spin_down(self) -> float:
         """Time from the flight to the end, s; zero at idle, NaN without a machine."""
         return math.nan if self.axes is None else max(float(self.time[-1] - self.axes.span[1]), 0.0)
 
-    @property
     @declared(
         "", "largest rate and acceleration of every axis", "axis", role="rows", name=None, key="axes", optional=True
     )
     def axis_peaks(self) -> Mapping[str, AxisPeaks]:
-        """Largest rate and acceleration of every axis, by its number."""
         if self.axes is None:
             return {}
         histories = zip(self.axes.rate.T, self.axes.acceleration.T, strict=True)
         return {str(i): AxisPeaks(*(self._peak(each) for each in both)) for i, both in enumerate(histories, 1)}
 
-    @property
     @declared("", "largest error of the load against the target", role="part", name=None, optional=True)
     def tracking_error(self) -> Tracking | None:
         """Largest error of the load against the target, whose corners are rounded; None without a machine."""
         return None if self.axes is None else self._tracking(self.axes, self.axes.reference)
 
-    @property
     @declared("", "largest error of the load against the flight's own", role="part", name=None, optional=True)
     def flight_error(self) -> Tracking | None:
         """Largest error of the load against the flight's own; None where that is not known."""
@@ -259,19 +249,10 @@ class Driven:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Commands(Part):
-    """The axis motions at a controller's sample time.
+    """The axis motions at a controller's sample time."""
 
-    Parameters
-    ----------
-    sample : float
-        s.
-    time : (t,) s
-    angle, rate, acceleration : (t, 3)
-        Of axes 1, 2, 3; rad, rad/s, rad/s².
-    """
-
-    sample: float
-    time: Floats
-    angle: Floats
-    rate: Floats
-    acceleration: Floats
+    sample: float = fact("sample time", "s")
+    time: Floats = entry("s", "time", "time")
+    angle: Floats = entry("rad", "angles of axes 1, 2, 3", "time", "machine_axis")
+    rate: Floats = entry("rad/s", "their rates", "time", "machine_axis")
+    acceleration: Floats = entry("rad/s^2", "their accelerations", "time", "machine_axis")

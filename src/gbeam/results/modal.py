@@ -111,28 +111,23 @@ class Modes(Figured):
             return np.zeros(self.shape.shape[:2], dtype=complex)
         return self.twist * outermost(self.width, self.thickness, is_round=self.round)
 
-    @property
     @declared("Hz", "natural frequency", "mode")
     def frequency(self) -> Floats:
         """Natural frequencies |λ|/2π, (k,) Hz."""
         return np.abs(self.eigenvalue) / (2 * np.pi)
 
-    @property
     @declared("", "ratio of critical damping; negative for flutter", "mode")
     def damping_ratio(self) -> Floats:
         """Ratios of critical damping −Re λ/|λ|, (k,); negative for flutter."""
         return -self.eigenvalue.real / np.abs(self.eigenvalue)
 
-    @property
     @declared("", "estimated error of the frequency in all", "mode", name=None)
     def error_estimate(self) -> Floats:
         """Estimated errors of the frequencies, (k,), fractions; NaN where there is no estimate."""
         return totals(self.errors, len(self.direction))
 
-    @property
     @declared("", "whether nothing grows", role="fact")
     def stable(self) -> bool:
-        """Whether nothing grows."""
         return not self.instabilities
 
     def __repr__(self) -> str:
@@ -170,16 +165,12 @@ class Crossing(Part):
         note="infinite where the exact model has no such crossing",
     )
 
-    @property
     @declared("", "number of the mode that meets a multiple", key=None)
     def mode(self) -> int:
-        """Number of the mode, from 1."""
         return self.track + 1
 
-    @property
     @declared("", "estimated error of the speed in all", name=None)
     def error_estimate(self) -> float:
-        """Estimated error of the speed, a fraction."""
         return self.errors.total
 
 
@@ -207,19 +198,16 @@ class Campbell(Figured):
         default=None,
     )
 
-    @property
     @declared("", "estimated error of the frequency in all", "mode", name=None)
     def error_estimate(self) -> Floats:
         """Estimated errors of the frequencies, (k,), fractions; NaN where there is no estimate."""
         return totals(self.errors, len(self.direction))
 
-    @property
     @declared("rad/s", "critical speed", role="fact", name=None)
     def critical_speed(self) -> float | None:
         """Speed at which the equilibrium is lost, rad/s; None where it is not."""
         return None if self.critical is None else self.critical.value
 
-    @property
     @declared("", "errors of the critical speed", role="part", name=None)
     def critical_speed_errors(self) -> ErrorEstimate | None:
         """Errors of the critical speed, None where there is none."""

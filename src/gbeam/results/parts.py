@@ -50,19 +50,14 @@ class Outline(Part):
         default=None,
     )
 
-    @property
     @declared("m", "position of the body from the root", "body")
     def body_position(self) -> Floats:
-        """Positions of the bodies from the root, (b,) m."""
         return self.bodies[:, 0]
 
-    @property
     @declared("kg", "mass of the body", "body")
     def body_mass(self) -> Floats:
-        """Masses of the bodies, (b,) kg."""
         return self.bodies[:, 1]
 
-    @property
     @declared("", "rotation from base axes (columns) to hub axes (rows)", "hub_axis", "axis")
     def hub_mounting(self) -> Floats | None:
         """Rotation from base to hub axes, (3, 3); None without a hub."""
@@ -149,37 +144,27 @@ class LoadPeaks(Part):
     )  # fmt: skip
     yield_strength: float | None = fact("yield strength of the material", "Pa", name=None, optional=True, default=None)
 
-    @property
     @declared("N", "largest force that the base gives the root", role="part", name=None)
     def root_force(self) -> VectorPeaks:
-        """Largest force of the base on the beam, N."""
         return self.force[0]
 
-    @property
     @declared("N m", "largest moment that the base gives the root", role="part", name=None)
     def root_moment(self) -> VectorPeaks:
-        """Largest moment of the base on the beam, N m."""
         return self.moment[0]
 
-    @property
     @declared("Pa", "largest normal stress of the section", "section", name=None, key="tension", optional=True)
     def section_tension(self) -> Floats:
-        """Largest normal stress of each section, (s,) Pa."""
         return self.tension.value
 
-    @property
     @declared("Pa", "smallest normal stress of the section", "section", name=None, key="compression", optional=True)
     def section_compression(self) -> Floats:
-        """Smallest normal stress of each section, (s,) Pa."""
         return self.compression.value
 
-    @property
     @declared("", "least margin on yield of the section", "section", name=None, key="margin", optional=True)
     def section_margin(self) -> Floats | None:
         """Least margin on yield of each section, (s,); None where the strength is not known."""
         return None if self.yield_strength is None else yield_margin(self.yield_strength, self.stress.value)
 
-    @property
     @declared("Pa", "largest size of the normal stress", role="part", name=None, key="stress", optional=True)
     def largest_stress(self) -> StressPeak | None:
         """Largest size of the normal stress along the beam; None where fibres are unknown."""
@@ -193,7 +178,6 @@ class LoadPeaks(Part):
             Lowest(*self._place(self.compression, int(compression))),
         )
 
-    @property
     @declared("1", "least margin on yield", role="part", name=None, key="margin", optional=True)
     def least_margin(self) -> Lowest | None:
         """Least margin on yield, where the stress is largest; None where the strength or fibres are unknown."""
@@ -252,16 +236,12 @@ class Peaks(Part):
     )
     loads: LoadPeaks | None = part("of the sections", name=".", optional=True, default=None)
 
-    @property
     @declared("m", "largest length of the displacement", "station", key=None)
     def station_max_size(self) -> Floats | None:
-        """Largest length of every station's displacement, (s,) m."""
         return None if self.displacement is None else self.displacement.size.value
 
-    @property
     @declared("s", "time of that displacement", "station", key=None)
     def station_time_of_max_size(self) -> Floats | None:
-        """Time of that, (s,) s."""
         return None if self.displacement is None else self.displacement.size.time
 
 
@@ -331,7 +311,6 @@ class Loads(Part):
         ]
         return replace(self, **{name: getattr(self, name)[part] for name in over_time})
 
-    @property
     @declared("Pa", "largest size of the normal stress over the section", "time", "section")
     def stress(self) -> Floats:
         """Largest size of the normal stress over the section, in tension or compression, (t, s) Pa."""
@@ -339,22 +318,17 @@ class Loads(Part):
         middle = (self.stress_tension + self.stress_compression) / 2
         return abs(middle) + (self.stress_tension - self.stress_compression) / 2
 
-    @property
     @declared("", "yield strength over stress less one", "time", "section", name="yield_margin", optional=True)
     def margin(self) -> Floats | None:
         """Margin on yield, yield strength over stress less one, (t, s); None where the strength is not given."""
         return None if self.yield_strength is None else yield_margin(self.yield_strength, self.stress)
 
-    @property
     @declared("N", "force of the base on the beam", "time", "axis", name=None)
     def root_force(self) -> Floats:
-        """Force of the base on the beam, base axes, (t, 3) N."""
         return -self.force[..., 0, :]
 
-    @property
     @declared("N m", "moment of the base on the beam about the root", "time", "axis", name=None)
     def root_moment(self) -> Floats:
-        """Moment of the base on the beam about the root, base axes, (t, 3) N m."""
         return -self.moment[..., 0, :]
 
 
@@ -364,21 +338,13 @@ class Influence(Part):
 
     Column i is the answer to the field along axis i: a uniform acceleration of 1 m/s² (`*_uniform`), or one that
     grows by 1 m/s² for every metre from the root (`*_linear`).
-
-    Parameters
-    ----------
-    tip_uniform, tip_linear : (3,)
-        Displacement of the tip along the field, m per m/s² and m per 1/s².
-    force_uniform, force_linear : (3,)
-        Inertia force at the root along the field: minus the mass, kg, and minus its first moment, kg m.
-    moment_uniform, moment_linear : (3,)
-        Its arm's share about the root, in the plane of x and the field: first and second moment of the mass, negative,
-        kg m and kg m²; zero for the field along x.
     """
 
-    tip_uniform: Floats
-    tip_linear: Floats
-    force_uniform: Floats
-    force_linear: Floats
-    moment_uniform: Floats
-    moment_linear: Floats
+    tip_uniform: Floats = quantity("s^2", "displacement of the tip along the field", "axis")
+    tip_linear: Floats = quantity("m s^2", "displacement of the tip along the field", "axis")
+    force_uniform: Floats = quantity("kg", "inertia force at the root along the field: minus the mass", "axis")
+    force_linear: Floats = quantity("kg m", "the same: minus the first moment of the mass", "axis")
+    moment_uniform: Floats = quantity(
+        "kg m", "its moment about the root, in the plane of x and the field: minus the first moment of the mass", "axis"
+    )
+    moment_linear: Floats = quantity("kg m^2", "the same: minus the second moment of the mass", "axis")

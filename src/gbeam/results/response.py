@@ -54,22 +54,16 @@ class HubResult(Part):
     )
     free: bool = fact("whether the hub's motion is a result, not prescribed", name=None, key=None, default=False)
 
-    @property
     @declared("rad", "angle at the end", name=None)
     def angle_end(self) -> float:
-        """Angle at the end, rad."""
         return float(self.angle[-1])
 
-    @property
     @declared("rad/s", "largest size of the rate", name=None)
     def rate_max(self) -> float:
-        """Largest size of the rate, rad/s."""
         return float(abs(self.rate).max())
 
-    @property
     @declared("rad/s", "rate at the end", name=None)
     def rate_end(self) -> float:
-        """Rate at the end, rad/s."""
         return float(self.rate[-1])
 
 
@@ -210,19 +204,15 @@ class Response(Driven, Figured):
     )
     kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
 
-    @property
     @declared("s", "time of the part of the flight", "ends", name=None, key="span", optional=True)
     def part_span(self) -> tuple[float, float] | None:
         """First and last time of the part of a flight, s; None where it is all of it."""
         return None if self.whole is None else self.flight_span
 
-    @property
     @declared("", "samples of the histories, and those in files", role="fact", name=None)
     def histories(self) -> dict[str, int]:
-        """Number of samples of the histories, and how many a file has."""
         return {"samples": len(self.time), "written": len(self.time[:: self.kept_every])}
 
-    @property
     @declared("m", "largest displacement of every named point", "point", role="rows", name=None, key="points",
               optional=True)  # fmt: skip
     def point_peaks(self) -> Mapping[str, VectorPeaks]:

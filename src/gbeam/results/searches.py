@@ -107,10 +107,8 @@ class Fit(Figured):
         """Names that dimensions have in files."""
         return {"at": "mode" if self.modal else "time"}
 
-    @property
     @declared("", "paths of the values", "other", role="labels", key=None)
     def other(self) -> tuple[str, ...]:
-        """Paths of the values, along the other dimension of their covariance."""
         return self.parameters
 
     def __repr__(self) -> str:
@@ -136,20 +134,17 @@ class Requirement(Part):
     before: float = quantity(BESIDE, "figure in the scenario as it was", name=None)
     value: float = quantity("", "figure at the best values", name="required")
 
-    @property
     @declared("", "bound of the figure", key=None)
     def bound(self) -> float:
         """The one that is nearer to the value."""
         return self.high if abs(self.high - self.value) <= abs(self.value - self.low) else self.low
 
-    @property
     @declared("", "whether the value lies within", name=None)
     def kept(self) -> bool:
         """Whether the value lies within, but for a thousandth of the bound."""
         slack = _TIGHT * abs(self.bound)
         return self.low - slack <= self.value <= self.high + slack
 
-    @property
     @declared("", "whether the value lies on the bound", name=None)
     def active(self) -> bool:
         """Whether it decides: the value lies on the bound."""
@@ -261,34 +256,24 @@ class ShapedCommand(Figured):
     check: str = fact("model of the runs")
     motion: str = fact("name of the scenario's hub, where there is one", name=None, default="")
 
-    @property
     @declared("", "unit of the command", role="fact", name=None)
     def unit(self) -> str:
-        """Unit of the command, SI."""
         return "N m" if self.kind == "torque" else "rad/s"
 
-    @property
     @declared("", "angle turned, rad, or rate reached, rad/s", role="fact", name=None, key="goal")
     def aim(self) -> dict[str, float]:
-        """The goal by its name, angle or rate."""
         return {"rate" if self.to_rate else "angle": self.goal}
 
-    @property
     @declared(BESIDE, "torque or rate of the hub", "run", "time", name="command", key=None)
     def command(self) -> Floats:
-        """Every run's command, (runs, t)."""
         return np.stack([run.command for run in self.runs])
 
-    @property
     @declared("s", "time", "run_time", role="coordinate", key=None)
     def run_time(self) -> Floats:
-        """Times of the first run, (k,) s."""
         return self.runs[0].time
 
-    @property
     @declared("m", "displacement of the tip", "run", "run_time", "axis", name="tip", key=None)
     def tip(self) -> Floats:
-        """Displacement of every run's tip at the times of the first, (runs, k, 3) m."""
         return np.stack(
             [np.stack([np.interp(self.run_time, r.time, r.tip[:, i]) for i in range(3)], axis=1) for r in self.runs]
         )

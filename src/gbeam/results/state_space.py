@@ -74,14 +74,12 @@ class Truncation(Part):
         note="from `start` to `end`, among the inputs and outputs of the same units",
     )
 
-    @property
     @declared("mixed", "bound of the error", role="fact")
     def bound(self) -> float:
         """Twice the sum of the Hankel singular values left out, which the difference's largest singular value never
         exceeds at any frequency (Glover 1984); NaN of a modal truncation."""
         return float(2 * self.hankel[len(self.hankel) - self.states :].sum()) if self.method == "balanced" else math.nan
 
-    @property
     @declared("", "the error over the gain", "output", "input", name=None)
     def share(self) -> Floats:
         """The error over the gain, (p, m); zero where there is no gain at all."""
@@ -131,25 +129,20 @@ class StateSpace(Result):
     )
     truncation: Truncation | None = part("what a smaller model leaves out", name="truncation_", default=None)
 
-    @property
     @declared("", "names of the states", "state_of", role="labels", key=None)
     def state_of(self) -> tuple[str, ...]:
-        """Names of the states, along the other dimension of A."""
         return tuple(each.name for each in self.states)
 
-    @property
     @declared("", "estimated error of the frequency, a fraction", "pole", key=None, optional=True)
     def pole_error(self) -> Floats:
         """Total errors of the poles' frequencies, (k,); empty where there is no estimate."""
         return np.zeros(0) if self.errors is None else self.errors.total
 
-    @property
     @declared("mixed", "of what decays", "hankel", name="hankel_singular_value", key="hankel_singular_values")
     def hankel(self) -> Floats:
         """Hankel singular values of a balanced truncation, (k,); else empty."""
         return np.zeros(0) if self.truncation is None else self.truncation.hankel
 
-    @property
     @declared("Hz", "frequency up to which every pole is accurate", role="fact", name=None)
     def accurate_to(self) -> float:
         """Frequency up to which every pole's is within one in a hundred of the exact model's, Hz; NaN if not known.

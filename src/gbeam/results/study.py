@@ -63,10 +63,8 @@ class Study(Figured):
             if each.axes is not None and each.axes.exceeding
         }
 
-    @property
     @declared("", "the outcome, with what limits make of it", role="fact")
     def state(self) -> str:
-        """The outcome, with what limits of the machines and of acceptance make of it."""
         exceeded = any(each.axes is not None and not each.axes.within_limits for each in self.responses.values())
         return state_of(self.outcome, self.comparisons, exceeded=exceeded)
 
@@ -124,10 +122,8 @@ class ModelRow(Part):
         default_factory=lambda: np.empty(0),
     )
 
-    @property
     @declared("", "warnings", name="warnings", key=None)
     def doubts(self) -> str:
-        """The warnings, one on each line."""
         return "\n".join(self.warnings)
 
     def __str__(self) -> str:
@@ -146,13 +142,10 @@ class ModelStudy(Figured):
     direction: dict[str, str] = fact("direction compared, by motion", name=None)
     rows: tuple[ModelRow, ...] = rows("a row for each motion and model", "row")
 
-    @property
     @declared("", "direction compared", "row", name="direction", key=None)
     def directions(self) -> tuple[str, ...]:
-        """Direction compared in every row."""
         return tuple(self.direction[row.motion] for row in self.rows)
 
-    @property
     @declared("", "how it ended", role="fact", name=None)
     def outcome(self) -> str:
         """``done``, or ``not compared`` where the reference has no answer in some environment."""
@@ -173,20 +166,11 @@ SAME, ELSEWHERE = 0.0, 1e-9  # differences allowed in the same environment, and 
 
 @dataclass(frozen=True)
 class Difference:
-    """A variable or an attribute that came out otherwise.
+    """A variable or an attribute that came out otherwise."""
 
-    Parameters
-    ----------
-    name : str
-        Path in the file.
-    size : float
-        Largest difference over the largest value; infinite where the two cannot be compared.
-    what : str
-    """
-
-    name: str
-    size: float
-    what: str
+    name: str = fact("path in the file")
+    size: float = fact("largest difference over the largest value; infinite where the two cannot be compared")
+    what: str = fact("the difference in words")
 
     def __str__(self) -> str:
         return f"{self.name}: {self.what}"
@@ -194,23 +178,14 @@ class Difference:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Reproduction(Part):
-    """A result computed again from what its file says, and compared with it.
+    """A result computed again from what its file says, and compared with it."""
 
-    Parameters
-    ----------
-    file : str
-    compared : int
-        Number of variables and attributes compared.
-    differences : tuple of Difference
-        The largest first.
-    changed : mapping of str to (str, str)
-        What of gbeam, Python, the platform and the dependencies is otherwise: then, and now.
-    """
-
-    file: str
-    compared: int
-    differences: tuple[Difference, ...]
-    changed: Mapping[str, tuple[str, str]]
+    file: str = fact("the file")
+    compared: int = fact("number of variables and attributes compared")
+    differences: tuple[Difference, ...] = rows("differences, the largest first", "difference")
+    changed: Mapping[str, tuple[str, str]] = fact(
+        "what of gbeam, Python, the platform and the dependencies is otherwise: then, and now"
+    )
 
     @property
     def tolerance(self) -> float:

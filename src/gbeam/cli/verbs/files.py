@@ -29,6 +29,7 @@ def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = No
 
     from gbeam.analysis.case import describe
     from gbeam.report import description as report
+    from gbeam.results.facts import facts_of
 
     with loaded.placing():
         description = describe(loaded.case)
@@ -36,7 +37,7 @@ def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = No
     assert source is not None  # it was read from a file
     drawn = {path: str(each) for path, each in source.distributions.items()}
     description = replace(description, distributions=drawn)
-    facts = loaded.signed(report.to_json(description))
+    facts = loaded.signed(facts_of(description))
     write(out, "check", facts)
     show(report.text(description), facts, json)
     return 0

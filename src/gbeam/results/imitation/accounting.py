@@ -50,16 +50,13 @@ class LoadPeak(Part):
     )
     instant_error: float = quantity("", "difference at the time of the flight's peak over its size", default=math.nan)
 
-    @property
     @declared("", "why it is not reproduced", name=None, key="reason")
     def reason_or_none(self) -> str | None:
         """The reason; None where there is none."""
         return self.reason or None
 
-    @property
     @declared("", "reproduced over the flight's", name=None)
     def ratio(self) -> float:
-        """Reproduced over the flight's."""
         return self.reproduced / self.load
 
 
@@ -114,10 +111,8 @@ class Accounting(Part):
         default="peak",
     )
 
-    @property
     @declared("", "units of what follows", role="fact", name=None)
     def units(self) -> dict[str, str]:
-        """Units of loads and times."""
         return {"load": "m/s^2", "time": "s"}
 
     @property
@@ -130,7 +125,6 @@ class Accounting(Part):
         """Peaks that are not reproduced within the tolerance."""
         return tuple(peak for peak in self.peaks if peak.reason)
 
-    @property
     @declared("", "share of the flight's time that is not followed, by reason", role="fact", name=None,
               key="not_followed_share")  # fmt: skip
     def shares(self) -> dict[str, float]:
@@ -156,7 +150,6 @@ class PeakPair(Part):
     place_flight: str = quantity("", "where on the specimen that is in flight", optional=True, default="")
     place_machine: str = quantity("", "where on the specimen that is on the machine", optional=True, default="")
 
-    @property
     @declared("", "machine over flight", name=None)
     def ratio(self) -> float:
         """Machine over flight; NaN where there is none in flight."""

@@ -94,13 +94,10 @@ class Comparison(Judged, Figured):
     )  # fmt: skip
     kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
 
-    @property
     @declared("", "share of the times that are compared", role="fact", name=None, key="covered")
     def covered_share(self) -> float:
-        """Share of the times that are compared."""
         return float(self.covered.mean())
 
-    @property
     @declared("", "largest difference over the flight's largest displacement", "axis", name=None)
     def relative(self) -> Floats:
         """Largest difference over the flight's largest displacement, per axis, (3,); NaN without displacement."""
@@ -119,7 +116,6 @@ class Comparison(Judged, Figured):
         within = tip if isinstance(tip, float) else None
         return verdict(self.flight, self.centrifuge, self.peaks, self.accounting, within, self.margins, self.whole)
 
-    @property
     @declared("", "least margin on yield in flight and on the machine", role="fact", name=None, key="margin")
     def margin(self) -> dict[str, float] | None:
         """Least margin on yield in flight and on the machine; None without a yield strength."""

@@ -35,22 +35,16 @@ class Judged:
     whole: tuple[float, float] | None = None
     with_response = True
 
-    @property
     @declared("", "one sentence about the whole flight", role="fact")
     def verdict(self) -> str:
-        """One sentence about the whole flight that a person can quote."""
         raise NotImplementedError
 
-    @property
     @declared("s", "time of the flight that is judged", "ends", name=None)
     def span(self) -> tuple[float, float]:
-        """First and last time of the flight that is judged, s."""
         return self.accounting.span
 
-    @property
     @declared("s", "time of the whole flight", "ends", name="whole", key="whole")
     def whole_span(self) -> tuple[float, float]:
-        """First and last time of the whole flight, s."""
         return self.whole or self.accounting.span
 
     @property
@@ -66,30 +60,24 @@ class Judged:
         rules = (rule for rule in RULES.values() if self.with_response or not rule.response)
         return {rule.name: rule.worst(self, rule.bounds(rule.usual))[0] for rule in rules}
 
-    @property
     @declared("", "limits that can be judged", "criterion", role="rows", name="criterion_")
     def criteria(self) -> tuple[Criterion, ...]:
-        """The limits of `accept` that can be judged, with the values that are held against them."""
         return tuple(
             Criterion(name, self.accept[name], *rule.worst(self, rule.bounds(self.accept[name])))
             for name, rule in RULES.items()
             if name in self.accept and name not in self.not_judged
         )
 
-    @property
     @declared("", "limits that need a response, where there is none", role="fact", name=None)
     def not_judged(self) -> tuple[str, ...]:
-        """The limits of `accept` that need a response, where there is none."""
         return tuple(name for name in self.accept if RULES[name].response and not self.with_response)
 
-    @property
     @declared("", "whether every limit is kept: true, false, or empty where there is none", role="fact", key=None,
               name="accepted")  # fmt: skip
     def acceptance(self) -> str:
         """true where every limit is kept, false where one is not, empty where there is none."""
         return {None: "", True: "true", False: "false"}[self.accepted]
 
-    @property
     @declared("", "whether every limit that can be judged is kept", role="fact", name=None)
     def accepted(self) -> bool | None:
         """Whether every limit that can be judged is kept; None where there is none."""
@@ -236,16 +224,12 @@ class Criterion:
     value: float = quantity("", "its value", note="NaN where it is not known, which does not pass")
     where: str = quantity("", "where and when that is", note="empty where it belongs to the whole flight", default="")
 
-    @property
     @declared("", "least value that is accepted", name="least_allowed", key=None)
     def least(self) -> float:
-        """Least value that is accepted."""
         return self.bounds[0]
 
-    @property
     @declared("", "largest value that is accepted; infinite where any is", name="most_allowed", key=None)
     def most(self) -> float:
-        """Largest value that is accepted."""
         return self.bounds[1]
 
     @property
@@ -253,10 +237,8 @@ class Criterion:
         """Least and largest value that is accepted."""
         return RULES[self.name].bounds(self.limit)
 
-    @property
     @declared("", "whether the value is within its bounds", name=None)
     def passed(self) -> bool:
-        """Whether the value is within its bounds."""
         low, high = self.bounds
         return low <= self.value <= high
 

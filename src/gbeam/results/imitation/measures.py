@@ -20,13 +20,10 @@ class StressCycles(Part):
     mean: Floats = quantity("Pa", "its mean", "cycle_", key=None)
     count: Floats = quantity("", "1 of a full cycle, 0.5 of a half", "cycle_", key=None)
 
-    @property
     @declared("", "number of cycles", name=None, key="cycles")
     def total(self) -> float:
-        """Number of cycles."""
         return float(self.count.sum())
 
-    @property
     @declared("Pa", "largest range", name=None, key="largest_range")
     def largest(self) -> float:
         """Largest range, Pa; zero without cycles."""
@@ -46,21 +43,16 @@ class Fatigue(Part):
     flight: StressCycles = part("cycles of the whole run", name="stress_*_flight")
     machine: StressCycles = part("cycles of the whole run, spin-up and spin-down included", name="stress_*_machine")
 
-    @property
     @declared("Pa", "range of the one cycle that does the same damage in flight", role="fact", name=None,
               key="flight.equivalent_range")  # fmt: skip
     def equivalent_flight(self) -> float:
-        """Range of the one cycle that does the same damage in flight, Pa."""
         return self.flight.equivalent_range(self.exponent)
 
-    @property
     @declared("Pa", "range of the one cycle that does the same damage on the machine", role="fact", name=None,
               key="machine.equivalent_range")  # fmt: skip
     def equivalent_machine(self) -> float:
-        """Range of the one cycle that does the same damage on the machine, Pa."""
         return self.machine.equivalent_range(self.exponent)
 
-    @property
     @declared("", "damage of the machine over flight's")
     def damage_ratio(self) -> float:
         """Damage on the machine over that in flight by Palmgren and Miner, Σ n Δσᵐ; means count for nothing.
@@ -275,17 +267,13 @@ class Shock(Part):
         "m/s^2", "the same on the centrifuge", "frequency", "axis", name="shock_centrifuge", key=None
     )
 
-    @property
     @declared("m/s^2", "spectrum in flight, by frequency", "frequency", "direction", name=None, key="flight")
     def rows_flight(self) -> Floats:
-        """Spectrum in flight, (f, 3) m/s²."""
         return self.flight
 
-    @property
     @declared("m/s^2", "spectrum on the centrifuge, by frequency", "frequency", "direction", name=None,
               key="centrifuge")  # fmt: skip
     def rows_centrifuge(self) -> Floats:
-        """Spectrum on the centrifuge, (f, 3) m/s²."""
         return self.centrifuge
 
     @property
@@ -295,7 +283,6 @@ class Shock(Part):
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.asarray(np.maximum(self.centrifuge, least) / np.maximum(self.flight, least))
 
-    @property
     @declared("", "largest and smallest ratio", "extreme", role="rows", name=None)
     def extremes(self) -> tuple[SpectrumRatio, ...]:
         """The largest and the smallest ratio; empty where none is known."""

@@ -52,22 +52,16 @@ class Candidate(Part):
         default_factory=PeakPair,
     )
 
-    @property
     @declared("m/s^2", "largest load anywhere on the specimen", name="largest_load", key=None)
     def load(self) -> float:
-        """Largest load anywhere on the specimen, on the machine, m/s²."""
         return self.largest_load.machine
 
-    @property
     @declared("", "where that is", name="largest_load_place", key=None)
     def load_place(self) -> str:
-        """Place of that on the specimen."""
         return self.largest_load.place_machine
 
-    @property
     @declared("", "limits exceeded", name="exceeded", key=None)
     def exceeding(self) -> str:
-        """The limits that it breaks, in words."""
         return "; ".join(map(str, self.exceeded))
 
 
@@ -132,22 +126,16 @@ class Placement(Result):
         default="done",
     )  # fmt: skip
 
-    @property
     @declared("", "simulations by name", "check", role="rows", name=None, key="verifications")
     def checks(self) -> Mapping[str, Verification]:
-        """The simulations by name."""
         return {each.name: each for each in self.verifications}
 
-    @property
     @declared("", "control point, mounting and smoothing of the best", role="part", name=None, key=INSIDE)
     def placed(self) -> Setting:
-        """Control point, mounting and smoothing of the best."""
         return Setting(self.best.control_point, self.best.mounting, self.best.smoothing)
 
-    @property
     @declared("", "the changes as KEY=VALUE of --set", role="fact", name=None, key="set")
     def settings(self) -> tuple[str, ...]:
-        """The changes as ``KEY=VALUE`` of ``--set``."""
         return tuple(f"motion.{self.centrifuge}.{key}={value}" for key, value in self.changes.items())
 
     @property
@@ -166,7 +154,6 @@ class Placement(Result):
             changes["smoothing"] = f"{math.ceil(1e5 * best.smoothing - 1e-6) / 100:g} ms"
         return changes
 
-    @property
     @declared("", "why none is allowed, or why placing saves little", role="fact")
     def message(self) -> str:
         """Why none is allowed and which comes nearest; or why placing saves little, and what dominates."""
@@ -189,13 +176,10 @@ class Placement(Result):
             f"makes {100 * best.tracking:.3g} %{limit}"
         )
 
-    @property
     @declared("", "best control point over the length", role="fact", name=None, key="fraction_of_length")
     def fraction(self) -> float:
-        """Best control point over the length."""
         return self.best.control_point / self.length
 
-    @property
     @declared(
         "",
         "vibration with the control point at mid-span over that with the best",
