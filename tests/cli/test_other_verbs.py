@@ -100,7 +100,7 @@ def test_help_is_light() -> None:
 
 
 NOT_FOR_READING = (
-    "jax", "xarray", "matplotlib", "pandas", "pint", "rich", "tree_sitter",
+    "jax", "xarray", "matplotlib", "pandas", "pint", "rich", "tomlkit",
 )  # fmt: skip
 
 

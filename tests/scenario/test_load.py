@@ -189,7 +189,7 @@ def test_placed_without_a_text(text: str) -> None:
 def test_loading_imports_nothing_heavy() -> None:
     code = (
         "import sys, gbeam.scenario as s; s.json_schema(); s.template('hub'); "
-        "heavy = ('jax', 'xarray', 'matplotlib', 'pint', 'tree_sitter'); "
+        "heavy = ('jax', 'xarray', 'matplotlib', 'pint', 'tomlkit'); "
         "print([module for module in heavy if module in sys.modules])"
     )
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout

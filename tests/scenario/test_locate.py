@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 import json
+import tomllib
+from pathlib import Path as File
 
-from gbeam.scenario.text.locate import locate_json, locate_toml
-from gbeam.scenario.values.paths import Path
+import pytest
+
+from gbeam.scenario.template import template
+from gbeam.scenario.text.locate import locate
+from gbeam.scenario.values.paths import Path, Span, walk
+
+EXAMPLES = sorted((File(__file__).parents[2] / "examples").glob("*.toml"))
 
 TOML = """\
 title = "é" # comment
@@ -27,9 +34,9 @@ text\"\"\"
 """
 
 
-def _cut(text: str, path: Path, *, is_json: bool = False) -> tuple[str, str]:
+def _cut(text: str, path: Path) -> tuple[str, str]:
     """Text at the key and at the value of `path`."""
-    place = (locate_json if is_json else locate_toml)(text)[path]
+    place = locate(text)[path]
     lines = text.split("\n")
     key, value = ((lines[s.line - 1])[s.column - 1 : s.end - 1] for s in (place.key, place.value))
     return key, value
@@ -58,16 +65,16 @@ def test_toml() -> None:
     }
     for path, cut in expected.items():
         assert _cut(TOML, path) == cut, path
-    assert locate_toml(TOML)["list", "of", 1].key.line == 9
-    assert locate_toml(TOML)["beam",].key.line == 2
+    assert locate(TOML)["list", "of", 1].key.line == 9
+    assert locate(TOML)["beam",].key.line == 2
 
 
 def test_json() -> None:
     text = json.dumps({"a b": [1, {"c\n": True}], "é": {"d": None}}, indent=1)
-    assert _cut(text, ("a b", 0), is_json=True) == ("1", "1")
-    assert _cut(text, ("a b",), is_json=True) == ('"a b"', "[")
-    assert _cut(text, ("a b", 1, "c\n"), is_json=True) == ('"c\\n"', "true")
-    assert _cut(text, ("é", "d"), is_json=True) == ('"d"', "null")
+    assert _cut(text, ("a b", 0)) == ("1", "1")
+    assert _cut(text, ("a b",)) == ('"a b"', "[")
+    assert _cut(text, ("a b", 1, "c\n")) == ('"c\\n"', "true")
+    assert _cut(text, ("é", "d")) == ('"d"', "null")
 
 
 def test_json_on_one_line() -> None:
@@ -78,7 +85,7 @@ def test_json_on_one_line() -> None:
         ("b", "c"): '"x\\"]}"',
         ("d",): "[ ]",
     }.items():
-        assert _cut(text, path, is_json=True)[1] == cut
+        assert _cut(text, path)[1] == cut
 
 
 def test_toml_values_of_every_kind() -> None:
@@ -102,6 +109,28 @@ def test_toml_values_of_every_kind() -> None:
         assert _cut(text, (f"k{i}",)) == (f"k{i}", value)
 
 
-def test_what_the_grammar_does_not_know_is_left_out() -> None:
-    places = locate_toml("a = 1\nb = { c = 1,\n\n d = \\ }\n")
+TEXTS = [
+    TOML,
+    *(path.read_text(encoding="utf-8") for path in EXAMPLES),
+    template("flight"),
+    template("hub"),
+]
+
+
+@pytest.mark.parametrize("text", TEXTS)
+def test_text_at_every_place_reads_as_what_is_there(text: str) -> None:
+    data = tomllib.loads(text)
+    for written, read in [(text, tomllib.loads), (json.dumps(data), None), (json.dumps(data, indent=2), None)]:
+        for path, value in walk(data, lambda node: node in ([], {})):
+            key, cut = _cut(written, path)
+            if isinstance(path[-1], str):
+                name = next(iter(read(f"{key} = 1"))) if read else json.loads(key)
+                assert name == path[-1]
+            if not cut.startswith('"""'):
+                assert (read(f"value = {cut}")["value"] if read else json.loads(cut)) == value
+
+
+def test_inline_tables_of_several_lines() -> None:
+    places = locate("a = 1\nb = { c = 1, # TOML 1.1\n\n d = 2, }\n")
     assert places["a",].value.line == 1
+    assert places["b", "d"].value == Span(4, 6, 7)

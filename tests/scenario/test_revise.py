@@ -105,7 +105,7 @@ def test_comments_stay_where_they_are() -> None:
     changed = without_entry(LAYOUT, ("motion", "flight"))
     assert "# of the flight" in changed and "kind" not in changed and "terms" not in changed
     changed = without_entry(LAYOUT, ("beam", "loads", 1))
-    assert changed == LAYOUT.split("[[beam.loads]] # the second")[0]
+    assert changed == LAYOUT.split("\n[[beam.loads]] # the second")[0]
     changed = with_entry(LAYOUT, ("motion", "slew"), {"kind": "hub"})
     assert changed == LAYOUT.replace("[[beam.loads]]\n", '[motion.slew]\nkind = "hub"\n\n[[beam.loads]]\n', 1)
 

@@ -15,6 +15,7 @@ from gbeam.errors import InputError
 from gbeam.guards.limits import SCENARIO_BYTES, refuse_large_file
 from gbeam.guards.names import closest
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
+from gbeam.scenario.text.locate import is_json, locate
 from gbeam.scenario.text.overrides import Override, crowded, excess, no_text
 from gbeam.scenario.values.distributions import Distribution
 from gbeam.scenario.values.paths import Path, Place, Span, path_text, written_at
@@ -50,10 +51,7 @@ class Source:
     @cached_property
     def places(self) -> dict[Path, Place]:
         """Places of the entries of the text."""
-        # Imported where something is wrong: what is right needs no places.
-        from gbeam.scenario.text.locate import locate_json, locate_toml
-
-        return locate_json(self.text) if is_json(self.text) else locate_toml(self.text)
+        return locate(self.text)
 
     def raw(self, path: Path) -> Any:
         """Return what is written at `path`, None if nothing is."""
@@ -137,8 +135,3 @@ def parse(name: str, text: str) -> dict[str, Any]:
     problem = message[:1].lower() + message[1:]
     span = Span(line, column, column + 1)
     raise ScenarioError([at_span(name, text, span, "", f"{problem}", f"this is not valid {language}")])
-
-
-def is_json(text: str) -> bool:
-    """Tell whether a scenario is JSON, not TOML."""
-    return text.lstrip().startswith("{")  # no TOML document begins with a brace
