@@ -62,8 +62,6 @@ class Question:
         Kind of motion that answers, empty for any; None where all that can answer do.
     differentiable : bool
         Whether its figures are smooth in the scenario's values.
-    words : str
-        Module of :mod:`gbeam.report` whose ``text`` says the answer in words; by default a table of its quantities.
     """
 
     name: str
@@ -71,7 +69,6 @@ class Question:
     answer: Callable[..., Any]
     motion: str | None = ""
     differentiable: bool = True
-    words: str = ""
 
     @property
     def record(self) -> type:
@@ -166,7 +163,6 @@ def run(case: Case, motion: str | None = None, at: float | None = None, needs: N
     "static",
     "Where the beam rests relative to its base at one time of the motions.",
     motion=None,
-    words="gbeam.report.steady.deflection",
 )
 def static(
     case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
@@ -182,7 +178,6 @@ def static(
 @question(
     "modes",
     "Frequencies, damping and shapes about the equilibrium at one time of a motion.",
-    words="gbeam.report.steady.modes",
 )
 def modes(
     case: Case,

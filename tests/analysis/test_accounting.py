@@ -11,7 +11,7 @@ from scipy.signal import find_peaks
 
 from gbeam import Comparison, InputError, Response, compare
 from gbeam.analysis.imitation.accounting import History, account
-from gbeam.report.machine.accounting import lines
+from gbeam.report.machine import accounting_lines as lines
 from gbeam.results.facts import facts_of
 from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.response import BaseMotion

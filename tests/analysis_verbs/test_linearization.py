@@ -12,7 +12,7 @@ from gbeam.analysis.control.reduction import balanced_truncation, modal_truncati
 from gbeam.analysis.steady.modal import modes
 from gbeam.analysis.steady.operating_point import evaluated_at, linear_matrices, on_base, on_hub, operating_point
 from gbeam.motion import Base, Hub, constant
-from gbeam.report.steady.state_space import text
+from gbeam.report import text
 from gbeam.results.facts import json_of
 from gbeam.results.state_space import Signal, StateSpace
 

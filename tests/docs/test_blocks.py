@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from gbeam.plots import write_figures
+
 from .pages import NOT_CODE, PAGES, ROOT, RUN, Block, Reader, blocks, commands
 
 SLOW = {
@@ -35,7 +37,8 @@ def named(page: Path) -> str:
 )
 def test_page_runs(page: Path, reader: Reader, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(reader.folder)
-    monkeypatch.setattr("gbeam.plots.write_plots", lambda *_: [])  # half the time of a run, and tested elsewhere
+    # The figures of a run take half its time, and are tested elsewhere.
+    monkeypatch.setattr("gbeam.plots.write_figures", lambda *of: [] if of[2] == "gbeam run" else write_figures(*of))
     reader.read(page)
 
 

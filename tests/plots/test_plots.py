@@ -16,9 +16,9 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from gbeam import InputError
-from gbeam.figures import imitation, response, steady
+from gbeam.figures import figures_of, imitation, response, steady
 from gbeam.figures.description import Figure as Described
-from gbeam.plots import draw, write_plots
+from gbeam.plots import draw, write_figures
 from gbeam.plots.draw import BROAD
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.imitation.comparison import Comparison
@@ -52,7 +52,7 @@ def _assert_labelled(figure: Figure) -> None:
 def files(study: Study, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     """All figures of the study, written once; matplotlib's settings are as they were."""
     settings = dict(mpl.rcParams)
-    made = write_plots(study, tmp_path_factory.mktemp("plots"))
+    made = write_figures(figures_of(study), tmp_path_factory.mktemp("plots"))
     assert dict(mpl.rcParams) == settings
     return made
 

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from gbeam.report import as_json
 from gbeam.report.facts import facts as to_json
-from gbeam.report.study.summary import table
+from gbeam.report.tables import study as table
 from gbeam.results.study import Study
 
 

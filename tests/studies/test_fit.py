@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 
 import gbeam as gb
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.report.studies.fit import text
+from gbeam.report import text
 
 from ..scenarios import FLIGHT, SPECIMEN, model, response
 

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 from gbeam.cli.console import Watch
 from gbeam.cli.process import command
-from gbeam.cli.publication import refuse_unwritable
 from gbeam.errors import InputError
 from gbeam.questions import motion_of, prepared
 
@@ -54,10 +53,6 @@ class Input:
         """Time of ``--at``, s; the response's start where it is not given."""
         return self.case.response.start if text is None else number("--at", text, "time")
 
-    def signed(self, facts: dict[str, Any]) -> dict[str, Any]:
-        """The facts of a result, as JSON, with where they come from."""
-        return signed(facts, self.case.provenance)
-
 
 def signed(facts: dict[str, Any], provenance: Provenance | None) -> dict[str, Any]:
     """The facts of a result, as JSON, with where they come from: found when it is printed, since that takes a while."""
@@ -74,10 +69,8 @@ def signed(facts: dict[str, Any], provenance: Provenance | None) -> dict[str, An
 _MOVING = ("run", "place")  # verbs that need all motions
 
 
-def read(verb: str, file: Path, overrides: Sequence[str], out: Path | None = None) -> Input:
-    """Load and build the scenario of a verb, once its folder is known to be writable."""
-    if out is not None:
-        refuse_unwritable(out)
+def read(verb: str, file: Path, overrides: Sequence[str]) -> Input:
+    """Load and build the scenario of a verb."""
     from gbeam.scenario import build, load, provenance  # not needed, nor imported, for help
 
     with Watch(f"reading {file}" + (" and planning its machines" if verb in _MOVING else "")):

@@ -1,18 +1,18 @@
-"""Output of verbs: text, JSON and figures."""
+"""Output of verbs: text, JSON and files."""
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Literal
 
+from gbeam.cli.console import Watch
 from gbeam.cli.inputs import naming, signed
 from gbeam.cli.process import command, figures_wanted
-from gbeam.cli.publication import publish
+from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.errors import InputError
 from gbeam.printable import printable
 
@@ -20,12 +20,79 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from gbeam.figures import Describe
-    from gbeam.results.cases import Sensitivity
-    from gbeam.results.searches import Fit, Optimum, ShapedCommand
+    from gbeam.results.provenance import Provenance
+    from gbeam.results.searches import Fit, Optimum
 
-Found = TypeVar("Found", "Fit", "Optimum", "Sensitivity", "ShapedCommand")
 LIST = "list"  # in place of a figure's name
 _PLAIN_WIDTH = 110  # columns of a table where stdout is a file
+
+
+def deliver(
+    answer: Any,
+    name: str,
+    folder: Path | None,
+    *,
+    json: bool,
+    report: bool = False,
+    verb: str = "",  # that signs the figures, where it has another name
+    origin: Provenance | None = None,  # where the answer does not say it
+    title: str = "",  # of the scenario
+    suffix: Literal[".json", ".nc", ""] = ".json",  # of its file, if it has one
+    page: str = "",  # where the page has another name
+    figures: Mapping[str, Describe] | None = None,  # that the answer does not have itself
+    facts: Mapping[str, Any] | None = None,  # the same
+    more: Callable[[Path], object] | None = None,  # writes further files
+    also: Sequence[Path] = (),  # files that are there already
+    listed: bool = True,  # whether to say which files were written
+    **words: Any,  # of `gbeam.report.text`
+) -> None:
+    """Print an answer, or several of one kind, as JSON or in words, and write its files into a folder, if any."""
+    origin = origin or answer.provenance
+    assert origin is not None  # it is of a scenario
+    origin = replace(origin, command=command())
+    answers = answer if isinstance(answer, tuple) else (answer,)
+
+    def known(files: Sequence[Path] | None = None) -> dict[str, Any]:
+        from gbeam.report.facts import facts as facts_of
+
+        return signed(facts_of(*answers, title=title, files=files) | dict(facts or {}), origin)
+
+    def make(hidden: Path) -> None:
+        from gbeam.figures import figures_of
+
+        described = figures_of(answer, title) if figures is None else figures
+        if suffix == ".nc":
+            replace(answer, provenance=origin).save(hidden / f"{name}.nc")
+        elif suffix:
+            write_json(hidden / f"{name}.json", known())
+        if report:
+            from gbeam.report.page.result import report_of
+
+            html = report_of(answer, known(), described)
+            (hidden / f"{page or name}.html").write_text(html, encoding="utf-8")
+        if described and figures_wanted():
+            from gbeam.plots import write_figures
+
+            write_figures(described, hidden, f"gbeam {verb or name}")
+        if more is not None:
+            more(hidden)
+
+    if not json:
+        from gbeam.report import text
+
+        said = text(answer, **words)
+        if isinstance(said, str):
+            print(printable(said))
+        else:
+            show_table(said)
+    files: list[Path] = []
+    if folder is not None:
+        with Watch("writing results and plots"):
+            files = sorted([*publish(folder, make), *also])
+    if json:
+        show("", known(files if listed else None), json)
+    elif listed:
+        list_files(folder, files)
 
 
 def show(words: str, facts: Mapping[str, Any], json: bool) -> None:
@@ -74,35 +141,12 @@ def list_files(folder: Path | None, files: Sequence[Path]) -> None:
         print(printable(f"\n{len(files)} files in {folder}: {', '.join(names)}"))
 
 
-def folder_of(out: Path | None, scenario: Path, *, default: bool) -> Path | None:
-    """The folder of --out; without it out/ and the scenario's name where there is a default, else none."""
-    return out if out is not None or not default else Path("out") / scenario.stem
-
-
-def write(
-    folder: Path | None,
-    name: str,
-    facts: Mapping[str, Any],
-    figures: Mapping[str, Describe] | None = None,
-    *,
-    report: bool = False,
-) -> list[Path]:
-    """Write NAME.json, the figures and NAME.html, made only then, into a folder, if there is one; return the files."""
-    if folder is None:
-        return []
-
-    def make(hidden: Path) -> None:
-        write_json(hidden / f"{name}.json", facts)
-        if report:
-            from gbeam.report.page.document import html
-
-            (hidden / f"{name}.html").write_text(html(facts, figures=figures), encoding="utf-8")
-        if figures and figures_wanted():
-            from gbeam.plots import write_figures
-
-            write_figures(figures, hidden, f"gbeam {name}")
-
-    return publish(folder, make)
+def folder_of(out: Path | None, scenario: Path, *, default: bool = False) -> Path | None:
+    """The folder of --out, which can be written to; without it out/ and the scenario's name by `default`, else none."""
+    folder = out if out is not None or not default else Path("out") / scenario.stem
+    if folder is not None:
+        refuse_unwritable(folder)
+    return folder
 
 
 def write_json(file: Path, facts: Mapping[str, Any]) -> None:
@@ -117,49 +161,6 @@ def refuse_changes(write: Path | None, overrides: Sequence[str]) -> None:
     if write is not None and overrides:
         fix = "change the file itself first: it is what --write copies"
         raise InputError("--write", "is given beside --set", fix)
-
-
-def show_found(
-    answer: Found,
-    words: Any,
-    verb: str,
-    stem: str,
-    folder: Path | None,
-    *,
-    json: bool,
-    report: bool,
-    written: Path | None = None,
-    more: Callable[[Path], None] | None = None,
-) -> None:
-    """Print a study's answer, and write it, its plots, its page and what a verb has `more` into a folder."""
-
-    from gbeam.report.facts import facts
-
-    def make(hidden: Path) -> None:
-        from gbeam.figures import figures_of
-        from gbeam.plots import write_figures
-
-        answer.save(hidden / f"{stem}.nc")
-        named = {re.sub(r"[^\w.-]+", "", name): each for name, each in figures_of(answer).items()}
-        write_figures(named, hidden, f"gbeam {verb}")
-        if report:
-            answer.report(hidden / f"{stem}.html")
-        if more is not None:
-            more(hidden)
-
-    files = [] if folder is None else publish(folder, make)
-    assert answer.provenance is not None  # it is of a scenario
-    show(words.text(answer), signed(facts(answer, files=files), answer.provenance), json)
-    if not json:
-        if written is not None:
-            print(f"\n{written} has these values")
-        list_files(folder, files)
-
-
-def commanded(answer: Found) -> Found:
-    """Return an answer that knows the command that it is of."""
-    assert answer.provenance is not None  # it is of a scenario
-    return replace(answer, provenance=replace(answer.provenance, command=command()))
 
 
 def write_found(answer: Fit | Optimum, scenario: Path, file: Path | None) -> None:

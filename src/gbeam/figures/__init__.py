@@ -34,10 +34,13 @@ def figure_of(result: Any, what: str = "", title: str = "") -> Figure:
 
 
 def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
-    """Return what describes each figure of a result, or of deflections in several motions, by name."""
+    """Return what describes each figure of a result, or of several of one kind, by name."""
     match result:
         case (Deflection(), *_):
-            return of_deflections(result, title)
+            return _of_deflections(result, title)
+        case (MachinePlan(), *_):
+            plans = {each.name: figures_of(each, title) for each in result}
+            return {f"{what} {name}": each for name, every in plans.items() for what, each in every.items()}
         case Study():
             return _of_study(result, title or result.title)
         case Response():
@@ -74,7 +77,7 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
     return {}
 
 
-def of_deflections(deflections: Sequence[Deflection], title: str = "") -> dict[str, Describe]:
+def _of_deflections(deflections: Sequence[Deflection], title: str = "") -> dict[str, Describe]:
     """Return what describes the figures of a beam's rest in several motions: all together, then the loads of each."""
     every: dict[str, Describe] = {"static": partial(steady.static, deflections, title)}
     for each in deflections:

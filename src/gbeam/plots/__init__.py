@@ -4,6 +4,6 @@
 """
 
 from gbeam.plots.draw import draw
-from gbeam.plots.files import plot, save, signature, write_figures, write_plots
+from gbeam.plots.files import plot, save, signature, write_figures
 
-__all__ = ["draw", "plot", "save", "signature", "write_figures", "write_plots"]
+__all__ = ["draw", "plot", "save", "signature", "write_figures"]

@@ -10,9 +10,8 @@ from typing import Any, cast
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from gbeam.figures import Describe, figure_of, figures_of
+from gbeam.figures import Describe, figure_of
 from gbeam.plots.draw import Shown, draw, style
-from gbeam.results.study import Study
 
 
 class Panels(tuple[Axes, ...]):
@@ -34,16 +33,11 @@ def plot(result: Any, what: str = "", title: str = "") -> Panels:
     return Panels(draw(figure_of(result, what, title)).axes)
 
 
-def write_plots(study: Study, folder: Path, source: str = "") -> list[Path]:
-    """Write all figures of a study."""
-    named = {name.replace(" ", "_", 1): each for name, each in figures_of(study).items()}
-    return write_figures(named, folder, source)
-
-
 def write_figures(described: Mapping[str, Describe], folder: Path, source: str = "") -> list[Path]:
-    """Draw figures and write each under its name."""
+    """Draw figures and write each under its name, as far as files may have it: ``axes_rate_spin`` of axes_rate spin."""
+    named = {re.sub(r"[^\w.-]+", "_", re.sub(r"[\[\]]", "", name)): each for name, each in described.items()}
     with style():
-        return [file for name, each in described.items() for file in save(draw(each()), folder, name, source)]
+        return [file for name, each in named.items() for file in save(draw(each()), folder, name, source)]
 
 
 DPI = 150

@@ -53,17 +53,17 @@ def _worded(figures: dict[str, Any], answers: list[Result]) -> dict[str, Any]:
     for answer in answers:
         match answer:
             case MachinePlan():
-                from gbeam.report.machine.accounting import judged_lines
+                from gbeam.report.machine import judged_lines
 
                 figures["motions"][answer.name]["lines"] = list(judged_lines(answer))
             case Study():
-                from gbeam.report.study import comparison, sentences
+                from gbeam.report.study import comparison_lines, of_beam, of_machine
 
                 for name, response in answer.responses.items():
-                    lines = [*sentences.of_beam(response), *sentences.of_machine(response)]
+                    lines = [*of_beam(response), *of_machine(response)]
                     figures["motions"][name]["lines"] = lines
                 for each, compared in zip(figures["comparisons"], answer.comparisons, strict=True):
-                    each["lines"] = list(comparison.lines(compared))
+                    each["lines"] = list(comparison_lines(compared))
             case Sweep():
                 figures["outcome"] = answer.state
     return figures

@@ -10,10 +10,10 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from gbeam.cli.inputs import read
+from gbeam.cli.inputs import read, signed
 from gbeam.cli.options import Json, Out, Overrides, ScenarioFile, option
-from gbeam.cli.outputs import show, write
-from gbeam.cli.publication import refuse_unwritable
+from gbeam.cli.outputs import folder_of, show, write_json
+from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.errors import InputError
 from gbeam.printable import printable
 
@@ -25,7 +25,8 @@ def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = No
     and the duration; where a value is a distribution it takes the centre. With --out also writes check.json. Exit
     status: 0 the scenario is valid, 2 it is not.
     """
-    loaded = read("check", scenario, overrides, out)
+    folder = folder_of(out, scenario)
+    loaded = read("check", scenario, overrides)
 
     from gbeam.analysis.case import describe
     from gbeam.report import description as report
@@ -37,8 +38,9 @@ def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = No
     assert source is not None  # it was read from a file
     drawn = {path: str(each) for path, each in source.distributions.items()}
     description = replace(description, distributions=drawn)
-    facts = loaded.signed(facts_of(description))
-    write(out, "check", facts)
+    facts = signed(facts_of(description), loaded.case.provenance)
+    if folder is not None:
+        publish(folder, lambda hidden: write_json(hidden / "check.json", facts))
     show(report.text(description), facts, json)
     return 0
 

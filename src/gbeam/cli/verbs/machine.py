@@ -10,7 +10,7 @@ from cyclopts import Parameter
 
 from gbeam.cli.console import Watch
 from gbeam.cli.failures import FAILED, complain
-from gbeam.cli.inputs import Input, naming, number, read, signed
+from gbeam.cli.inputs import Input, naming, number, read
 from gbeam.cli.options import (
     CentrifugeName,
     Check,
@@ -24,9 +24,9 @@ from gbeam.cli.options import (
     Widths,
     option,
 )
-from gbeam.cli.outputs import folder_of, list_files, show, show_table, write
-from gbeam.cli.process import command, figures_wanted
-from gbeam.cli.publication import publish, refuse_unwritable
+from gbeam.cli.outputs import deliver, folder_of
+from gbeam.cli.process import command
+from gbeam.cli.publication import publish
 from gbeam.errors import InputError
 from gbeam.questions import machine_of
 
@@ -55,8 +55,6 @@ def plan(
     exceeded or one of acceptance not kept, 2 the input is wrong.
     """
     folder = folder_of(out, scenario, default=report)
-    if folder is not None:
-        refuse_unwritable(folder)
 
     from gbeam.scenario import build_machines, build_specimen, load_environments, provenance, schema
 
@@ -70,14 +68,12 @@ def plan(
         raise InputError("--sample", f"is {sample}", 'give a positive time, such as "5 ms"')
 
     from gbeam.analysis.imitation import plan as analysis
-    from gbeam.report.facts import facts
-    from gbeam.report.machine import plan as words
     from gbeam.results.imitation.criteria import judging
 
     origin = provenance(environments, command())
     tables = {name: table for name, table in environments.motion.items() if isinstance(table, schema.Centrifuge)}
-    plans = {
-        name: replace(
+    plans = tuple(
+        replace(
             analysis.plan(
                 name, machines[name], table.tracks,
                 beam=beam, title=environments.title, **judging(table.limits_of_acceptance),
@@ -85,39 +81,24 @@ def plan(
             provenance=origin,
         )
         for name, table in tables.items()
-    }  # fmt: skip
+    )  # fmt: skip
 
-    def make(hidden: Path) -> None:
+    def commands(hidden: Path) -> None:
         from gbeam.io.commands import write_commands
 
-        for name, each in plans.items():
-            commands = tables[name].commands
-            time = every or (commands.sample if commands else SAMPLE)
-            write_commands(each, analysis.axis_commands(machines[name], time), hidden)
-            if figures_wanted():
-                from gbeam.figures import figures_of
-                from gbeam.plots import write_figures
+        for each in plans:
+            given = tables[each.name].commands
+            time = every or (given.sample if given else SAMPLE)
+            write_commands(each, analysis.axis_commands(machines[each.name], time), hidden)
 
-                described = figures_of(each, environments.title).items()
-                write_figures({f"{kind}_{name}": figure for kind, figure in described}, hidden, "gbeam plan")
-
-        if report:
-            from gbeam.report.page.document import html
-            from gbeam.report.page.records import of_plans
-
-            known = signed(facts(*plans.values(), title=environments.title), origin)
-            (hidden / "plan.html").write_text(html(known, figures=of_plans(plans)), encoding="utf-8")
-
-    if not json:
-        show_table(words.table(environments.title, plans.values()))
-    files = [] if folder is None else publish(folder, make)
-    if json:
-        show("", signed(facts(*plans.values(), title=environments.title, files=files), origin), json)
-    list_files(None if json else folder, files)
-    broken = [each for each in plans.values() if each.outcome != "done"]
+    deliver(
+        plans, "plan", folder, json=json, report=report, origin=origin, title=environments.title, suffix="",
+        more=commands,
+    )  # fmt: skip
+    broken = [each for each in plans if each.outcome != "done"]
     for each in broken:
         complain(f"motion.{each.name} {each.outcome}: {each.message}" + (" (allowed)" if ignore_limits else ""))
-    refused = [each for each in plans.values() if each.accepted is False]
+    refused = [each for each in plans if each.accepted is False]
     for each in refused:
         complain(f"motion.{each.name} not accepted: {each.refusal}")
     return FAILED if refused or (broken and not ignore_limits) else 0
@@ -151,14 +132,12 @@ def place(
     weights = parse(measure)
     widths = [number("--smoothing", text, "time") for text in smoothing]
     folder = folder_of(out, scenario, default=report)
-    loaded = read("place", scenario, overrides, folder)
+    loaded = read("place", scenario, overrides)
     loaded.motion(motion, kind="centrifuge")
     name, current = machine_of(loaded.case, motion)
 
     from gbeam.analysis.imitation import place as analysis
     from gbeam.analysis.imitation.place_measures import choice_of
-    from gbeam.report.facts import facts as facts_of
-    from gbeam.report.machine import placement as words
 
     analysis.check_weights(weights, "--measure")
     with naming("--smoothing"):
@@ -175,9 +154,10 @@ def place(
             check=check,
         )
     written = _apply(loaded, scenario, name, placement.changes) if write_back and placement.changes else None
-    known = loaded.signed(facts_of(placement) | {"written": written})
-    write(folder, "place", known, report=report)
-    show(words.text(placement, written), known, json)
+    deliver(
+        placement, "place", folder, json=json, report=report, origin=loaded.case.provenance,
+        facts={"written": written}, listed=False, written=written,
+    )  # fmt: skip
     if placement.outcome != "done":
         complain(f"{placement.outcome}: motion.{name}: {placement.message}")
         return FAILED

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal
@@ -11,11 +10,11 @@ from cyclopts import Parameter
 
 from gbeam.cli.console import Watch
 from gbeam.cli.failures import FAILED, complain
-from gbeam.cli.inputs import names, number, signed
+from gbeam.cli.inputs import names, number
 from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile, SmoothVerb, Verb, option
-from gbeam.cli.outputs import LIST, commanded, folder_of, list_figures, list_files, show, show_found, write_json
-from gbeam.cli.process import command, figures_wanted
-from gbeam.cli.publication import publish, refuse_unwritable
+from gbeam.cli.outputs import LIST, deliver, folder_of, list_figures
+from gbeam.cli.process import command
+from gbeam.cli.publication import refuse_unwritable
 
 
 def sweep(
@@ -108,31 +107,13 @@ def sweep(
     assert answer.provenance is not None  # it is of a scenario
     answer = replace(answer, provenance=replace(answer.provenance, command=command()))
 
-    from gbeam.report.facts import facts
-    from gbeam.report.studies import sweep as words
-
-    def make(hidden: Path) -> None:
-        if figures_wanted():
-            from gbeam.figures import figures_of
-            from gbeam.plots import write_figures
-
-            described = figures_of(answer).items()
-            named = {re.sub(r"[^\w.-]+", "_", re.sub(r"[\[\]]", "", name)): figure for name, figure in described}
-            write_figures(named, hidden, "gbeam sweep")
-        write_json(hidden / "sweep.json", signed(facts(answer), answer.provenance))
-        if netcdf:
-            answer.save(hidden / "sweep.nc")
-        if report:
-            answer.report(hidden / "report.html")
-
     from gbeam.io.netcdf import write_zarr
 
-    files = publish(folder, make)
     write_zarr(answer, folder / "sweep.zarr")
-    files = sorted([*files, folder / "sweep.zarr"])
-    show(words.text(answer), signed(facts(answer, files=files), answer.provenance), json)
-    if not json:
-        list_files(folder, files)
+    deliver(
+        answer, "sweep", folder, json=json, report=report, page="report", also=[folder / "sweep.zarr"],
+        more=lambda hidden: answer.save(hidden / "sweep.nc") if netcdf else None,
+    )  # fmt: skip
     if answer.lost:
         complain(f"{answer.lost} of {answer.outcome.size} cases are not done")
     return FAILED if answer.lost else 0
@@ -173,8 +154,6 @@ def sensitivity(
     if LIST in of:
         return list_figures(verb, json)
     folder = folder_of(out, scenario, default=report)
-    if folder is not None:
-        refuse_unwritable(folder)
 
     from gbeam.studies.sensitivity import sensitivity as compute
 
@@ -184,7 +163,5 @@ def sensitivity(
             scenario, names(of), names(by), verb=verb, motion=motion, at=time, overrides=overrides, progress=watch
         )
 
-    from gbeam.report.studies import sensitivity as words
-
-    show_found(commanded(answer), words, "sensitivity", "sensitivity", folder, json=json, report=report)
+    deliver(answer, "sensitivity", folder, json=json, report=report, suffix=".nc")
     return 0

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
-from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Annotated, Any, get_args, get_type_hints
@@ -14,7 +13,7 @@ from cyclopts import Parameter
 from gbeam.cli.console import Watch
 from gbeam.cli.inputs import number, read
 from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile
-from gbeam.cli.outputs import folder_of, show, write
+from gbeam.cli.outputs import deliver, folder_of
 from gbeam.questions import QUESTIONS, Needs, Question
 
 _KEYWORD = inspect.Parameter.KEYWORD_ONLY
@@ -75,7 +74,7 @@ def _answer(
     **options: Any,
 ) -> int:
     folder = folder_of(out, scenario, default=report)
-    loaded = read(question.name, scenario, overrides, folder)
+    loaded = read(question.name, scenario, overrides)
     chosen = motion
     if question.motion is not None or motion is not None:
         chosen, _ = loaded.motion(motion, kind=question.motion or "")
@@ -87,35 +86,8 @@ def _answer(
     with Watch(), loaded.placing(**places):
         answer = question.answer(loaded.case, chosen, time, Needs(shapes=True), **options)
 
-    facts: dict[str, Any] = {}
-    if json or folder is not None:
-        from gbeam.report.facts import facts as facts_of
-
-        answers = answer if isinstance(answer, tuple) else (answer,)
-        facts = loaded.signed(facts_of(*answers, title=loaded.case.title))
-    if folder is not None:
-        from gbeam.figures import figures_of
-
-        figures = figures_of(answer, loaded.case.title)
-        if not isinstance(answer, tuple):
-            figures = dict(zip([name], figures.values(), strict=False))
-        write(folder, name, facts, figures, report=report)
-    show(_words(question, answer), facts, json)
+    deliver(
+        answer, name, folder, verb=question.name, json=json, report=report, origin=loaded.case.provenance,
+        title=loaded.case.title, listed=False,
+    )  # fmt: skip
     return 0
-
-
-def _words(question: Question, answer: Any) -> str:
-    """An answer in words, or its numbers, each on a line with what it is."""
-    if question.words:
-        return str(import_module(question.words).text(answer))
-    from gbeam.report.words import number as digits
-    from gbeam.results.declared import declarations
-
-    lines = [question.about]
-    for name, each in declarations(type(answer)):
-        value, unit = getattr(answer, name), each.unit(answer) if callable(each.unit) else str(each.unit)
-        if isinstance(value, (bool, str)):
-            lines.append(f"  {each.words}: {value}")
-        elif getattr(value, "ndim", 0) == 0 and isinstance(value, (int, float)):
-            lines.append(f"  {each.words}: {digits(value)} {unit}".rstrip())
-    return "\n".join([*lines, *(f"warning: {each}" for each in answer.warnings)])

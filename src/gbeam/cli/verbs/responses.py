@@ -19,7 +19,7 @@ from gbeam.cli.console import Watch
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import read
 from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, Report, ScenarioFile
-from gbeam.cli.outputs import folder_of, list_files, show, show_table, write
+from gbeam.cli.outputs import deliver, folder_of, show
 from gbeam.cli.process import figures_wanted
 from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.errors import InputError
@@ -48,7 +48,7 @@ def run(
     exceeded or a [motion.NAME.accept] is not met, 2 the input is wrong.
     """
     folder = folder_of(out, scenario, default=report or not json)
-    loaded = read("run", scenario, overrides, folder)
+    loaded = read("run", scenario, overrides)
     if folder is not None:
         # A second of imports, beside the computation, which leaves a core idle.
         Thread(target=_import_leaves, daemon=True).start()
@@ -58,29 +58,7 @@ def run(
     with Watch() as watch, loaded.placing():
         answer = study(loaded.case, watch)
 
-    def make(hidden: Path) -> None:
-        answer.save(hidden / "result.nc")
-        if report:
-            answer.report(hidden / "report.html")
-        if figures_wanted():
-            from gbeam.plots import write_plots
-
-            write_plots(answer, hidden, "gbeam run")
-
-    if not json:
-        from gbeam.report.study.summary import table
-
-        show_table(table(answer))
-    files = []
-    if folder is not None:
-        with Watch() as watch:
-            watch("writing results and plots", 0.0)
-            files = publish(folder, make)
-    if json:
-        from gbeam.report.facts import facts
-
-        show("", loaded.signed(facts(answer, files=files)), json)
-    list_files(None if json else folder, files)
+    deliver(answer, "result", folder, verb="run", json=json, report=report, suffix=".nc", page="report")
     for name, failure in answer.unfinished.items():
         complain(f"motion.{name} {failure.outcome}: {failure.message}")
     broken = {name: each.axes.exceeding for name, each in answer.responses.items() if each.axes}
@@ -107,21 +85,14 @@ def models(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = N
     The exact model in three dimensions takes minutes. With --out also writes models.json and a plot. Exit status: 0
     done, 1 exact has no answer to compare with, 2 the input is wrong.
     """
-    loaded = read("models", scenario, overrides, out)
+    folder = folder_of(out, scenario)
+    loaded = read("models", scenario, overrides)
 
     from gbeam.analysis.model_study import compare_models
-    from gbeam.figures import figures_of
-    from gbeam.report.facts import facts as facts_of
-    from gbeam.report.study import models as report
 
     with Watch() as watch, loaded.placing():
         study = compare_models(loaded.case, progress=watch)
-    facts = loaded.signed(facts_of(study))
-    write(out, "models", facts, figures_of(study))
-    if json:
-        show("", facts, json)
-    else:
-        show_table(report.table(study))
+    deliver(study, "models", folder, json=json, listed=False)
     for row in study.rows:
         if row.model == study.reference and row.outcome != "done":
             complain(f"motion.{row.motion}: nothing to compare with, {row.model} {row.outcome}: {row.message}")

@@ -24,8 +24,7 @@ from gbeam.cli.options import (
     WriteTo,
     option,
 )
-from gbeam.cli.outputs import LIST, commanded, folder_of, list_figures, refuse_changes, show_found, write_found
-from gbeam.cli.publication import refuse_unwritable
+from gbeam.cli.outputs import LIST, deliver, folder_of, list_figures, refuse_changes, write_found
 
 
 def fit(
@@ -60,8 +59,6 @@ def fit(
     input is wrong.
     """
     folder = folder_of(out, scenario, default=report)
-    if folder is not None:
-        refuse_unwritable(folder)
     refuse_changes(write, overrides)
 
     from gbeam.studies.fit import fit as compute
@@ -81,10 +78,8 @@ def fit(
             progress=watch,
         )
 
-    from gbeam.report.studies import fit as words
-
     write_found(answer, scenario, write)
-    show_found(commanded(answer), words, "fit", "fit", folder, json=json, report=report, written=write)
+    deliver(answer, "fit", folder, json=json, report=report, suffix=".nc", written=write)
     return 0
 
 
@@ -130,8 +125,6 @@ def optimize(
     if minimise == LIST:
         return list_figures(verb, json)
     folder = folder_of(out, scenario, default=report)
-    if folder is not None:
-        refuse_unwritable(folder)
     refuse_changes(write, overrides)
 
     from gbeam.studies.optimise import optimise as compute
@@ -152,10 +145,8 @@ def optimize(
             progress=watch,
         )
 
-    from gbeam.report.studies import optimum as words
-
     write_found(answer, scenario, write)
-    show_found(commanded(answer), words, "optimize", "optimum", folder, json=json, report=report, written=write)
+    deliver(answer, "optimum", folder, verb="optimize", json=json, report=report, suffix=".nc", written=write)
     if answer.outcome != "done":
         complain(f"{answer.outcome}: no values were found that keep the requirements")
         return FAILED
@@ -192,8 +183,6 @@ def shape(
     input is wrong.
     """
     folder = folder_of(out, scenario, default=report)
-    if folder is not None:
-        refuse_unwritable(folder)
 
     from gbeam.studies.shape import hub_of, scenario_with
     from gbeam.studies.shape import shape_hub_command as compute
@@ -219,14 +208,10 @@ def shape(
             progress=watch,
         )
 
-    from gbeam.report.studies import shaping as words
-
-    answer = commanded(answer)
-
     def write_command(hidden: Path) -> None:
         (hidden / "command.json").write_text(scenario_with(answer, case) + "\n", encoding="utf-8")
 
-    show_found(answer, words, "shape", "shaping", folder, json=json, report=report, more=write_command)
+    deliver(answer, "shaping", folder, verb="shape", json=json, report=report, suffix=".nc", more=write_command)
     if answer.outcome != "done":
         complain(f"a command's run has {answer.outcome}")
         return FAILED

@@ -32,9 +32,7 @@ from gbeam.cli.options import (
     To,
     Vary,
 )
-from gbeam.cli.outputs import folder_of, list_files, show, write, write_json
-from gbeam.cli.process import figures_wanted
-from gbeam.cli.publication import publish
+from gbeam.cli.outputs import deliver, folder_of
 from gbeam.errors import InputError
 
 
@@ -59,7 +57,7 @@ def campbell(
     wrong, such as a motion without a hub.
     """
     folder = folder_of(out, scenario, default=report or not json)
-    loaded = read("campbell", scenario, overrides, folder)
+    loaded = read("campbell", scenario, overrides)
     name, chosen = loaded.motion(motion, kind="hub")
     low = 0.0 if start is None else number("--from", start, "angular rate")
     high = None if end is None else number("--to", end, "angular rate")
@@ -69,25 +67,19 @@ def campbell(
         fix = 'give the largest speed, such as "5 rad/s"'
         raise InputError("--to", "is missing: the hub is driven by a torque", fix)
 
-    from gbeam.report.facts import facts as facts_of
-    from gbeam.report.steady import campbell as words
-
     with Watch(), loaded.placing(to="--to", modes="--modes"):
         diagram = questions.campbell(loaded.case, name, start=low, end=high, modes=modes, orders=orders)
-    facts = loaded.signed(facts_of(diagram))
 
+    from gbeam.figures import steady
     from gbeam.guards.units import unit_of
 
     # In words and in the diagram speeds are in the unit in which they are given.
     unit, size = unit_of(end or start or "0", "angular rate")
-
-    from gbeam.figures import steady
-
     figures = {"campbell": partial(steady.campbell, diagram, loaded.case.title, (1 / size, unit))}
-    files = write(folder, "campbell", facts, figures, report=report)
-    show(words.text(diagram, unit, size), facts, json)
-    if not json:
-        list_files(folder, files)
+    deliver(
+        diagram, "campbell", folder, json=json, report=report, origin=loaded.case.provenance, figures=figures,
+        unit=unit, size=size,
+    )  # fmt: skip
     return 0
 
 
@@ -116,7 +108,7 @@ def critical_speed(
     map also as CSV and plot; with --report also critical_speed.html.
     """
     folder = folder_of(out, scenario, default=report)
-    loaded = read("critical-speed", scenario, overrides, folder)
+    loaded = read("critical-speed", scenario, overrides)
     upper = None if to is None else number("--to", to, KINDS[vary])
     if upper is not None and not upper > 0:
         raise InputError("--to", f"is {to}", "give a value above zero, where the search ends")
@@ -129,14 +121,12 @@ def critical_speed(
     name, _ = loaded.motion(motion, kind="hub")
     time = loaded.time(at)
 
-    from gbeam.report.facts import facts as facts_of
-    from gbeam.report.steady import critical as words
-
     with Watch() as watch, loaded.placing():
         critical = questions.critical_speed(loaded.case, name, time, vary=vary, upper=upper, progress=watch)
-    facts = loaded.signed(facts_of(critical))
-    write(folder, "critical_speed", facts, report=report)
-    show(words.text(critical, name), facts, json)
+    deliver(
+        critical, "critical_speed", folder, json=json, report=report, origin=loaded.case.provenance, listed=False,
+        motion=name,
+    )  # fmt: skip
     return 0
 
 
@@ -161,31 +151,17 @@ def critical_map(
 
     from gbeam.analysis.steady.stability import critical_speed_map
     from gbeam.figures import steady
-    from gbeam.report.facts import facts as facts_of
-    from gbeam.report.steady import critical as words
+    from gbeam.report.steady import map_csv
 
     with Watch() as watch, given.placing():
         critical = critical_speed_map(
             case.beam, case.model, chosen, kilograms, places, upper, name=name, progress=watch
         )
-    facts = given.signed(facts_of(critical))
-    figures = {"critical_speed": partial(steady.critical_map, critical, case.title)}
-
-    def make(hidden: Path) -> None:
-        write_json(hidden / "critical_speed.json", facts)
-        (hidden / "critical_speed.csv").write_text(words.map_csv(critical), encoding="utf-8")
-        if report:
-            from gbeam.report.page.document import html
-
-            (hidden / "critical_speed.html").write_text(html(facts, figures=figures), encoding="utf-8")
-        if figures_wanted():
-            from gbeam.plots import write_figures
-
-            write_figures(figures, hidden, "gbeam critical-speed")
-
-    if out is not None:
-        publish(out, make)
-    show(words.map_text(critical), facts, json)
+    deliver(
+        critical, "critical_speed", out, verb="critical-speed", json=json, report=report, origin=case.provenance,
+        figures={"critical_speed": partial(steady.critical_map, critical, case.title)}, listed=False,
+        more=lambda hidden: (hidden / "critical_speed.csv").write_text(map_csv(critical), encoding="utf-8"),
+    )  # fmt: skip
     return 0
 
 
@@ -209,7 +185,8 @@ def linearize(
 
     With --out writes linear.json and linear.mat. Exit status: 0 done, 1 there is no equilibrium, 2 the input is wrong.
     """
-    loaded = read("linearize", scenario, overrides, out)
+    folder = folder_of(out, scenario)
+    loaded = read("linearize", scenario, overrides)
     name, chosen = loaded.motion(motion, kind="" if rate is None else "hub")
     time = loaded.time(at)
     steady = None if rate is None else number("--rate", rate, "angular rate")
@@ -223,8 +200,6 @@ def linearize(
             raise InputError(option, f"stands beside {beside}", "give one of them")
 
     from gbeam.analysis.control.linearization import linearize, surface_gauges
-    from gbeam.report.facts import facts as facts_of
-    from gbeam.report.steady import state_space as report
 
     with naming("--strain-at"):
         gauges = surface_gauges(loaded.case.beam, stations)
@@ -240,15 +215,10 @@ def linearize(
             elif balanced is not None:
                 system, _ = reduction.balanced_truncation(system, balanced)
     system = replace(system, provenance=loaded.case.provenance)
-    facts = loaded.signed(facts_of(system) | {"gauges": [asdict(gauge) for gauge in gauges]})
-
-    def make(hidden: Path) -> None:
-        system.to_mat(hidden / "linear.mat")
-        write_json(hidden / "linear.json", facts)
-
-    if out is not None:
-        publish(out, make)
-    show(report.text(system, gauges), facts, json)
+    deliver(
+        system, "linear", folder, json=json, facts={"gauges": [asdict(gauge) for gauge in gauges]}, listed=False,
+        more=lambda hidden: system.to_mat(hidden / "linear.mat"), gauges=gauges,
+    )  # fmt: skip
     return 0
 
 

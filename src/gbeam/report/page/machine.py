@@ -8,7 +8,7 @@ from typing import Any
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.figures.units import raised
-from gbeam.report.machine.tracking import followed
+from gbeam.report.machine import followed
 from gbeam.report.page.parts import Cell, Value, folded, heading, known, listed, paragraph, table
 from gbeam.results.imitation.criteria import RULES
 from gbeam.results.imitation.verdict import change, percent

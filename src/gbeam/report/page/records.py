@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from gbeam.figures import Describe, figures_of, of_deflections
+from gbeam.figures import Describe, figures_of
 from gbeam.results.cases import BOUNDS, ORDERS, Indices, Parameter, Sensitivity, Statistics, Sweep
 from gbeam.results.declared import INSIDE, NAMES, Declaration, annotation, declarations, record_in
 from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
@@ -35,19 +35,13 @@ def figures_in(kind: str, facts: Facts, variables: Facts) -> dict[str, Describe]
             study = _study(facts, variables)
             return figures_of(study) if study.responses else {}
         case "MachinePlan":
-            return of_plans(_plans(facts, variables))
+            return figures_of(_plans(facts, variables))
         case "Deflection":
-            return of_deflections([_deflection(name, each) for name, each in facts["motions"].items()])
+            return figures_of(tuple(_deflection(name, each) for name, each in facts["motions"].items()))
     if kind not in _ALONE:
         return {}
     needed, read = _ALONE[kind]
     return figures_of(read(facts, variables)) if not needed or needed in variables else {}
-
-
-def of_plans(plans: Mapping[str, MachinePlan]) -> dict[str, Describe]:
-    """Return what describes the figures of several machines' plans, by name."""
-    every = {name: figures_of(plan) for name, plan in plans.items()}
-    return {f"{what} {name}": each for name, figures in every.items() for what, each in figures.items()}
 
 
 def _read(kind: type[_R], facts: Facts, v: Facts | None = None, /, **more: Any) -> _R:
@@ -180,14 +174,14 @@ def _comparison(facts: Facts, v: Facts, stations: Floats) -> Comparison:
     return _read(Comparison, facts, v, **parts)
 
 
-def _plans(facts: Facts, variables: Facts) -> dict[str, MachinePlan]:
-    """The machines' plans, by motion."""
-    every = {}
+def _plans(facts: Facts, variables: Facts) -> tuple[MachinePlan, ...]:
+    """The machines' plans."""
+    every = []
     for name, each in facts["motions"].items():
         v = _under(f"motions/{name}/", variables)
         if "time" in v:
-            every[name] = _read(MachinePlan, each, v, name=name, axes=_axes(each, v))
-    return every
+            every.append(_read(MachinePlan, each, v, name=name, axes=_axes(each, v)))
+    return tuple(every)
 
 
 def _deflection(name: str, facts: Facts) -> Deflection:

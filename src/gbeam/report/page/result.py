@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.figures import figures_of
+from gbeam.figures import Describe, figures_of
 from gbeam.guards.json_files import parse_json, read_json
 from gbeam.io.netcdf import FACTS, groups_of
 from gbeam.io.stored import read_stored
@@ -20,16 +21,21 @@ from gbeam.report.page.series import Numbers
 from gbeam.report.provenance import to_json as origin_json
 from gbeam.results.modal import Modes
 from gbeam.results.provenance import Provenance
+from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.study import Study
 
 _FIX = "give the result.nc of `gbeam run`, its folder, or the JSON of another verb"
 
 
-def report_of(result: Result) -> str:
-    """Return the page of a result."""
-    origin = origin_json(result.provenance or Provenance())
-    return html(facts(result), variables_of(result), origin, figures_of(whole(result)))
+def report_of(
+    result: Any, known: Mapping[str, Any] | None = None, figures: Mapping[str, Describe] | None = None
+) -> str:
+    """Return the page of a result, or of several of one kind: of what is `known` of it, with its figures."""
+    if known is None:
+        known = facts(result) | {"provenance": origin_json(result.provenance or Provenance())}
+        figures = figures_of(whole(result))
+    return html(known, variables_of(result) if isinstance(result, (Study, Response)) else {}, figures=figures)
 
 
 def variables_of(result: Result) -> dict[str, Any]:

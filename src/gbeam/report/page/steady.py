@@ -10,7 +10,7 @@ import numpy as np
 from gbeam.figures.units import raised
 from gbeam.report import words
 from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, table
-from gbeam.report.steady.modes import RESTING, ROUNDING
+from gbeam.report.steady import RESTING, ROUNDING
 from gbeam.report.words import number, percent
 from gbeam.results.modal import along
 

@@ -15,7 +15,7 @@ _LISTED = 6  # candidates of either kind
 _WIDTH = 110  # columns
 
 
-def text(placement: Placement, written: str | None = None) -> str:
+def placement(placement: Placement, written: str | None = None) -> str:
     """The best placement and how to apply it, every measure before and after, the simulations, the other candidates."""
     best, before = placement.best, placement.before
     parts = {name: weight for name, weight in placement.weights.items() if weight}

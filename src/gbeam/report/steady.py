@@ -1,0 +1,193 @@
+"""Results of one instant in words: equilibrium and its loss, small vibrations, the state-space model."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from textwrap import wrap
+
+import numpy as np
+
+from gbeam.report.words import error_words, percent, stress_words, tidy, warning_lines
+from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
+from gbeam.results.errors import Errors
+from gbeam.results.modal import Campbell, Modes, along
+from gbeam.results.parts import Loads
+from gbeam.results.state_space import ACCURATE, Gauge, StateSpace, Truncation
+
+
+def deflection(deflections: Iterable[Deflection]) -> str:
+    """Deflections on two lines each."""
+    return "\n".join(map(_deflection, deflections))
+
+
+def _deflection(deflection: Deflection) -> str:
+    x, y, z = tidy(1e3 * deflection.tip, 1e3 * float(np.abs(deflection.displacement).max()))
+    warning = "" if deflection.stable else "; UNSTABLE: no beam would stay there"
+    tip = f"tip x {x:.6g} mm, y {y:.6g} mm, z {z:.6g} mm"
+    first = f"{deflection.motion} at {deflection.time:.4g} s: {tip} ({deflection.model}){warning}"
+    loads = [] if deflection.loads is None else [f"  {_loads(deflection.loads)}"]
+    return "\n".join([first, *loads, f"  {_deflection_errors(deflection.errors)}", *warning_lines(deflection)])
+
+
+def _deflection_errors(errors: Errors) -> str:
+    if not math.isfinite(errors.displacement.total):
+        return f"no error estimate: {errors.note}" if errors.note else "no error estimate"
+    tip, loads = error_words(errors.displacement), percent(errors.loads.total)
+    return f"estimated error {tip} of the tip's displacement, {loads} of the root loads"
+
+
+def _loads(loads: Loads) -> str:
+    largest = float(np.abs(loads.force).max())
+    lever = max(float(np.abs(loads.moment).max()), largest * float(loads.stations[-1]))
+    force, moment = (
+        ", ".join(f"{value:.5g}" for value in tidy(vector[0], size))
+        for vector, size in ((loads.root_force, largest), (loads.root_moment, lever))
+    )
+    words = f"base on root: force ({force}) N, moment ({moment}) N m"
+    if np.isfinite(loads.stress).all():
+        extremes = loads.stress_tension[0], loads.stress_compression[0]
+        words += f"; {stress_words(loads.stations, *extremes, loads.yield_strength)}"
+    if loads.beam_torque is not None:
+        words += f"; torque for the beam {tidy(loads.beam_torque, lever)[0]:.5g} N m"
+    return words
+
+
+RESTING = 1e-9  # rad/s: a smaller rate of a base is a profile's rounding
+ROUNDING = 1e-10  # a damping ratio smaller than this is none
+
+
+def modes(modes: Modes) -> str:
+    """Modes on a line each."""
+    turning = float((modes.base.w_WB_B**2).sum() ** 0.5)
+    rate = turning if turning > RESTING else 0.0
+    lines = [f"{modes.motion} at {modes.time:.4g} s: {modes.model}, base turning at {rate:.4g} rad/s"]
+    width = max((len(along(d)) for d in modes.direction), default=0)
+    rows = enumerate(zip(modes.frequency, modes.damping_ratio, modes.direction, modes.error_estimate, strict=True), 1)
+    for i, (frequency, ratio, direction, error) in rows:
+        damping, way = ratio if abs(ratio) > ROUNDING else 0.0, f"{along(direction):<{width}}"
+        lines.append(f"  {i:>3}  {frequency:12.6g} Hz  damping {damping:8.4g}  {way}  error {percent(error):>10}")
+    if not modes.damping_given:
+        lines.append("  undamped: beam.damping_ratio is not given")
+    if modes.rigid:
+        lines.append("  and the free rotation of hub and beam, of zero frequency")
+    lines += [
+        f"  {growing.kind} {along(growing.direction)}: grows by {growing.growth_rate:.4g} per second"
+        for growing in modes.instabilities
+    ]
+    return "\n".join([*lines, *warning_lines(modes)])
+
+
+def campbell(diagram: Campbell, unit: str = "rad/s", size: float = 1.0) -> str:
+    """First and last frequency of each mode, crossings, and a critical speed if there is one."""
+    low, high = diagram.speed[[0, -1]] / size
+    lines = [f"{diagram.motion}: {diagram.model}, {low:.4g} to {high:.4g} {unit}"]
+    lines.append("  mode along   Hz at the start   at the end  largest error")
+    ends = diagram.frequency[0], diagram.frequency[-1]
+    rows = enumerate(zip(diagram.direction, *ends, diagram.error_estimate, strict=True), 1)
+    lines += [f"  {i:>4} {d:>5} {first:17.6g} {last:12.6g} {percent(error):>14}" for i, (d, first, last, error) in rows]
+    lines += [
+        f"  mode {each.track + 1} meets {each.order} × speed at {each.speed / size:.6g} {unit}, "
+        f"{each.frequency:.6g} Hz; error {percent(each.errors.total)}"
+        for each in diagram.crossings
+    ]
+    if diagram.critical is not None:
+        lines.append(f"  {answer(diagram.critical)}")
+    return "\n".join([*lines, *warning_lines(diagram)])
+
+
+def critical(critical: Critical, motion: str) -> str:
+    """The answer as one sentence, and warnings."""
+    return "\n".join([f"{motion}: {answer(critical)}", *warning_lines(critical)])
+
+
+def answer(critical: Critical) -> str:
+    """The answer as one sentence, with its error."""
+    errors, error = critical.errors, ""
+    if math.isfinite(errors.total):
+        error = f"; estimated error {error_words(errors)}"
+    elif math.isfinite(errors.shapes):
+        error = f"; estimated error from too few shapes {percent(errors.shapes)}"
+    return f"{critical.reason}{error}"
+
+
+def critical_map(critical: CriticalMap) -> str:
+    """Map as a table, positions down and masses across."""
+    lines = [f"{critical.motion}: {critical.model}, critical hub rate in rad/s with one more mass"]
+    lines.append("  at, m    " + "".join(f"{m:>9.4g} kg" for m in critical.mass))
+    for place, speeds in zip(critical.position, critical.speed.T, strict=True):
+        lines.append(f"  {place:<9.4g}" + "".join("           –" if np.isnan(v) else f"{v:12.5f}" for v in speeds))
+    if np.isnan(critical.speed).any():
+        lines.append(f"  –: none up to {critical.searched_to:.4g} rad/s")
+    if critical.errors is not None and not np.isnan(critical.speed).all():
+        shapes, total = (float(np.nanmax(each)) for each in (critical.errors.shapes, critical.errors.total))
+        every = f", {percent(total)} in all" if math.isfinite(total) else ""
+        lines.append(f"  estimated errors up to {percent(shapes)} from too few shapes{every}")
+    return "\n".join([*lines, *warning_lines(critical)])
+
+
+def map_csv(critical: CriticalMap) -> str:
+    """Map as comma-separated values: a row per position, a column per mass, nan where there is none; then errors."""
+    heads = ["position_m", *(f"critical_rad_per_s_with_{m:g}_kg" for m in critical.mass)]
+    columns = [critical.position, *critical.speed]
+    if critical.errors is not None:
+        heads += [f"error_with_{m:g}_kg" for m in critical.mass]
+        columns += [*critical.errors.total]
+    rows = (",".join(f"{value:.12g}" for value in row) for row in zip(*columns, strict=True))
+    return "\n".join([",".join(heads), *rows, ""])
+
+
+_WIDTH = 100  # columns of the state_space
+
+
+def state_space(system: StateSpace, gauges: Iterable[Gauge] = ()) -> str:
+    """Names and units of the signals."""
+    lines = [f"{system.motion}: {system.model}, {len(system.a)} states"]
+    for what in ("states", "inputs", "outputs"):
+        # No line ends between a name and its unit.
+        words = (f"{signal.name} [{signal.unit}]" for signal in getattr(system, what))
+        signals = ", ".join(each.replace(" ", "\N{NO-BREAK SPACE}") for each in words)
+        lines += wrap(
+            signals, _WIDTH, initial_indent=f"  {what:<8} ", subsequent_indent=11 * " ", break_on_hyphens=False
+        )
+    names = {signal.name for signal in system.outputs}
+    for k, gauge in enumerate(gauges, 1):
+        if f"strain_{k}" in names:
+            fibre = f"fibre y {1e3 * gauge.y:g} mm, z {1e3 * gauge.z:g} mm"
+            lines.append(f"  strain_{k} at {gauge.at:g} m, {fibre}")
+    lines += _accuracy(system)
+    if system.truncation is not None:
+        lines += _left_out(system, system.truncation)
+    return "\n".join([*lines, *warning_lines(system), "--json prints the matrices, --out writes them for MATLAB too."])
+
+
+def _left_out(system: StateSpace, left_out: Truncation) -> list[str]:
+    """States left out, their share, and of a balanced truncation the bound of the error."""
+    share = left_out.share
+    worst = np.unravel_index(int(share.argmax()), share.shape) if share.size else (0, 0)
+    count = f"{left_out.states} of {left_out.states + len(system.a)} states"
+    words = f"  {left_out.method} truncation leaves out {count}"
+    if share.size:
+        to, by = system.outputs[worst[0]].name, system.inputs[worst[1]].name
+        words += f": up to {left_out.end:.5g} Hz at most {percent(float(share[worst]))} of the largest gain"
+        words += f" ({to} by {by})" if share.size > 1 else ""
+    lines = [words]
+    if left_out.method == "balanced":
+        lines.append(f"  no gain is wrong by more than {left_out.bound:.3g}, twice the sum of the values left out, of")
+        lines.append("  Hankel singular values " + " ".join(f"{value:.3g}" for value in left_out.hankel))
+    return lines
+
+
+def _accuracy(system: StateSpace) -> list[str]:
+    """Up to which frequency its poles are those of the exact model, and how far off the others are."""
+    errors, count = system.errors, len(system.frequency)
+    if errors is None or not count:
+        return []
+    good = errors.within(ACCURATE)
+    worst = percent(float(np.max(errors.total[:good]))) if good else ""
+    words = f"frequencies within {worst} up to {system.accurate_to:.5g} Hz ({good} of {count})" if good else ""
+    if good < count:
+        known = errors.total[good:][np.isfinite(errors.total[good:])]
+        beyond = f"up to {percent(float(known.max()))} off" if len(known) else "not judged"
+        words += f"{'; ' if good else 'frequencies '}{'higher ones ' if good else ''}{beyond}"
+    return [f"  {words}, by the exact model with more shapes and the theory of thick beams"]

@@ -1,1 +1,0 @@
-"""Studies of many runs in words and JSON: sweeps, sensitivities, fits, optima."""

@@ -1,1 +1,0 @@
-"""Responses over time: the study of all environments, their comparisons, and the study of models."""
