@@ -19,9 +19,33 @@ from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.series import Series, stack, where
 
 
+class _Combined(Profile):
+    """A profile made of others, whose times are all of theirs."""
+
+    parts: tuple[Profile, ...]
+
+    @property
+    def breaks(self) -> Any:
+        """Times of the parts' jumps, s."""
+        return merged_breaks(*self.parts)
+
+    def corners(self, step: float) -> NDArray[np.float64]:
+        """Union of the parts' corners, s."""
+        return np.unique(np.concatenate([part.corners(step) for part in self.parts]))
+
+    def knots(self, step: float) -> NDArray[np.float64]:
+        """Union of the parts' knots, s."""
+        return np.unique(np.concatenate([part.knots(step) for part in self.parts]))
+
+    @property
+    def extent(self) -> tuple[float, float] | None:
+        """From the first time of any of the parts to the last, s."""
+        return merged_extent(*self.parts)
+
+
 @typed
 @record
-class Sum(Profile):
+class Sum(_Combined):
     """Sum of profiles of the same unit.
 
     Parameters
@@ -51,31 +75,13 @@ class Sum(Profile):
         """Sum of the parts' at times `t` (s)."""
         return reduce(add, (part.series(t, order) for part in self.parts))
 
-    @property
-    def breaks(self) -> Any:
-        """Times of the parts' jumps, s."""
-        return merged_breaks(*self.parts)
-
-    def corners(self, step: float) -> NDArray[np.float64]:
-        """Union of the parts' corners, s."""
-        return np.unique(np.concatenate([part.corners(step) for part in self.parts]))
-
-    def knots(self, step: float) -> NDArray[np.float64]:
-        """Union of the parts' knots, s."""
-        return np.unique(np.concatenate([part.knots(step) for part in self.parts]))
-
-    @property
-    def extent(self) -> tuple[float, float] | None:
-        """From the first time of any of the parts to the last, s."""
-        return merged_extent(*self.parts)
-
     def smoothed(self, width: Any) -> Profile:
         """Convolution is linear: the sum of the smoothed parts."""
         return Sum(tuple(part.smoothed(width) for part in self.parts))
 
 
 @record
-class Vector(Profile):
+class Vector(_Combined):
     """A vector profile made of three scalar ones; see :func:`vector`."""
 
     parts: tuple[Profile, Profile, Profile]
@@ -83,24 +89,6 @@ class Vector(Profile):
     def series(self, t: Any, order: int) -> Series:
         """Vector at times `t` (s)."""
         return stack([part.series(t, order) for part in self.parts])
-
-    @property
-    def breaks(self) -> Any:
-        """Times of the components' jumps, s."""
-        return merged_breaks(*self.parts)
-
-    def corners(self, step: float) -> NDArray[np.float64]:
-        """Union of the components' corners, s."""
-        return np.unique(np.concatenate([part.corners(step) for part in self.parts]))
-
-    def knots(self, step: float) -> NDArray[np.float64]:
-        """Union of the components' knots, s."""
-        return np.unique(np.concatenate([part.knots(step) for part in self.parts]))
-
-    @property
-    def extent(self) -> tuple[float, float] | None:
-        """From the first time of any of the components to the last, s."""
-        return merged_extent(*self.parts)
 
     def smoothed(self, width: Any) -> Profile:
         """Component by component."""

@@ -4,19 +4,14 @@ from __future__ import annotations
 
 from functools import cache, partial
 from math import factorial, pi
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, is_jax, namespace
 from gbeam.arrays.tree import assign, record
-from gbeam.motion.profiles.profile import TOGETHER, Profile, rounded_corners, sampled
+from gbeam.motion.profiles.profile import TOGETHER, Profile, Rounded
 from gbeam.numerics.series import Series, compose, where
-
-if TYPE_CHECKING:
-    from gbeam.results.description import RecordSummary
-
 
 TURN = 2 * pi
 
@@ -101,7 +96,7 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 
 @record
-class Convolved(Profile):
+class Convolved(Rounded):
     """A profile convolved with the Hann kernel of width W.
 
     The panels end at the profile's breaks, wherever these lie in the window of abs(σ − t) < W/2, so that each
@@ -144,33 +139,9 @@ class Convolved(Profile):
         return (weighted.each(lambda c: beside(c, axes)) * values).each(lambda c: c.sum(axis=now.ndim))
 
     @property
-    def breaks(self) -> Any:
-        """None: the third derivative is continuous."""
-        return self.profile.breaks[:0]
-
-    def corners(self, step: float) -> NDArray[np.float64]:
-        """Breaks of the profile, s, where steps are long beside the width."""
-        return rounded_corners(self.profile.corners(step), self.width, step)
-
-    def knots(self, step: float) -> NDArray[np.float64]:
-        """Times, s, no further apart than `step` within half a width of the profile's knots."""
-        half = float(self.width) / 2
-        inner = self.profile.knots(step)
-        return sampled(inner[0] - half, inner[-1] + half, step)
-
-    @property
-    def record(self) -> RecordSummary | None:
-        """That of the profile."""
-        return self.profile.record
-
-    @property
-    def extent(self) -> tuple[float, float] | None:
-        """That of the profile, s."""
-        return self.profile.extent
-
-    def smoothed(self, width: Any) -> Profile:
-        """Smoothed once more."""
-        return Convolved(self, width)
+    def sharp(self) -> Profile:
+        """The profile."""
+        return self.profile
 
 
 def _panels(xp: Any, ends: Any) -> tuple[Any, Any]:

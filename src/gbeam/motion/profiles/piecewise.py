@@ -12,8 +12,8 @@ from gbeam.arrays.tree import assign, record, static
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive
-from gbeam.motion.profiles.convolution import Convolved, beside, hann_orders
-from gbeam.motion.profiles.profile import TOGETHER, Profile, rounded_corners, sampled
+from gbeam.motion.profiles.convolution import beside, hann_orders
+from gbeam.motion.profiles.profile import TOGETHER, Profile, Rounded
 from gbeam.numerics.series import Series
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ def _line(table: PiecewiseLinear, t: Any, segment: Any, order: int) -> Series:
 
 
 @record
-class SmoothedPiecewiseLinear(Profile):
+class SmoothedPiecewiseLinear(Rounded):
     """Convolution of a piecewise-linear profile with the Hann kernel, exact and three times differentiable.
 
     Notes
@@ -172,32 +172,9 @@ class SmoothedPiecewiseLinear(Profile):
         return _line(self.table, now, first, order) + Series.of(rounded, order)
 
     @property
-    def breaks(self) -> Any:
-        """None: the third derivative is continuous."""
-        return self.times[:0]
-
-    def corners(self, step: float) -> NDArray[np.float64]:
-        """Knots of the table, s, where steps are long beside the width."""
-        return rounded_corners(self.table.corners(step), self.width, step)
-
-    def knots(self, step: float) -> NDArray[np.float64]:
-        """Times, s, no further apart than `step` within half a width of the table's knots."""
-        half = float(self.width) / 2
-        return sampled(float(self.times[0]) - half, float(self.times[-1]) + half, step)
-
-    @property
-    def record(self) -> RecordSummary | None:
-        """That of the table."""
-        return self.table.record
-
-    @property
-    def extent(self) -> tuple[float, float] | None:
-        """That of the table, s."""
-        return self.table.extent
-
-    def smoothed(self, width: Any) -> Profile:
-        """Smoothed once more, by quadrature."""
-        return Convolved(self, width)
+    def sharp(self) -> Profile:
+        """The table."""
+        return self.table
 
 
 @typed

@@ -73,9 +73,14 @@ class Profile(ABC):
         times = self.knots(_FOR_EVER)
         return (float(times[0]), float(times[-1])) if times.size > 1 else None
 
-    @abstractmethod
     def smoothed(self, width: Any) -> Profile:
-        """The profile convolved with the Hann kernel (1 + cos 2πt/W)/W on abs(t) < W/2, W = `width` s."""
+        """The profile convolved with the Hann kernel (1 + cos 2πt/W)/W on abs(t) < W/2, W = `width` s.
+
+        By quadrature, but for profiles that know a better way.
+        """
+        from gbeam.motion.profiles.convolution import Convolved  # itself a profile
+
+        return Convolved(self, width)
 
 
 @typed
@@ -121,3 +126,38 @@ def sampled(start: float, end: float, step: float) -> NDArray[np.float64]:
     fix = f"give {KNOTS * step:.3g} s or less, or smooth over more time"
     refuse_more("", f"knots over {end - start:.4g} s", count, KNOTS, 4000.0, fix)
     return np.linspace(start, end, int(count) + 1)
+
+
+class Rounded(Profile):
+    """A profile convolved with a kernel of some width, s, whose times are those of the sharp one."""
+
+    width: Any
+
+    @property
+    @abstractmethod
+    def sharp(self) -> Profile:
+        """The profile that is rounded."""
+
+    @property
+    def breaks(self) -> Any:
+        """None: the third derivative is continuous."""
+        return self.sharp.breaks[:0]
+
+    def corners(self, step: float) -> NDArray[np.float64]:
+        """Corners of the sharp profile, s, where steps are long beside the width."""
+        return rounded_corners(self.sharp.corners(step), self.width, step)
+
+    def knots(self, step: float) -> NDArray[np.float64]:
+        """Times, s, no further apart than `step` within half a width of the sharp profile's knots."""
+        half, inner = float(self.width) / 2, self.sharp.knots(step)
+        return sampled(float(inner[0]) - half, float(inner[-1]) + half, step)
+
+    @property
+    def record(self) -> RecordSummary | None:
+        """That of the sharp profile."""
+        return self.sharp.record
+
+    @property
+    def extent(self) -> tuple[float, float] | None:
+        """That of the sharp profile, s."""
+        return self.sharp.extent

@@ -11,14 +11,35 @@ from gbeam.arrays.namespace import as_array, namespace
 from gbeam.arrays.tree import assign, record
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive
-from gbeam.motion.profiles.convolution import TURN, Convolved, hann_orders
+from gbeam.motion.profiles.convolution import TURN, hann_orders
 from gbeam.motion.profiles.profile import STEPS_PER_EVENT, Profile, sampled
 from gbeam.numerics.series import Series
 
 
+class _Pulse(Profile):
+    """A curve over a duration from a start on, s, at whose ends a derivative jumps."""
+
+    duration: Any
+    start: Any
+
+    @property
+    def breaks(self) -> Any:
+        """Start and end, s, shape (2,)."""
+        return self.start + self.duration * np.arange(2.0)
+
+    def corners(self, step: float) -> NDArray[np.float64]:
+        """Start and end, s, and the quarters between where these are of few steps."""
+        parts = STEPS_PER_EVENT if float(self.duration) < 2 * STEPS_PER_EVENT * step else 1
+        return np.asarray(self.start + self.duration * (np.arange(1 + parts) / parts))
+
+    def knots(self, step: float) -> NDArray[np.float64]:
+        """Times over the duration, s, no further apart than `step`."""
+        return sampled(float(self.start), float(self.start + self.duration), step)
+
+
 @typed
 @record
-class SmoothStep(Profile):
+class SmoothStep(_Pulse):
     """Slew from zero to a level: level/T (t − T/2π sin 2πt/T) for 0 < t < T, the level after.  # 2009 (43)
 
     Parameters
@@ -66,27 +87,10 @@ class SmoothStep(Profile):
         phase = (as_array(t) - self.start) / self.duration
         return self.level * self.duration * hann_orders(0, 0, phase - 0.5)[0]
 
-    @property
-    def breaks(self) -> Any:
-        """Start and end, s, shape (2,): the third derivative jumps there."""
-        return self.start + self.duration * np.arange(2.0)
-
-    def corners(self, step: float) -> NDArray[np.float64]:
-        """Start and end, s, and the quarters between where these are of few steps."""
-        return _quarters(self, step)
-
-    def knots(self, step: float) -> NDArray[np.float64]:
-        """Times over the slew, s, no further apart than `step`."""
-        return sampled(float(self.start), float(self.start + self.duration), step)
-
-    def smoothed(self, width: Any) -> Profile:
-        """By quadrature."""
-        return Convolved(self, width)
-
 
 @typed
 @record
-class Sine(Profile):
+class Sine(_Pulse):
     """One period of a sine: amplitude sin 2πt/T for 0 <= t <= T, zero before and after.  # 2009 (44)
 
     Parameters
@@ -130,26 +134,3 @@ class Sine(Profile):
         sine, cosine = xp.sin(TURN * phase), xp.cos(TURN * phase) if order else 0.0
         waves = (sine, cosine, -sine, -cosine)
         return Series.of([size * (TURN / self.duration) ** k * waves[k % 4] for k in range(order + 1)], order)
-
-    @property
-    def breaks(self) -> Any:
-        """Start and end, s, shape (2,): corners."""
-        return self.start + self.duration * np.arange(2.0)
-
-    def corners(self, step: float) -> NDArray[np.float64]:
-        """Start and end, s, and the quarters between where these are of few steps."""
-        return _quarters(self, step)
-
-    def knots(self, step: float) -> NDArray[np.float64]:
-        """Times over the pulse, s, no further apart than `step`."""
-        return sampled(float(self.start), float(self.start + self.duration), step)
-
-    def smoothed(self, width: Any) -> Profile:
-        """By quadrature."""
-        return Convolved(self, width)
-
-
-def _quarters(pulse: SmoothStep | Sine, step: float) -> NDArray[np.float64]:
-    """Start and end, s, and the quarters between where these are of few steps."""
-    parts = STEPS_PER_EVENT if float(pulse.duration) < 2 * STEPS_PER_EVENT * step else 1
-    return np.asarray(pulse.start + pulse.duration * (np.arange(1 + parts) / parts))

@@ -12,7 +12,6 @@ from gbeam.arrays.tree import assign, record
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, finite, positive
-from gbeam.motion.profiles.convolution import Convolved
 from gbeam.motion.profiles.profile import Profile, sampled
 from gbeam.numerics.bspline import DEGREE, PIECE, Spline
 from gbeam.numerics.series import Series
@@ -84,10 +83,6 @@ class SplineProfile(Profile):
     def knots(self, step: float) -> NDArray[np.float64]:
         """Times over the duration, s, no further apart than `step`."""
         return sampled(float(self.start), float(self.start + self.duration), step)
-
-    def smoothed(self, width: Any) -> Profile:
-        """By quadrature."""
-        return Convolved(self, width)
 
 
 def through(duration: float, time: Any, values: Any, pieces: int) -> SplineProfile:

@@ -11,7 +11,7 @@ from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record, static
 from gbeam.motion.centrifuge.target.load_limits import IDLE_BAND, REACH_BAND
 from gbeam.motion.profiles.combine import merged_breaks
-from gbeam.motion.profiles.convolution import Convolved, beside, soft_floor, soft_step
+from gbeam.motion.profiles.convolution import beside, soft_floor, soft_step
 from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.samples import true_runs
 from gbeam.numerics.series import Series, sin_cos, sqrt, square, stack, where
@@ -191,10 +191,6 @@ class NearestLoad(Profile):
         """Breaks of the load and of the path, s."""
         knots = self.flight.knots(step)
         return knots if self.path is None else np.union1d(knots, self.path.knots(step))
-
-    def smoothed(self, width: Any) -> Profile:
-        """By quadrature."""
-        return Convolved(self, width)
 
 
 def _sharp_to_smooth(share: Series) -> Series:
