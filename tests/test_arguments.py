@@ -30,9 +30,11 @@ NO_FUNCTIONS = {
     "GbeamError",
     "ComputationError",
     "InputError",
+    "SolidMesh",
+    "SolidModel",
     "Structure",
     "machines",
-}  # Structure: gb.assemble makes it
+}  # SolidMesh.read, its `reduced` and gb.assemble make them
 PUBLIC = [name for name in gb.__all__ if name not in RESULTS | NO_FUNCTIONS]
 WRONG: list[Any] = [
     object(), None, "nonsense", b"nonsense", 2 + 3j, [object()], ["nonsense"], {"nonsense": object()}, {1, 2}, gb.Beam,
@@ -120,6 +122,10 @@ class Given:
             "Model": (
                 ("exact", 1, 1, 1),
                 {"shapes": "clamped-free", "automatic": False, "twist": 1, "shear_y": 1, "shear_z": 1},
+            ),
+            "Orthotropic": (
+                (1900.0, (22e9, 22e9, 10e9), (0.15, 0.3, 0.3), (5e9, 3e9, 3e9), ((1, 0, 0), (0, 1, 0))),
+                {},
             ),
             "Point": (("camera", 0.1), {}),
             "PointMass": ((0.1, 0.1), {"inertia": (0.0, 0.0, 0.0), "offset": (0.0, 0.0, 0.0), "name": "body"}),

@@ -76,12 +76,15 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.results.study import Study as Study
     from gbeam.scenario.build import read_scenario as read_scenario
     from gbeam.scenario.rerun import rerun as rerun
+    from gbeam.solids.mesh import SolidMesh as SolidMesh
+    from gbeam.solids.mesh import SolidModel as SolidModel
     from gbeam.structure.attachments import Load as Load
     from gbeam.structure.attachments import Point as Point
     from gbeam.structure.attachments import PointMass as PointMass
     from gbeam.structure.attachments import Root as Root
     from gbeam.structure.beam import Beam as Beam
     from gbeam.structure.material import Material as Material
+    from gbeam.structure.material import Orthotropic as Orthotropic
     from gbeam.structure.section import Section as Section
     from gbeam.studies.fit import fit as fit
     from gbeam.studies.optimise import optimise as optimise
@@ -112,6 +115,7 @@ _HOME = {
     "Material": "structure.material",
     "Model": "mechanics.models",
     "Optimum": "results.searches",
+    "Orthotropic": "structure.material",
     "Point": "structure.attachments",
     "PointMass": "structure.attachments",
     "Response": "results.response",
@@ -122,6 +126,8 @@ _HOME = {
     "ShapedCommand": "results.searches",
     "Sine": "motion.profiles.pulse",
     "SmoothStep": "motion.profiles.pulse",
+    "SolidMesh": "solids.mesh",
+    "SolidModel": "solids.mesh",
     "SplineProfile": "motion.profiles.spline",
     "StateSpace": "results.state_space",
     "Structure": "mechanics.structure",

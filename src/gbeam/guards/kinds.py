@@ -90,7 +90,7 @@ _BY_KIND = {
     "mass": "mass",
     "density": "density",
     "moment of inertia": "inertia",
-    "pressure": "shear_modulus yield_strength youngs_modulus",
+    "pressure": "shear_moduli shear_modulus yield_strength youngs_moduli youngs_modulus",
     "stiffness": "translation_x translation_y translation_z",
     "rotational stiffness": "rotation_y rotation_z",
     "torque": "torque",

@@ -100,6 +100,8 @@ class Structure:
         What is implausible in the beam; every result has them.
     source : Source or None
         What it was made of; None for a structure of particles, whose errors of shapes and model are unknown.
+    points : tuple of str
+        Names of the stations of a structure of particles, where they have some.
 
     Examples
     --------
@@ -130,6 +132,7 @@ class Structure:
     damping_ratio: Any = None
     warnings: tuple[str, ...] = static(default=())
     source: Source | None = static(default=None)
+    points: tuple[str, ...] = static(default=())
 
     def __repr__(self) -> str:
         shapes = ", ".join(f"{n} {way}" for n, way in zip(self.counts, FAMILIES, strict=True) if n)
@@ -149,7 +152,10 @@ class Structure:
         geometric: Geometric | None = None,
         damping_ratio: Any = 0.0,
         stations: Array | None = None,
+        points: tuple[str, ...] = (),
+        length: float | None = None,
         kind: str = "particles",
+        warnings: tuple[str, ...] = (),
     ) -> Structure:
         """A linear structure of any shape: particles with places, and an elastic stiffness.
 
@@ -167,8 +173,14 @@ class Structure:
             Modal.
         stations : (s,) int, optional
             Indices of the particles whose displacement is put out, the "tip" last; by default the last particle.
+        points : tuple of str
+            Names of the stations in results.
+        length : float, optional
+            Of the structure, m; by default the largest distance of a particle from the root.
         kind : str
             For results.
+        warnings : tuple of str
+            What is implausible in it, for results.
 
         Raises
         ------
@@ -202,13 +214,15 @@ class Structure:
             linear=True,
             hub_force=True,
             counts=(0,) * 6,
-            length=float(np.linalg.norm(np.asarray(r0), axis=-1).max()),
+            length=float(np.linalg.norm(np.asarray(r0), axis=-1).max()) if length is None else length,
             mass=mass,
             places=places,
             stations=np.asarray(r0)[chosen, 0],
             station_places=places[chosen],
             coefficients=c,
             damping_ratio=damping_ratio,
+            warnings=warnings,
+            points=points,
         )
 
     @property

@@ -1,9 +1,12 @@
-"""Materials of a beam."""
+"""Materials of beams and of solids."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
+
+import numpy as np
 
 from gbeam.arrays.namespace import is_jax
 from gbeam.arrays.tree import Value
@@ -14,6 +17,7 @@ from gbeam.guards.ranges import possible
 
 FATIGUE_EXPONENT = 5.0
 ASSUMED_RATIO = 0.3  # Poisson's, of metals
+NEARLY_INCOMPRESSIBLE = 0.495
 
 
 @typed
@@ -77,5 +81,111 @@ class Material(Value):
     @property
     def rigidity(self) -> Any:
         """Shear modulus, Pa: as given, or that of an isotropic material."""
-        isotropic = self.youngs_modulus / (2 * (1 + self.ratio))
-        return isotropic if self.shear_modulus is None else self.shear_modulus
+        return isotropic(self) if self.shear_modulus is None else self.shear_modulus
+
+    @property
+    def elasticity(self) -> Any:
+        """Stresses (6, 6) Pa of unit strains xx, yy, zz, yz, xz, xy in a solid, with twice the tensor's shear; an
+        InputError where Poisson's ratio is missing, or the material is not isotropic and compressible.
+        """
+        if self.poissons_ratio is None:
+            raise InputError("poissons_ratio", "is missing, and a solid needs it", "give one such as 0.3")
+        if self.shear_modulus is not None and not np.isclose(self.shear_modulus, isotropic(self), rtol=1e-3):
+            fix = "leave it out, or give a gb.Orthotropic"
+            raise InputError("shear_modulus", f"is {self.shear_modulus:g} Pa, not E/(2 (1 + ν))", fix)
+        if self.poissons_ratio > NEARLY_INCOMPRESSIBLE:
+            fix = f"give at most {NEARLY_INCOMPRESSIBLE:g}: elements of displacements alone lock beyond"
+            raise InputError("poissons_ratio", f"is {self.poissons_ratio:g}", fix)
+        shear, ratio = isotropic(self), self.poissons_ratio
+        elasticity = np.diag([2 * shear] * 3 + [shear] * 3)
+        elasticity[:3, :3] += 2 * shear * ratio / (1 - 2 * ratio)
+        return elasticity
+
+
+def isotropic(material: Material) -> Any:
+    """Shear modulus of an isotropic material, Pa."""
+    return material.youngs_modulus / (2 * (1 + material.ratio))
+
+
+@typed
+@dataclass(frozen=True, eq=False)
+class Orthotropic(Value):
+    """Linear elastic material with three planes of symmetry, such as a laminate: of solids.
+
+    Parameters
+    ----------
+    density : float
+        Mass per volume, kg/m³.
+    youngs_moduli : (3,)
+        Along its axes 1, 2 and 3, Pa.
+    poissons_ratios : (3,)
+        ν12, ν23 and ν13: contraction along the second axis by a pull along the first.
+    shear_moduli : (3,)
+        G12, G23 and G13, Pa.
+    axes : (2, 3)
+        Directions of its axes 1 and 2, base axes.
+
+    Raises
+    ------
+    InputError
+        If a value is not positive, the axes are not perpendicular, or some strain has no energy.
+
+    Examples
+    --------
+    >>> board = gb.Orthotropic(
+    ...     density=1900,
+    ...     youngs_moduli=(22e9, 22e9, 10e9),
+    ...     poissons_ratios=(0.15, 0.3, 0.3),
+    ...     shear_moduli=(5e9, 3e9, 3e9),
+    ...     axes=((1, 0, 0), (0, 1, 0)),
+    ... )
+    >>> print(f"{board.elasticity[3, 3]:.3g} Pa")
+    3e+09 Pa
+    """
+
+    density: float
+    youngs_moduli: Sequence[float]
+    poissons_ratios: Sequence[float]
+    shear_moduli: Sequence[float]
+    axes: Sequence[Sequence[float]]
+    yield_strength: ClassVar[None] = None
+
+    def __post_init__(self) -> None:
+        possible("density", "density", positive("density", self.density, "kg/m³"))
+        for name in ("youngs_moduli", "poissons_ratios", "shear_moduli"):
+            if len(getattr(self, name)) != 3:
+                raise InputError(name, f"has {len(getattr(self, name))} values", "give three")
+        for name in ("youngs_moduli", "shear_moduli"):
+            for i, each in enumerate(getattr(self, name)):
+                possible(f"{name}[{i}]", "modulus", positive(f"{name}[{i}]", each, "Pa"))
+        for i, each in enumerate(self.poissons_ratios):
+            finite(f"poissons_ratios[{i}]", each)
+        axes = np.asarray(self.axes, dtype=float)
+        if axes.shape != (2, 3) or not np.all(lengths := np.linalg.norm(axes, axis=1)):
+            raise InputError("axes", f"is {self.axes!r}", "give two directions, such as ((1, 0, 0), (0, 1, 0))")
+        if abs(axes[0] @ axes[1]) > 1e-6 * lengths.prod():
+            raise InputError("axes", "are not perpendicular", "give the directions of the material's axes 1 and 2")
+        if not (np.linalg.eigvalsh(self._compliance) > 0).all():
+            fix = "ν12² is below E1/E2, and so are the others: are they ν12, ν23 and ν13?"
+            raise InputError("poissons_ratios", "leave a strain without energy", fix)
+
+    @property
+    def _compliance(self) -> Any:
+        """Strains (6, 6) of unit stresses xx, yy, zz, yz, xz, xy in its own axes."""
+        (e1, e2, e3), (v12, v23, v13), (g12, g23, g13) = self.youngs_moduli, self.poissons_ratios, self.shear_moduli
+        compliance = np.diag([1 / e1, 1 / e2, 1 / e3, 1 / g23, 1 / g13, 1 / g12])
+        compliance[0, 1] = compliance[1, 0] = -v12 / e1
+        compliance[1, 2] = compliance[2, 1] = -v23 / e2
+        compliance[0, 2] = compliance[2, 0] = -v13 / e1
+        return compliance
+
+    @property
+    def elasticity(self) -> Any:
+        """Stresses (6, 6) Pa of unit strains xx, yy, zz, yz, xz, xy, base axes, with twice the tensor's shear."""
+        first, second = (each / np.linalg.norm(each) for each in np.asarray(self.axes, dtype=float))
+        turned = np.stack([first, second, np.cross(first, second)], axis=1)
+        pairs = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
+        voigt = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])
+        tensor = np.linalg.inv(self._compliance)[voigt[:, :, None, None], voigt]
+        tensor = np.einsum("ai,bj,ck,dl,ijkl->abcd", turned, turned, turned, turned, tensor)
+        return np.array([[tensor[p][q] for q in pairs] for p in pairs])

@@ -185,7 +185,7 @@ def output_signals(structure: Structure, gauges: Sequence[Gauge], motion: Motion
 def points_of(structure: Structure) -> dict[str, int]:
     """Named points of the beam besides the tip, with the numbers of their stations."""
     if structure.source is None:
-        return {}
+        return {name: k for k, name in enumerate(structure.points) if name != TIP}
     names = names_at(structure.source.beam, structure.stations)
     return {name: k for k, name in enumerate(names) if name in structure.source.beam.named_points and name != TIP}
 
@@ -201,8 +201,9 @@ def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gau
     if every is None:
         if gauges:
             raise InputError("gauges", "are given of particles, which have no sections", "leave them out")
-        mass = structure.mass
-        every = Sections(None, np.stack([mass, 0 * mass]), np.zeros((2, 0)))
+        mass, count = structure.mass, len(structure.stations)
+        outboard_mass = np.concatenate([mass[None], np.zeros((count, len(mass)))])
+        every = Sections(None, outboard_mass, np.zeros((count + 1, 0)))
     if gauges:
         assert structure.source is not None
         beam, unit = structure.source.beam, np.eye(6)[:, None]

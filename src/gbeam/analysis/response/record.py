@@ -196,7 +196,9 @@ def response_of(
         warnings=warnings,
         time=time,
         stations=np.asarray(structure.stations),
-        points=() if traced or structure.source is None else names_at(structure.source.beam, structure.stations),
+        points=structure.points
+        if traced or structure.source is None
+        else names_at(structure.source.beam, structure.stations),
         displacement=displacement,
         q=q[:, beam],
         qd=qd[:, beam],

@@ -1,0 +1,201 @@
+"""Solid elements: their shape functions and quadrature are scikit-fem's, the sums over them stand here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.arrays.tree import Value
+from gbeam.errors import InputError
+from gbeam.results.result import Floats
+
+Indices = NDArray[np.intp]
+CHUNK = 4000  # elements at once
+
+_CORNERS = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
+_EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+_FACES = [[0, 0.5, 0.5], [1, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 1, 0.5], [0.5, 0.5, 0], [0.5, 0.5, 1], [0.5, 0.5, 0.5]]
+_HEXAHEDRON = np.array([*_CORNERS, *((np.add(_CORNERS[i], _CORNERS[j]) / 2) for i, j in _EDGES), *_FACES])
+
+
+@dataclass(frozen=True)
+class Kind:
+    """Kind of element by meshio's name: scikit-fem's, and the degrees of the quadrature of stiffness, mass and stress;
+    the monomials in which stress is extrapolated, by their exponents.
+    """
+
+    element: str
+    stiffness: int
+    mass: int
+    stress: int
+    monomials: tuple[tuple[int, int, int], ...]
+    linear: bool = False
+
+
+_LINEAR = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1))
+_TRILINEAR = tuple((i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1))
+_WEDGE = tuple((i, j, k) for i, j in ((0, 0), (1, 0), (0, 1)) for k in (0, 1))
+KINDS = {
+    "tetra": Kind("ElementTetP1", 1, 2, 1, _LINEAR[:1], linear=True),
+    "tetra10": Kind("ElementTetP2", 2, 5, 2, _LINEAR),
+    "hexahedron": Kind("ElementHex1", 3, 5, 3, _TRILINEAR, linear=True),
+    "hexahedron20": Kind("ElementHexS2", 5, 7, 3, _TRILINEAR),
+    "hexahedron27": Kind("ElementHex2", 5, 7, 3, _TRILINEAR),
+    "wedge": Kind("ElementWedge1", 3, 5, 3, _WEDGE, linear=True),
+}
+# Strains xx, yy, zz, yz, xz, xy, with twice the tensor's shear, of the gradients [displacement, along].
+STRAIN = np.zeros((6, 3, 3))
+for _row, _pairs in enumerate(([(0, 0)], [(1, 1)], [(2, 2)], [(1, 2), (2, 1)], [(0, 2), (2, 0)], [(0, 1), (1, 0)])):
+    for _pair in _pairs:
+        STRAIN[_row][_pair] = 1.0
+TENSOR = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])  # place of each component of stress
+
+
+@dataclass(frozen=True, eq=False)
+class Block(Value):
+    """Elements of one kind and one material: nodes (e, k), their numbers (e,) in the file, the material's name."""
+
+    kind: str
+    nodes: Indices
+    numbers: Indices
+    material: str
+    density: float
+    elasticity: Floats
+
+
+def import_skfem() -> Any:
+    """Import scikit-fem; an InputError says how to install it where it is not."""
+    try:
+        import skfem
+    except ModuleNotFoundError:
+        raise InputError("", "scikit-fem is not installed", 'install it with: pip install "gbeam[mesh]"') from None
+    return skfem
+
+
+@cache
+def shape_functions(kind: str, degree: int) -> tuple[Floats, Floats, Floats, Floats]:
+    """Points (q, 3), weights (q,), shape functions (q, k) and their derivatives (q, k, 3) at a rule of some degree, in
+    meshio's order of the nodes.
+    """
+    from skfem.quadrature import get_quadrature
+    from skfem.refdom import RefLine, RefTri
+
+    element = getattr(import_skfem(), KINDS[kind].element)()
+    if kind == "wedge":  # scikit-fem 12's rule has the triangle across another axis, and half the weights
+        (flat, over), (line, along) = get_quadrature(RefTri, degree), get_quadrature(RefLine, degree)
+        points = np.concatenate([np.repeat(flat, len(along), axis=1), np.tile(line, len(over))])
+        weights = np.outer(over, along).ravel()
+    else:
+        points, weights = get_quadrature(element.refdom, degree)
+    pairs = [element.lbasis(points, i) for i in _order(kind)]
+    values = np.stack([np.broadcast_to(value, points.shape[1]) for value, _ in pairs], axis=1)
+    slopes = [np.stack([np.broadcast_to(each, points.shape[1]) for each in slope], axis=1) for _, slope in pairs]
+    return points.T, weights, values, np.stack(slopes, axis=1)
+
+
+@cache
+def extrapolation(kind: str) -> Floats:
+    """Values at the nodes of a polynomial by those at the points of stress, (k, q)."""
+    points = shape_functions(kind, KINDS[kind].stress)[0]
+    powers = np.array(KINDS[kind].monomials)
+
+    def monomials(at: Floats) -> Floats:
+        return np.prod(at[:, None, :] ** powers, axis=-1)
+
+    return monomials(_reference(kind)) @ np.linalg.pinv(monomials(points))
+
+
+def _reference(kind: str) -> Floats:
+    """Places of the nodes in the reference element, (k, 3), in meshio's order."""
+    places = np.array(getattr(import_skfem(), KINDS[kind].element).doflocs)
+    return _HEXAHEDRON[: len(places)] if kind.startswith("hexahedron") else places
+
+
+@cache
+def _order(kind: str) -> tuple[int, ...]:
+    """Numbers in scikit-fem of an element's nodes."""
+    theirs = np.array(getattr(import_skfem(), KINDS[kind].element).doflocs)
+    apart = np.abs(_reference(kind)[:, None] - theirs).max(axis=-1)
+    return tuple(int(i) for i in apart.argmin(axis=1))
+
+
+def _jacobians(points: Floats, nodes: Indices, slopes: Floats) -> Floats:
+    """Derivatives (e, q, 3, 3) of places by those in the reference, of shape functions' derivatives (q, k, 3)."""
+    return np.einsum("ekd,qkc->eqdc", points[nodes], slopes, optimize=True)
+
+
+def determinants(points: Floats, nodes: Indices, slopes: Floats) -> Floats:
+    """Determinants (e, q) of elements' maps from the reference."""
+    return np.linalg.det(_jacobians(points, nodes, slopes))
+
+
+def chunks(
+    points: Floats, blocks: Sequence[Block], degree: str
+) -> Iterator[tuple[Block, slice, Floats, Floats, Floats]]:
+    """Parts of all elements: block, which, volumes (e, q), gradients (e, q, k, 3) and shape functions (q, k)."""
+    for block in blocks:
+        _, weights, values, slopes = shape_functions(block.kind, getattr(KINDS[block.kind], degree))
+        for start in range(0, len(block.nodes), CHUNK):
+            part = slice(start, start + CHUNK)
+            jacobians = _jacobians(points, block.nodes[part], slopes)
+            gradients = np.einsum("qkc,eqcd->eqkd", slopes, np.linalg.inv(jacobians), optimize=True)
+            yield block, part, np.linalg.det(jacobians) * weights, gradients, values
+
+
+def _summed(size: int, unknowns: Indices, matrices: Floats) -> Any:
+    """Sparse matrix of elements' unknowns (e, k) and matrices (e, k, k)."""
+    from scipy.sparse import coo_array
+
+    k = unknowns.shape[1]
+    rows, columns = np.repeat(unknowns, k, axis=1).ravel(), np.tile(unknowns, (1, k)).ravel()
+    return coo_array((matrices.ravel(), (rows, columns)), shape=(size, size)).tocsr()
+
+
+def stiffness_matrix(points: Floats, blocks: Sequence[Block]) -> Any:
+    """Elastic stiffness (3 k, 3 k), node by node."""
+    size, total = 3 * len(points), None
+    for block, part, volume, gradients, _ in chunks(points, blocks, "stiffness"):
+        e, q, k, _ = gradients.shape
+        strain = np.einsum("vcd,eqkd->eqvkc", STRAIN, gradients, optimize=True).reshape(e, q, 6, 3 * k)
+        stress = np.matmul(block.elasticity, strain) * volume[..., None, None]
+        matrices = strain.reshape(e, q * 6, -1).swapaxes(1, 2) @ stress.reshape(e, q * 6, -1)
+        unknowns = (3 * block.nodes[part][..., None] + np.arange(3)).reshape(e, -1)
+        one = _summed(size, unknowns, matrices)
+        total = one if total is None else total + one
+    return total
+
+
+def mass_matrix(points: Floats, blocks: Sequence[Block]) -> Any:
+    """Consistent mass (k, k) of one component of the displacement."""
+    total = None
+    for block, part, volume, _, values in chunks(points, blocks, "mass"):
+        matrices = np.einsum("eq,qi,qj->eij", block.density * volume, values, values, optimize=True)
+        one = _summed(len(points), block.nodes[part], matrices)
+        total = one if total is None else total + one
+    return total
+
+
+def stress_at(block: Block, nodes: Indices, gradients: Floats, u: Floats) -> Floats:
+    """Stresses (e, q, 6, m) of elements under displacements (k, 3, m)."""
+    moved = np.einsum("eqkd,ekcm->eqcdm", gradients, u[nodes], optimize=True)
+    return np.einsum("vw,wcd,eqcdm->eqvm", block.elasticity, STRAIN, moved, optimize=True)
+
+
+def geometric_stiffness(points: Floats, blocks: Sequence[Block], static: Floats, shapes: Floats) -> Floats:
+    """Geometric stiffness (m, n, n) in `shapes` (k, 3, n) at the stress of static displacements (k, 3, m)."""
+    m, n = static.shape[-1], shapes.shape[-1]
+    total = np.zeros((m, n, n))
+    for block, part, volume, gradients, _ in chunks(points, blocks, "stiffness"):
+        nodes = block.nodes[part]
+        stress = stress_at(block, nodes, gradients, static)[:, :, TENSOR] * volume[..., None, None, None]
+        slopes = np.einsum("eqkd,ekcn->eqdcn", gradients, shapes[nodes], optimize=True)
+        flat = slopes.reshape(-1, n)
+        for load in range(m):
+            pulled = np.matmul(stress[..., load], slopes.reshape(*slopes.shape[:3], -1))
+            total[load] += flat.T @ pulled.reshape(-1, n)
+    return (total + total.swapaxes(1, 2)) / 2

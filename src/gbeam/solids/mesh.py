@@ -1,0 +1,429 @@
+"""A solid of finite elements on a moving base, and its reduction to a structure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.arrays.tree import Value
+from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
+from gbeam.guards.checks import positive
+from gbeam.guards.units import UnitError, quantity
+from gbeam.mechanics.equations.linear import geometric_of
+from gbeam.mechanics.structure import Structure
+from gbeam.results.result import Floats
+from gbeam.solids.elements import (
+    KINDS,
+    Block,
+    Indices,
+    chunks,
+    determinants,
+    geometric_stiffness,
+    mass_matrix,
+    shape_functions,
+    stiffness_matrix,
+)
+from gbeam.solids.factor import refuse_cost
+from gbeam.solids.foreign import elements_in, no_group, nodes_in, read_mesh, solid_blocks
+from gbeam.solids.reduction import Reduced, linear_fields, particles_of, reduce
+from gbeam.structure.attachments import TIP, checked_name
+from gbeam.structure.material import Material, Orthotropic
+
+FLAT = 1e-6  # of the largest volume of a part of it: an element with less anywhere is folded
+STRAIGHT = 1e-6  # of the size: points that are nearer to a line do not hold a body
+LARGE, HEAVY = 20.0, 1e4  # m and kg: nobody mounts more on a machine
+SMALL = 1e-3  # m
+ROUGH = 0.05  # of the lowest frequency, between two meshes
+
+
+@dataclass(frozen=True, eq=False)
+class SolidMesh(Value):
+    """A solid of finite elements, clamped at some nodes; made by :meth:`read`.
+
+    Parameters
+    ----------
+    points : (k, 3) places of the nodes from the root, base axes, m
+    blocks : tuple of Block
+        Elements of one kind and material each.
+    clamped : (k,) bool
+        Nodes that follow the base.
+    numbers : (k,) int
+        Places of the nodes in the file, from 0.
+    point_masses : (k,) masses on the nodes, kg
+    stations : dict of int
+        Nodes that are put out, by their names; the last is the tip.
+    strengths : dict of float
+        Yield strengths of materials by their names, Pa, of those that have one.
+    warnings : tuple of str
+        What is implausible in it.
+
+    Examples
+    --------
+    >>> metal = gb.Material(density=2700, youngs_modulus=70e9, poissons_ratio=0.33)
+    >>> materials = {"bracket": metal, "camera": metal}
+    >>> solid = gb.SolidMesh.read("examples/data/bracket.msh", materials=materials, clamp="screwed", unit="mm")
+    >>> list(solid.stations), int(solid.clamped.sum())
+    (['tip'], 93)
+    """
+
+    points: Floats
+    blocks: tuple[Block, ...]
+    clamped: NDArray[np.bool_]
+    numbers: Indices
+    point_masses: Floats
+    stations: dict[str, int]
+    strengths: dict[str, float] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+
+    @classmethod
+    @typed
+    def read(
+        cls,
+        source: Any,
+        *,
+        materials: Material | Orthotropic | Mapping[str, Material | Orthotropic],
+        clamp: str | Sequence[str],
+        unit: str,
+        points: Mapping[str, Any] | None = None,
+        point_masses: Mapping[str, float] | None = None,
+        origin: Sequence[float] = (0.0, 0.0, 0.0),
+    ) -> SolidMesh:
+        """Read a mesh of solid elements.
+
+        Parameters
+        ----------
+        source : path or meshio.Mesh
+            A file of Gmsh, Nastran bulk data, Abaqus or CalculiX, VTK or another format of meshio; needs the extra
+            ``mesh``. Tetrahedra of 4 and 10 nodes, hexahedra of 8, 20 and 27, and wedges of 6 are read; surfaces and
+            lines only name groups. Nodes without solid elements are left out.
+        materials : Material, Orthotropic or dict
+            Of all elements, or by group: a physical group of Gmsh, a property's number, an element set. Poisson's
+            ratio is needed.
+        clamp : str or sequence of str
+            Groups whose nodes follow the base.
+        unit : str
+            Of the mesh's coordinates, such as ``mm``.
+        points : dict, optional
+            Places of output by name: (x, y, z) in m and base axes, for the nearest node, or a group of one node. The
+            ``tip`` is the node farthest from the root where it is not given.
+        point_masses : dict, optional
+            Masses by the name of a point, or of a group over whose nodes it is spread evenly, kg.
+        origin : (3,)
+            Root in the mesh's coordinates, m: the point whose acceleration the motion gives. The base axes are along
+            those of the mesh.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read, has no solid elements or one that is folded, a group is not there, elements
+            have no material or two, a part of the mesh is not held by the clamp, or the factors would not fit into
+            memory.
+
+        Examples
+        --------
+        >>> aluminium = gb.Material(density=2700, youngs_modulus=70e9, poissons_ratio=0.33)
+        >>> materials = {"bracket": aluminium, "camera": aluminium}
+        >>> gb.SolidMesh.read("examples/data/bracket.msh", materials=materials, clamp="screwed", unit="mm")
+        SolidMesh(1645 nodes, 256 hexahedron20, 0.268 kg)
+        """
+        mesh = read_mesh(source)
+        try:
+            scale = quantity(f"1 {unit}", "length")
+        except UnitError as error:
+            raise InputError("unit", f"is {unit!r}: {error.problem}", error.hint or 'give one such as "mm"') from None
+        places = np.asarray(mesh.points, dtype=float)
+        if places.ndim != 2 or places.shape[1] != 3 or not np.isfinite(places).all():
+            raise InputError("mesh", f"has points of shape {places.shape}, or not finite", "give x, y and z of each")
+        solids = solid_blocks(mesh)
+        used = np.unique(np.concatenate([mesh.cells[i].data.ravel() for i in solids]))
+        refuse_cost("mesh", 3 * len(used))
+        if used[0] < 0 or used[-1] >= len(places):
+            raise InputError("mesh", f"has elements on node {used[-1] + 1} of {len(places)}", "write it again")
+        new = np.full(len(places), -1)
+        new[used] = np.arange(len(used))
+        at = scale * places[used] - np.asarray(origin, dtype=float)
+
+        def group(where: str, name: str) -> Indices:
+            nodes = new[nodes_in(mesh, where, name)]
+            if not (nodes >= 0).any():
+                raise InputError(where, f"is {name!r}, which has no node of a solid element", "merge their nodes")
+            return nodes[nodes >= 0]
+
+        clamped = np.zeros(len(used), dtype=bool)
+        for name in [clamp] if isinstance(clamp, str) else clamp:
+            clamped[group("clamp", name)] = True
+        named = {} if points is None else {name: _node(at, name, place, group) for name, place in points.items()}
+        tip = named.pop(TIP, int(np.argmax(np.linalg.norm(at, axis=1))))
+        weights = np.zeros(len(used))
+        for name, mass in (point_masses or {}).items():
+            where = f"point_masses.{name}"
+            nodes = np.array([tip if name == TIP else named[name]]) if name in {*named, TIP} else group(where, name)
+            weights[nodes] += positive(where, mass, "kg") / len(nodes)
+        blocks = _blocks(mesh, solids, new, materials)
+        kinds = materials if isinstance(materials, Mapping) else {"": materials}
+        strengths = {name: each.yield_strength for name, each in kinds.items() if each.yield_strength is not None}
+        solid = cls(at, blocks, clamped, used, weights, named | {TIP: tip}, strengths)
+        _refuse_folded(solid)
+        _refuse_loose(solid)
+        return cls(**{**vars(solid), "warnings": tuple(_doubts(solid, unit))})
+
+    def __repr__(self) -> str:
+        counts: dict[str, int] = {}
+        for block in self.blocks:
+            counts[block.kind] = counts.get(block.kind, 0) + len(block.nodes)
+        elements = ", ".join(f"{count} {kind}" for kind, count in counts.items())
+        return f"SolidMesh({len(self.points)} nodes, {elements}, {self.mass:.4g} kg)"
+
+    @property
+    def mass(self) -> float:
+        """Mass with that on the nodes, kg."""
+        parts = (block.density * volume.sum() for block, _, volume, _, _ in chunks(self.points, self.blocks, "mass"))
+        return float(sum(parts) + self.point_masses.sum())
+
+    @typed
+    def reduced(
+        self, *, modes: int, damping_ratio: Any, kind: str = "solid", coarser: SolidModel | None = None
+    ) -> SolidModel:
+        """Reduce the solid to its lowest modes and its static answers to unit inertial loads.
+
+        Parameters
+        ----------
+        modes : int
+            Number of modes; up to twelve static shapes come on top, so that any steady acceleration and rotation of
+            the base deforms the solid as all of its elements would.
+        damping_ratio : float or sequence
+            Of critical damping, of every coordinate, or one for each.
+        kind : str
+            Name of the model in results.
+        coarser : SolidModel, optional
+            Of a coarser mesh of the same solid, by which the mesh's error is estimated; without one it is unknown.
+
+        Returns
+        -------
+        SolidModel
+
+        Raises
+        ------
+        InputError
+            If more modes are asked for than there are unknowns.
+
+        Examples
+        --------
+        >>> metal = gb.Material(density=2700, youngs_modulus=70e9, poissons_ratio=0.33)
+        >>> materials = {"bracket": metal, "camera": metal}
+        >>> solid = gb.SolidMesh.read("examples/data/bracket.msh", materials=materials, clamp="screwed", unit="mm")
+        >>> [f"{each:.0f} Hz" for each in solid.reduced(modes=2, damping_ratio=0.02).frequency]
+        ['174 Hz', '471 Hz']
+        """
+        from scipy.sparse import diags_array, eye_array, kron
+
+        mass = (mass_matrix(self.points, self.blocks) + diags_array(self.point_masses)).tocsr()
+        # Body forces −1, −x, −y and −z along x, then along y, then along z.
+        weights = mass @ linear_fields(self.points)
+        loads = -np.einsum("kf,ac->kcaf", weights, np.eye(3)).reshape(3 * len(weights), 12)
+        free = np.repeat(~self.clamped, 3)
+        stiffness = stiffness_matrix(self.points, self.blocks)
+        reduced = reduce(stiffness, kron(mass, eye_array(3), format="csr"), loads, free, modes)
+        del stiffness
+        n = len(reduced.squares)
+        fields = geometric_stiffness(self.points, self.blocks, reduced.static, reduced.shapes).reshape(3, 4, n, n)
+        frequency = np.sqrt(reduced.squares[:modes]) / (2 * np.pi)
+        error, doubts = _mesh_errors(frequency, coarser)
+        structure = structure_of(
+            self.points,
+            reduced,
+            mass,
+            geometric_of(fields[:, 0], fields[:, 1:].swapaxes(0, 1)),
+            self.stations,
+            damping_ratio,
+            kind,
+            (*self.warnings, *doubts),
+        )
+        return SolidModel(self, structure, reduced.shapes, frequency, error)
+
+
+@dataclass(frozen=True, eq=False)
+class SolidModel(Value):
+    """A solid reduced to a few coordinates; made by :meth:`SolidMesh.reduced`.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+    structure : Structure
+        That analyses take; its coordinates are modes of unit modal mass, ascending in frequency.
+    shapes : (k, 3, n) displacements of the nodes per coordinate
+    frequency : (m,) natural frequencies of the modes, Hz
+    mesh_error : (m,) estimated errors of the frequencies by the mesh, as fractions
+        Their difference to those of a coarser mesh; NaN where there is none.
+
+    Examples
+    --------
+    >>> metal = gb.Material(density=2700, youngs_modulus=70e9, poissons_ratio=0.33)
+    >>> materials = {"bracket": metal, "camera": metal}
+    >>> solid = gb.SolidMesh.read("examples/data/bracket.msh", materials=materials, clamp="screwed", unit="mm")
+    >>> bracket = solid.reduced(modes=4, damping_ratio=0.02)
+    >>> bracket.structure
+    Structure(solid, 16 coordinates, 0.268 kg)
+    """
+
+    mesh: SolidMesh
+    structure: Structure
+    shapes: Floats
+    frequency: Floats
+    mesh_error: Floats
+
+    def __repr__(self) -> str:
+        shown = ", ".join(f"{each:.4g}" for each in self.frequency[:6])
+        known = np.isfinite(self.mesh_error)
+        error = f"up to {100 * self.mesh_error[known].max():.2g} %" if known.any() else "unknown, give a coarser mesh"
+        return f"SolidModel({self.structure.size} coordinates; {shown} Hz; error of the mesh {error})"
+
+
+def _mesh_errors(frequency: Floats, coarser: SolidModel | None) -> tuple[Floats, tuple[str, ...]]:
+    """Differences of frequencies to those of a coarser mesh, as fractions, and a warning where they are large."""
+    error = np.full(len(frequency), np.nan)
+    if coarser is None:
+        return error, ()
+    both = min(len(error), len(coarser.frequency))
+    error[:both] = np.abs(coarser.frequency[:both] / frequency[:both] - 1)
+    if error[0] <= ROUGH:
+        return error, ()
+    return error, (f"the mesh: a coarser one changes the lowest frequency by {100 * error[0]:.2g} %; mesh it finer",)
+
+
+def structure_of(
+    points: Floats,
+    reduced: Reduced,
+    mass: Any,
+    geometric: Any,
+    stations: Mapping[str, int],
+    damping_ratio: Any,
+    kind: str,
+    warnings: tuple[str, ...],
+) -> Structure:
+    """The structure of a reduction: particles with the products of its mass matrix, and without mass the stations."""
+    masses, places, first = particles_of(points, reduced.shapes, mass)
+    nodes = list(stations.values())
+    return Structure.of_particles(
+        np.append(masses, np.zeros(len(nodes))),
+        np.concatenate([places, points[nodes]]),
+        np.concatenate([first, reduced.shapes[nodes]]),
+        np.diag(reduced.squares),
+        geometric=geometric,
+        damping_ratio=damping_ratio,
+        stations=np.arange(-len(nodes), 0),
+        points=tuple(stations),
+        length=float(np.linalg.norm(points, axis=1).max()),
+        kind=kind,
+        warnings=warnings,
+    )
+
+
+def _node(at: Floats, name: str, place: Any, group: Any) -> int:
+    """The node of a named point."""
+    where = f"points.{name}"
+    if name != TIP:
+        try:
+            checked_name(name)
+        except InputError as error:
+            raise error.within("points") from None
+    if isinstance(place, str):
+        nodes = group(where, place)
+        if len(nodes) != 1:
+            raise InputError(where, f"is the group {place!r} of {len(nodes)} nodes", "give one node, or a place")
+        return int(nodes[0])
+    place = np.asarray(place, dtype=float)
+    if place.shape != (3,) or not np.isfinite(place).all():
+        raise InputError(where, f"is {place!r}", "give x, y and z in m, or a group")
+    away = np.linalg.norm(at - place, axis=1)
+    size = float(np.linalg.norm(np.ptp(at, axis=0)))
+    if away.min() > 0.1 * size:
+        raise InputError(where, f"is {away.min():.3g} m from the nearest node", "give a place on the solid, in m")
+    return int(away.argmin())
+
+
+def _blocks(mesh: Any, solids: list[int], new: Indices, materials: Any) -> tuple[Block, ...]:
+    """Elements of each kind and material."""
+    given = materials if isinstance(materials, Mapping) else {"": materials}
+    owner = {i: np.full(len(mesh.cells[i].data), -1) for i in solids}
+    for m, name in enumerate(given):
+        chosen = elements_in(mesh, name) if isinstance(materials, Mapping) else None
+        if chosen is None and isinstance(materials, Mapping):
+            raise no_group(mesh, f"materials.{name}", name)
+        for i in solids:
+            which = np.arange(len(owner[i])) if chosen is None else chosen[i]
+            taken = owner[i][which]
+            if (taken >= 0).any():
+                both = f"{list(given)[taken.max()]!r} and {name!r}"
+                raise InputError("materials", f"give {(taken >= 0).sum()} elements two: {both}", "give each one")
+            owner[i][which] = m
+    without = sum(int((each < 0).sum()) for each in owner.values())
+    if without:
+        raise InputError("materials", f"give {without} elements none", "name the groups of all elements")
+    first = np.cumsum([0, *(len(block.data) for block in mesh.cells)])
+    blocks = []
+    for m, (name, material) in enumerate(given.items()):
+        try:
+            elasticity = material.elasticity
+        except InputError as error:
+            raise error.within(f"materials.{name}" if name else "materials") from None
+        for i in solids:
+            which = np.flatnonzero(owner[i] == m)
+            if len(which):
+                nodes, kind = new[mesh.cells[i].data[which]], mesh.cells[i].type
+                blocks.append(Block(kind, nodes, first[i] + which + 1, name, float(material.density), elasticity))
+    if not blocks:
+        raise InputError("materials", "give no solid element any", "name the groups of all elements")
+    return tuple(blocks)
+
+
+def _refuse_folded(mesh: SolidMesh) -> None:
+    bad: list[int] = []
+    for block in mesh.blocks:
+        slopes = shape_functions(block.kind, KINDS[block.kind].mass)[-1]
+        grown = determinants(mesh.points, block.nodes, slopes)
+        bad += block.numbers[~(grown.min(axis=1) > FLAT * np.abs(grown).max(axis=1))].tolist()
+    if bad:
+        some = ", ".join(map(str, bad[:3])) + (", ..." if len(bad) > 3 else "")
+        fix = "mesh it again, or number their nodes the other way round"
+        raise InputError("mesh", f"has {len(bad)} elements turned inside out or folded: {some}", fix)
+
+
+def _refuse_loose(mesh: SolidMesh) -> None:
+    """Refuse a part of the mesh that the clamp does not hold."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    pairs = [(np.repeat(b.nodes[:, 0], b.nodes.shape[1]), b.nodes.ravel()) for b in mesh.blocks]
+    rows, columns = (np.concatenate(each) for each in zip(*pairs, strict=True))
+    graph = coo_array((np.ones(len(rows), dtype=bool), (rows, columns)), shape=(len(mesh.points),) * 2)
+    count, part = connected_components(graph, directed=False)
+    for i in range(count):
+        nodes = part == i
+        held = mesh.points[nodes & mesh.clamped]
+        size = np.linalg.svd(held - held.mean(axis=0), compute_uv=False) if len(held) > 2 else np.zeros(3)
+        if size[1] > STRAIGHT * np.linalg.norm(np.ptp(mesh.points[nodes], axis=0)):
+            continue
+        middle = ", ".join(f"{each:.3g}" for each in mesh.points[nodes].mean(axis=0))
+        where = "the mesh" if count == 1 else f"a part of {nodes.sum()} nodes about ({middle}) m"
+        fix = "clamp three nodes or more that lie on no line" + ("" if count == 1 else ", or merge coincident nodes")
+        raise InputError("clamp", f"holds {where} at {len(held)} nodes, so that it moves without strain", fix)
+
+
+def _doubts(mesh: SolidMesh, unit: str) -> list[str]:
+    """What is implausible in a mesh, or known to be inaccurate."""
+    size, mass = float(np.linalg.norm(np.ptp(mesh.points, axis=0))), mesh.mass
+    doubts = []
+    if size > LARGE or mass > HEAVY or size < SMALL:
+        other = "mm" if size > LARGE or mass > HEAVY else "m"
+        other = other if other != unit else "another one"
+        doubts.append(f"the mesh is {size:.3g} m across and weighs {mass:.3g} kg with unit = {unit!r}; is it {other}?")
+    linear = sum(len(block.nodes) for block in mesh.blocks if KINDS[block.kind].linear)
+    if linear:
+        doubts.append(f"{linear} linear elements bend too stiffly (shear locking): use quadratic ones")
+    return doubts

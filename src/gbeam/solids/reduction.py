@@ -1,0 +1,111 @@
+"""A large linear structure in a few coordinates: its lowest modes, and its static answers to unit inertial loads.
+
+The inertia of a field of displacement that is linear in the coordinates needs the products of 1, x, y, z and the shapes
+only. Particles of equal mass that have the same products stand for the mass matrix, however large it was: D'Alembert's
+sum over them is that over the mesh, to the last digits, at a cost that does not depend on it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gbeam.errors import InputError
+from gbeam.results.result import Floats
+from gbeam.solids.factor import factorised
+
+ZERO = 1e-10  # of the largest of the eigenvalues computed: a smaller one is that of a motion without strain
+ALIKE = 1e-9  # of its energy: what is left of a static answer beside the modes and the others adds nothing
+FAINT = 1e-14  # of the largest: a product of shapes that is rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Reduced:
+    """Shapes (k, 3, n) of unit modal mass, ascending in frequency, squares (n,) of their circular frequencies, and the
+    static displacements (k, 3, 12) under body forces of −1 and −x, −y, −z along each axis, axis by axis.
+    """
+
+    shapes: Floats
+    squares: Floats
+    static: Floats
+
+
+def linear_fields(points: Floats) -> Floats:
+    """1, x, y and z at points (k, 3), (k, 4)."""
+    return np.concatenate([np.ones((len(points), 1)), points], axis=1)
+
+
+def reduce(stiffness: Any, mass: Any, loads: Floats, free: Any, modes: int) -> Reduced:
+    """Reduce matrices of all unknowns, (3 k, 3 k), held but for the `free` ones, under `loads` (3 k, 12)."""
+    from scipy.sparse import csc_matrix
+    from scipy.sparse.linalg import LinearOperator, eigsh
+
+    k_free, m_free, f = csc_matrix(stiffness)[free][:, free], csc_matrix(mass)[free][:, free], loads[free]
+    count = len(f)
+    if not 1 <= modes < count:
+        raise InputError("modes", f"is {modes}, of {count} unknowns", f"give 1 to {count - 1}")
+    with factorised(k_free) as solve:
+        static = solve(f)
+        if modes > count // 2:  # too many for Lanczos' iteration: these are small
+            square, vector = _dense(k_free.toarray(), m_free.toarray())
+            square, vector = square[:modes], vector[:, :modes]
+        else:
+            inverse = LinearOperator(k_free.shape, matvec=solve, dtype=float)
+            start = np.cos(np.arange(count))  # the same one each time
+            square, vector = eigsh(k_free, k=modes, M=m_free, sigma=0, OPinv=inverse, v0=start)
+    order = np.argsort(square)
+    square, vector = square[order], vector[:, order]
+    if not square[0] > ZERO * square[-1]:
+        fix = "hold the structure so that nothing moves without strain"
+        raise InputError("stiffness", "is not positive definite", fix)
+    rest = _complement(k_free, m_free, vector, static)
+    basis = np.concatenate([vector, rest], axis=1)
+    square, within = _dense(basis.T @ (k_free @ basis), basis.T @ (m_free @ basis))
+    shapes, still = np.zeros((loads.shape[0], basis.shape[1])), np.zeros_like(loads)
+    shapes[free], still[free] = basis @ within, static
+    return Reduced(shapes.reshape(-1, 3, basis.shape[1]), square, still.reshape(-1, 3, loads.shape[1]))
+
+
+def _dense(stiffness: Floats, mass: Floats) -> tuple[Floats, Floats]:
+    from scipy.linalg import eigh
+
+    try:
+        return eigh(stiffness, mass)
+    except np.linalg.LinAlgError:
+        fix = "give the unknowns mass, or condense those without"
+        raise InputError("mass", "is not positive definite", fix) from None
+
+
+def _complement(stiffness: Any, mass: Any, modes: Floats, static: Floats) -> Floats:
+    """Span of what the static answers (n, m) have beside the modes, of unit energy, (n, l)."""
+    energy = np.einsum("ij,ij->j", static, stiffness @ static)
+    moved = static[:, energy > 0] / np.sqrt(energy[energy > 0])
+    for _ in range(2):  # twice is enough
+        moved = moved - modes @ (modes.T @ (mass @ moved))
+    value, vector = np.linalg.eigh(moved.T @ (stiffness @ moved))
+    kept = value > ALIKE
+    return moved @ (vector[:, kept] / np.sqrt(value[kept]))
+
+
+def particles_of(points: Floats, shapes: Floats, mass: Any) -> tuple[Floats, Floats, Floats]:
+    """Masses (p,), places (p, 3) and derivatives (p, 3, n) of particles with the products of places (k, 3) and shapes
+    (k, 3, n) in a mass matrix (k, k) of one component.
+    """
+    n = shapes.shape[-1]
+    functions = np.concatenate([linear_fields(points), shapes.reshape(len(points), -1)], axis=1)
+    products = functions.T @ (mass @ functions)
+    total = products[0, 0]
+    size = np.sqrt(np.diagonal(products) / total)
+    scale = np.where(size > 0, size, 1.0)
+    value, vector = np.linalg.eigh(products / np.outer(scale, scale) / total)
+    kept = value > FAINT * value[-1]
+    root = vector[:, kept] * np.sqrt(value[kept])
+    # A reflection after which all particles have the same share of the mass.
+    first, even = root[0], np.full(kept.sum(), 1 / np.sqrt(kept.sum()))
+    across = first / np.linalg.norm(first) - even
+    if across.any():
+        root = root - 2 * np.outer(root @ across, across) / (across @ across)
+    values = (scale[:, None] * root * np.sqrt(kept.sum())).T
+    return np.full(len(values), total / len(values)), values[:, 1:4], values[:, 4:].reshape(-1, 3, n)

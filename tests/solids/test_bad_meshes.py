@@ -1,0 +1,146 @@
+"""Meshes that cannot be what they should: each error names the place, the value and the fix."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import meshio
+import numpy as np
+import pytest
+
+import gbeam as gb
+from gbeam.solids import factor
+
+from .bodies import STEEL, block, solid
+
+
+def mesh(kind: str = "hexahedron20") -> meshio.Mesh:
+    return block(kind, (2, 1, 1), (0.2, 0.05, 0.03), groups={"line": lambda x: (x[:, 0] == 0) & (x[:, 1] == 0)})
+
+
+def triangles() -> meshio.Mesh:
+    return meshio.Mesh(np.eye(3), {"triangle": np.array([[0, 1, 2]])})
+
+
+def pyramids() -> meshio.Mesh:
+    return meshio.Mesh(np.random.default_rng(1).random((5, 3)), {"pyramid": np.arange(5)[None]})
+
+
+def inverted() -> meshio.Mesh:
+    each = mesh()
+    each.cells[0].data[1] = each.cells[0].data[1][
+        [4, 5, 6, 7, 0, 1, 2, 3, *range(12, 16), *range(8, 12), *range(16, 20)]
+    ]
+    return each
+
+
+def folded() -> meshio.Mesh:
+    each = mesh("hexahedron")
+    each.points[each.cells[0].data[1, 6]] -= (0.25, 0, 0)
+    return each
+
+
+def two_parts() -> meshio.Mesh:
+    one, other = mesh("tetra10"), mesh("tetra10")
+    count = len(one.points)
+    cells = np.concatenate([one.cells[0].data, other.cells[0].data + count])
+    points = np.concatenate([one.points, np.add(other.points, (0, 0.05, 0))])
+    return meshio.Mesh(points, {"tetra10": cells}, point_sets=one.point_sets)
+
+
+def endless() -> meshio.Mesh:
+    each = mesh()
+    each.points[0] = np.nan
+    return each
+
+
+BAD: list[tuple[Callable[[], Any], dict[str, Any], str]] = [
+    (triangles, {}, r"mesh has no solid elements: 1 of kind triangle; mesh the volume"),
+    (pyramids, {}, r"mesh has 1 elements of kind pyramid; use tetra, tetra10"),
+    (inverted, {}, r"mesh has 1 elements turned inside out or folded: 2; mesh it again"),
+    (folded, {}, r"mesh has 1 elements turned inside out or folded: 2;"),
+    (endless, {}, r"mesh has points of shape .* or not finite"),
+    (
+        two_parts,
+        {},
+        r"clamp holds a part of .* nodes about .* at 0 nodes, so that it moves without strain; clamp three",
+    ),
+    (mesh, {"clamp": "line"}, r"clamp holds the mesh at 2 nodes, so that it moves without strain"),
+    (mesh, {"clamp": []}, r"clamp holds the mesh at 0 nodes"),
+    (mesh, {"clamp": "wal"}, r"clamp is 'wal', which is no group of the mesh; choose from wall, line"),
+    (mesh, {"materials": {"1": STEEL}}, r"materials\.1 is '1', which is no group of the mesh"),
+    (mesh, {"materials": gb.Material(7850, 210e9)}, r"materials\.poissons_ratio is missing, and a solid needs it"),
+    (mesh, {"materials": gb.Material(7850, 210e9, poissons_ratio=0.5)}, r"poissons_ratio is 0\.5; .* lock"),
+    (mesh, {"materials": gb.Material(7850, 210e9, poissons_ratio=0.3, shear_modulus=1e9)}, r"give a gb\.Orthotropic"),
+    (mesh, {"unit": "kg"}, r"unit is 'kg'"),
+    (mesh, {"points": {"far": (9.0, 0, 0)}}, r"points\.far is .* m from the nearest node"),
+    (mesh, {"points": {"all": "wall"}}, r"points\.all is the group 'wall' of 8 nodes; give one node"),
+    (mesh, {"points": {"hub": (0, 0, 0)}}, r"points\.name is 'hub'"),
+    (mesh, {"point_masses": {"wall": -1.0}}, r"point_masses\.wall is -1 kg"),
+]
+
+
+@pytest.mark.parametrize(("made", "given", "words"), BAD)
+def test_bad_meshes_are_refused(made: Callable[[], Any], given: dict[str, Any], words: str) -> None:
+    with pytest.raises(gb.InputError, match=words):
+        gb.SolidMesh.read(made(), **({"materials": STEEL, "clamp": "wall", "unit": "m"} | given))
+
+
+def test_materials_that_overlap_or_leave_out_are_refused() -> None:
+    each = mesh()
+    each.cell_sets = {"half": [np.array([0])], "whole": [np.array([0, 1])]}
+    with pytest.raises(gb.InputError, match="materials give 1 elements none"):
+        solid(each, {"half": STEEL})
+    with pytest.raises(gb.InputError, match="materials give 1 elements two: 'half' and 'whole'"):
+        solid(each, {"half": STEEL, "whole": STEEL})
+
+
+def test_nodes_that_no_element_uses_are_left_out() -> None:
+    """Those of a hexahedron of 27 nodes of which 20 are used; and a group that has only such nodes is refused."""
+    each = mesh()
+    assert len(solid(each).points) == 32 < len(each.points) == 45
+    each.point_sets["middles"] = np.setdiff1d(np.arange(45), each.cells[0].data)
+    with pytest.raises(gb.InputError, match="clamp is 'middles', which has no node of a solid element"):
+        gb.SolidMesh.read(each, materials=STEEL, clamp="middles", unit="m")
+
+
+def test_millimetres_by_mistake_are_warned_of() -> None:
+    """With the mass, and in every result."""
+    each = mesh()
+    each.points = 1000 * np.asarray(each.points)
+    model = solid(each).reduced(modes=2, damping_ratio=0.01)
+    words = "the mesh is 208 m across and weighs 2.36e+09 kg with unit = 'm'; is it mm?"
+    assert words in model.mesh.warnings
+    assert words in gb.static(model.structure, acceleration=(0, 0, 1.0)).warnings
+    right = gb.SolidMesh.read(each, materials=STEEL, clamp="wall", unit="mm")
+    assert right.warnings == () and right.mass == pytest.approx(7850 * 0.2 * 0.05 * 0.03)
+
+
+def test_linear_elements_are_said_to_lock() -> None:
+    (words,) = solid(mesh("hexahedron")).warnings
+    assert words == "2 linear elements bend too stiffly (shear locking): use quadratic ones"
+
+
+def test_too_many_unknowns_say_what_they_would_cost() -> None:
+    with pytest.raises(
+        gb.InputError, match=r"mesh makes 5e\+07 unknowns, whose factors would take about .*B and .* hours"
+    ):
+        factor.refuse_cost("mesh", 50_000_000)
+    factor.refuse_cost("mesh", 200_000)
+
+
+def test_more_modes_than_unknowns() -> None:
+    with pytest.raises(gb.InputError, match=r"modes is 100, of 72 unknowns; give 1 to 71"):
+        solid(mesh()).reduced(modes=100, damping_ratio=0)
+
+
+def test_what_is_no_mesh(tmp_path: Path) -> None:
+    (tmp_path / "solid.msh").write_text("garbage", encoding="utf-8")
+    with pytest.raises(gb.InputError, match=r"mesh .*solid\.msh cannot be read: .*; give a file of Gmsh"):
+        solid(tmp_path / "solid.msh")
+    with pytest.raises(gb.InputError, match=r"mesh .* is a folder"):
+        solid(tmp_path)
+    with pytest.raises(OSError):
+        solid(tmp_path / "none.msh")

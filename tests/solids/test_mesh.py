@@ -1,0 +1,252 @@
+"""Solids of finite elements: closed forms, published frequencies, theorems on random meshes, and files."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+from scipy.interpolate import RegularGridInterpolator
+from scipy.spatial.transform import Rotation
+
+import gbeam as gb
+from gbeam.motion import constant
+from gbeam.solids.elements import KINDS, mass_matrix, stiffness_matrix
+
+from .bodies import PAIRS, STEEL, STIFF, block, solid
+
+L, B, H = 1.0, 0.02, 0.01
+STRIP = STIFF.density * B * H, STIFF.youngs_modulus * B * H**3 / 12  # kg/m, N m²
+QUADRATIC = [kind for kind, each in KINDS.items() if not each.linear]
+
+
+@cache
+def strip(kind: str = "hexahedron20", cells: tuple[int, int, int] = (40, 1, 1)) -> gb.SolidModel:
+    return solid(block(kind, cells, (L, B, H)), STIFF).reduced(modes=8, damping_ratio=0.01)
+
+
+# Wright et al. (1982), J. Appl. Mech. 49, 197: flap against the speed of a thin beam, which shear and rotary
+# inertia change by less than 3e-4 in the second mode.
+FLAP = {2: (4.13732, 22.6149), 4: (5.58500, 24.2734), 12: (13.1702, 37.6031)}
+
+
+@pytest.mark.parametrize("rate", FLAP)
+def test_a_spinning_strip_has_the_published_frequencies(rate: float) -> None:
+    """Geometric stiffness, centrifugal force and its growth with the displacement; in forty elements."""
+    unit = np.sqrt(STRIP[0] * L**4 / STRIP[1])
+    modes = gb.modes(strip().structure, gb.Hub(radius=0.0, rate=rate / unit))
+    flap = [2 * np.pi * unit * f for f, way in zip(modes.frequency, modes.direction, strict=True) if way == "z"]
+    np.testing.assert_allclose(flap[:2], FLAP[rate], rtol=3e-4)
+
+
+@pytest.mark.parametrize("kind", QUADRATIC)
+def test_a_cantilever_bends_as_in_closed_form(kind: str) -> None:
+    """w L⁴/8EI and, by shear, w L²/(2 κGA), κ = 5/6 without Poisson's ratio; the root's moment; stretch by x."""
+    model = strip(kind)
+    rest = gb.static(model.structure, acceleration=(0.0, 0.0, 10.0))
+    shear = 10 * STRIP[0] * L**2 / 2 / (5 / 6 * STIFF.rigidity * B * H)
+    np.testing.assert_allclose(-rest.tip[2], 10 * STRIP[0] * L**4 / 8 / STRIP[1] + shear, rtol=3e-4)
+    pulled = gb.static(model.structure, acceleration=(-10.0, 0.0, 0.0))
+    assert pulled.tip[0] == pytest.approx(10 * STIFF.density * L**2 / 2 / STIFF.youngs_modulus, rel=1e-6)
+    system = gb.linearize(model.structure, gb.Flight(z=constant(10.0)))
+    moment = [each.name for each in system.outputs].index("root_moment_y")
+    push = [each.name for each in system.inputs].index("base_acceleration_z")
+    # Of the tip's place the root's moment knows the first order: an acceleration of 1 m/s² along z turns about −y.
+    gain = system.d[moment, push] - system.c[moment] @ np.linalg.solve(system.a, system.b[:, push])
+    assert abs(gain) == pytest.approx(STRIP[0] * L**2 / 2, rel=1e-3)
+
+
+def test_a_bar_has_the_frequencies_of_closed_form() -> None:
+    """c/4L along, and the torsion of a square, whose constant is 0.1406 a⁴."""
+    bar = solid(block("hexahedron27", (6, 4, 4), (1.0, 0.05, 0.05)), STIFF).reduced(modes=12, damping_ratio=0)
+    speed = np.sqrt(STIFF.youngs_modulus / STIFF.density)
+    along = 2 * np.pi * bar.frequency - np.pi / 2 * speed
+    assert np.abs(along).min() < 1e-3 * speed
+    torsion = np.pi / 2 * speed * np.sqrt(0.5 * 0.1406 / (1 / 6))
+    assert np.abs(2 * np.pi * bar.frequency / torsion - 1).min() < 5e-3  # the wall keeps its section plane
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_any_block_weighs_what_it_is(kind: str) -> None:
+    """Mass, centre and moments of a box whose inside is meshed at random, also of its particles."""
+    rng = np.random.default_rng(len(kind))
+    size = np.array([0.3, 0.2, 0.1])
+
+    steps = [np.linspace(0, 1, 3), *[np.linspace(-0.5, 0.5, 3)] * 2]
+    moved = np.zeros((3, 3, 3, 3))
+    moved[1, 1, 1] = 0.2 * (rng.random(3) - 0.5) * size
+    mesh = block(kind, (2, 2, 2), tuple(size), lambda x: x + RegularGridInterpolator(steps, moved)(x / size))
+    if kind == "tetra10":  # straight edges
+        mesh.points[mesh.cells[0].data[:, 4:]] = mesh.points[mesh.cells[0].data[:, np.array(PAIRS)]].mean(axis=2)
+    model = solid(mesh).reduced(modes=3, damping_ratio=0)
+    mass = STEEL.density * size.prod()
+    squares = mass * np.array([size[0] ** 2 / 3, size[1] ** 2 / 12, size[2] ** 2 / 12])
+    wanted = [mass, mass * size[0] / 2, 0, 0, *squares, 0, 0, 0]
+    np.testing.assert_allclose(model.structure.coefficients.rigid, wanted, atol=1e-12 * mass)
+    assert model.mesh.mass == pytest.approx(mass, rel=1e-12)
+    np.testing.assert_allclose(model.structure.coefficients.mass, np.eye(model.structure.size), atol=1e-10)
+
+
+def test_nothing_depends_on_the_axes() -> None:
+    """A mesh that is turned with its base, material and motion moves as it did, turned."""
+    turn = Rotation.from_rotvec([0.3, -1.1, 0.7]).as_matrix()
+    board = gb.Orthotropic(1900, (22e9, 18e9, 9e9), (0.15, 0.3, 0.28), (5e9, 3e9, 2.5e9), ((1, 0, 0), (0, 1, 0)))
+    turned = replace(board, axes=tuple(map(tuple, turn.T[:2])))
+    at, rates = np.array([3.0, -40.0, 60.0]), np.array([9.0, -14.0, 21.0])
+    found = []
+    for R, material in ((np.eye(3), board), (turn, turned)):
+        bent = block("tetra10", (3, 1, 1), (0.2, 0.05, 0.02), lambda x, R=R: x @ R.T)
+        model = solid(bent, material, point_masses={"tip": 0.2}).reduced(modes=4, damping_ratio=0.02)
+        flight = gb.Flight(acceleration=constant(R @ at), rates=constant(R @ rates))
+        found.append((gb.modes(model.structure, flight), gb.static(model.structure, flight).tip @ R))
+    np.testing.assert_allclose(found[1][0].eigenvalue, found[0][0].eigenvalue, rtol=1e-7)
+    np.testing.assert_allclose(found[1][1], found[0][1], rtol=1e-7, atol=1e-12)
+
+
+def test_an_isotropic_material_is_an_orthotropic_one() -> None:
+    e, g, v = STEEL.youngs_modulus, STEEL.rigidity, 0.3
+    same = gb.Orthotropic(7850, (e,) * 3, (v,) * 3, (g,) * 3, ((1, 2, 0.5), (-2, 1, 0)))
+    np.testing.assert_allclose(same.elasticity, STEEL.elasticity, atol=1e-9 * e)
+
+
+# NAFEMS, The Standard NAFEMS Benchmarks (TNSB, rev. 3, 1990), FV32: a tapered membrane, 10 m long and 5 to 1 m wide, in
+# its plane.
+FV32 = [44.623, 130.03, 162.70, 246.05, 379.90, 391.44]
+
+
+def test_nafems_fv32_tapered_membrane() -> None:
+    """Plane stress: the middle plane stays where it is, the faces are free."""
+    mesh = solid(
+        block(
+            "hexahedron20",
+            (12, 6, 2),
+            (10.0, 5.0, 0.05),
+            lambda x: np.stack([x[:, 0], x[:, 1] * (1 - 0.08 * x[:, 0]), x[:, 2]], axis=1),
+        ),
+        gb.Material(density=8000, youngs_modulus=200e9, poissons_ratio=0.3),
+    )
+    held = np.repeat(mesh.clamped, 3)
+    held[2::3] |= np.abs(mesh.points[:, 2]) < 1e-9
+    np.testing.assert_allclose(frequencies(mesh, held, 6), FV32, rtol=4e-3)
+
+
+def frequencies(mesh: gb.SolidMesh, held: np.ndarray, count: int, shift: float = 0.0) -> np.ndarray:
+    """Lowest natural frequencies of a mesh held otherwise than at its clamp, Hz."""
+    from scipy.sparse import csc_matrix, eye_array, kron
+    from scipy.sparse.linalg import eigsh
+
+    free = ~held
+    k = csc_matrix(stiffness_matrix(mesh.points, mesh.blocks))[free][:, free]
+    m = csc_matrix(kron(mass_matrix(mesh.points, mesh.blocks), eye_array(3)))[free][:, free]
+    square = np.sort(eigsh(k, k=count, M=m, sigma=shift, v0=np.ones(k.shape[0]), return_eigenvectors=False))
+    return np.sqrt(np.maximum(square, 0)) / (2 * np.pi)
+
+
+# FV52: a square plate of 10 m, 1 m thick, held along z on the four edges of its lower face; its target is the closed
+# form of a thick plate, and the answer of the benchmark's own elements, 4 × 4 × 1 of 20 nodes, is the second row.
+FV52 = [45.897, 109.44, 109.44, 167.89, 193.59, 206.19, 206.19]
+FV52_ELEMENTS = [44.762, 110.52, 110.52, 169.08, 193.93, 206.64, 206.64]
+
+
+def test_nafems_fv52_square_plate() -> None:
+    """Three rigid motions, then seven modes: the target's elements within 0.4 %, its closed form within 3 %."""
+    material = gb.Material(density=8000, youngs_modulus=200e9, poissons_ratio=0.3)
+    mesh = solid(block("hexahedron20", (4, 4, 1), (10.0, 10.0, 1.0)), material)
+    x, y, z = mesh.points.T
+    held = np.zeros(3 * len(x), dtype=bool)
+    held[2::3] = (z < -0.49) & ((np.abs(x - 5) > 4.99) | (np.abs(y) > 4.99))
+    found = frequencies(mesh, held, 10, shift=-1.0)
+    assert (found[:3] < 0.1).all()
+    np.testing.assert_allclose(found[3:], FV52_ELEMENTS, rtol=4e-3)
+    np.testing.assert_allclose(found[3:], FV52, rtol=3e-2)
+
+
+def test_the_mesh_converges_and_says_by_how_much() -> None:
+    """From a mesh to one twice as fine; at the clamp's edges the stress is singular, and the order lower than four."""
+    meshes = [solid(block("tetra10", (n, 1, 1), (0.4, 0.05, 0.05))) for n in (4, 8, 16)]
+    coarse, middle = (each.reduced(modes=2, damping_ratio=0) for each in meshes[:2])
+    fine = meshes[2].reduced(modes=2, damping_ratio=0, coarser=middle)
+    apart = [abs(middle.frequency[0] - coarse.frequency[0]), abs(fine.frequency[0] - middle.frequency[0])]
+    assert fine.mesh_error[0] == pytest.approx(apart[1] / fine.frequency[0]) and apart[1] < apart[0] / 2
+    assert np.isnan(middle.mesh_error).all() and "unknown" in repr(middle) and "error of the mesh up to" in repr(fine)
+    rough = meshes[1].reduced(modes=2, damping_ratio=0, coarser=replace(coarse, frequency=1.2 * coarse.frequency))
+    assert any("mesh it finer" in each for each in rough.structure.warnings)
+
+
+def test_few_modes_answer_steady_loads_as_all_do() -> None:
+    """The static shapes: with one mode a steady acceleration and rotation deform the solid as with sixty."""
+    mesh = solid(block("hexahedron20", (4, 1, 1), (0.2, 0.05, 0.03)))
+    few, many = (mesh.reduced(modes=n, damping_ratio=0) for n in (1, 60))
+    assert few.structure.size <= 13
+    spin = gb.Flight(acceleration=constant([1.0, 2.0, 3.0]), rates=constant([1.0, 2.0, 3.0]))
+    tips = [gb.static(each.structure, spin).tip for each in (few, many)]
+    np.testing.assert_allclose(tips[0], tips[1], rtol=1e-6)
+
+
+def test_point_masses_points_and_origin() -> None:
+    """A mass on the tip's node: massless cantilever, (3EI/mL³)^½; the root elsewhere is a longer lever."""
+    light = replace(STIFF, density=1e-3)
+    mesh = block("hexahedron20", (20, 1, 1), (L, B, H), groups={"end": lambda x: x[:, 0] == L})
+    held = solid(mesh, light, point_masses={"end": 0.1}, points={"middle": (1.5, 0.0, 0.005)}, origin=(-1.0, 0, 0))
+    model = held.reduced(modes=2, damping_ratio=0.01)
+    assert model.frequency[0] == pytest.approx(np.sqrt(3 * STRIP[1] / (0.1 * L**3)) / (2 * np.pi), rel=1e-3)
+    np.testing.assert_allclose(
+        model.structure.coefficients.rigid[1] / model.structure.coefficients.rigid[0], 2.0, rtol=1e-3
+    )
+    turn = gb.Flight(acceleration=constant([0.0, 0.0, 0.0]), rates=constant([0.0, 0.0, 2.0]))
+    pulled = gb.static(model.structure, turn).tip[0]
+    # The corner's own place is a little off that of the section, on whose nodes the mass is spread evenly.
+    assert pulled == pytest.approx(0.1 * 2.0**2 * 2.0 * L / (STIFF.youngs_modulus * B * H), rel=1e-2)
+    flown = gb.simulate(model.structure, gb.Flight(z=constant(1.0)), duration=0.1, step=0.01)
+    assert flown.points == ("middle", "tip") and flown.at("middle").shape == flown.tip.shape
+    # (3 x²L − x³)/6EI of the force at the end.
+    assert flown.at("middle")[-1, 2] / flown.tip[-1, 2] == pytest.approx(5 / 16, rel=2e-3)
+    system = gb.linearize(model.structure, gb.Flight(z=constant(1.0)))
+    assert "middle_z" in [each.name for each in system.outputs]
+
+
+@pytest.mark.parametrize("name", ["solid.msh", "solid.vtu", "solid.bdf", "solid.inp", "solid.vtk"])
+def test_a_mesh_comes_back_from_files(tmp_path: Path, name: str) -> None:
+    """Gmsh, VTK, Nastran and Abaqus: two materials by groups of elements, the clamp by nodes or by elements."""
+    mesh = block("hexahedron20", (2, 1, 1), (200.0, 50.0, 30.0))
+    mesh.points = np.asarray(mesh.points)[np.unique(mesh.cells[0].data)]  # Nastran and Abaqus number what they use
+    cells = np.unique(mesh.cells[0].data, return_inverse=True)[1].reshape(-1, 20)
+    wall = np.flatnonzero(mesh.points[:, 0] == 0)
+    skin = cells[:1, [0, 3, 7, 4]]
+    parts = [("hexahedron20", cells), ("quad", skin)]
+    tags = [np.array([1, 2]), np.array([7])]
+    materials: dict[str, gb.Material] = {"1": STEEL, "2": STIFF}
+    clamp = "7"
+    if name.endswith(".inp"):
+        parts, clamp, materials = parts[:1], "wall", {"root_half": STEEL, "tip_half": STIFF}
+        whole = meshio.Mesh(
+            mesh.points, parts, point_sets={"wall": wall}, cell_sets={"root_half": [[0]], "tip_half": [[1]]}
+        )
+    else:
+        key = {".msh": "gmsh:physical", ".bdf": "nastran:ref"}.get(name[-4:], "part")
+        whole = meshio.Mesh(mesh.points, parts, cell_data={key: tags})
+        if name.endswith(".msh"):
+            whole.cell_data["gmsh:geometrical"] = [np.array([11, 11]), np.array([12])]
+    options = {"file_format": "gmsh22"} if name.endswith(".msh") else {}
+    meshio.write(tmp_path / name, whole, **options)
+    held = gb.SolidMesh.read(tmp_path / name, materials=materials, clamp=clamp, unit="mm")
+    # A wall by its corners alone holds as well.
+    assert held.clamped.sum() == (8 if name.endswith(".inp") else 4)
+    assert held.mass == pytest.approx((STEEL.density + STIFF.density) * 0.1 * 0.05 * 0.03)
+
+
+def test_the_bracket_of_the_examples_is_what_its_script_makes() -> None:
+    """With its mass in closed form: a sheet about its middle line, and a box."""
+    import bracket
+
+    solids = [
+        gb.SolidMesh.read(source, materials=bracket.MATERIALS, clamp="screwed", unit="mm")
+        for source in (bracket.HERE / "data" / "bracket.msh", bracket.mesh())
+    ]
+    np.testing.assert_allclose(solids[0].points, solids[1].points, atol=1e-12)
+    sheet = (bracket.FOOT + bracket.RADIUS * np.pi / 2 + bracket.ARM) * bracket.WIDTH * bracket.THICKNESS
+    box = bracket.CAMERA[0] * bracket.CAMERA[1] * bracket.WIDTH
+    assert solids[0].mass == pytest.approx(1e-9 * (2700 * sheet + 3300 * box), rel=1e-5)
