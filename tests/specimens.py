@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy as np
 
-from gbeam import Load, Model, PointMass, Root, Structure, assemble
+from gbeam import Line, Load, Model, PointMass, Root, Structure, assemble
 from validation.published import hubbeam2009 as hub_beam_2009
 from validation.published import zhang2020
 from validation.published.specimens import ALUMINIUM as ALUMINIUM
@@ -34,6 +34,13 @@ LOADS = (
     Load(3.0, force=(1.0, 2.0, 3.0), moment=(0.3, 0.2, 0.1), follower=True),
     Load(None, force=(0.1, 0.2, 0.3), moment=(0.03, 0.02, 0.01)),
 )
+# Turned at the root, bent and twisted, with a corner midway.
+BOW = Line.of_pieces(
+    [0.0, 0.4 * LENGTH, 0.0, 0.6 * LENGTH],
+    twist=[0.2, 0.5, 0.1, -0.3],
+    turn_y=[0.3, -0.8, 0.2, 0.4],
+    turn_z=[-0.2, 0.7, 0.5, 0],
+)
 COMPLETE = ("CFOAM", "exact")
 
 STRIP_LENGTH, STRIP_DENSITY, STRIP_YOUNG = zhang2020.LENGTH, zhang2020.DENSITY, zhang2020.YOUNG
@@ -42,13 +49,16 @@ STRIP_LENGTH, STRIP_DENSITY, STRIP_YOUNG = zhang2020.LENGTH, zhang2020.DENSITY, 
 @cache
 def laden(kind: str) -> Structure:
     """The same with all there is: a tip mass, a body off its axis, root springs, loads, both directions of bending; as
-    a thick beam with every strain and rotary inertia.
+    a thick beam with every strain and rotary inertia, straight or curved (`bow`, and its Taylor polynomial).
     """
     beam = appendage(TIP, BODY, damping_ratio=0.01, root=SPRINGS, loads=LOADS)
-    if kind == "thick":
+    if kind in ("thick", "bow", "bow FOAM"):
         section = BOX.altered(torsion_constant=2e-8, shear_coefficient_y=0.8, shear_coefficient_z=0.7)
         beam = replace(beam, section=section, material=replace(METAL, poissons_ratio=0.3), rotary_inertia=True)
-        return assemble(beam, "exact", axial=1, y=1, z=1, twist=1, shear_y=1, shear_z=1)
+        if kind != "thick":
+            beam = replace(beam, line=BOW)
+        model = "FOAM" if kind == "bow FOAM" else "exact"
+        return assemble(beam, model, axial=1, y=1, z=1, twist=1, shear_y=1, shear_z=1)
     return assemble(beam, Model(kind, 0 if kind == "SFOAM" else 1, 1, 1))
 
 

@@ -42,6 +42,10 @@ WRONG: list[Any] = [
 ]  # fmt: skip
 
 
+def straight(x: Any) -> Any:
+    return np.zeros((len(x), 3))
+
+
 class Given:
     """Arguments with which the public functions can be called."""
 
@@ -86,6 +90,7 @@ class Given:
                     "damping_ratio": 0.01,
                     "points": [gb.Point("camera", 0.1)],
                     "rotary_inertia": True,
+                    "line": gb.Line.of_pieces([0.3]),
                 },
             ),
             "Case": (
@@ -113,6 +118,7 @@ class Given:
                 },
             ),
             "Initial": (("undeformed",), {"tip_velocity": {"z": 0.1}}),
+            "Line": ((0.3, straight), {"breaks": [0.1], "corners": [0.2], "turns": [[0.0, 0.0, 0.1]]}),
             "Load": ((0.1,), {"force": (0.0, 0.0, 1.0), "moment": (0.0, 1.0, 0.0), "follower": False}),
             "MachineLimits": ((gb.AxisLimit(), gb.AxisLimit(), gb.AxisLimit()), {"inertia": 1.0, "power": 1.0}),
             "Material": (

@@ -83,6 +83,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.structure.attachments import PointMass as PointMass
     from gbeam.structure.attachments import Root as Root
     from gbeam.structure.beam import Beam as Beam
+    from gbeam.structure.line import Line as Line
     from gbeam.structure.material import Material as Material
     from gbeam.structure.material import Orthotropic as Orthotropic
     from gbeam.structure.section import Section as Section
@@ -110,6 +111,7 @@ _HOME = {
     "Hub": "motion.bases.hub",
     "Initial": "analysis.response.problem",
     "InputError": "errors",
+    "Line": "structure.line",
     "Load": "structure.attachments",
     "MachineLimits": "motion.centrifuge.limits",
     "Material": "structure.material",

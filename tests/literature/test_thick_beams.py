@@ -170,6 +170,14 @@ def test_what_a_strain_needs_is_asked_for(changes: dict[str, Any], counts: dict[
     assert caught.value.where == where and caught.value.fix
 
 
-def test_other_models_have_no_twist() -> None:
-    with pytest.raises(gb.InputError, match="is 1 for FOAM, which has no such strain"):
-        gb.Model("FOAM", z=2, twist=1)
+@pytest.mark.parametrize("kind", ["TLAM", "FOAM", "CFOAM"])
+def test_other_models_twist_and_shear_to_their_order(kind: str) -> None:
+    """By the Taylor polynomials of the exact places: at rest all are one."""
+    camera = beam(masses=[gb.PointMass(LENGTH, 0.1, offset=(0.0, 0.04, 0.0))])
+    one, two = (
+        gb.modes(gb.assemble(camera, each, axial=1, z=4, twist=3, shear_z=2, shapes="adapted"))
+        for each in (kind, "exact")
+    )
+    np.testing.assert_allclose(one.frequency, two.frequency, rtol=1e-9)
+    assert two.twist is not None
+    np.testing.assert_allclose(np.abs(one.twist), np.abs(two.twist), atol=1e-6)

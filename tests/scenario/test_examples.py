@@ -62,7 +62,7 @@ def test_schema_describes_every_field() -> None:
             assert field["description"], f"{name}.{key}"
     references = _references(schema)
     assert references and references <= {f"#/$defs/{name}" for name in schema["$defs"]}
-    assert tables["Beam"]["properties"]["length"]["x-unit"] == "m"
+    assert tables["Piece"]["properties"]["length"]["x-unit"] == "m"
 
 
 def _references(node: Any) -> set[str]:

@@ -128,7 +128,7 @@ def test_json_is_taken_and_located(text: str, errors: Errors) -> None:
     (error,) = errors(as_json.replace('"200 mm"', '"400 mm"'), building=True)
     assert error.source_line is not None and error.column is not None and error.end is not None
     assert error.source_line[error.column - 1 : error.end - 1] == '"400 mm"'
-    (error,) = errors(as_json.replace('"length": "300 mm"', '"length": null'))
+    (error,) = errors(as_json.replace('"mass": "0.1 kg"', '"mass": null'))
     assert error.message == "null is not a number"
 
 

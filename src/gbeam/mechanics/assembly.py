@@ -19,7 +19,7 @@ from gbeam.mechanics.fields.adapted import adapted_shapes
 from gbeam.mechanics.fields.basis import Counts, Families, Quadrature, closed_forms, polynomials, quadrature
 from gbeam.mechanics.fields.projected import projected_field
 from gbeam.mechanics.fields.rooted import Field, RootedField
-from gbeam.mechanics.fields.strains import shaped_strains, strain_field
+from gbeam.mechanics.fields.strains import ExpandedField, shaped_strains, strain_field
 from gbeam.mechanics.models import KINDS, Kind, Model
 from gbeam.mechanics.structure import Sections, Source, Structure
 from gbeam.motion.profiles.piecewise import constant
@@ -77,15 +77,18 @@ def assemble(
         if any((axial, y, z, twist, shear_y, shear_z)):
             model = Model(model, axial, y, z, shapes or "clamped-free", False, twist, shear_y, shear_z)
         else:
-            model = Model.of(model, shapes)
+            model = Model.of(model, shapes or (None if beam.line is None else "clamped-free"))
     row, counts = model.row, model.counts
     _refuse_traced_places(beam, adapted=model.shapes == "adapted")
     refuse_disparate(beam)
+    if beam.line is not None and model.shapes == "adapted":
+        fix = 'give shapes = "clamped-free", which are polynomials there'
+        raise InputError("shapes", "are adapted, and the beam is not straight at rest", fix)
     refuse_unknown(beam, twist=model.twist > 0, shear_y=model.shear_y > 0, shear_z=model.shear_z > 0)
     at = _stations(beam, stations)
     bodies = [m.at for m in beam.masses]
     adapted = model.shapes == "adapted"
-    breaks = [*beam.section.stations, *(bodies if adapted else ())]
+    breaks = [*breaks_of(beam), *(bodies if adapted else ())]
     rule = quadrature(beam.length, _nodes(row, max(counts)), breaks)
     # Integrals from the root are a matrix of all nodes to all.
     nodes = len(rule.node)
@@ -112,11 +115,13 @@ def assembled(
     springs = [*beam.root.springs.values()]
     still = np.zeros((3, sum(counts)))
     move, turn = (np.concatenate([still, each], axis=1) for each in (move, turn))
-    shapes_of = families or (polynomials if row.exact else closed_forms)(beam.length, counts)
+    shapes_of = families or forms_of(beam, row, counts)
     strains = np.pad(shaped_strains(rule, shapes_of), ((0, 0), (0, 0), (0, len(springs))))
     field: Field
-    if row.exact:
-        field = strain_field(rule, x, strains, move, turn)
+    if row.exact or beam.line is not None or any(counts[3:]):
+        field = strain_field(rule, x, strains, move, turn, beam.line)
+        if not row.exact:
+            field = ExpandedField.of(field, linear=not row.foreshortening)
     else:
         field = projected_field(rule, x, counts, shapes_of, foreshortening=row.foreshortening)
         if springs:
@@ -162,6 +167,18 @@ def assembled(
         warnings=implausible_beam(beam, (counts[1] > 0, counts[2] > 0)),
         source=None if is_jax(c.mass) else Source(beam, shapes),
     )
+
+
+def forms_of(beam: Beam, row: Kind, counts: Counts) -> Families:
+    """The shapes that are not adapted: of strains, or of a bare straight beam's displacements."""
+    if beam.line is not None:
+        return polynomials(beam.length, counts, [at for at in beam.line.corners if at > 0])
+    return (polynomials if row.exact else closed_forms)(beam.length, counts)
+
+
+def breaks_of(beam: Beam) -> list[float]:
+    """Positions between which the section and the line are smooth, m."""
+    return [*beam.section.stations, *(() if beam.line is None else beam.line.panels)]
 
 
 def at_stations(structure: Structure, stations: ArrayLike) -> Structure:
@@ -296,6 +313,7 @@ def sections_of(
     beyond = np.concatenate([share, whole], axis=1)
     return Sections(
         values=beam.section.at(np.append(0.0, at)),
+        root_axes=np.eye(3) if beam.line is None else beam.line.places(0.0)[1][0],
         mass=beyond[:, particles[1]] * particles[0],
         loaded=beyond[:, loaded],
         yield_strength=beam.material.yield_strength,

@@ -10,19 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.mechanics.assembly import assembled
+from gbeam.mechanics.assembly import assembled, breaks_of, forms_of, particles_of
 from gbeam.mechanics.fields.adapted import GROUPS, Space, adapted_shapes, spaces_of
-from gbeam.mechanics.fields.basis import (
-    Array,
-    Counts,
-    Families,
-    Family,
-    Quadrature,
-    Shapes,
-    closed_forms,
-    polynomials,
-    quadrature,
-)
+from gbeam.mechanics.fields.basis import Array, Counts, Families, Family, Quadrature, Shapes, quadrature
+from gbeam.mechanics.fields.strains import STRAINS, strain_field
 from gbeam.mechanics.models import KINDS
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
@@ -141,8 +132,55 @@ def bends(of: Space, force: Array) -> bool:
     return of.bends and bool(size >= TENSION)
 
 
+def curved_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
+    """The space of all motions of a beam that is curved at rest, whose strains move it in all directions at once."""
+    families = tuple(family for family in range(6) if family < 3 or counts[family])
+    nodes, springs = len(rule.node), [*beam.root.springs.values()]
+    strained = len(families) * nodes
+    strains = np.zeros((6, nodes, strained + len(springs)))
+    for k, family in enumerate(families):
+        strains[STRAINS[family], :, k * nodes : (k + 1) * nodes] = np.eye(nodes)
+    move, turn = (np.concatenate([np.zeros((3, strained)), each], axis=1) for each in beam.root.directions())
+    loaded = [load.at for load in beam.loads if load.at is not None]
+    x = np.concatenate([rule.node, [body.at for body in beam.masses], loaded])
+    field = strain_field(rule, x, strains, move, turn, beam.line)
+    at, mass, offset = particles_of(beam, rule, rotary=beam.rotary_inertia)
+    particles, rest = field.points(at, offset), np.zeros(field.size)
+    place, moved = particles.positions(rest), particles.slopes(rest)
+    even = np.eye(3)
+    pulls = [np.broadcast_to(way, place.shape) for way in even] + [np.cross(way, place) for way in even]
+    loads = [np.einsum("p,pai,pa->i", mass, moved, pull) for pull in pulls]
+    slopes, angles = field.jacobians(rest)
+    first = len(rule.node) + len(beam.masses)
+    for load in beam.loads:
+        whole = load.at is None
+        points, weight = (slice(0, nodes), rule.weight) if whole else (slice(first, first + 1), np.ones(1))
+        first += not whole
+        loads += [
+            weight @ part[points, axis]
+            for part, component in ((slopes, load.force), (angles, load.moment))
+            if component is not None
+            for axis in range(3)
+        ]
+    stiffnesses = beam.stiffnesses(rule.node)
+    stiffness = [*(stiffnesses[STRAINS[family]] * rule.weight for family in families), springs]
+    return Space(
+        rule=rule,
+        length=beam.length,
+        families=families,
+        line=mass[:nodes],
+        turning=0 * mass[:nodes],
+        mass=np.einsum("p,pai,paj->ij", mass, moved, moved),
+        stiffness=np.concatenate(stiffness),
+        sensitivity=lambda _: (slopes, angles),
+        loads=np.stack(loads, axis=1),
+    )
+
+
 def _loads(beam: Beam, of: Space, along: int) -> Array:
     """Generalised forces (n, k) of what loads the beam: accelerations, even and growing along it, and its loads."""
+    if of.loads is not None:
+        return of.loads
     x = of.rule.node
     value, slope = of.sensitivity(x)
     uniform, growing = of.line @ value + of.turning @ slope, (of.line * x) @ value + (of.turning * x) @ slope
@@ -188,10 +226,11 @@ class Enrichment:
         self.structure, beam = structure, structure.source.beam
         counts = structure.counts
         marks = [m.at for m in beam.masses] + [load.at for load in beam.loads if load.at is not None]
-        breaks = [*beam.section.stations, *marks]
+        breaks = [*breaks_of(beam), *marks]
         panels = len(quadrature(beam.length, 1, breaks).edges) - 1
         self.rule = quadrature(beam.length, max(PER_PANEL, -(-(NODES + 2 * max(counts)) // panels)), breaks)
-        self.spaces = spaces_of(beam, self.rule, counts)
+        straight = beam.line is None
+        self.spaces = spaces_of(beam, self.rule, counts) if straight else (curved_space(beam, self.rule, counts),)
         self.families, self.new = enriched_shapes(beam, self.spaces, own_families(structure, beam, self.rule), force)
         self.beam = beam
         self._made: dict[Any, tuple[Structure, NDArray[np.int_]]] = {}
@@ -242,8 +281,7 @@ def own_families(structure: Structure, beam: Beam, rule: Quadrature) -> Families
     """The functions that the structure's shapes are."""
     if structure.source is not None and structure.source.shapes == "adapted":
         return adapted_shapes(beam, rule, structure.counts)
-    forms = polynomials if KINDS[structure.kind].exact else closed_forms
-    return forms(beam.length, structure.counts)
+    return forms_of(beam, KINDS[structure.kind], structure.counts)
 
 
 def _first(family: Family, count: int) -> Family:

@@ -24,7 +24,7 @@ class Kind:
 
 FIRST, FIRST_EXACT = (1, 3), (2, 4)  # automatic numbers of shapes along and across the beam
 MOST = 9  # across it
-TORSION = 'kind = "exact" with modes.twist has torsion'
+TORSION = "modes.twist gives a model torsion"
 SHAPES = ("clamped-free", "adapted")
 KINDS = {
     "TLAM": Kind(foreshortening=False),
@@ -52,7 +52,8 @@ class Model:
         clamped-free: those of the bare uniform beam (for exact, polynomials). adapted: the modes at rest of the beam
         with its tapers, bodies and root springs.
     twist, shear_y, shear_z : int
-        Numbers of shapes of the twist and of the shear strains, of exact only; a strain without shapes is rigid.
+        Numbers of shapes of the twist and of the shear strains; a strain without shapes is rigid. With them, and on a
+        curved line, the other kinds are the Taylor polynomials of the exact places, to the order of their own.
     automatic : bool
         Whether the numbers are gbeam's own, which a study raises until what they leave out is small.
 
@@ -116,10 +117,6 @@ class Model:
                 f"is {self.axial} for SFOAM, which has no axial coordinates",
                 "give 0, or use FOAM",
             )
-        for name, count in zip(FAMILIES[3:], self.counts[3:], strict=True):
-            if count and not self.row.exact:
-                fix = 'give 0, or kind = "exact"'
-                raise InputError(f"modes.{name}", f"is {count} for {self.kind}, which has no such strain", fix)
 
     @property
     def counts(self) -> Counts:

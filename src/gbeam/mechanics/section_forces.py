@@ -105,7 +105,7 @@ def sections(
         share = xp.asarray(outboard.loaded)
         force, about_root = force + share @ pull, about_root + share @ (_cross(xp, loaded.positions(q), pull) + turn)
     moment = about_root - _cross(xp, stations[0], force)
-    straight = xp.broadcast_to(xp.eye(3), (len(q), 1, 3, 3))
+    straight = xp.broadcast_to(xp.asarray(outboard.root_axes), (len(q), 1, 3, 3))
     turned = xp.broadcast_to(xp.eye(3), (len(q), count, 3, 3))
     if structure.field is not None:
         turned = structure.field.rotation(q, slice(-count, None))

@@ -38,12 +38,13 @@ Array = Any
 @record
 class Sections:
     """Sections at root and stations: values (s,), outboard masses (s, particles) kg, shares of loads (s, loaded),
-    strength Pa.
+    axes of the root's section in columns (3, 3), strength Pa.
     """
 
     values: Any
     mass: Array
     loaded: Array
+    root_axes: Array
     yield_strength: Any = None
     fatigue_exponent: Any = np.nan
 
@@ -318,9 +319,9 @@ class Structure:
         """Derivatives of the angles of the stations' sections about the beam's axis at coordinates `q` (n,), (s, n);
         None of a model without twist.
         """
-        if not self.counts[3] or not isinstance(self.field, StrainField):
+        if self.field is None or not (self.counts[3] or (self.source and self.source.beam.line)):
             return None
-        field = self.field[self.first_station :]
+        field = self.field.sections(slice(self.first_station, None))
         along, (_, angles) = field.rotation(q)[..., 0], field.jacobians(q)
         return namespace(angles).einsum("sa,san->sn", along, angles)
 

@@ -126,28 +126,30 @@ class _Parts:
         self.first_station = self.first + len(loaded)
         self.points = np.concatenate([x, [body.at for body in beam.masses], loaded, structure.stations])
         self.cumulative, self.at_nodes = rule.cumulative(self.points), rule.cumulative(x)
+        self.place, self.axes = beam.at_rest(self.points)
         self.move, self.turn = beam.root.directions()
 
     def field(self, strains: Array) -> StrainField:
         """The field of shapes with some strains (m, n)."""
         nodal, root = np.split(strains, [6 * len(self.rule.node)])
         shaped = nodal.reshape(6, -1, strains.shape[1])
-        return strain_field(self.rule, self.points, shaped, self.move @ root, self.turn @ root)
+        return strain_field(self.rule, self.points, shaped, self.move @ root, self.turn @ root, self.beam.line)
 
     def pulled(self, force: Array, moment: Array) -> Array:
         """Generalised forces (m, k) on the strains of forces and moments (3, points, k) at the points."""
-        slope, angle = self.cumulative.T @ force, self.cumulative.T @ moment
-        root = moment.sum(axis=1)
-        for onto, of, sign in ((2, 1, 1), (1, 2, -1)):  # the axis turns with its sections
-            angle[onto] += sign * self.at_nodes.T @ slope[of]
-            root[onto] += sign * slope[of].sum(axis=0)
+        slope, axes = self.cumulative.T @ force, self.axes[: len(self.rule.node)]
+        # The axis turns with its sections.
+        lever = np.cross(axes[:, :, 0].T[..., None], slope, axis=0)
+        angle = self.cumulative.T @ moment + self.at_nodes.T @ lever
+        root = (moment + np.cross(self.place.T[..., None], force, axis=0)).sum(axis=1)
         springs = self.move.T @ force.sum(axis=1) + self.turn.T @ root
-        return np.concatenate([np.concatenate([slope, angle]).reshape(-1, force.shape[-1]), springs])
+        inward = [np.einsum("gba,bgk->agk", axes, each).reshape(-1, force.shape[-1]) for each in (slope, angle)]
+        return np.concatenate([*inward, springs])
 
     def answers(self, own: Array) -> Array:
         """Static answers (m, k) of the thick beam: to the inertia of its own shapes, to accelerations and loads."""
         at, mass, offset = particles_of(self.beam, self.rule, rotary=True)
-        arm = offset.T[..., None]
+        arm = np.einsum("pab,pb->ap", self.axes[at], offset)[..., None]
         onto = at == np.arange(len(self.points))[:, None]  # (points, particles)
 
         def inertia(move: Array, turn: Array) -> Array:
@@ -160,8 +162,8 @@ class _Parts:
 
         still = np.zeros((3, len(self.points), 3))
         even = still + np.eye(3)[:, None]
-        straight = np.stack([self.points, 0 * self.points, 0 * self.points])[..., None]
-        loads = [of(own), inertia(even, still), inertia(np.cross(even, straight, axis=0), even)]
+        place = self.place.T[..., None]
+        loads = [of(own), inertia(even, still), inertia(np.cross(even, place, axis=0), even)]
         if self.beam.loads:
             work, points = self.work(self.field(own))
             for load in range(len(self.beam.loads)):

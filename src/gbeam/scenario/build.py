@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from gbeam.results.description import RecordSummary
     from gbeam.structure.attachments import Load
     from gbeam.structure.beam import Beam
+    from gbeam.structure.line import Line
 
 
 @typed
@@ -153,12 +154,15 @@ def _beam(parts: Collector, table: schema.Beam) -> Beam | None:
     root = parts.attempt("beam.root", Root, **table.root.model_dump())
     loads = [_load(parts, f"beam.loads[{i}]", entry) for i, entry in enumerate(table.loads)]
     points = [parts.attempt(f"beam.points[{i}]", Point, each.name, each.at) for i, each in enumerate(table.points)]
+    line = None if table.line is None else _line(parts, table.line)
     if section is None or material is None or root is None or None in [*masses, *loads, *points]:
+        return None
+    if line is None and table.line is not None:
         return None
     return parts.attempt(
         "beam",
         Beam,
-        table.length,
+        line.length if table.length is None else table.length,  # type: ignore[union-attr]
         section,
         material,
         masses,
@@ -167,7 +171,22 @@ def _beam(parts: Collector, table: schema.Beam) -> Beam | None:
         loads,
         points,
         table.rotary_inertia,
+        line,
     )
+
+
+def _line(parts: Collector, table: schema.Line) -> Line | None:
+    from gbeam.structure.line import Line
+
+    twist = table.twist or 0.0
+    if table.points is not None:
+        return parts.attempt("beam.line", Line.of_points, table.points, twist, smooth=table.smooth)
+    if table.stations is not None:
+        along = [(x, 0.0, 0.0) for x in table.stations]
+        return parts.attempt("beam.line", Line.of_points, along, twist, smooth=False)
+    lengths, *turns = zip(*((p.length, p.twist, p.turn_y, p.turn_z) for p in table.pieces or ()), strict=True)
+    named = dict(zip(("twist", "turn_y", "turn_z"), turns, strict=True))
+    return parts.attempt("beam.line", Line.of_pieces, lengths, **named)
 
 
 def _load(parts: Collector, where: str, table: schema.Load) -> Load | None:

@@ -16,6 +16,7 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.guards.ranges import possible
 from gbeam.structure.attachments import TIP, Load, Point, PointMass, Root
+from gbeam.structure.line import Line
 from gbeam.structure.material import ASSUMED_RATIO, Material
 from gbeam.structure.section import Section
 from gbeam.structure.shapes import ASSUMED_SHEAR
@@ -26,12 +27,12 @@ NO_TWIST = "no twist (section.torsion_constant is not given)"
 @typed
 @dataclass(frozen=True, eq=False)
 class Beam(Value):
-    """A straight beam along x, held at x = 0 by the moving base.
+    """A beam, held at its root by the moving base: straight along x, or along a line.
 
     Parameters
     ----------
     length : float
-        m.
+        Of its line, m.
     section : Section
     material : Material
     masses : sequence of PointMass
@@ -46,12 +47,14 @@ class Beam(Value):
         Named points of output; a mass with a name is one at its place. The tip is ``tip``.
     rotary_inertia : bool
         Whether the sections resist turning by their own second moments; without it each is a point on the axis.
+    line : Line, optional
+        Reference line at rest, with the sections' twist; straight along x without it. Positions are lengths of arc.
 
     Raises
     ------
     InputError
-        If a value is impossible, a mass, a load or a point lies off the beam, a name is no word or stands twice, or
-        the section's stations do not cover the beam.
+        If a value is impossible, a mass, a load or a point lies off the beam, a name is no word or stands twice, the
+        section's stations do not cover the beam, or its line has another length.
 
     Examples
     --------
@@ -70,6 +73,7 @@ class Beam(Value):
     loads: Sequence[Load] = field(default=())
     points: Sequence[Point] = field(default=())
     rotary_inertia: bool = False
+    line: Line | None = None
 
     def __post_init__(self) -> None:
         possible("length", "length", positive("length", self.length, "m"))
@@ -80,6 +84,9 @@ class Beam(Value):
         places += [(f"loads[{i}].at", load.at) for i, load in enumerate(self.loads) if load.at is not None]
         places += [(f"points[{i}].at", point.at) for i, point in enumerate(self.points)]
         self._refuse_names_twice()
+        if self.line is not None and not abs(self.line.length - self.length) <= 1e-9 * self.line.length:
+            fix = f"give length = {self.line.length!r}"
+            raise InputError("length", f"is {self.length:g} m, and the line is {self.line.length:g} m long", fix)
         for place, at in places:
             if at > self.length * (1 + 1e-12):
                 raise InputError(
@@ -125,8 +132,17 @@ class Beam(Value):
 
     @property
     def body_centres(self) -> NDArray[np.float64]:
-        """Centres of mass of the bodies on the undeformed beam, from the root, axes of the section, (b, 3) m."""
-        return np.array([[m.at + m.offset[0], *m.offset[1:]] for m in self.masses], dtype=float).reshape(-1, 3)
+        """Centres of mass of the bodies on the undeformed beam, from the root, base axes, (b, 3) m."""
+        offset = np.array([m.offset for m in self.masses], dtype=float).reshape(-1, 3)
+        place, axes = self.at_rest([m.at for m in self.masses])
+        return np.asarray(place + np.einsum("pab,pb->pa", axes, offset))
+
+    def at_rest(self, x: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Places (p, 3) m and axes of the sections in columns (p, 3, 3) at positions `x` (p,) m, base axes."""
+        if self.line is not None:
+            return self.line.places(x)
+        at = np.asarray(x, dtype=float)
+        return at[:, None] * np.eye(3)[0], np.broadcast_to(np.eye(3), (len(at), 3, 3))
 
     def rigidities(self, x: ArrayLike) -> tuple[Any, Any, Any]:
         """EA N, EI_y and EI_z N m² at positions `x`, m: against stretching, bending along z and bending along y."""
@@ -142,6 +158,13 @@ class Beam(Value):
         shear, area, ratio = self.material.rigidity, self.section.at(x).area, self.material.ratio
         in_shear = (shear * area * k for k in self.section.shear_coefficients(x, ratio))
         return axial, *in_shear, shear * self.section.torsion_constant(x), about_y, about_z
+
+
+def refuse_curved(beam: Beam | None, asked: str) -> None:
+    """Raise InputError where a beam is not straight at rest, and what is `asked` judges loads along a straight one."""
+    if beam is not None and beam.line is not None:
+        fix = "run the beam in flight or on a hub, or leave the line out"
+        raise InputError("beam.line", f"is given, and {asked} judges the load along a straight beam", fix)
 
 
 def assumptions(beam: Beam) -> tuple[str, ...]:

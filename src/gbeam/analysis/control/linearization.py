@@ -203,7 +203,7 @@ def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gau
             raise InputError("gauges", "are given of particles, which have no sections", "leave them out")
         mass, count = structure.mass, len(structure.stations)
         outboard_mass = np.concatenate([mass[None], np.zeros((count, len(mass)))])
-        every = Sections(None, outboard_mass, np.zeros((count + 1, 0)))
+        every = Sections(None, outboard_mass, np.zeros((count + 1, 0)), np.eye(3))
     if gauges:
         assert structure.source is not None
         beam, unit = structure.source.beam, np.eye(6)[:, None]

@@ -34,6 +34,7 @@ from gbeam.numerics.samples import interpolated
 from gbeam.results.imitation.placement import EXCEEDED, MEASURES, Candidate, Placement, Verification
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
+from gbeam.structure.beam import refuse_curved
 
 
 @record
@@ -227,6 +228,7 @@ class _Trials:
         self.answers, self.length, self.flight = Answers(structure, flight, settings), structure.length, flight
         self.choice, self.weights = choice, weights
         self.span = settings.start, settings.start + settings.duration
+        refuse_curved(None if structure.source is None else structure.source.beam, "place")
         bodies = np.empty((0, 3)) if structure.source is None else structure.source.beam.body_centres
         self.points = points_of(structure.length, bodies)
         times = times_between(*self.span)

@@ -24,7 +24,7 @@ from gbeam.results.imitation.accounting import TOLERANCE, PeakPair
 from gbeam.results.imitation.criteria import Limit, checked_limits
 from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.machine import Commands
-from gbeam.structure.beam import Beam
+from gbeam.structure.beam import Beam, refuse_curved
 
 _FINE = 1e-3  # s: the angle of axis 1 is integrated on times no further apart
 
@@ -74,6 +74,7 @@ def plan(
     'done'
     """
     limits = checked_limits(accept)
+    refuse_curved(beam, "plan")
     first, last = (float(end) for end in motion.extent)
     time = times_between(first, last)
     axes = axes_result(motion, time)

@@ -21,6 +21,7 @@ from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.results.result import Floats
+from gbeam.structure.beam import refuse_curved
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +103,8 @@ class Posed:
 
 def pose(structure: Structure, motion: Motion, settings: ResponseSettings) -> tuple[Posed, int, int]:
     """Pose a run, from a machine's start if that comes before; and how many steps it takes before and after."""
+    if motion.kind == "centrifuge" and structure.source is not None:
+        refuse_curved(structure.source.beam, "a centrifuge")
     coarse = first_step(structure, motion, settings)
     step = None if settings.step is None else settings.duration / max(1, round(settings.duration / settings.step))
     kept = step or coarse

@@ -40,8 +40,8 @@ TIMES = 1500
 
 def outline_of(structure: Structure, motion: Motion, time: Floats, q: Floats) -> Outline | None:
     """Return the outline of a response at times `time` (t,) s with coordinates `q` (t, n); None without a beam."""
-    if structure.field is None or structure.source is None:
-        return None
+    if structure.field is None or structure.source is None or structure.source.beam.line is not None:
+        return None  # the viewer draws straight beams
     beam = structure.source.beam
     field = structure.field
     outline = field.points(slice(None))

@@ -39,7 +39,8 @@ def _family(rule: Quadrature, nodal: Array, length: float, *, axial: bool) -> Fa
 
 class Space(NamedTuple):
     """All motions in one direction, or about x, that nodal strains of some families and the free root make; K (n,) is
-    diagonal, and `line` (g,) kg and `turning` (g,) kg m² are the inertia of the sections.
+    diagonal, `line` (g,) kg and `turning` (g,) kg m² are the inertia of the sections, and `loads` (n, k) are known of
+    motions in all directions.
     """
 
     rule: Quadrature
@@ -50,6 +51,7 @@ class Space(NamedTuple):
     mass: Array
     stiffness: Array
     sensitivity: Callable[[Array], tuple[Array, Array]]
+    loads: Array | None = None
 
     @property
     def bends(self) -> bool:

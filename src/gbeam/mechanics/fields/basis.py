@@ -103,8 +103,33 @@ def closed_forms(length: float, counts: Counts) -> Families:
     return family(bar_shapes, axial), *bending, twist, shear_y, shear_z
 
 
-def polynomials(length: float, counts: Counts) -> Families:
-    """Legendre polynomials as strains, and over the length as twist and curvatures, for the exact field."""
+def between_corners(x: Array, edges: Sequence[float], count: int) -> Array:
+    """Legendre polynomials between corners, (points, count): the constants of all pieces, then the next degree."""
+    pieces, out = len(edges) - 1, np.zeros((len(x), count))
+    within = np.searchsorted(edges[1:-1], x)
+    for k in range(count):
+        degree, piece = divmod(k, pieces)
+        low, high = edges[piece : piece + 2]
+        out[within == piece, k] = legendre.Legendre.basis(degree, domain=[low, high])(x[within == piece])
+    return out
+
+
+def polynomials(length: float, counts: Counts, corners: Sequence[float] = ()) -> Families:
+    """Legendre polynomials as strains, and over the length as twist and curvatures, for the exact field; between the
+    `corners` of its line, where the strains jump.
+    """
+    if corners:
+
+        def broken(count: int, scale: float) -> Family:
+            def shapes(x: Array) -> Shapes:
+                values = scale * between_corners(x, [0.0, *corners, length], count)
+                return Shapes(np.full_like(values, np.nan), values, values)  # slope or curvature, as the family has it
+
+            return shapes
+
+        scales = (1.0, 1 / length, 1 / length, 1 / length, 1.0, 1.0)
+        s, v, w, t, a, b = (broken(count, scale) for count, scale in zip(counts, scales, strict=True))
+        return s, v, w, t, a, b
 
     def strain(count: int) -> Family:
         return lambda x: Shapes(*(length * part for part in legendre_shapes(x, length, count)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
@@ -24,6 +25,7 @@ from gbeam.mechanics.fields.components import (
     turned,
 )
 from gbeam.mechanics.fields.rotation import exponential_of, sine_cosine
+from gbeam.structure.line import NEAR
 
 Array = Any
 Turn = tuple[Array, ...]  # a quaternion by components
@@ -164,18 +166,37 @@ def root_rule(move: Array, turn: Array) -> tuple[Array, Array, Array]:
     return weights, onto, np.arange(moves + turns) >= moves
 
 
+def beyond(corners: Sequence[float], x: Array) -> Array:
+    """Which points (p,) m lie beyond which corners, (p, c); one at a corner does not, but at the root."""
+    at = np.array(corners, dtype=float)
+    return np.asarray((x[:, None] > at * (1 + NEAR)) | (at == 0), dtype=float)
+
+
 def frames_along(
-    rule: Quadrature, x: Array, turning: Array, root: Array, cumulative: Array, node_cumulative: Array
+    rule: Quadrature,
+    x: Array,
+    turning: Array,
+    root: Array,
+    cumulative: Array,
+    node_cumulative: Array,
+    corners: Sequence[float] = (),
 ) -> Frames:
     """Frames at the quadrature nodes and at points (p,) m of a beam behind the nodes of its root, some of them
-    `turning` (r,), with their weights between each other, `root` (r, r).
+    `turning` (r,), with their weights between each other, `root` (r, r), and behind those of its corners.
     """
-    before = len(turning)
+    before = len(turning) + len(corners)
     stops = np.unique(np.concatenate([rule.edges, rule.node, x]))
     size = np.diff(stops)
     inner = (stops[:-1] + _GAUSS[:, None] * size).ravel()
     onto = np.concatenate([np.zeros((len(inner), before)), rule.interpolation(inner)], axis=1)
     nodes, points = np.searchsorted(stops, rule.node), np.searchsorted(stops, x)
+    if len(corners):
+        after = [int(np.abs(stops - place).argmin()) for place in corners]
+        even = np.eye(before, before + len(rule.node))[len(turning) :]
+        onto = np.insert(onto.reshape(3, len(size), -1), after, even, axis=1)
+        size = np.insert(size, after, 1.0)
+        onto = onto.reshape(3 * len(size), -1)
+        nodes, points = (at + beyond(corners, stops[at]).sum(axis=1).astype(int) for at in (nodes, points))
     if turning.any():
         places = root[turning][:, turning].sum(axis=1)
         steps = np.diff(np.concatenate([[0.0], places, [1.0]]))
@@ -185,7 +206,6 @@ def frames_along(
         onto = np.concatenate([np.broadcast_to(even, shape), onto.reshape(3, len(size), -1)], axis=1)
         onto, size = onto.reshape(-1, len(even)), np.concatenate([steps, size])
         nodes, points = nodes + len(steps), points + len(steps)
-        of_root = np.where(turning, np.cumsum(turning), 0)
-    else:
-        of_root = np.zeros(before, dtype=int)
+    of_root = np.zeros(before, dtype=int)  # corners have no shapes, to which their frames would matter
+    of_root[: len(turning)] = np.where(turning, np.cumsum(turning), 0)
     return Frames(size, onto, np.concatenate([of_root, nodes]), points, node_cumulative, cumulative)

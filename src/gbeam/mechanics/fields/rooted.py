@@ -8,7 +8,7 @@ from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.fields.projected import ProjectedField
 from gbeam.mechanics.fields.rotation import rotation_matrix
-from gbeam.mechanics.fields.strains import StrainField
+from gbeam.mechanics.fields.strains import ExpandedField, StrainField
 from gbeam.mechanics.fields.taylor import EPSILON, Expanded, Places, Turns, exponential
 
 Array = Any
@@ -65,4 +65,4 @@ class RootedField(Expanded):
         return root.after(padded)
 
 
-Field = StrainField | ProjectedField | RootedField
+Field = StrainField | ExpandedField | ProjectedField | RootedField

@@ -37,8 +37,9 @@ from gbeam.mechanics.fields.components import (
     turned,
     turned_back,
 )
-from gbeam.mechanics.fields.frames import Frames, frames_along, root_rule
-from gbeam.mechanics.fields.taylor import EPSILON, Places, Turns
+from gbeam.mechanics.fields.frames import Frames, beyond, frames_along, root_rule
+from gbeam.mechanics.fields.taylor import EPSILON, Expanded, Places, Turns
+from gbeam.structure.line import Line
 
 Array = Any
 
@@ -94,7 +95,7 @@ class StrainField:
         return self.points(at)
 
     def at_rest(self) -> Places:
-        """Places about the straight beam, to first order."""
+        """Places about the beam at rest, to first order."""
         rest = np.zeros(self.size)
         return Places(self.positions(rest), self.slopes(rest))
 
@@ -273,27 +274,65 @@ class StrainField:
         return Places(self.positions(q), slopes, second), rotation, Turns(turn, xp.stack(columns, axis=2))
 
 
+@record
+class ExpandedField(Expanded):
+    """Taylor polynomials at rest of a strain field, to first order where it is `linear`."""
+
+    expanded: Places
+    turned: Turns
+
+    @classmethod
+    def of(cls, field: StrainField, *, linear: bool) -> ExpandedField:
+        """Expand a field."""
+        places, rotation, turns = field.curved(np.zeros(field.size))
+        return cls(replace(places, second=0 * places.second) if linear else places, replace(turns, rest=rotation))
+
+    def places(self) -> Places:
+        """Taylor polynomial of the positions."""
+        return self.expanded
+
+    def turns(self) -> Turns:
+        """Taylor polynomial of the rotations."""
+        return self.turned
+
+    def rotation(self, q: Array, at: Any = slice(None)) -> Array:
+        """Rotations of the sections `at` some points at coordinates (..., n), (..., points, 3, 3)."""
+        return self.sections(at).rotation(q)
+
+
 def strain_field(
-    rule: Quadrature, x: Array, strains: Array, move: Array | None = None, turn: Array | None = None
+    rule: Quadrature,
+    x: Array,
+    strains: Array,
+    move: Array | None = None,
+    turn: Array | None = None,
+    line: Line | None = None,
 ) -> StrainField:
-    """Field of a straight beam at points (p,) m, by the values (6, g, n) of its shapes at the quadrature nodes; its
-    root moves and turns by columns (3, n).
+    """Field of a beam at points (p,) m, by the values (6, g, n) of its shapes at the quadrature nodes, straight at rest
+    without a `line`; its root moves and turns by columns (3, n).
     """
     n = strains.shape[-1]
     shift, spin = (np.zeros((3, n)) if each is None else each for each in (move, turn))
     weights, root, turning = root_rule(shift, spin)
-    before, nodes = len(weights), len(rule.node)
+    corners = () if line is None else line.corners
+    before, nodes = len(weights) + len(corners), len(rule.node)
     of_root = np.where(
         turning[:, None], np.concatenate([0 * shift, spin])[:, None], np.concatenate([shift, 0 * spin])[:, None]
     )
-    whole = np.concatenate([of_root, strains], axis=1)
+    whole = np.concatenate([of_root, np.zeros((6, len(corners), n)), strains], axis=1)
     rest = np.zeros((6, before + nodes))
     rest[0, before:] = 1.0
+    if line is not None:
+        rest[3:, before:] = line.curvature(rule.node).T
+        rest[3:, len(weights) : before] = np.reshape(line.turns, (-1, 3)).T
+    # A corner is a node without extent that turns at rest, and with it all that lies beyond.
     cumulative, node_cumulative = (
-        np.concatenate([np.tile(weights, (len(at), 1)), rule.cumulative(at)], axis=1) for at in (x, rule.node)
+        np.concatenate([np.tile(weights, (len(at), 1)), beyond(corners, at), rule.cumulative(at)], axis=1)
+        for at in (x, rule.node)
     )
-    node_cumulative = np.concatenate([np.concatenate([root, np.zeros((before, nodes))], axis=1), node_cumulative])
-    frames = frames_along(rule, x, turning, root, cumulative, node_cumulative)
+    of_nodes = np.pad(root, ((0, len(corners)), (0, len(corners) + nodes)))
+    node_cumulative = np.concatenate([of_nodes, node_cumulative])
+    frames = frames_along(rule, x, turning, root, cumulative, node_cumulative, corners)
     shaped = tuple(bool(np.any(each)) for each in whole)
     present = tuple(has or bool(np.any(each)) for has, each in zip(shaped, rest, strict=True))
     return StrainField(cumulative, node_cumulative, whole, rest, frames, None, shaped, present)

@@ -27,7 +27,7 @@ class Places:
         return Places(self.r0[chosen], self.first[chosen], None if self.second is None else self.second[chosen])
 
     def at_rest(self) -> Places:
-        """The polynomials themselves, which are those about the straight beam."""
+        """The polynomials themselves, which are those about the beam at rest."""
         return self
 
     def slopes(self, q: Any) -> Any:
@@ -93,21 +93,24 @@ def _outer(left: Any, right: Any) -> Any:
 
 @record
 class Turns:
-    """Rotation matrices R = 1 + R1 q + ½ q R2 q of sections, base axes: (p, 3, 3, n), (p, 3, 3, n, n)."""
+    """Rotation matrices R = R0 + R1 q + ½ q R2 q of sections, base axes: R1 (p, 3, 3, n), R2 (p, 3, 3, n, n), and where
+    it is not 1 R0 (p, 3, 3).
+    """
 
     first: Any
     second: Any
+    rest: Any = None
 
     def __getitem__(self, chosen: Any) -> Turns:
         """The polynomials of some of the sections."""
-        return Turns(self.first[chosen], self.second[chosen])
+        return Turns(self.first[chosen], self.second[chosen], None if self.rest is None else self.rest[chosen])
 
     def slopes(self, q: Any) -> Any:
         """∂R/∂q at coordinates (..., n), (..., p, 3, 3, n)."""
         return self.first + namespace(self.first, q).einsum("pabij,...j->...pabi", self.second, q)
 
     def after(self, other: Turns) -> Turns:
-        """The product R_self R_other."""
+        """The product R_self R_other, of sections that do not turn at rest."""
         xp = namespace(self.first, other.first)
         cross = xp.einsum("pabi,pbcj->pacij", self.first, other.first)
         return Turns(self.first + other.first, self.second + other.second + cross + xp.swapaxes(cross, -1, -2))
@@ -116,7 +119,7 @@ class Turns:
         """Places of points that are fixed to the sections, `offset` (p, 3) m from `places`, section axes."""
         xp = namespace(self.first, places.first, offset)
         return Places(
-            places.r0 + offset,
+            places.r0 + (offset if self.rest is None else xp.einsum("pab,pb->pa", self.rest, offset)),
             places.first + xp.einsum("pabi,pb->pai", self.first, offset),
             places.second + xp.einsum("pabij,pb->paij", self.second, offset),
         )
@@ -124,7 +127,7 @@ class Turns:
 
 @record
 class Polynomials:
-    """Places and rotations of points on sections where both are the polynomials: those of CFOAM."""
+    """Places and rotations of points on sections where both are the polynomials."""
 
     places: Places
     turns: Turns
@@ -139,8 +142,9 @@ class Polynomials:
 
     def rotation(self, q: Any) -> Any:
         """Rotation matrices at coordinates (..., n), (..., p, 3, 3)."""
-        xp = namespace(self.turns.first, q)
-        return xp.eye(3) + xp.einsum("...pabi,...i->...pab", (self.turns.slopes(q) + self.turns.first) / 2, q)
+        xp, rest = namespace(self.turns.first, q), self.turns.rest
+        change = xp.einsum("...pabi,...i->...pab", (self.turns.slopes(q) + self.turns.first) / 2, q)
+        return (xp.eye(3) if rest is None else rest) + change
 
     def along(self, q: Any, push: Vector, turn: Vector = NONE) -> Any:
         """Generalised forces (..., n) of forces and moments on the points, by components (..., p)."""
@@ -151,6 +155,13 @@ class Polynomials:
         xp, rotation = namespace(self.turns.first, q), self.rotation(q)
         columns = [joined(xp, cross(turn, split(rotation[..., d])), rotation.shape[:-2]) for d in range(3)]
         return straight + 0.5 * xp.einsum("...pad,...padi->...i", xp.stack(columns, axis=-1), self.turns.slopes(q))
+
+    def jacobians(self, q: Any) -> tuple[Any, Any]:
+        """∂r/∂q of the points, and the angles by which their sections turn with q, (..., p, 3, n) each."""
+        xp = namespace(self.turns.first, q)
+        # [θ]× = ∂R/∂q Rᵀ
+        spin = xp.einsum("...padi,...pbd->...pabi", self.turns.slopes(q), self.rotation(q))
+        return self.places.slopes(q), -0.5 * xp.einsum("abe,...pabi->...pei", xp.asarray(EPSILON), spin)
 
     def curved(self, q: Any) -> tuple[Places, Any, Turns]:
         """Places about coordinates (n,) to second order, rotations (p, 3, 3), and the derivatives of these."""

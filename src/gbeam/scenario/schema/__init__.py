@@ -1,6 +1,6 @@
 """The scenario's tables, one file each: what may be written, in which units, and what must agree."""
 
-from gbeam.scenario.schema.beam import Beam, General, Load, PointMass
+from gbeam.scenario.schema.beam import Beam, General, Line, Load, PointMass
 from gbeam.scenario.schema.motion import AxisLimit, Centrifuge, Components, Flight, Hub, Limits, Motion
 from gbeam.scenario.schema.profile import Constant, Listed, Sine, SmoothStep, Sum, Trapezoid
 from gbeam.scenario.schema.response import Response
@@ -17,6 +17,7 @@ __all__ = [
     "General",
     "Hub",
     "Limits",
+    "Line",
     "Listed",
     "Load",
     "Model",

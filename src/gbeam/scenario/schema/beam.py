@@ -10,6 +10,7 @@ from pydantic_core import PydanticCustomError
 
 from gbeam.guards.limits import ENTRIES
 from gbeam.scenario.schema.fields import (
+    Angle,
     Areas,
     Density,
     Exponent,
@@ -240,10 +241,59 @@ class Root(Table):
     rotation_z: RotationalStiffness | None = Field(default=None, description="spring about z, against bending along y")
 
 
-class Beam(Table):
-    """The beam: held at its root by the moving base, straight along x."""
+class Piece(Table):
+    """A piece of the line that turns evenly: straight, an arc, a helix; without length a corner."""
 
-    length: Length = Field(description="length from root to tip")
+    length: Position = Field(default=0.0, description="length of arc; 0, or left out, is a corner")
+    twist: Angle = Field(default=0.0, description="turn of its end against its beginning about the line itself")
+    turn_y: Angle = Field(default=0.0, description="turn about the section's y, towards -z")
+    turn_z: Angle = Field(default=0.0, description="turn about the section's z, towards +y")
+
+
+class Line(Table):
+    """The line along which a beam lies at rest: by points, by pieces, or straight with a twist at stations."""
+
+    points: tuple[tuple[Offset, Offset, Offset], ...] | None = Field(
+        default=None, max_length=ENTRIES, description="places in base axes, [x, y, z], from the root, [0, 0, 0]"
+    )
+    smooth: StrictBool = Field(
+        default=True, description="false if the points are corners of straight pieces, not of a cubic spline"
+    )
+    pieces: tuple[Piece, ...] | None = Field(
+        default=None, max_length=ENTRIES, description="[ { length, twist, turn_y, turn_z } ] from root to tip"
+    )
+    stations: tuple[Position, ...] | None = Field(
+        default=None, max_length=ENTRIES, description="positions of the twist on a straight line, from root to tip"
+    )
+    twist: tuple[Angle, ...] | None = Field(
+        default=None,
+        max_length=ENTRIES,
+        description="angle of the section about the line at each point or station, linear in between",
+    )
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Line:
+        ways = [name for name in ("points", "pieces", "stations") if getattr(self, name) is not None]
+        if len(ways) != 1:
+            problem = f"{ways[1]} is given beside {ways[0]}" if ways else "the line is missing"
+            refuse([((), wrong(problem, "give one of points, pieces and stations", mark="key"))])
+        if self.pieces is not None and self.twist is not None:
+            refuse([(("twist",), wrong("is given beside pieces", "give each piece its own twist", mark="key"))])
+        listed = self.points or self.stations
+        if self.stations is not None and self.twist is None:
+            refuse([((), wrong("twist is missing beside stations", 'add twist = ["0 deg", "10 deg"]', mark="key"))])
+        if listed and self.twist is not None and len(self.twist) != len(listed):
+            problem = f"has {len(self.twist)} values for {len(listed)} {ways[0]}"
+            refuse([(("twist",), wrong(problem, f"give one for each of the {ways[0]}"))])
+        return self
+
+
+class Beam(Table):
+    """The beam: held at its root by the moving base, straight along x or along a line."""
+
+    length: Length | None = Field(
+        default=None, description="length from root to tip, along the line; left out where the line says it"
+    )
     section: Section = Field(description="cross-section, by shape or by properties: { area, inertia_y, inertia_z }")
     material: Material = Field(description="linear elastic material: { density, youngs_modulus, yield_strength }")
     damping_ratio: Ratios | None = Field(
@@ -269,3 +319,12 @@ class Beam(Table):
         description="true if the sections resist turning by their own second moments, as those of a stout beam and of "
         "one that twists do; without it each is a point on the axis",
     )
+    line: Line | None = Field(
+        default=None, description="reference line at rest, where it is not straight along x: { points, pieces, twist }"
+    )
+
+    @model_validator(mode="after")
+    def _length(self) -> Beam:
+        if self.length is None and (self.line is None or self.line.stations is not None):
+            refuse([((), wrong("length is missing", 'add length = "20 mm": length from root to tip', mark="key"))])
+        return self

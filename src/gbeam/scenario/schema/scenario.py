@@ -173,7 +173,8 @@ class Scenario(Environments, _Structure):
     def about_motions_and_beam(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
         """Motions that do not agree with the beam or its model."""
         for name, motion in self.motion.items():
-            if isinstance(motion, Centrifuge) and motion.control_point > self.beam.length * (1 + 1e-12):
+            length = math.inf if self.beam.length is None else self.beam.length
+            if isinstance(motion, Centrifuge) and motion.control_point > length * (1 + 1e-12):
                 hint = "give 0 to {beam.length} from the root"
                 yield ("motion", name, "control_point"), wrong("{value} is beyond the tip", hint)
             if isinstance(motion, Hub):
