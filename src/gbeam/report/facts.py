@@ -11,6 +11,7 @@ from gbeam.report.words import as_json
 from gbeam.results.cases import Sweep
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.facts import json_of, paths_of
+from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.motions import by_motion, tree_of_answers
 from gbeam.results.response import Response
@@ -56,6 +57,10 @@ def _worded(figures: dict[str, Any], answers: list[Result]) -> dict[str, Any]:
                 from gbeam.report.machine import judged_lines
 
                 figures["motions"][answer.name]["lines"] = list(judged_lines(answer))
+            case Comparison():
+                from gbeam.report.study import comparison_lines
+
+                figures["lines"] = list(comparison_lines(answer))
             case Study():
                 from gbeam.report.study import comparison_lines, of_beam, of_machine
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, table, verbatim
+from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, section, table, verbatim
 from gbeam.report.placement import largest
 from gbeam.report.words import number
 from gbeam.results.cases import BOUNDS
@@ -93,8 +93,7 @@ def sweep_body(facts: Facts, viewer: str, drawn: str) -> str:
     return "".join(
         [
             *parts,
-            heading("Figures"),
-            drawn,
+            section("Figures", drawn),
             heading("Cases"),
             _cases(facts, values, outcomes),
             _failures(facts, outcomes),

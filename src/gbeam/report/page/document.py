@@ -7,7 +7,6 @@ import hashlib
 import json
 import tomllib
 from collections.abc import Callable, Mapping
-from html import escape
 from importlib.resources import files
 from typing import Any, NamedTuple
 
@@ -19,17 +18,12 @@ from gbeam.printable import json_printable
 from gbeam.report.facts import facts_text
 from gbeam.report.page import cases, machine, searches, steady, study
 from gbeam.report.page.curves import drawn
-from gbeam.report.page.parts import Value, badge, escaped, folded, heading, listed, paragraph, table, verbatim
+from gbeam.report.page.parts import Value, badge, escaped, folded, heading, listed, paragraph, section, table, verbatim
 from gbeam.report.page.records import figures_in, modes_in
 from gbeam.report.page.scene import scene, shapes
 from gbeam.report.page.series import Numbers
-from gbeam.report.page.steady import crossings_table, modes_table, tracks_table
 from gbeam.report.words import as_json
-from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.modal import Campbell, Modes
-from gbeam.results.response import Response
 from gbeam.results.result import Result
-from gbeam.results.study import Study
 
 Body = Callable[[Mapping[str, Any], str, str], str]  # of the JSON, the viewer's place, and the figures
 
@@ -45,6 +39,7 @@ class Page(NamedTuple):
 
 PAGES = {
     "Study": Page("run", study.body, ("motions", "comparisons")),
+    "Comparison": Page("run", machine.comparison_body, ("verdict", "flight", "centrifuge")),
     "Deflection": Page("static", steady.static_body, ("motions",), ("displacement", "tip", "stable")),
     "MachinePlan": Page("plan", machine.plan_body, ("motions",), ("limits", "tracks")),
     "Modes": Page("modes", steady.modes_body, ("modes", "instabilities")),
@@ -70,6 +65,10 @@ def _kind(facts: Mapping[str, Any]) -> str | None:
     return None
 
 
+def _body(kind: str) -> Body:
+    return PAGES[kind].body if kind in PAGES else _figures
+
+
 _APART = ("form", "units", "provenance", "warnings", "files", "title", "outcome", "state")
 
 
@@ -88,7 +87,7 @@ def _figures(facts: Mapping[str, Any], _: str, plots: str) -> str:
             value = [{"": name, **each} for name, each in value.items() if isinstance(each, dict)]
         if isinstance(value, list) and value and all(isinstance(each, dict) for each in value):
             parts += [heading(key.replace("_", " "), 3), _rows_table(value, units, place)]
-    return "".join([*parts, heading("Figures") + plots if plots else ""])
+    return "".join([*parts, section("Figures", plots)])
 
 
 def _rows_table(rows: list[Mapping[str, Any]], units: Mapping[str, str], place: str) -> str:
@@ -121,9 +120,9 @@ def html(
     header: dict[str, Any] = {"plots": [], "maps": []}
     described = figures_in(kind, facts, variables or {}) if figures is None else figures
     plots = drawn((each() for each in described.values()), numbers, header)
-    verb, make = PAGES[kind][:2] if kind in PAGES else (kind, _figures)
+    verb = PAGES[kind].verb if kind in PAGES else kind
     header |= _viewer(kind, facts, variables or {}, numbers)
-    body = make(facts, '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else "", plots)
+    body = _body(kind)(facts, '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else "", plots)
     title = facts.get("title") or _title(origin) or f"gbeam {verb}"
     warnings = study.warnings(facts) if "motions" in facts else facts.get("warnings", [])
     if warnings:
@@ -228,41 +227,10 @@ def _hash(text: str) -> str:
 
 
 def html_of(result: Result) -> str:
-    """Return a few lines of HTML for any result; in words where its kind has no table."""
-    match result:
-        case Study() | Response():
-            inside = _of_run(result)
-        case Comparison():
-            inside = _of_comparison(result)
-        case Modes():
-            inside = modes_table(_known(result))
-        case Campbell():
-            inside = tracks_table(_known(result)) + crossings_table(_known(result))
-        case _:
-            return f"<pre>{escape(repr(result))}</pre>"
-    return f"<div>{inside}{listed(result.warnings) if not isinstance(result, Study) else ''}</div>"
-
-
-def _of_run(result: Study | Response) -> str:
-    known = _known(result)
-    title = known["title"] or (result.name if isinstance(result, Response) else "")
-    parts = [heading(title, 3) if title else "", f"<p>{badge(known['state'])}</p>"]
-    parts += [paragraph(each["verdict"]) for each in known["comparisons"]]
-    parts += [paragraph(f"{name}: {each['message']}") for name, each in known["motions"].items() if each["message"]]
-    done = {name: each for name, each in known["motions"].items() if "tip" in each}
-    warnings = listed(study.warnings(known)) if isinstance(result, Study) else ""
-    return "".join([*parts, study.tips_table(done), study.loads_table(done), warnings])
-
-
-def _of_comparison(result: Comparison) -> str:
-    head = ("", result.flight, result.centrifuge, "error")
-    rows: list[list[Value]] = [
-        [name.replace("_", " "), pair.flight, pair.machine, f"{100 * (pair.ratio - 1):+.2g} %"]
-        for name, pair in result.peaks.items()
-    ]
-    return paragraph(result.verdict) + table(head, rows, "Largest over the whole flight, SI")
-
-
-def _known(result: Result) -> dict[str, Any]:
-    """The facts of a result as a file has them, with null for what is not finite."""
-    return dict(json.loads(facts_text(result)))
+    """Return the inside of a result's page, without its figures and the viewer."""
+    known = json.loads(facts_text(result))
+    kind = str(known["form"]["kind"])
+    title, inside = known.get("title", ""), _body(kind)(known, "", "")
+    warnings = study.warnings(known) if "motions" in known else known["warnings"]
+    said = badge(known.get("state", known["outcome"]))
+    return f"<div>{heading(title, 3) if title else ''}<p>{said}</p>{listed(warnings, 'warning')}{inside}</div>"

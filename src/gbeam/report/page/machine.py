@@ -9,7 +9,7 @@ from typing import Any
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.figures.units import raised
 from gbeam.report.machine import followed
-from gbeam.report.page.parts import Cell, Value, folded, heading, known, listed, paragraph, table
+from gbeam.report.page.parts import Cell, Value, folded, heading, known, listed, paragraph, section, table
 from gbeam.results.imitation.criteria import RULES
 from gbeam.results.imitation.verdict import change, percent
 
@@ -102,6 +102,11 @@ def _percent(value: float | None) -> str:
     return percent(share if abs(share) > 5e-5 else 0.0) if math.isfinite(share) else "–"
 
 
+def comparison_body(facts: Facts, viewer: str, drawn: str) -> str:
+    """The verdict on a centrifuge's imitation of a flight."""
+    return verdict(facts, (facts["flight"], facts["centrifuge"])) + section("Histories", drawn)
+
+
 def plan_body(facts: Facts, viewer: str, drawn: str) -> str:
     """The verdict, what the axes do, what that uses of the limits, and where the target is held."""
     parts = []
@@ -115,7 +120,7 @@ def plan_body(facts: Facts, viewer: str, drawn: str) -> str:
         parts.append(held if len(rows) <= 12 else folded(f"{len(rows)} stretches in which the target is held", held))
         lacks = [f"{part['reason']} at {part['time']:.3f} s: {part['remedy']}" for part in each["shortfalls"]]
         parts.append(listed(lacks[:12], "warning"))
-    return "".join([*parts, heading("Histories") + drawn if drawn else ""])
+    return "".join([*parts, section("Histories", drawn)])
 
 
 def machine_section(name: str, motion: Facts) -> str:

@@ -41,6 +41,11 @@ def heading(text: str, level: int = 2) -> str:
     return f"<h{level}>{escaped(text)}</h{level}>"
 
 
+def section(title: str, inside: str) -> str:
+    """A heading and what stands below it; nothing where there is nothing."""
+    return heading(title) + inside if inside else ""
+
+
 def paragraph(text: str, kind: str = "") -> str:
     """A paragraph, with a capital letter in front."""
     return f"<p{_class(kind)}>{escaped(sentence(text))}</p>"

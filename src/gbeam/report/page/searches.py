@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.figures.units import raised
-from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, table
+from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, section, table
 from gbeam.report.words import number, percent
 
 Facts = Mapping[str, Any]
@@ -36,7 +36,7 @@ def fit_body(facts: Facts, viewer: str, drawn: str) -> str:
             table(("correlation of the errors of", ""), pairs),
             table(("column", "standard deviation of the residual", "unit"), left, words=(0, 2)),
             _searches(facts),
-            heading("Data and fit") + drawn if drawn else "",
+            section("Data and fit", drawn),
         ]
     )
 
@@ -79,7 +79,7 @@ def optimum_body(facts: Facts, viewer: str, drawn: str) -> str:
         ),
         _searches(facts),
     ]
-    return "".join([*parts, heading("Way to the optimum") + drawn if drawn else ""])
+    return "".join([*parts, section("Way to the optimum", drawn)])
 
 
 def sensitivity_body(facts: Facts, viewer: str, drawn: str) -> str:

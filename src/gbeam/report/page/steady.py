@@ -9,7 +9,7 @@ import numpy as np
 
 from gbeam.figures.units import raised
 from gbeam.report import words
-from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, table
+from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, section, table
 from gbeam.report.steady import RESTING, ROUNDING
 from gbeam.report.words import number, percent
 from gbeam.results.modal import along
@@ -33,16 +33,15 @@ def modes_body(facts: Facts, viewer: str, drawn: str) -> str:
     if not facts["damping_given"]:
         parts.append(paragraph("undamped: beam.damping_ratio is not given", "faint"))
     if facts["modes"]:
-        parts += [heading("Shapes"), viewer]
         scale = "to scale" if facts.get("section", {}).get("width") else "not to scale: the result does not hold it"
-        parts.append(paragraph(f"largest displacement 15 % of the length; the section is drawn {scale}", "faint"))
-        parts.append(drawn)
+        drawing = paragraph(f"largest displacement 15 % of the length; the section is drawn {scale}", "faint")
+        parts.append(section("Shapes", viewer and viewer + drawing + drawn))
     return "".join(parts)
 
 
 def campbell_body(facts: Facts, viewer: str, drawn: str) -> str:
     """Frequencies against speed, the multiples of the speed, and where they meet."""
-    parts = [heading("Campbell diagram"), drawn]
+    parts = [section("Campbell diagram", drawn)]
     if facts["critical_speed"] is not None:
         parts.append(paragraph(f"the equilibrium is lost at {number(facts['critical_speed'])} rad/s", "bad"))
     parts += [heading("Modes"), tracks_table(facts), heading("Crossings")]
@@ -105,7 +104,7 @@ def static_body(facts: Facts, viewer: str, drawn: str) -> str:
         if not each["stable"]
     ]
     parts += [heading("Deflection"), _tips(motions), _loads(motions)]
-    return "".join([*parts, heading("Along the beam"), drawn])
+    return "".join([*parts, section("Along the beam", drawn)])
 
 
 def _tips(motions: Facts) -> str:
@@ -151,4 +150,4 @@ def critical_map_body(facts: Facts, viewer: str, drawn: str) -> str:
     rows = ([place, *values] for place, values in zip(facts["position"], speed.T.tolist(), strict=True))
     caption = f"Critical hub rate, rad/s, with one more mass; –: none up to {words.number(facts['searched_to'])} rad/s"
     text = paragraph(f"motion {facts['motion']}, model {facts['model']}")
-    return text + table(head, rows, caption, words=()) + heading("Figure") + drawn
+    return text + table(head, rows, caption, words=()) + section("Figure", drawn)

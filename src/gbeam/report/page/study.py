@@ -8,7 +8,7 @@ from typing import Any
 
 from gbeam.report import words
 from gbeam.report.page.machine import machine_section, verdict
-from gbeam.report.page.parts import folded, heading, known, listed, paragraph, table
+from gbeam.report.page.parts import folded, heading, known, listed, paragraph, section, table
 
 Facts = Mapping[str, Any]
 
@@ -16,9 +16,8 @@ Facts = Mapping[str, Any]
 def body(facts: Facts, viewer: str, drawn: str) -> str:
     """The page's inside."""
     motions = {name: each for name, each in facts["motions"].items() if "environment" in each}
-    parts = [_verdict(facts), heading("Motion") + viewer if viewer else ""]
-    if drawn:
-        parts += [heading("Histories"), paragraph(_HINT, "faint gbeam-screen"), drawn]
+    parts = [_verdict(facts), section("Motion", viewer)]
+    parts.append(section("Histories", drawn and paragraph(_HINT, "faint gbeam-screen") + drawn))
     parts += [heading("Response"), tips_table(motions), loads_table(motions)]
     parts += [machine_section(name, each) for name, each in motions.items() if "limits" in each]
     parts += [heading("Accuracy"), _errors(motions)]
