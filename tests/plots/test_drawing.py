@@ -13,8 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from gbeam.figures.description import Figure as Described
-from gbeam.figures.description import Line, Panel, components, limit_levels, stretches
-from gbeam.figures.units import scale_of
+from gbeam.figures.description import Line, Panel, components, limit_levels, scale_of, stretches
 from gbeam.plots.draw import STYLE, draw
 from gbeam.plots.files import DPI, save, signature
 from gbeam.plots.lines import BINS, COLUMNS, ENVELOPE, line

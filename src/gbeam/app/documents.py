@@ -78,13 +78,8 @@ def removed(text: str, path: str) -> str:
 def with_record(text: str, motion: str, record: dict[str, str]) -> str:
     """Return the text with a flight's record in place of its acceleration, or of its record before.
 
-    What else is written of a record of the same file stays, such as its conditioning and the part that is
-    flown. The duration of the response goes: it was that of another flight, and a record is flown to its end.
-
-    Raises
-    ------
-    InputError
-        If there is no such flight, or the text cannot be changed there.
+    What else is written of a record of the same file stays. The duration of the response goes: it was that of another
+    flight, and a record is flown to its end.
     """
     place: Place = ("motion", motion)
     data = parse(NAME, text)

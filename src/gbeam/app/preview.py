@@ -28,15 +28,7 @@ def head(file: Path) -> dict[str, Any]:
 
 
 def load_curves(text: str, folder: Path) -> dict[str, Any]:
-    """The acceleration (or specific force) of every flight over the response's time, in g, base axes.
-
-    Parameters
-    ----------
-    text : str
-        Of a scenario.
-    folder : Path
-        Of its records.
-    """
+    """The acceleration (or specific force) of every flight over the response's time, in g, base axes."""
     case = build(loads(text, folder=folder))
     start, duration = case.response.start, case.response.duration
     time = np.linspace(start, start + duration, SAMPLES)

@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gbeam.cli.console import Watch
-from gbeam.cli.process import command
+from gbeam.cli.process import Watch, command
 from gbeam.errors import InputError
 from gbeam.questions import motion_of, prepared
 

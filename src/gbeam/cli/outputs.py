@@ -9,9 +9,8 @@ from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Literal
 
-from gbeam.cli.console import Watch
 from gbeam.cli.inputs import naming, signed
-from gbeam.cli.process import command, figures_wanted
+from gbeam.cli.process import Watch, command, figures_wanted
 from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.errors import InputError
 from gbeam.printable import printable

@@ -1,4 +1,4 @@
-"""The process of the command line: its arguments, its streams, how it begins and ends."""
+"""The process of the command line: its arguments, its streams, its progress, how it begins and ends."""
 
 from __future__ import annotations
 
@@ -10,8 +10,12 @@ import shutil
 import sys
 import warnings
 from contextvars import ContextVar
+from types import TracebackType
+from typing import Self
 
+from gbeam.cli.interrupts import cleaned_up
 from gbeam.printable import on_one_line, shortened, storable
+from gbeam.progress import Bar
 
 FIGURES = "GBEAM_FIGURES"  # environment: "none" leaves out the files of figures, as where a report draws its own
 _own = False
@@ -102,3 +106,24 @@ def abandon_stdout() -> None:
 
 def _nowhere() -> io.TextIOWrapper:
     return open(os.devnull, "w", encoding="utf-8")
+
+
+PATIENCE = 2.0  # s
+
+
+class Watch(Bar):
+    """Progress of a command that takes long; a signal that ends the process takes the bar away."""
+
+    def __init__(self, first: str = "compiling") -> None:
+        super().__init__(first, patience=PATIENCE)
+        self._cleaned_up = cleaned_up(self._stop)
+
+    def __enter__(self) -> Self:
+        self._cleaned_up.__enter__()
+        return super().__enter__()
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        super().__exit__(kind, error, trace)
+        self._cleaned_up.__exit__(kind, error, trace)

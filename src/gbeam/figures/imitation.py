@@ -7,8 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gbeam.figures.description import FLIGHT, Figure, Line, Panel, ends_of, imitating, moving, stretches
-from gbeam.figures.units import scale_of
+from gbeam.figures.description import FLIGHT, Figure, Line, Panel, ends_of, imitating, moving, scale_of, stretches
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.measures import Shock
 from gbeam.results.result import Floats

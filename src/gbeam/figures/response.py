@@ -22,13 +22,15 @@ from gbeam.figures.description import (
     ends_of,
     estimated,
     imitating,
+    largest,
     limit_levels,
     moving,
     not_drawn,
     of_motion,
+    raised,
+    scale_of,
     stretches,
 )
-from gbeam.figures.units import largest, raised, scale_of
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.machine import AxesResult

@@ -24,8 +24,8 @@ from gbeam.figures.description import (
     moving,
     not_drawn,
     of_motion,
+    scale_of,
 )
-from gbeam.figures.units import scale_of
 from gbeam.results.equilibrium import CriticalMap, Deflection
 from gbeam.results.modal import Campbell, Modes, near_multiples
 from gbeam.results.result import Floats

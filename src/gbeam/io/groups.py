@@ -20,17 +20,10 @@ class Variable(NamedTuple):
 
 @dataclass(frozen=True)
 class Group:
-    """Variables, coordinates and attributes of one result.
-
-    Parameters
-    ----------
-    variables, coordinates : dict of str to Variable
-        A coordinate is named as its dimension.
-    attrs : dict of str to (str, int or float)
-    """
+    """Variables, coordinates and attributes of one result."""
 
     variables: dict[str, Variable] = field(default_factory=dict)
-    coordinates: dict[str, Variable] = field(default_factory=dict)
+    coordinates: dict[str, Variable] = field(default_factory=dict)  # each is named as its dimension
     attrs: dict[str, Any] = field(default_factory=dict)
 
 

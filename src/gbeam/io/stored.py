@@ -24,18 +24,10 @@ from gbeam.results.result import Floats, Result
 
 @dataclass(frozen=True)
 class Stored:
-    """Contents of a file.
+    """Contents of a file."""
 
-    Parameters
-    ----------
-    variables : dict of str to array
-        By path, ``motions/flight/displacement``; text as str.
-    attrs : dict of str to dict
-        Of variables and groups, by path; ``""`` is the root.
-    """
-
-    variables: dict[str, Any]
-    attrs: dict[str, dict[str, Any]]
+    variables: dict[str, Any]  # by path, ``motions/flight/displacement``; text as str
+    attrs: dict[str, dict[str, Any]]  # of variables and groups, by path; ``""`` is the root
 
     @property
     def provenance(self) -> Provenance:

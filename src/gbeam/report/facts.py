@@ -13,7 +13,7 @@ from gbeam.results.equilibrium import Deflection
 from gbeam.results.facts import json_of, paths_of
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.plan import MachinePlan
-from gbeam.results.motions import by_motion, tree_of_answers
+from gbeam.results.kinds import by_motion, tree_of_answers
 from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.study import Study

@@ -9,8 +9,7 @@ from typing import Any
 from gbeam.report.facts import VERSION
 from gbeam.results.declared import declarations
 from gbeam.results.facts import paths_of, schema_of
-from gbeam.results.kinds import KINDS
-from gbeam.results.motions import tree_of_answers
+from gbeam.results.kinds import KINDS, tree_of_answers
 
 _ENVELOPE = {
     "form": {

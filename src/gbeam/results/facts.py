@@ -58,23 +58,12 @@ class Nullable(dict[str, Any]):
 
 @dataclass(frozen=True)
 class Entry:
-    """A leaf of a tree: a quantity in JSON.
+    """A leaf of a tree: a quantity in JSON."""
 
-    Parameters
-    ----------
-    unit : str
-        SI; empty of what has none; ``unit`` where the facts have it beside the number.
-    words : str
-    ends : tuple of str
-        Names of its components; ``[i]`` where it is a list.
-    types : tuple of str
-        In JSON: number, boolean, string; array where it may be one or several.
-    """
-
-    unit: str
+    unit: str  # SI; empty of what has none; ``unit`` where the facts have it beside the number
     words: str
-    ends: tuple[str, ...] = ()
-    types: tuple[str, ...] = ("number",)
+    ends: tuple[str, ...] = ()  # names of its components; ``[i]`` where it is a list
+    types: tuple[str, ...] = ("number",)  # in JSON: number, boolean, string; array where it may be one or several
 
 
 def tree_of(kind: type) -> dict[str, Any]:

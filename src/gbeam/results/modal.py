@@ -229,13 +229,6 @@ def totals(errors: FrequencyErrors | None, count: int) -> Floats:
 
 
 def near_multiples(frequency: Floats, speed: Floats, orders: Sequence[int]) -> list[int]:
-    """Which modes a Campbell diagram draws: all but those far above every multiple of the speed.
-
-    Parameters
-    ----------
-    frequency : (k, v) Hz
-    speed : (v,) rad/s
-    orders : sequence of int
-    """
+    """Which modes a Campbell diagram draws, of (k, v) Hz over (v,) rad/s: all but those far above every multiple."""
     far = FAR * max(orders, default=0) * speed[-1] / (2 * np.pi) if len(orders) else np.inf
     return [k for k, each in enumerate(frequency) if k < FEW or not np.nanmin(each, initial=np.inf) > far]

@@ -160,7 +160,7 @@ class Figured(Result):
         InputError
             If there is no beam in motion to show, or the extra is not installed.
         """
-        from gbeam.report.page.widget import widget
+        from gbeam.report.page.result import widget
 
         return widget(self)
 

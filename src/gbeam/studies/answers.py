@@ -23,7 +23,7 @@ def answered(verb: str, case: Case, motion: str | None, at: float | None, needs:
 def answer_facts(answer: Any, title: str = "") -> Facts:
     """The facts of an answer with what has a name by its name: comparisons, and the limits of machines."""
     from gbeam.results.facts import json_of
-    from gbeam.results.motions import by_motion
+    from gbeam.results.kinds import by_motion
 
     several = isinstance(answer, tuple)
     facts = by_motion(answer, title) if several else json_of(answer)
@@ -45,7 +45,7 @@ def tree_of_figures(kind: type) -> dict[str, Any]:
     """The figures of answers of a kind, each at its place in the facts."""
     from gbeam.results.facts import ANY, Entry
     from gbeam.results.imitation.criteria import RULES
-    from gbeam.results.motions import tree_of_answers
+    from gbeam.results.kinds import tree_of_answers
 
     tree = tree_of_answers(kind)
     for motion in tree.get("motions", {}).values():

@@ -8,7 +8,6 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from gbeam.cli.console import Watch
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import Input, naming, number, read
 from gbeam.cli.options import (
@@ -25,7 +24,7 @@ from gbeam.cli.options import (
     option,
 )
 from gbeam.cli.outputs import deliver, folder_of
-from gbeam.cli.process import command
+from gbeam.cli.process import Watch, command
 from gbeam.cli.publication import publish
 from gbeam.errors import InputError
 from gbeam.questions import machine_of

@@ -8,12 +8,11 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from gbeam.cli.console import Watch
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import names, number
 from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile, SmoothVerb, Verb, option
 from gbeam.cli.outputs import LIST, deliver, folder_of, list_figures
-from gbeam.cli.process import command
+from gbeam.cli.process import Watch, command
 from gbeam.cli.publication import refuse_unwritable
 
 

@@ -10,10 +10,10 @@ from typing import Annotated, Any, get_args, get_type_hints
 
 from cyclopts import Parameter
 
-from gbeam.cli.console import Watch
 from gbeam.cli.inputs import number, read
 from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile
 from gbeam.cli.outputs import deliver, folder_of
+from gbeam.cli.process import Watch
 from gbeam.questions import QUESTIONS, Needs, Question
 
 _KEYWORD = inspect.Parameter.KEYWORD_ONLY

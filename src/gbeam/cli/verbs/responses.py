@@ -15,12 +15,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from gbeam.cli.console import Watch
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import read
 from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, Report, ScenarioFile
 from gbeam.cli.outputs import deliver, folder_of, show
-from gbeam.cli.process import figures_wanted
+from gbeam.cli.process import Watch, figures_wanted
 from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.errors import InputError
 from gbeam.printable import printable
@@ -162,18 +161,7 @@ _ABOUT = {"provenance", "files", "seconds", "written", "lines"}  # of the comput
 
 
 def answer_again(file: Path) -> Reproduction:
-    """Run the command of a verb's JSON again, on the scenario that the JSON holds, and compare every value.
-
-    Parameters
-    ----------
-    file : Path
-        Such as modes.json.
-
-    Raises
-    ------
-    InputError
-        If it is no such file, or the scenario or a record is not the one that was run.
-    """
+    """Run the command of a verb's JSON again, on the scenario that the JSON holds, and compare every value."""
     from gbeam.scenario.rerun import checked, records, reproduction
 
     facts, origin = _read(file)

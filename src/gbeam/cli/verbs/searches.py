@@ -7,7 +7,6 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from gbeam.cli.console import Watch
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import names, number, search_bounds
 from gbeam.cli.options import (
@@ -25,6 +24,7 @@ from gbeam.cli.options import (
     option,
 )
 from gbeam.cli.outputs import LIST, deliver, folder_of, list_figures, refuse_changes, write_found
+from gbeam.cli.process import Watch
 
 
 def fit(

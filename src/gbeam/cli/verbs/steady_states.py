@@ -10,7 +10,6 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from gbeam import questions
-from gbeam.cli.console import Watch
 from gbeam.cli.inputs import Input, naming, number, numbers, read
 from gbeam.cli.options import (
     At,
@@ -33,6 +32,7 @@ from gbeam.cli.options import (
     Vary,
 )
 from gbeam.cli.outputs import deliver, folder_of
+from gbeam.cli.process import Watch
 from gbeam.errors import InputError
 
 

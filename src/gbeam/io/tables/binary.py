@@ -13,10 +13,8 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.guards.confined import confined
-from gbeam.io.tables.hdf5 import read_hdf5
-from gbeam.io.tables.mat import read_mat
+from gbeam.io.tables.readers import read_hdf5, read_mat, read_uff
 from gbeam.io.tables.table import Column, Table
-from gbeam.io.tables.uff import read_uff
 
 _READERS: dict[str, Callable[[str, Sequence[str]], Table]] = {
     ".mat": read_mat,

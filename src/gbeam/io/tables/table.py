@@ -23,39 +23,20 @@ _LISTED = 30  # names in a message
 
 @dataclass(frozen=True)
 class Column:
-    """One column of a record.
+    """One column of a record."""
 
-    Parameters
-    ----------
-    name : str
-        As in the file.
-    read : callable
-        Returns the samples: text as in the file, or numbers.
-    unit : str
-        As the file spells it; empty if it states none.
-    aliases : tuple of str
-        Other names it goes by, such as ``a_z`` for ``a_z [g]``.
-    """
-
-    name: str
-    read: Callable[[], Sequence[str] | NDArray[Any]]
-    unit: str = ""
-    aliases: tuple[str, ...] = ()
+    name: str  # as in the file
+    read: Callable[[], Sequence[str] | NDArray[Any]]  # returns the samples: text as in the file, or numbers
+    unit: str = ""  # as the file spells it; empty if it states none
+    aliases: tuple[str, ...] = ()  # other names it goes by, such as ``a_z`` for ``a_z [g]``
 
 
 @dataclass(frozen=True)
 class Table:
-    """Columns of one file.
-
-    Parameters
-    ----------
-    columns : tuple of Column
-    rows : sequence of int or None
-        Row of every sample in a text file; None where the file has no rows.
-    """
+    """Columns of one file."""
 
     columns: tuple[Column, ...]
-    rows: Sequence[int] | None = None
+    rows: Sequence[int] | None = None  # row of every sample in a text file; None where the file has no rows
 
     def place(self, i: int) -> str:
         """Place of sample `i` in the file, in words."""

@@ -23,15 +23,9 @@ _Reading = tuple[int | None, int]  # the day, where it is known, and ns from its
 
 @dataclass(frozen=True)
 class Clock:
-    """A clock of which a record's first time is zero seconds.
+    """A clock of which a record's first time is zero seconds."""
 
-    Parameters
-    ----------
-    first : str
-        That time, as the file has it.
-    """
-
-    first: str
+    first: str  # that time, as the file has it
 
     def seconds(self, text: str) -> float | None:
         """Seconds from the first time to that of a text, the next of its kind where a date is missing; None if none."""

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from gbeam.errors import InputError
 from gbeam.figures import Describe
-from gbeam.figures.units import raised
+from gbeam.figures.description import raised
 from gbeam.guards.json_files import parse_json
 from gbeam.printable import json_printable
 from gbeam.report.facts import facts_text

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.figures.units import raised
+from gbeam.figures.description import raised
 from gbeam.report.machine import followed
 from gbeam.report.page.parts import Cell, Value, folded, heading, known, listed, paragraph, section, table
 from gbeam.results.imitation.criteria import RULES

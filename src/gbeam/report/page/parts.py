@@ -20,20 +20,11 @@ def escaped(text: object) -> str:
 
 @dataclass(frozen=True)
 class Cell:
-    """A cell of a table with a class, or a bar beside it.
-
-    Parameters
-    ----------
-    text : str
-    kind : str
-        good, bad or empty.
-    share : float
-        Of the bar, 0 to 1; NaN for none.
-    """
+    """A cell of a table with a class, or a bar beside it."""
 
     text: str
-    kind: str = ""
-    share: float = math.nan
+    kind: str = ""  # good, bad or empty
+    share: float = math.nan  # of the bar, 0 to 1; NaN for none
 
 
 def heading(text: str, level: int = 2) -> str:

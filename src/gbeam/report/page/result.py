@@ -1,9 +1,11 @@
-"""The page of a result, of one in memory or of a file that a verb wrote."""
+"""The page of a result, of one in memory or of a file that a verb wrote, and the viewer in a notebook."""
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Mapping
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -101,3 +103,25 @@ def file_in(folder: Path) -> Path:
         named = ", ".join(each.name for each in candidates[:4])
         raise InputError(str(folder), f"holds several results, {named}" if candidates else "holds no result", _FIX)
     return candidates[0]
+
+
+def widget(result: Result) -> Any:
+    """Return the viewer of a result as a widget of Jupyter."""
+    header, numbers = shown(result)
+    try:
+        import anywidget
+        import traitlets
+    except ModuleNotFoundError:
+        fix = "pip install 'gbeam[notebook]'; report(path) needs nothing"
+        raise InputError("view", "needs the package anywidget, which is not installed", fix) from None
+    assets = files("gbeam.report.page") / "assets"
+
+    class Viewer(anywidget.AnyWidget):
+        """The beam in motion."""
+
+        _esm = (assets / "gbeam.js").read_text(encoding="utf-8")
+        _css = (assets / "gbeam.css").read_text(encoding="utf-8")
+        header = traitlets.Unicode().tag(sync=True)
+        numbers = traitlets.Bytes().tag(sync=True)
+
+    return Viewer(header=json.dumps(header, allow_nan=False), numbers=numbers.array.tobytes())

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.figures.units import raised
+from gbeam.figures.description import raised
 from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, section, table
 from gbeam.report.words import number, percent
 

@@ -90,16 +90,7 @@ class Judged:
 
 
 def state_of(outcome: str, imitations: Sequence[Judged], *, exceeded: bool = False) -> str:
-    """Say how an answer with imitations ended, in a few words, of which only :data:`GOOD` are to be shown as good.
-
-    Parameters
-    ----------
-    outcome : str
-        Of the computation.
-    imitations : sequence of Judged
-    exceeded : bool
-        Whether a limit of the machine is.
-    """
+    """Say how an answer with imitations ended, in a few words, of which only :data:`GOOD` are to be shown as good."""
     if outcome != "done":
         return outcome
     if any(each.accepted is False for each in imitations):
@@ -113,32 +104,18 @@ def state_of(outcome: str, imitations: Sequence[Judged], *, exceeded: bool = Fal
 
 @dataclass(frozen=True)
 class Rule:
-    """A quantity that a limit of acceptance is set on, and how a value is held against the limit.
+    """A quantity that a limit of acceptance is set on, and how a value is held against the limit."""
 
-    Parameters
-    ----------
-    name : str
-        Key of the limit.
-    words : str
-        Description for the reference of scenarios.
-    kind : str
-        most: a share whose size may be at most the limit; least: one that may be no smaller; level, ratio: machine over
-        flight, which may be at most the limit and no less than its reciprocal, or lies between two; levels are written
-        in decibels.
-    usual : float
-        A limit as an example.
-    values : callable
-        Values of an imitation, each with where it occurs; the worst of them is judged.
-    response : bool
-        Whether it needs the responses; the others follow from what the machine does alone.
-    """
-
-    name: str
-    words: str
+    name: str  # key of the limit
+    words: str  # description for the reference of scenarios
+    # most: a share whose size may be at most the limit; least: one that may be no smaller; level, ratio: machine over
+    # flight, which may be at most the limit and no less than its reciprocal, or lies between two; levels are written
+    # in decibels
     kind: Literal["most", "least", "level", "ratio"]
-    usual: float
+    usual: float  # a limit as an example
+    # values of an imitation, each with where it occurs; the worst of them is judged
     values: Callable[[Judged], Iterator[Value]]
-    response: bool = True
+    response: bool = True  # whether it needs the responses; the others follow from what the machine does alone
 
     @property
     def band(self) -> bool:
@@ -146,13 +123,7 @@ class Rule:
         return self.kind in ("level", "ratio")
 
     def checked(self, limit: object) -> Limit:
-        """Return a limit as floats.
-
-        Raises
-        ------
-        InputError
-            If it means nothing.
-        """
+        """Return a limit as floats; InputError if it means nothing."""
         from gbeam.guards.checks import positive
 
         if not self.band or not isinstance(limit, (tuple, list)):
@@ -255,13 +226,7 @@ def judging(accept: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def checked_limits(accept: Mapping[str, object] | None) -> dict[str, Limit]:
-    """Return limits by name, as floats.
-
-    Raises
-    ------
-    InputError
-        If one has no such name, or means nothing.
-    """
+    """Return limits by name, as floats; InputError of one that has no such name, or means nothing."""
     limits = {}
     for name, limit in ({} if accept is None else accept).items():
         if name not in RULES:

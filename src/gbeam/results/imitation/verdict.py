@@ -23,29 +23,12 @@ def verdict(
     margins: tuple[float, float] | None = None,
     whole: tuple[float, float] | None = None,
 ) -> str:
-    """Return one sentence about the whole flight.
+    """Return one sentence about the whole flight between motions of these names.
 
-    Parameters
-    ----------
-    flight, machine : str
-        Names of the motions.
-    peaks : mapping of str to PeakPair
-        ``largest_load``, ``tip`` and ``root_moment``, where they are known.
-    accounting : Accounting
-    within : float, optional
-        Share by which the tip's peak may differ and count as reproduced; by default the load's tolerance.
-    margins : tuple of float, optional
-        Least margin on yield in flight and on the machine, where the yield strength is known.
-    whole : tuple of float, optional
-        First and last time of the whole flight, s, where only a part of it was run.
-
-    Returns
-    -------
-    str
-        That part; the flight's largest load peak first, where that is not reproduced; then the largest load anywhere
-        on the specimen, the tip's and the root moment's peaks, the margins on yield, how many load peaks are reproduced
-        and how well, the time followed and why the rest is not, and what the specimen is loaded with beyond flight and
-        idle.
+    The part of it that was run; the flight's largest load peak, where that is not reproduced; the largest load
+    anywhere on the specimen, the tip's and the root moment's peaks, of which the tip's counts as reproduced `within` a
+    share (the load's tolerance by default), and the least `margins` on yield in flight and on the machine; how many
+    load peaks are reproduced and how well; the time followed and why the rest is not; and what is loaded beyond.
     """
     within = accounting.tolerance if within is None else within
     part = [] if whole is None else [part_words(accounting.span, whole)]
