@@ -77,6 +77,14 @@ class Coefficients:
         """Number of coordinates."""
         return int(self.mass.shape[0])
 
+    @property
+    def second_moment(self) -> Array:
+        """Moments of inertia (3, 3) of the straight structure about its root, kg m²."""
+        xp = namespace(self.rigid)
+        xx, yy, zz, xy, yz, zx = (self.rigid[4 + k] for k in range(6))
+        rows = [[yy + zz, -xy, -zx], [-xy, zz + xx, -yz], [-zx, -yz, xx + yy]]
+        return xp.stack([xp.stack(row) for row in rows])
+
     def at(
         self, a_WO_B: Array, w_WB_B: Array, alpha_WB_B: Array, load_values: Array | None = None
     ) -> tuple[Array, Array, Array]:

@@ -167,6 +167,15 @@ class StrainField:
         _, at_points = field.frames.at(field.strain(q)[3:], points=True)
         return xp.stack([joined(xp, row, shape) for row in at_points], axis=-2)
 
+    def turning(self, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
+        """Rotations (..., p, 3, 3) of the sections at the points, and their angular velocities and accelerations (...,
+        p, 3), base axes.
+        """
+        xp, shape = namespace(self.strains, self.offset, q), (*q.shape[:-1], len(self.cumulative))
+        tangents = self.moving(q, qd, qdd)
+        w, alpha = (joined(xp, mapped(each, self.cumulative), shape) for each in (tangents.turn, tangents.turnd))
+        return self.rotation(q), w, alpha
+
     # --- forces come back
 
     def pulled(self, tangents: Tangents, force: Vector, moment: Vector = NONE) -> Array:

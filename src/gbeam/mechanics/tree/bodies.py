@@ -1,0 +1,299 @@
+"""Bodies of a tree: each takes the motion of its root and gives that of its points, and takes wrenches on these and
+gives the forces on its coordinates and the wrench at its root.
+
+A wrench is what motion demands: Σ m a outboard, less the loads. Forces on coordinates are the rows of the equations.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record
+from gbeam.mechanics.equations.inertia import Inertia
+from gbeam.mechanics.equations.linear import Coefficients
+from gbeam.mechanics.equations.virtual_work import LoadWork
+from gbeam.mechanics.fields.components import split
+from gbeam.mechanics.fields.strains import StrainField
+from gbeam.mechanics.fields.taylor import EPSILON, Polynomials
+from gbeam.mechanics.tree.frames import Frame, Relative, Wrench, cross, turned, turned_back
+from gbeam.mechanics.tree.steps import rotation_by_vector, tangent_back
+
+Array = Any
+
+
+class Acting(NamedTuple):
+    """A wrench on a point of a body, in axes of the point, which moves so in the root's."""
+
+    point: int
+    by: Relative
+    wrench: Wrench
+
+
+class Body(Protocol):
+    """A rigid or flexible body."""
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        ...
+
+    def relative(self, q: Array, qd: Array, qdd: Array) -> list[Relative]:
+        """Motions of the points in the root's axes, by coordinates (..., n)."""
+        ...
+
+    def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
+        """Forces (..., n) on the coordinates and wrench at the root that a motion of the root demands."""
+        ...
+
+    def along(self, q: Array, wrenches: list[Acting]) -> Array:
+        """Forces (..., n) on the coordinates that do the work of wrenches on points."""
+        ...
+
+    def stored(self, q: Array) -> Array:
+        """Strain energy (...) J."""
+        ...
+
+    def mass_moment(self, q: Array) -> tuple[Array, Array]:
+        """Mass kg, and its first moment (..., 3) kg m about the root, its axes."""
+        ...
+
+    def moving(self, q: Array, qd: Array, root: Frame) -> tuple[Array, Wrench]:
+        """Kinetic energy (...) J, and momentum N s and angular momentum N m s about the root, its axes."""
+        ...
+
+
+@record
+class Rigid:
+    """A rigid body: mass kg, centre (3,) m and inertia (3, 3) kg m² about it, and its points: places (p, 3) m and
+    rotations (p, 3, 3), all in the axes of its root.
+    """
+
+    mass: Array
+    centre: Array
+    inertia: Array
+    places: Array
+    rotations: Array
+
+    @property
+    def size(self) -> int:
+        return 0
+
+    def relative(self, q: Array, qd: Array, qdd: Array) -> list[Relative]:
+        shape, xp = q.shape[:-1], namespace(q, self.places, self.rotations)
+        return [
+            Relative(xp.broadcast_to(r, (*shape, 3)), None, None, R)
+            for r, R in zip(self.places, self.rotations, strict=True)
+        ]
+
+    def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
+        at_centre = root.a + cross(root.alpha, self.centre) + cross(root.w, cross(root.w, self.centre))
+        force, spin = self.mass * at_centre, root.w @ self.inertia
+        return q, Wrench(force, root.alpha @ self.inertia + cross(root.w, spin) + cross(self.centre, force))
+
+    def along(self, q: Array, wrenches: list[Acting]) -> Array:
+        return q
+
+    def stored(self, q: Array) -> Array:
+        return q.sum(axis=-1)  # of no coordinates: zero
+
+    def mass_moment(self, q: Array) -> tuple[Array, Array]:
+        return self.mass, self.mass * self.centre + 0 * q.sum(axis=-1, keepdims=True)
+
+    def moving(self, q: Array, qd: Array, root: Frame) -> tuple[Array, Wrench]:
+        velocity, spin = root.v + cross(root.w, self.centre), root.w @ self.inertia
+        push = self.mass * velocity
+        energy = ((push * velocity).sum(axis=-1) + (root.w * spin).sum(axis=-1)) / 2
+        return energy, Wrench(push, spin + cross(self.centre, push))
+
+
+@record
+class ExactPoints:
+    """Sections of a strain field."""
+
+    field: StrainField
+
+    def relative(self, q: Array, qd: Array, qdd: Array) -> list[Relative]:
+        r, rd, rdd = self.field.paths(q, qd, qdd)
+        R, w, alpha = self.field.turning(q, qd, qdd)
+        turns = ([turned_back(R[..., k, :, :], each[..., k, :]) for each in (w, alpha)] for k in range(r.shape[-2]))
+        return [
+            Relative(r[..., k, :], rd[..., k, :], rdd[..., k, :], R[..., k, :, :], *turn)
+            for k, turn in enumerate(turns)
+        ]
+
+    def along(self, q: Array, wrenches: list[Acting]) -> Array:
+        xp = namespace(q, *(acting.wrench.force for acting in wrenches))
+        pairs = zip(*((turned(by.R, each.force), turned(by.R, each.moment)) for _, by, each in wrenches), strict=True)
+        forces, moments = (split(xp.stack(each, axis=-2)) for each in pairs)
+        return self.field[np.array([acting.point for acting in wrenches])].along(q, forces, moments)
+
+
+@record
+class PolynomialPoints:
+    """Points whose displacements J q + ½ q H q (p, 3, n), (p, 3, n, n) and rotation vectors are polynomials."""
+
+    r0: Array
+    first: Array
+    second: Array
+    turn: Array
+    bend: Array
+
+    def relative(self, q: Array, qd: Array, qdd: Array) -> list[Relative]:
+        r, rd, rdd = _polynomial(self.first, self.second, q, qd, qdd)
+        R, w, alpha = rotation_by_vector(*_polynomial(self.turn, self.bend, q, qd, qdd), plane=False)
+        r = self.r0 + r
+        return [_one(k, (r, rd, rdd), R, w, alpha) for k in range(len(self.r0))]
+
+    def along(self, q: Array, wrenches: list[Acting]) -> Array:
+        xp = namespace(q, *(acting.wrench.force for acting in wrenches))
+        at = np.array([acting.point for acting in wrenches])
+        force = xp.stack([turned(by.R, each.force) for _, by, each in wrenches], axis=-2)
+        moment = xp.stack([each.moment for _, _, each in wrenches], axis=-2)
+        slope = self.first[at] + xp.einsum("paij,...j->...pai", self.second[at], q)
+        turning = self.turn[at] + xp.einsum("paij,...j->...pai", self.bend[at], q)
+        phi = ((self.turn[at] + turning) / 2 * q[..., None, None, :]).sum(axis=-1)
+        on_vector = tangent_back(phi, moment)
+        return (slope * force[..., None] + turning * on_vector[..., None]).sum(axis=(-3, -2))
+
+
+def _one(k: int, path: tuple[Array, Array, Array], R: Array, w: Array, alpha: Array) -> Relative:
+    """Motion of one of several points (..., p)."""
+    r, rd, rdd = (each[..., k, :] for each in path)
+    return Relative(r, rd, rdd, R[..., k, :, :], w[..., k, :], alpha[..., k, :])
+
+
+Points = ExactPoints | PolynomialPoints
+
+
+@record
+class FieldBody:
+    """A body whose particles follow a complete field: exact or CFOAM."""
+
+    inertia: Inertia
+    damping: Array
+    stiffness: Array
+    work: LoadWork | None
+    points: Points
+
+    @property
+    def size(self) -> int:
+        return int(self.stiffness.shape[0])
+
+    def relative(self, q: Array, qd: Array, qdd: Array) -> list[Relative]:
+        return self.points.relative(q, qd, qdd)
+
+    def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
+        along, force, moment = self.inertia.forces(q, qd, qdd, root.a, root.w, root.alpha)
+        along = along + q @ self.stiffness + qd @ self.damping
+        if self.work is not None and loads is not None:
+            load, pull, turn = self.work.generalised(q, loads)
+            along, force, moment = along - load, force - pull, moment - turn
+        return along, Wrench(force, moment)
+
+    def along(self, q: Array, wrenches: list[Acting]) -> Array:
+        return self.points.along(q, wrenches)
+
+    def stored(self, q: Array) -> Array:
+        return ((q @ self.stiffness) * q).sum(axis=-1) / 2
+
+    def mass_moment(self, q: Array) -> tuple[Array, Array]:
+        mass = self.inertia.mass
+        return mass.sum(), (mass[:, None] * self.inertia.field.positions(q)).sum(axis=-2)
+
+    def moving(self, q: Array, qd: Array, root: Frame) -> tuple[Array, Wrench]:
+        r, rd, _ = self.inertia.field.paths(q, qd, 0 * qd)
+        velocity = root.v[..., None, :] + cross(root.w[..., None, :], r) + rd
+        push = self.inertia.mass[:, None] * velocity
+        energy = (push * velocity).sum(axis=(-2, -1)) / 2
+        return energy, Wrench(push.sum(axis=-2), cross(r, push).sum(axis=-2))
+
+
+@record
+class LinearBody:
+    """A body whose energies end at second order in its coordinates: TLAM, FOAM, particles, modes of a mesh.
+
+    Its first and second moments of mass, S = S0 + S1 q + ½ q S2 q and J = J0 + J1 q + ½ q J2 q, and the momentum h_i =
+    h0_i + B_ji q_j of its coordinates about the root, are the constant coefficients of its equations on a moving root;
+    Lagrange's equations of these energies keep momentum and energy.
+    """
+
+    coefficients: Coefficients
+    points: Points
+
+    @property
+    def size(self) -> int:
+        return self.coefficients.size
+
+    def relative(self, q: Array, qd: Array, qdd: Array) -> list[Relative]:
+        return self.points.relative(q, qd, qdd)
+
+    def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
+        c, xp = self.coefficients, namespace(self.coefficients.mass, q, root.a)
+        S, Si, Sd, J, Ji, h, hi = self._moments(q, qd)
+        Sdd = (Si * qdd[..., None, :]).sum(axis=-1) + xp.einsum("aij,...i,...j->...a", c.k_a, qd, qd)
+        hd = (hi * qdd[..., None, :]).sum(axis=-1) + xp.einsum("aij,...i,...j->...a", c.k_al, qd, qd)
+        force = c.rigid[0] * root.a + cross(root.alpha, S) + cross(root.w, cross(root.w, S))
+        force = force + 2 * cross(root.w, Sd) + Sdd
+        swelling = (Ji * qd[..., None, None, :]).sum(axis=-1)
+        moment = cross(S, root.a) + turned(J, root.alpha) + turned(swelling, root.w) + hd
+        moment = moment + cross(root.w, turned(J, root.w) + h)
+        along = qdd @ c.mass + qd @ c.damping + q @ c.stiffness
+        along = along + (Si * root.a[..., :, None] + hi * root.alpha[..., :, None]).sum(axis=-2)
+        along = along + xp.einsum("aij,...a,...j->...i", c.gyroscopic, root.w, qd)
+        along = along - 0.5 * xp.einsum("...abi,...a,...b->...i", Ji, root.w, root.w)
+        if loads is not None and c.loads is not None:
+            forces = xp.einsum("...li,lij->...j", loads, c.loads.constant)
+            forces = forces + xp.einsum("...li,lijk,...k->...j", loads, c.loads.slope, q)
+            force, moment, along = force - forces[..., :3], moment - forces[..., 3:6], along - forces[..., 6:]
+        return along, Wrench(force, moment)
+
+    def _moments(self, q: Array, qd: Array) -> tuple[Array, ...]:
+        """S, ∂S/∂q, Ṡ, J, ∂J/∂q, h and the h_i."""
+        c, xp = self.coefficients, namespace(self.coefficients.mass, q, qd)
+        Si = -c.f_a + xp.einsum("aij,...j->...ai", c.k_a, q)
+        S = c.rigid[1:4] + ((Si - c.f_a) / 2 * q[..., None, :]).sum(axis=-1)
+        Ji = 2 * c.f_ww - 2 * xp.einsum("abij,...j->...abi", c.k_ww, q)
+        J = c.second_moment + ((2 * c.f_ww + Ji) / 2 * q[..., None, None, :]).sum(axis=-1)
+        hi = -c.f_al + xp.einsum("aij,...j->...ai", c.k_al, q)
+        Sd, h = ((each * qd[..., None, :]).sum(axis=-1) for each in (Si, hi))
+        return S, Si, Sd, J, Ji, h, hi
+
+    def along(self, q: Array, wrenches: list[Acting]) -> Array:
+        return self.points.along(q, wrenches)
+
+    def stored(self, q: Array) -> Array:
+        return ((q @ self.coefficients.stiffness) * q).sum(axis=-1) / 2
+
+    def mass_moment(self, q: Array) -> tuple[Array, Array]:
+        return self.coefficients.rigid[0], self._moments(q, 0 * q)[0]
+
+    def moving(self, q: Array, qd: Array, root: Frame) -> tuple[Array, Wrench]:
+        S, _, Sd, J, _, h, _ = self._moments(q, qd)
+        c = self.coefficients
+        push = c.rigid[0] * root.v + cross(root.w, S) + Sd
+        spin = cross(S, root.v) + turned(J, root.w) + h
+        energy = (push * root.v + spin * root.w + Sd * root.v + h * root.w).sum(axis=-1)
+        return (energy + ((qd @ c.mass) * qd).sum(axis=-1)) / 2, Wrench(push, spin)
+
+
+def _polynomial(first: Array, second: Array, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
+    """J q + ½ q H q, and its first and second derivatives with respect to time, (..., p, 3)."""
+    xp = namespace(first, q)
+    slope = first + xp.einsum("paij,...j->...pai", second, q)
+    value = ((first + slope) / 2 * q[..., None, None, :]).sum(axis=-1)
+    rate = (slope * qd[..., None, None, :]).sum(axis=-1)
+    change = (slope * qdd[..., None, None, :]).sum(axis=-1) + xp.einsum("paij,...i,...j->...pa", second, qd, qd)
+    return value, rate, change
+
+
+def polynomial_points(of: Polynomials) -> PolynomialPoints:
+    """Points on sections whose places and rotations are polynomials."""
+    places, turns = of.places, of.turns
+    vectors = (
+        -0.5 * namespace(each).einsum("abc,pbc...->pa...", EPSILON, each) for each in (turns.first, turns.second)
+    )
+    second = namespace(places.first).zeros((*places.first.shape, places.first.shape[-1]))
+    return PolynomialPoints(places.r0, places.first, second if places.second is None else places.second, *vectors)

@@ -1,0 +1,252 @@
+"""Equations of a tree of bodies: the motion of every frame from the ground out, the wrenches back to it."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from itertools import accumulate
+from typing import Any
+
+import numpy as np
+
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record, static
+from gbeam.mechanics.tree.bodies import Acting, Body
+from gbeam.mechanics.tree.frames import Frame, Wrench, cross, turned, turned_back
+from gbeam.mechanics.tree.steps import Step
+
+Array = Any
+
+
+SLIP = 1e-3  # rad/s or m/s: rate at which friction has 0.76 of its size
+
+
+@record
+class Holder:
+    """Springs, dampers, friction and stops on the coordinates (k,) of a joint, and the coordinates `ease` of the
+    springs; the stops stand at `low` and `high` and give way by their own stiffness.
+    """
+
+    stiffness: Array
+    ease: Array
+    damping: Array
+    friction: Array
+    low: Array
+    high: Array
+    stop: Array
+
+    def forces(self, q: Array, qd: Array) -> Array:
+        """Forces (..., k) that hold the coordinates."""
+        xp = namespace(q, qd, self.stiffness)
+        held = self.stiffness * (q - self.ease) + self.damping * qd + self.friction * xp.tanh(qd / SLIP)
+        return held + self.stop * self._beyond(q)
+
+    def stored(self, q: Array) -> Array:
+        """Energy (...) of the springs and stops, J."""
+        return (self.stiffness * (q - self.ease) ** 2 + self.stop * self._beyond(q) ** 2).sum(axis=-1) / 2
+
+    def chosen(self, which: Array) -> Holder:
+        """What holds some of the coordinates."""
+        return Holder(*(getattr(self, each.name)[which] for each in fields(self)))
+
+    def _beyond(self, q: Array) -> Array:
+        xp = namespace(q, self.low)
+        return xp.maximum(q - self.high, 0.0) - xp.maximum(self.low - q, 0.0)
+
+
+@record
+class Link:
+    """A body with the joint that holds it: a chain of steps from point `on` of body `parent`, −1 for the ground, and
+    what holds its coordinates. The root of a body is the point after its others.
+    """
+
+    steps: tuple[Step, ...]
+    holder: Holder
+    body: Body
+    parent: int = static()
+    on: int = static()
+
+    @property
+    def sizes(self) -> tuple[int, ...]:
+        """Numbers of coordinates of each step, and of the body."""
+        return (*(step.size for step in self.steps), self.body.size)
+
+
+@record
+class Inputs:
+    """Drives of a tree at one time or many: motion of the ground, prescribed coordinates with their rates (..., 3, k),
+    efforts (..., n) on all coordinates, load components (..., l, 6) of each body, and wrenches (..., p, 6) on points;
+    None where there is nothing of a kind.
+    """
+
+    ground: Frame
+    prescribed: Array | None
+    efforts: Array | None
+    loads: tuple[Array | None, ...]
+    wrenches: Array | None
+
+
+@record
+class Force:
+    """A force and moment on point `on` of body `body`, in the ground's axes, or those of the point if it follows."""
+
+    body: int = static()
+    on: int = static()
+    follower: bool = static()
+
+
+class State:
+    """The motion of every frame of a tree at coordinates and rates, all of them, prescribed ones too."""
+
+    def __init__(self, tree: Tree, y: Array, yd: Array, ydd: Array, ground: Frame) -> None:
+        xp, shape = namespace(y, ground.a), y.shape[:-1]
+        R, *vectors = ground.R, ground.p, ground.v, ground.w, ground.a, ground.alpha
+        ground = Frame(xp.broadcast_to(R, (*shape, 3, 3)), *(xp.broadcast_to(each, (*shape, 3)) for each in vectors))
+        self.q, self.qd, self.qdd = (tree.parted(each) for each in (y, yd, ydd))
+        self.roots: list[Frame] = []
+        self.points: list[list[Frame]] = []
+        self.relative: list[Any] = []  # of each body: how its points move in its root's axes
+        self.steps: list[Any] = []  # of each body: the motion of each step of its joint
+        for k, link in enumerate(tree.links):
+            frame = ground if link.parent < 0 else self.points[link.parent][link.on]
+            steps = []
+            *joint, body = zip(self.q[k], self.qd[k], self.qdd[k], strict=True)
+            for step, coordinates in zip(link.steps, joint, strict=True):
+                steps.append(step.motion(*coordinates))
+                frame = frame.carried(steps[-1])
+            relative = link.body.relative(*body)
+            self.steps.append(steps)
+            self.roots.append(frame)
+            self.relative.append(relative)
+            self.points.append([*(frame.carried(by) for by in relative), frame])
+
+
+@record
+class Tree:
+    """A tree of links, each after its parent; `fixed` are the indices of prescribed coordinates among all."""
+
+    links: tuple[Link, ...]
+    forces: tuple[Force, ...]
+    fixed: tuple[int, ...] = static(default=())
+
+    @property
+    def size(self) -> int:
+        """Number of all coordinates, prescribed ones too."""
+        return sum(sum(link.sizes) for link in self.links)
+
+    @property
+    def free(self) -> Array:
+        """Indices of the coordinates that are unknown."""
+        return np.setdiff1d(np.arange(self.size), self.fixed)
+
+    def parted(self, y: Array) -> list[list[Array]]:
+        """Coordinates of each link: of each step of its joint, then of its body."""
+        sizes = [size for link in self.links for size in link.sizes]
+        ends = list(accumulate(sizes))
+        parts = iter([y[..., end - size : end] for end, size in zip(ends, sizes, strict=True)])
+        return [[next(parts) for _ in link.sizes] for link in self.links]
+
+    def whole(self, y: Array, prescribed: Array) -> Array:
+        """All coordinates (..., n) from the unknown and the prescribed ones."""
+        xp = namespace(y, prescribed)
+        order = np.argsort(np.concatenate([self.free, np.array(self.fixed)]))
+        shape = np.broadcast_shapes(y.shape[:-1], prescribed.shape[:-1])
+        parts = [xp.broadcast_to(each, (*shape, each.shape[-1])) for each in (y, prescribed)]
+        return xp.concatenate(parts, axis=-1)[..., order]
+
+    def motion(self, y: Array, yd: Array, ydd: Array, inputs: Inputs) -> State:
+        """Motion of every frame at the unknown coordinates and their rates (..., n)."""
+        if inputs.prescribed is not None:
+            y, yd, ydd = (self.whole(each, inputs.prescribed[..., k, :]) for k, each in enumerate((y, yd, ydd)))
+        return State(self, y, yd, ydd, inputs.ground)
+
+    def __call__(self, y: Array, yd: Array, ydd: Array, inputs: Inputs) -> Array:
+        """Residual (..., n) of the unknown coordinates; zero where the equations hold."""
+        return self.rows(y, yd, ydd, inputs)[0][..., self.free]
+
+    def rows(self, y: Array, yd: Array, ydd: Array, inputs: Inputs) -> tuple[Array, Wrench]:
+        """Forces (..., n) that all coordinates demand of their drives, and the wrench on the ground."""
+        xp = namespace(y, yd, ydd, inputs.ground.a)
+        state = self.motion(y, yd, ydd, inputs)
+        on_points: list[list[Acting]] = [[] for _ in self.links]
+        on_roots: list[list[Wrench]] = [[] for _ in self.links]
+
+        def act(body: int, on: int, wrench: Wrench) -> None:
+            if on == len(state.relative[body]):
+                on_roots[body].append(wrench)
+            else:
+                on_points[body].append(Acting(on, state.relative[body][on], wrench))
+
+        for k, force in enumerate(self.forces):
+            frame = state.points[force.body][force.on]
+            assert inputs.wrenches is not None
+            f, m = -inputs.wrenches[..., k, :3], -inputs.wrenches[..., k, 3:]
+            if not force.follower:
+                f, m = turned_back(frame.R, f), turned_back(frame.R, m)
+            act(force.body, force.on, Wrench(f, m))
+        rows: list[Array] = []
+        ground = Wrench(xp.zeros(3), xp.zeros(3))
+        for k in reversed(range(len(self.links))):
+            link, root = self.links[k], state.roots[k]
+            *joint, body = zip(state.q[k], state.qd[k], state.qdd[k], strict=True)
+            along, wrench = link.body.demanded(*body, root, inputs.loads[k])
+            if on_points[k]:
+                along = along + link.body.along(body[0], on_points[k])
+            wrench = sum((each.wrench.brought(each.by) for each in on_points[k]), start=wrench)
+            wrench = sum(on_roots[k], start=wrench)
+            of_joint: list[Array] = []
+            for step, by, coordinates in reversed(list(zip(link.steps, state.steps[k], joint, strict=True))):
+                of_joint.insert(0, step.rows(*coordinates, wrench))
+                wrench = wrench.brought(by)
+            if of_joint:
+                q, qd = (xp.concatenate([each[i] for each in joint], axis=-1) for i in (0, 1))
+                held = link.holder.forces(q, qd)
+                along = xp.concatenate([xp.concatenate(of_joint, axis=-1) + held, along], axis=-1)
+            rows.insert(0, along)
+            if link.parent < 0:
+                ground = ground + wrench
+            else:
+                act(link.parent, link.on, wrench)
+        demanded = xp.concatenate(rows, axis=-1)
+        return demanded if inputs.efforts is None else demanded - inputs.efforts, ground
+
+    def invariants(self, y: Array, yd: Array, inputs: Inputs, gravity: Array) -> tuple[Array, Array, Array]:
+        """Momentum N s and angular momentum N m s about the origin (..., 3), ground's axes, and energy (..., 3) J:
+        kinetic, elastic, of gravity.
+        """
+        state = self.motion(y, yd, 0 * yd, inputs)
+        force = moment = kinetic = elastic = weight = 0.0
+        for k, link in enumerate(self.links):
+            q, qd, root = state.q[k], state.qd[k], state.roots[k]
+            energy, momentum = link.body.moving(q[-1], qd[-1], root)
+            push, spin = turned(root.R, momentum.force), turned(root.R, momentum.moment)
+            force, moment = force + push, moment + spin + cross(root.p, push)
+            joint = namespace(y).concatenate(q[:-1], axis=-1) if q[:-1] else q[-1][..., :0]
+            kinetic = kinetic + energy
+            elastic = elastic + link.body.stored(q[-1]) + link.holder.stored(joint)
+            mass, first = link.body.mass_moment(q[-1])
+            weight = weight - ((mass * root.p + turned(root.R, first)) * gravity).sum(axis=-1)
+        return force, moment, namespace(y).stack([kinetic, elastic, weight], axis=-1)
+
+    def local(self, y: Array, yd: Array, ydd: Array) -> tuple[Tree, Array, Array, Array]:
+        """The tree with as many coordinates as degrees of freedom, and all of these with their rates, at others (n,):
+        Euler parameters give way to a rotation vector, which is zero there.
+        """
+        numbers: dict[int, int] = {}
+        links, states, first = [], [], 0
+        fixed = set(self.fixed)
+        for link, *parts in zip(self.links, *(self.parted(each) for each in (y, yd, ydd)), strict=True):
+            steps, kept = [], []
+            for step, *rates in zip(link.steps, *parts, strict=False):
+                reduced, *state = step.local(*rates)
+                steps.append(reduced)
+                states.append(state)
+                kept += [step.size - reduced.size <= k for k in range(step.size)]
+            states.append([each[-1] for each in parts])
+            kept += [True] * link.body.size
+            numbers |= {first + int(k): len(numbers) + i for i, k in enumerate(np.flatnonzero(kept))}
+            first += len(kept)
+            holder = link.holder.chosen(np.array(kept[: len(kept) - link.body.size], dtype=bool))
+            links.append(replace(link, steps=tuple(steps), holder=holder))
+        joined = (np.concatenate(each) for each in zip(*states, strict=True))
+        tree = replace(self, links=tuple(links), fixed=tuple(numbers[k] for k in sorted(fixed)))
+        return tree, *joined  # type: ignore[return-value]

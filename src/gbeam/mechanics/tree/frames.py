@@ -1,0 +1,101 @@
+"""Motion of a frame and the wrench on it, carried from one frame to the next.
+
+Vectors are in the axes of the frame itself, so that they need no more than the relative rotation of two frames. A frame
+Q whose origin is at r in a frame P, turned by C = R_PQ, moves with
+
+    v_Q = v + ω × r + ṙ,    a_Q = a + α × r + ω × (ω × r) + 2 ω × ṙ + r̈,    ω_Q = Cᵀ ω + ω_PQ,
+    α_Q = Cᵀ α + α_PQ + (Cᵀ ω) × ω_PQ,
+
+and a wrench on Q acts on P by f_P = C f_Q and n_P = C n_Q + r × f_P. All arrays may have leading axes.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record
+
+Array = Any
+
+
+def cross(left: Array, right: Array) -> Array:
+    """Vector product of vectors (..., 3)."""
+    xp = namespace(left, right)
+    (a, b, c), (x, y, z) = ((v[..., 0], v[..., 1], v[..., 2]) for v in (left, right))
+    return xp.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=-1)
+
+
+def turned(R: Array, v: Array) -> Array:
+    """R v of matrices (..., 3, 3) and vectors (..., 3)."""
+    return (R * v[..., None, :]).sum(axis=-1)
+
+
+def turned_back(R: Array, v: Array) -> Array:
+    """Rᵀ v."""
+    return (R * v[..., :, None]).sum(axis=-2)
+
+
+def product(left: Array, right: Array) -> Array:
+    """Product of rotation matrices (..., 3, 3)."""
+    return (left[..., :, :, None] * right[..., None, :, :]).sum(axis=-2)
+
+
+@record
+class Relative:
+    """Motion of a frame Q in a frame P: place, velocity and acceleration (..., 3) in axes P, R_PQ (..., 3, 3) or None
+    where it is not turned, and angular velocity and acceleration (..., 3) in axes Q, or None.
+    """
+
+    r: Array
+    rd: Array | None = None
+    rdd: Array | None = None
+    R: Array | None = None
+    w: Array | None = None
+    alpha: Array | None = None
+
+
+@record
+class Frame:
+    """Motion of a frame: R_WF (..., 3, 3), its origin in the world (..., 3) m, world axes; velocity, angular velocity,
+    acceleration (specific force where gravity acts) and angular acceleration (..., 3), its own axes.
+    """
+
+    R: Array
+    p: Array
+    v: Array
+    w: Array
+    a: Array
+    alpha: Array
+
+    def carried(self, by: Relative) -> Frame:
+        """Motion of a frame that moves relative to this one."""
+        v = self.v + cross(self.w, by.r)
+        a = self.a + cross(self.alpha, by.r) + cross(self.w, cross(self.w, by.r))
+        if by.rd is not None:
+            v, a = v + by.rd, a + 2 * cross(self.w, by.rd) + by.rdd
+        p = self.p + turned(self.R, by.r)
+        if by.R is None:
+            return Frame(self.R, p, v, self.w, a, self.alpha)
+        w, alpha, v, a = (turned_back(by.R, each) for each in (self.w, self.alpha, v, a))
+        if by.w is not None:
+            w, alpha = w + by.w, alpha + by.alpha + cross(w, by.w)
+        return Frame(product(self.R, by.R), p, v, w, a, alpha)
+
+
+@record
+class Wrench:
+    """Force N and moment N m about the origin of a frame (..., 3), its axes."""
+
+    force: Array
+    moment: Array
+
+    def __add__(self, other: Wrench) -> Wrench:
+        return Wrench(self.force + other.force, self.moment + other.moment)
+
+    def brought(self, by: Relative) -> Wrench:
+        """The wrench on the frame in which its own moves."""
+        force, moment = self.force, self.moment
+        if by.R is not None:
+            force, moment = turned(by.R, force), turned(by.R, moment)
+        return Wrench(force, moment + cross(by.r, force))

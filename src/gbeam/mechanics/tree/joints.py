@@ -1,0 +1,246 @@
+"""Joints: how a body hangs on a point of another, or on the ground. A new kind is one entry of :data:`KINDS`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.arrays.tree import Value
+from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
+from gbeam.guards.checks import array, choice, finite, positive
+from gbeam.mechanics.tree.equations import Holder
+from gbeam.mechanics.tree.steps import Ball, Placed, Rotation, Slide, Step, about
+from gbeam.motion.profiles.combine import as_profile
+from gbeam.motion.profiles.profile import Profile
+
+Floats = NDArray[np.float64]
+GROUND = "ground"
+_EYE = np.eye(3)
+_EASY = ("stiffness", "ease", "damping", "friction", "stop_stiffness")
+DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
+
+
+class Kind(NamedTuple):
+    """A kind of joint: the steps and the names of their coordinates by its axes (k, 3), how many axes it takes, and the
+    names of rates where they are not those of the coordinates.
+    """
+
+    steps: Callable[[Floats], tuple[Step, ...]]
+    names: tuple[str, ...]
+    axes: int = 0
+    rates: tuple[str, ...] = ()
+
+
+def _turns(axes: Floats) -> tuple[Step, ...]:
+    return tuple(Rotation(axis[:, None], _EYE) for axis in axes)
+
+
+_BALL, _SPIN, _PLACE = ("e0", "e1", "e2", "e3"), ("wx", "wy", "wz"), ("x", "y", "z")
+KINDS: dict[str, Kind] = {
+    "fixed": Kind(lambda axes: (), ()),
+    "revolute": Kind(_turns, ("angle",), 1),
+    "prismatic": Kind(lambda axes: (Slide(axes.T),), ("displacement",), 1),
+    "cylindrical": Kind(lambda axes: (Slide(axes.T), *_turns(axes)), ("displacement", "angle"), 1),
+    "universal": Kind(_turns, ("angle_1", "angle_2"), 2),
+    "spherical": Kind(lambda axes: (Ball(),), _BALL, 0, _SPIN),
+    "free": Kind(lambda axes: (Slide(_EYE), Ball()), (*_PLACE, *_BALL), 0, (*_PLACE, *_SPIN)),
+}
+
+
+@typed
+@dataclass(frozen=True, eq=False)
+class Joint(Value):
+    """A joint that holds a body on a point of another body, or on the ground.
+
+    Parameters
+    ----------
+    kind : str
+        ``fixed``, ``revolute`` (one angle), ``prismatic`` (one displacement), ``cylindrical`` (both along one axis),
+        ``universal`` (two angles, one after the other), ``spherical`` (any rotation) or ``free`` (six rates).
+    body : str
+        The body that it holds, by its root.
+    on : str
+        ``ground``, or a point of another body: ``"bus.left"``; ``"bus.root"`` is its root.
+    axes : sequence of vectors, optional
+        Directions in axes of the point: one of a revolute, prismatic or cylindrical joint, two of a universal one, the
+        second as it stands at a first angle of zero; of any length.
+    at : (3,)
+        Place of the joint from the point, axes of the point, m.
+    turn : (3,)
+        Rotation vector of the body's root axes in those of the point where all coordinates are zero, rad.
+    initial, initial_rate : float or mapping of str to float
+        Coordinates and rates at the start, zero unless given, by name (``angle``, ``displacement``, ``angle_1``,
+        ``angle_2``, ``x``, ``y``, ``z``); of a single coordinate just its value. Rates of a spherical or free joint are
+        ``wx``, ``wy``, ``wz``, axes of the body.
+    stiffness, ease, damping, friction : float or mapping of str to float
+        Spring, N/m or N m/rad, coordinate at which it has no force, damper, N s/m or N m s/rad, and Coulomb friction, N
+        or N m, of each coordinate. A ``fixed`` joint gives way along and about the axes that have a stiffness: ``x``,
+        ``y``, ``z``, ``rx``, ``ry``, ``rz``, the last three components of a rotation vector.
+    stops : pair of float or mapping of str to pairs
+        Lowest and highest coordinate, at which stops begin to give way.
+    stop_stiffness : float or mapping of str to float
+        Of the stops, N/m or N m/rad.
+    rate : Profile or mapping of str to Profile, optional
+        Prescribed rates: such coordinates are no unknowns, and what their drives need is a result.
+    effort : Profile or mapping of str to Profile, optional
+        Force or torque of a drive on each coordinate, N or N m.
+
+    Raises
+    ------
+    InputError
+        If a value is impossible or a name is no coordinate of the joint.
+
+    Examples
+    --------
+    >>> hinge = gb.Joint("revolute", "panel", on="bus.left", axes=[(0, 1, 0)], stiffness=20.0, damping=0.1)
+    >>> hinge.coordinates
+    ('angle',)
+    """
+
+    kind: str
+    body: str
+    on: str = GROUND
+    axes: Sequence[Any] | None = None
+    at: Sequence[float] = (0.0, 0.0, 0.0)
+    turn: Sequence[float] = (0.0, 0.0, 0.0)
+    initial: Any = None
+    initial_rate: Any = None
+    stiffness: Any = None
+    ease: Any = None
+    damping: Any = None
+    friction: Any = None
+    stops: Any = None
+    stop_stiffness: Any = None
+    rate: Any = None
+    effort: Any = None
+
+    def __post_init__(self) -> None:
+        choice("kind", self.kind, KINDS)
+        wanted = KINDS[self.kind].axes
+        axes = np.zeros((0, 3)) if self.axes is None else np.asarray(array("axes", self.axes), dtype=float)
+        if axes.shape != (wanted, 3):
+            given = "is missing" if self.axes is None else f"has the shape {axes.shape}"
+            fix = f"give {wanted} of 3 components each: a {self.kind} joint has as many" if wanted else "leave it out"
+            raise InputError("axes", given, fix)
+        length = np.linalg.norm(axes, axis=1)
+        if not (np.isfinite(length).all() and (length > 0).all()):
+            raise InputError("axes", f"is {self.axes!r}", "give directions of finite length above zero")
+        object.__setattr__(self, "axes", tuple(map(tuple, axes)))
+        for name in ("at", "turn"):
+            value = np.asarray(array(name, getattr(self, name)), dtype=float)
+            if value.shape != (3,) or not np.isfinite(value).all():
+                raise InputError(name, f"is {getattr(self, name)!r}", "give three finite components")
+        if self.kind == "fixed":
+            for name in (*_EASY, "stops"):
+                if getattr(self, name) is not None and not isinstance(getattr(self, name), Mapping):
+                    raise InputError(name, f"is {getattr(self, name)!r}", 'say of which directions: {"rx": 5000.0}')
+            for direction in self.stiffness or {}:
+                choice("stiffness", direction, DIRECTIONS)
+        self.holder, self.start, self.start_rate, self.efforts, self.rates  # noqa: B018  raise what they refuse
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of the joint's coordinates."""
+        if self.kind == "fixed":
+            return tuple(each for each in DIRECTIONS if each in (self.stiffness or {}))
+        return KINDS[self.kind].names
+
+    @property
+    def rate_names(self) -> tuple[str, ...]:
+        """Names of the rates at which it moves."""
+        return KINDS[self.kind].rates or self.coordinates
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """The chain of elementary motions from the point to the root of the body."""
+        placed = Placed(np.asarray(self.at, dtype=float), about(np.asarray(self.turn)))
+        axes = np.asarray(self.axes, dtype=float).reshape(-1, 3)
+        steps = KINDS[self.kind].steps(axes / np.linalg.norm(axes, axis=1, keepdims=True))
+        if self.kind == "fixed" and self.coordinates:
+            moved, turned = ([k for k in range(3) if DIRECTIONS[first + k] in self.coordinates] for first in (0, 3))
+            steps = (Slide(_EYE[:, moved]),) * bool(moved) + (Rotation(_EYE[:, turned], _EYE),) * bool(turned)
+        # The coordinates are in axes of the point; the body is turned after them.
+        before, after = Placed(placed.r, None), Placed(np.zeros(3), placed.R)
+        return (before,) * bool(np.any(placed.r)) + steps + (after,) * bool(np.any(self.turn))
+
+    @property
+    def holder(self) -> Holder:
+        """Springs, dampers, friction and stops of the coordinates."""
+        values = {name: self._numbers(name, getattr(self, name), self.coordinates) for name in _EASY}
+        for name in ("stiffness", "damping", "friction", "stop_stiffness"):
+            for coordinate, value in zip(self.coordinates, values[name], strict=True):
+                positive(f"{name}.{coordinate}", value, "SI", zero=True)
+        low, high = np.full(len(self.coordinates), -np.inf), np.full(len(self.coordinates), np.inf)
+        for coordinate, pair in self._named("stops", self.stops, self.coordinates).items():
+            k = self.coordinates.index(coordinate)
+            ends = array(f"stops.{coordinate}", pair)
+            if ends.shape != (2,) or not ends[0] < ends[1]:
+                raise InputError(f"stops.{coordinate}", f"is {pair!r}", "give the lowest and the highest coordinate")
+            low[k], high[k] = ends
+            if not values["stop_stiffness"][k] > 0:
+                raise InputError("stop_stiffness", "is missing", f"a stop of {coordinate} needs one")
+        return Holder(low=low, high=high, stop=values.pop("stop_stiffness"), **values)
+
+    @property
+    def start(self) -> Floats:
+        """Coordinates at the start."""
+        unit = [1.0 if name == "e0" else 0.0 for name in self.coordinates]
+        chosen = tuple(name for name in self.coordinates if name not in _BALL)
+        for name in self._named("initial", self.initial, self.coordinates):
+            if name in _BALL:
+                raise InputError(f"initial.{name}", "is one of four Euler parameters", "give `turn` for the rotation")
+        values = dict(zip(chosen, self._numbers("initial", self.initial, chosen), strict=True))
+        return np.array([values.get(name, one) for name, one in zip(self.coordinates, unit, strict=True)])
+
+    @property
+    def start_rate(self) -> Floats:
+        """Rates of the coordinates at the start: those of Euler parameters at (1, 0, 0, 0) are half the spin."""
+        values = self._numbers("initial_rate", self.initial_rate, self.rate_names)
+        spin = [k for k, name in enumerate(self.rate_names) if name in _SPIN]
+        if not spin:
+            return values
+        # The spin is given in axes of the body, which the turn sets after the ball.
+        turned = about(np.asarray(self.turn)) @ values[spin]
+        return np.concatenate([values[: spin[0]], [0.0], turned / 2])
+
+    @property
+    def rates(self) -> dict[str, Profile]:
+        """Profiles of the prescribed rates."""
+        return self._profiles("rate", self.rate)
+
+    @property
+    def efforts(self) -> dict[str, Profile]:
+        """Profiles of the drives."""
+        efforts = self._profiles("effort", self.effort)
+        for name in efforts.keys() & self.rates.keys():
+            raise InputError(f"effort.{name}", f"is given beside rate.{name}", "keep one of them")
+        return efforts
+
+    def _profiles(self, where: str, given: Any) -> dict[str, Profile]:
+        chosen = tuple(name for name in self.coordinates if name not in _BALL)
+        return {name: as_profile(f"{where}.{name}", each) for name, each in self._named(where, given, chosen).items()}
+
+    def _numbers(self, where: str, given: Any, names: tuple[str, ...]) -> Floats:
+        values = {name: finite(f"{where}.{name}", each) for name, each in self._named(where, given, names).items()}
+        return np.array([values.get(name, 0.0) for name in names])
+
+    def _named(self, where: str, given: Any, names: tuple[str, ...]) -> dict[str, Any]:
+        """Values by the names of coordinates; of a single coordinate the value alone will do."""
+        if given is None:
+            return {}
+        if not isinstance(given, Mapping):
+            if len(names) != 1:
+                listed = ", ".join(names) or "none"
+                fix = f"say of which coordinate, by name; a {self.kind} joint has {listed}"
+                raise InputError(where, "is one value", fix)
+            return {names[0]: given}
+        for name in given:
+            if name not in names:
+                listed = f"choose from {', '.join(names)}" if names else "leave it out"
+                raise InputError(f"{where}.{name}", f"is no coordinate of a {self.kind} joint", listed)
+        return dict(given)

@@ -1,0 +1,219 @@
+"""Elementary motions of which joints are chains: slides, rotations by a vector, and a ball.
+
+Each says how a frame moves relative to the one before it, by its coordinates (..., k) and their rates, and which forces
+on these coordinates do the work of a wrench.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record
+from gbeam.mechanics.tree.frames import Relative, Wrench, cross, product
+
+Array = Any
+SMALL = 0.05  # rad²: below it functions of an angle's square are their Taylor series, to rounding
+
+
+class Step(Protocol):
+    """One elementary motion."""
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        ...
+
+    def motion(self, q: Array, qd: Array, qdd: Array) -> Relative:
+        """Motion of the frame after it, by coordinates and rates (..., k)."""
+        ...
+
+    def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
+        """Forces (..., k) on the coordinates that do the work of a wrench on the frame after it."""
+        ...
+
+    def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
+        """Return the motion with as many coordinates as degrees of freedom, and these with their rates, at others."""
+        ...
+
+
+@record
+class Slide:
+    """Displacements along the columns of `axes` (3, k)."""
+
+    axes: Array
+
+    @property
+    def size(self) -> int:
+        return int(self.axes.shape[1])
+
+    def motion(self, q: Array, qd: Array, qdd: Array) -> Relative:
+        return Relative(*(each @ self.axes.T for each in (q, qd, qdd)))
+
+    def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
+        return wrench.force @ self.axes
+
+    def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
+        return self, q, qd, qdd
+
+
+@record
+class Rotation:
+    """Rotation by the vector Σ q_i u_i, the columns of `axes` (3, k), after a constant one, R0 (3, 3)."""
+
+    axes: Array
+    R0: Array
+
+    @property
+    def size(self) -> int:
+        return int(self.axes.shape[1])
+
+    def motion(self, q: Array, qd: Array, qdd: Array) -> Relative:
+        phi, rate, change = (each @ self.axes.T for each in (q, qd, qdd))
+        R, w, alpha = rotation_by_vector(phi, rate, change, plane=self.size == 1)
+        return Relative(0 * phi, None, None, product(self.R0, R), w, alpha)
+
+    def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
+        if self.size == 1:
+            return wrench.moment @ self.axes
+        phi = q @ self.axes.T
+        return tangent_back(phi, wrench.moment) @ self.axes
+
+    def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
+        return self, q, qd, qdd
+
+
+@record
+class Ball:
+    """Any rotation by Euler parameters (e0, e1, e2, e3), of which the size does not matter.
+
+    Their fourth equation keeps the size at one, e·ë + ė·ė + 2 e·ė + (e·e − 1)/2 = 0.
+    """
+
+    @property
+    def size(self) -> int:
+        return 4
+
+    def motion(self, q: Array, qd: Array, qdd: Array) -> Relative:
+        xp = namespace(q)
+        size = xp.sqrt((q * q).sum(axis=-1, keepdims=True))
+        n = q / size
+        growth = (n * qd).sum(axis=-1, keepdims=True) / size
+        rate = 2 / size * _outward(n, qd)
+        change = 2 / size * _outward(n, qdd) - 2 * growth * rate
+        return Relative(0 * n[..., 1:], None, None, rotation_by_parameters(n), rate, change)
+
+    def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
+        kept = (q * qdd + qd * qd + 2 * q * qd + q * q / 2).sum(axis=-1, keepdims=True) - 0.5
+        return namespace(q, qdd).concatenate([wrench.moment, kept], axis=-1)
+
+    def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
+        # About the vector zero its rates are those of the body: T is one there, and Ṫ φ̇ zero.
+        by = self.motion(q, qd, qdd)
+        return Rotation(np.eye(3), by.R), np.zeros(3), by.w, by.alpha
+
+
+@record
+class Placed:
+    """A constant place r (3,) m and rotation R (3, 3) or None, without coordinates."""
+
+    r: Array
+    R: Array | None
+
+    @property
+    def size(self) -> int:
+        return 0
+
+    def motion(self, q: Array, qd: Array, qdd: Array) -> Relative:
+        shape = q.shape[:-1]
+        xp = namespace(q, self.r)
+        return Relative(xp.broadcast_to(self.r, (*shape, 3)), None, None, self.R)
+
+    def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
+        return q
+
+    def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
+        return self, q, qd, qdd
+
+
+def _outward(n: Array, rate: Array) -> Array:
+    """G(n) ė: half the angular velocity, turned axes, of unit Euler parameters whose rate is ė."""
+    scalar, vector = n[..., :1], n[..., 1:]
+    return scalar * rate[..., 1:] - vector * rate[..., :1] - cross(vector, rate[..., 1:])
+
+
+def rotation_by_parameters(n: Array) -> Array:
+    """Rotation matrices (..., 3, 3) of unit Euler parameters (..., 4)."""
+    xp = namespace(n)
+    s, x, y, z = (n[..., i] for i in range(4))
+    rows = [
+        xp.stack([1 - 2 * (y * y + z * z), 2 * (x * y - s * z), 2 * (x * z + s * y)], axis=-1),
+        xp.stack([2 * (x * y + s * z), 1 - 2 * (x * x + z * z), 2 * (y * z - s * x)], axis=-1),
+        xp.stack([2 * (x * z - s * y), 2 * (y * z + s * x), 1 - 2 * (x * x + y * y)], axis=-1),
+    ]
+    return xp.stack(rows, axis=-2)
+
+
+def parameters_of_all(R: Array) -> Array:
+    """Unit Euler parameters (t, 4) of rotation matrices (t, 3, 3), without jumps of sign from one to the next."""
+    from scipy.spatial.transform import Rotation as Turned
+
+    e = np.roll(Turned.from_matrix(np.asarray(R)).as_quat(), 1, axis=-1)
+    turn = np.where((e[1:] * e[:-1]).sum(axis=-1) < 0, -1.0, 1.0)
+    first = 1.0 if e[0, 0] >= 0 else -1.0
+    return e * first * np.cumprod(np.concatenate([[1.0], turn]))[:, None]
+
+
+def functions_of_angle(s: Array) -> tuple[Array, ...]:
+    """sin θ/θ, (1 − cos θ)/θ², (θ − sin θ)/θ³ of s = θ², and the derivatives of the last two with respect to s."""
+    xp = namespace(s)
+    small = s < SMALL
+    safe = xp.where(small, 1.0, s)
+    angle = xp.sqrt(safe)
+    a, b = xp.sin(angle) / angle, (1 - xp.cos(angle)) / safe
+    c = (1 - a) / safe
+    near = 1 - s / 6 * (1 - s / 20 * (1 - s / 42 * (1 - s / 72 * (1 - s / 110))))
+    b_near = 0.5 - s / 24 * (1 - s / 30 * (1 - s / 56 * (1 - s / 90 * (1 - s / 132))))
+    c_near = (1 - s / 20 * (1 - s / 42 * (1 - s / 72 * (1 - s / 110 * (1 - s / 156))))) / 6
+    b_slope = -1 / 24 * (1 - s / 15 * (1 - 3 * s / 112 * (1 - 2 * s / 135 * (1 - 5 * s / 528))))
+    c_slope = -1 / 120 * (1 - s / 21 * (1 - s / 48 * (1 - 2 * s / 165 * (1 - 5 * s / 624))))
+    of_b, of_c = (a - 2 * b) / (2 * safe), (b - 3 * c) / (2 * safe)
+    pairs = (near, a), (b_near, b), (c_near, c), (b_slope, of_b), (c_slope, of_c)
+    return tuple(xp.where(small, series, closed) for series, closed in pairs)
+
+
+def rotation_by_vector(phi: Array, rate: Array, change: Array, *, plane: bool) -> tuple[Array, Array, Array]:
+    """R = exp [φ]× (..., 3, 3), and the angular velocity T φ̇ and acceleration T φ̈ + Ṫ φ̇ in turned axes, with T = 1 −
+    b [φ]× + c [φ]×²; in a `plane`, where φ keeps its direction, T is one.
+    """
+    xp = namespace(phi)
+    s = (phi * phi).sum(axis=-1)
+    a, b, c, of_b, of_c = (each[..., None] for each in functions_of_angle(s))
+    x, y, z = (phi[..., i] for i in range(3))
+    zero = xp.zeros_like(x)
+    skew = xp.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*phi.shape, 3)
+    square = phi[..., :, None] * phi[..., None, :] - s[..., None, None] * xp.eye(3)
+    R = xp.eye(3) + a[..., None] * skew + b[..., None] * square
+    if plane:
+        return R, rate, change
+    once, onto = cross(phi, rate), cross(phi, cross(phi, rate))
+    growth = 2 * (phi * rate).sum(axis=-1, keepdims=True)
+    w = rate - b * once + c * onto
+    turning = -growth * of_b * once + growth * of_c * onto + c * cross(rate, once)
+    alpha = change - b * cross(phi, change) + c * cross(phi, cross(phi, change)) + turning
+    return R, w, alpha
+
+
+def tangent_back(phi: Array, moment: Array) -> Array:
+    """Tᵀ M: the moments on a rotation vector's components that do the work of a moment (..., 3), turned axes."""
+    _, b, c, *_ = (each[..., None] for each in functions_of_angle((phi * phi).sum(axis=-1)))
+    once = cross(phi, moment)
+    return moment + b * once + c * cross(phi, once)
+
+
+def about(v: Array) -> Array:
+    """Rotation matrix (3, 3) of a rotation vector (3,), rad."""
+    zero = np.zeros(3)
+    return rotation_by_vector(np.asarray(v, dtype=float), zero, zero, plane=True)[0]

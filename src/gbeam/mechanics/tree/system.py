@@ -1,0 +1,464 @@
+"""Systems: bodies by name, the joints that hold them, gravity, and forces at points."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import Value
+from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
+from gbeam.guards.checks import array, positive
+from gbeam.mechanics.fields.strains import StrainField
+from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.bodies import (
+    Body,
+    ExactPoints,
+    FieldBody,
+    LinearBody,
+    Points,
+    PolynomialPoints,
+    Rigid,
+    polynomial_points,
+)
+from gbeam.mechanics.tree.equations import Force, Inputs, Link, Tree
+from gbeam.mechanics.tree.frames import Frame
+from gbeam.mechanics.tree.joints import GROUND, Joint
+from gbeam.mechanics.tree.steps import about
+from gbeam.motion.bases.hub import Hub
+from gbeam.motion.profiles.combine import as_profile
+from gbeam.motion.protocol import Motion
+
+Floats = NDArray[np.float64]
+ROOT = "root"
+
+
+def _vector(where: str, value: Any) -> Floats:
+    checked = np.asarray(array(where, value), dtype=float)
+    if checked.shape != (3,) or not np.isfinite(checked).all():
+        raise InputError(where, f"is {value!r}", "give three finite components, along x, y and z")
+    return checked
+
+
+@typed
+@dataclass(frozen=True, eq=False)
+class Place(Value):
+    """A point of a rigid body, with axes.
+
+    Parameters
+    ----------
+    at : (3,)
+        From the body's root, its axes, m.
+    turn : (3,)
+        Rotation vector of the point's axes in those of the root, rad.
+
+    Examples
+    --------
+    >>> gb.Place(at=(0.5, 0, 0), turn=(0, 0, 1.5)).turn
+    (0, 0, 1.5)
+    """
+
+    at: Sequence[float] = (0.0, 0.0, 0.0)
+    turn: Sequence[float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        _vector("at", self.at), _vector("turn", self.turn)
+
+
+@typed
+@dataclass(frozen=True, eq=False)
+class RigidBody(Value):
+    """A rigid body of a system.
+
+    Parameters
+    ----------
+    mass : float
+        kg.
+    inertia : (3,) or (3, 3)
+        Principal moments, or the tensor, about the centre of mass, axes of the root, kg m².
+    centre : (3,)
+        Centre of mass from the root, m.
+    points : mapping of str to Place or (3,)
+        Named places from the root, on which other bodies hang, forces act and output is given.
+
+    Raises
+    ------
+    InputError
+        If a value is impossible, or the inertia is not that of a rigid body.
+
+    Examples
+    --------
+    >>> bus = gb.RigidBody(50.0, (8.0, 10.0, 12.0), points={"left": (0.5, 0, 0)})
+    >>> bus.mass
+    50.0
+    """
+
+    mass: float
+    inertia: Any = (0.0, 0.0, 0.0)
+    centre: Sequence[float] = (0.0, 0.0, 0.0)
+    points: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        positive("mass", self.mass, "kg", zero=True)
+        _vector("centre", self.centre)
+        moments = np.linalg.eigvalsh(self.tensor)
+        if moments[0] < -1e-12 * moments[-1] or moments[-1] > moments[:2].sum() * (1 + 1e-9) + 1e-300:
+            fix = "no principal moment is negative, or exceeds the sum of the other two"
+            raise InputError("inertia", f"has the principal moments {moments} kg m²", fix)
+        for name in self.points:
+            if not name.isidentifier() or name == ROOT:
+                raise InputError(f"points.{name}", "is no name of a point", "give letters, digits and underscores")
+        object.__setattr__(
+            self,
+            "points",
+            {name: each if isinstance(each, Place) else Place(each) for name, each in self.points.items()},
+        )
+
+    @property
+    def tensor(self) -> Floats:
+        """Inertia (3, 3) about the centre of mass, kg m²."""
+        tensor = np.asarray(array("inertia", self.inertia), dtype=float)
+        tensor = np.diag(tensor) if tensor.shape == (3,) else tensor
+        if tensor.shape != (3, 3) or not np.isfinite(tensor).all() or np.abs(tensor - tensor.T).max() > 0:
+            raise InputError("inertia", f"is {self.inertia!r}", "give three principal moments or a symmetric 3 × 3")
+        return tensor
+
+    @property
+    def body(self) -> Rigid:
+        """Its terms in the equations."""
+        places = [np.asarray(each.at, dtype=float) for each in self.points.values()]
+        turns = [about(each.turn) for each in self.points.values()]
+        centre = np.asarray(self.centre, dtype=float)
+        return Rigid(
+            self.mass, centre, self.tensor, np.reshape(places, (-1, 3)), np.reshape(np.array(turns), (-1, 3, 3))
+        )
+
+
+@typed
+@dataclass(frozen=True, eq=False)
+class PointForce(Value):
+    """A force and a moment on a point of a system, such as thrust.
+
+    Parameters
+    ----------
+    on : str
+        The point, ``"bus.nozzle"``.
+    force, moment : Profile or (3,), optional
+        N, N m; zero if left out.
+    follower : bool
+        Whether they turn with the axes of the point; else they keep the axes of the ground.
+
+    Examples
+    --------
+    >>> gb.PointForce("bus.nozzle", force=(0, 0, 20.0), follower=True).on
+    'bus.nozzle'
+    """
+
+    on: str
+    force: Any = None
+    moment: Any = None
+    follower: bool = False
+
+    def __post_init__(self) -> None:
+        self.history  # noqa: B018  raises what it refuses
+
+    @property
+    def history(self) -> Any:
+        """Profiles of force and moment."""
+        return tuple(_profile(name, getattr(self, name)) for name in ("force", "moment"))
+
+
+def _profile(where: str, value: Any) -> Any:
+    return as_profile(where, (0.0, 0.0, 0.0) if value is None else value, 3)
+
+
+@typed
+@dataclass(frozen=True, eq=False)
+class System(Value):
+    """Bodies joined to a tree: rigid bodies and flexible structures, on the ground, on a moving base, or free.
+
+    Parameters
+    ----------
+    bodies : mapping of str to RigidBody or Structure
+        Structures are those of :func:`gbeam.assemble` and :meth:`Structure.of_particles`: exact, CFOAM, FOAM or TLAM.
+        Their points are the named points of the beam, and ``tip``.
+    joints : mapping of str to Joint
+        One for every body, which holds it by its root.
+    forces : mapping of str to PointForce
+        Forces at points, beside the loads of the beams.
+    gravity : (3,), optional
+        Acceleration of free fall, axes of the ground, m/s².
+
+    Raises
+    ------
+    InputError
+        If a body hangs on nothing, on two joints, or on a point that is not there, or joints make a loop.
+
+    Examples
+    --------
+    >>> rod = gb.RigidBody(1.0, (0.0, 1 / 12, 1 / 12), centre=(0.5, 0, 0), points={"end": (1, 0, 0)})
+    >>> pendulum = gb.System(
+    ...     {"upper": rod, "lower": rod},
+    ...     {
+    ...         "top": gb.Joint("revolute", "upper", axes=[(0, 1, 0)], initial=0.3),
+    ...         "elbow": gb.Joint("revolute", "lower", on="upper.end", axes=[(0, 1, 0)]),
+    ...     },
+    ...     gravity=(0, 0, -9.81),
+    ... )
+    >>> pendulum.coordinates
+    ('top.angle', 'elbow.angle')
+    """
+
+    bodies: Mapping[str, RigidBody | Structure]
+    joints: Mapping[str, Joint]
+    forces: Mapping[str, PointForce] = field(default_factory=dict)
+    gravity: Sequence[float] | None = None
+    order: tuple[str, ...] = field(init=False, repr=False, compare=False)
+    tree: Tree = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        if not self.bodies:
+            raise InputError("bodies", "is empty", "give one body or more")
+        for where, mapping in (("bodies", self.bodies), ("joints", self.joints), ("forces", self.forces)):
+            for name in mapping:
+                if not name.isidentifier() or name == GROUND:
+                    raise InputError(f"{where}.{name}", "is no name", "give letters, digits and underscores")
+        if self.gravity is not None:
+            _vector("gravity", self.gravity)
+        object.__setattr__(self, "order", self._ordered())
+        object.__setattr__(self, "tree", self._assembled())
+
+    def __repr__(self) -> str:
+        names = ", ".join(self.order)
+        return f"System({names}; {len(self.tree.free)} unknown coordinates)"
+
+    def _ordered(self) -> tuple[str, ...]:
+        """Names of the bodies, each after the one that it hangs on."""
+        for name, joint in self.joints.items():
+            if joint.body not in self.bodies:
+                fix = f"choose from {', '.join(self.bodies)}"
+                raise InputError(f"joints.{name}.body", f"is {joint.body!r}, and there is no such body", fix)
+        for body in self.bodies:
+            holding = [name for name, joint in self.joints.items() if joint.body == body]
+            if not holding:
+                fix = 'give a joint of this body: kind = "free" where nothing holds it'
+                raise InputError(f"bodies.{body}", "hangs on nothing", fix)
+            if len(holding) > 1:
+                fix = f"keep one of {', '.join(holding)}: loops of joints are not computed"
+                raise InputError(f"joints.{holding[1]}.body", f"is {body!r}, which {holding[0]} holds already", fix)
+        order: list[str] = []
+        left = [self._holding(body) for body in self.bodies]
+        while left:
+            ready = [name for name in left if self._parent(name) in (GROUND, *order)]
+            if not ready:
+                fix = "hang one of these bodies on the ground or on another body"
+                raise InputError(f"joints.{left[0]}.on", f"makes a loop of {', '.join(left)}", fix)
+            order += [self.joints[name].body for name in ready]
+            left = [name for name in left if name not in ready]
+        return tuple(order)
+
+    def _holding(self, body: str) -> str:
+        return next(name for name, joint in self.joints.items() if joint.body == body)
+
+    def _parent(self, joint: str) -> str:
+        """Name of the body that a joint hangs on."""
+        on = self.joints[joint].on
+        if on == GROUND:
+            return GROUND
+        self.point(f"joints.{joint}.on", on)
+        return on.partition(".")[0]
+
+    def points_of(self, body: str) -> tuple[str, ...]:
+        """Return the names of a body's points, its root last.
+
+        Parameters
+        ----------
+        body : str
+            Its name.
+        """
+        each = self.bodies[body]
+        if isinstance(each, RigidBody):
+            return (*each.points, ROOT)
+        return (*_stations(each), ROOT)
+
+    def point(self, where: str, name: str) -> tuple[str, int]:
+        """Return the body and the index of a point.
+
+        Parameters
+        ----------
+        where : str
+            The argument that names it, for the error.
+        name : str
+            ``body.point``.
+
+        Raises
+        ------
+        InputError
+            If there is no such point.
+        """
+        body, _, point = name.partition(".")
+        if body not in self.bodies:
+            fix = f'name a body and one of its points, such as "{next(iter(self.bodies))}.{ROOT}", or "{GROUND}"'
+            raise InputError(where, f"is {name!r}, and there is no body {body!r}", fix)
+        names = self.points_of(body)
+        if point not in names:
+            raise InputError(where, f"is {name!r}, and {body} has no such point", f"choose from {', '.join(names)}")
+        return body, names.index(point)
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """Names of all points, as ``body.point``."""
+        return tuple(f"{body}.{point}" for body in self.order for point in self.points_of(body))
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of all coordinates: those of the joints, and numbered ones of the flexible bodies."""
+        names: list[str] = []
+        for body in self.order:
+            joint = self._holding(body)
+            names += [f"{joint}.{each}" for each in self.joints[joint].coordinates]
+            flexible = self.bodies[body]
+            count = 0 if isinstance(flexible, RigidBody) else flexible.size
+            names += [f"{body}.q{k + 1}" for k in range(count)]
+        return tuple(names)
+
+    def _assembled(self) -> Tree:
+        """The equations."""
+        links, at = [], {body: k for k, body in enumerate(self.order)}
+        for body in self.order:
+            name = self._holding(body)
+            joint = self.joints[name]
+            parent, on = -1, 0
+            if joint.on != GROUND:
+                holding, on = self.point(f"joints.{name}.on", joint.on)
+                parent = at[holding]
+                refuse_turnless(f"joints.{name}.on", self.bodies[holding], on)
+            links.append(Link(joint.steps, joint.holder, body_of(f"bodies.{body}", self.bodies[body]), parent, on))
+        forces = []
+        for name, force in self.forces.items():
+            body, on = self.point(f"forces.{name}.on", force.on)
+            forces.append(Force(at[body], on, force.follower))
+        fixed = tuple(k for k, each in enumerate(self.coordinates) if each in self._prescribed)
+        return Tree(tuple(links), tuple(forces), fixed)
+
+    @property
+    def _prescribed(self) -> dict[str, tuple[Joint, str]]:
+        return {f"{name}.{each}": (joint, each) for name, joint in self.joints.items() for each in joint.rates}
+
+    @property
+    def start(self) -> tuple[Floats, Floats]:
+        """All coordinates and rates at the start, flexible bodies undeformed."""
+        q, qd = [], []
+        for body in self.order:
+            joint, flexible = self.joints[self._holding(body)], self.bodies[body]
+            still = np.zeros(0 if isinstance(flexible, RigidBody) else flexible.size)
+            q += [joint.start, still]
+            qd += [joint.start_rate, still]
+        return np.concatenate(q), np.concatenate(qd)
+
+    def corners(self, step: float) -> Floats:
+        """Return the times that steps should not pass unseen, s.
+
+        Parameters
+        ----------
+        step : float
+            Length of the steps, s.
+        """
+        times = [np.zeros(0)]
+        for joint in self.joints.values():
+            times += [each.corners(step) for each in (*joint.rates.values(), *joint.efforts.values())]
+        times += [each.corners(step) for force in self.forces.values() for each in force.history]
+        for body in self.bodies.values():
+            if isinstance(body, Structure) and body.history is not None:
+                times.append(body.history.corners(step))
+        return np.concatenate(times)
+
+    def inputs(self, t: Any, motion: Motion | None = None) -> Inputs:
+        """Return what drives the tree.
+
+        Parameters
+        ----------
+        t : array
+            Times, s, of any shape.
+        motion : Motion, optional
+            Of the ground, which rests without one.
+        """
+        xp, shape = namespace(t), np.shape(t)
+        zero, eye = xp.zeros((*shape, 3)), xp.broadcast_to(np.eye(3), (*shape, 3, 3))
+        if motion is None:
+            gravity = xp.zeros(3) if self.gravity is None else xp.asarray(self.gravity, dtype=float)
+            ground = Frame(eye, zero, zero, zero, zero - gravity, zero)
+        else:
+            base = motion.base(t)
+            ground = Frame(eye, zero, zero, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
+        prescribed, efforts = [], None
+        for joint, name in self._prescribed.values():
+            rate, change = joint.rates[name].derivatives(t)
+            angle = Hub(radius=0.0, rate=joint.rates[name]).angle(t)
+            first = joint.start[joint.coordinates.index(name)]
+            prescribed.append(xp.stack([first + angle, rate, change], axis=-1))
+        columns = {}
+        for name, joint in self.joints.items():
+            for each, profile in joint.efforts.items():
+                columns[self.coordinates.index(f"{name}.{each}")] = profile(t)
+        if columns:
+            none = xp.zeros(shape)
+            efforts = xp.stack([columns.get(k, none) for k in range(self.tree.size)], axis=-1)
+        wrenches = [
+            xp.concatenate([profile(t) for profile in force.history], axis=-1) for force in self.forces.values()
+        ]
+        loads = tuple(
+            None if isinstance(each, RigidBody) or each.history is None else each.history(t)
+            for each in (self.bodies[body] for body in self.order)
+        )
+        return Inputs(
+            ground,
+            xp.stack(prescribed, axis=-1) if prescribed else None,
+            efforts,
+            loads,
+            xp.stack(wrenches, axis=-2) if wrenches else None,
+        )
+
+
+def _stations(structure: Structure) -> dict[str, int]:
+    """Indices of a structure's stations that have a name."""
+    last = len(structure.stations) - 1
+    if structure.source is None:
+        return {"tip": last}
+    named = structure.source.beam.named_points
+    return {name: int(np.argmin(np.abs(structure.stations - at))) for name, at in named.items()}
+
+
+def refuse_turnless(where: str, body: RigidBody | Structure, on: int) -> None:
+    """Refuse to hang a body on a point whose turning is not known."""
+    if isinstance(body, Structure) and body.field is None and on < len(_stations(body)):
+        fix = "hang it on the root, or give it as a rigid part of the particles"
+        raise InputError(where, "is a point of particles, which do not say how it turns", fix)
+
+
+def body_of(where: str, body: RigidBody | Structure) -> Body:
+    """The terms of a body in the equations."""
+    if isinstance(body, RigidBody):
+        return body.body
+    if not body.hub_force:
+        fix = "choose FOAM with no axial shapes, which are the same equations with it"
+        raise InputError(f"{where}.model", f"is {body.kind}, whose base does not feel the beam", fix)
+    body.require_damping("the response")
+    c, stations = body.coefficients, np.array(list(_stations(body).values()))
+    points: Points
+    if isinstance(body.field, StrainField):
+        points = ExactPoints(body.field[body.first_station + stations])
+    elif body.field is not None:
+        points = polynomial_points(body.field.sections(body.first_station + stations))
+    else:
+        places = body.station_places[stations]
+        points = PolynomialPoints(places.r0, places.first, places.second, 0 * places.first, 0 * places.second)
+    if body.linear:
+        return LinearBody(c, points)
+    assert body.inertia is not None
+    return FieldBody(body.inertia, c.damping, c.stiffness, body.work, points)
