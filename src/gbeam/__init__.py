@@ -47,6 +47,11 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.mechanics.assembly import assemble as assemble
     from gbeam.mechanics.models import Model as Model
     from gbeam.mechanics.structure import Structure as Structure
+    from gbeam.mechanics.tree.joints import Joint as Joint
+    from gbeam.mechanics.tree.system import Place as Place
+    from gbeam.mechanics.tree.system import PointForce as PointForce
+    from gbeam.mechanics.tree.system import RigidBody as RigidBody
+    from gbeam.mechanics.tree.system import System as System
     from gbeam.motion.bases.flight import Flight as Flight
     from gbeam.motion.bases.hub import Hub as Hub
     from gbeam.motion.centrifuge.centrifuge import Centrifuge as Centrifuge
@@ -74,6 +79,9 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.results.state_space import Gauge as Gauge
     from gbeam.results.state_space import StateSpace as StateSpace
     from gbeam.results.study import Study as Study
+    from gbeam.results.system import SystemModes as SystemModes
+    from gbeam.results.system import SystemResponse as SystemResponse
+    from gbeam.results.system import SystemRest as SystemRest
     from gbeam.scenario.build import read_scenario as read_scenario
     from gbeam.scenario.rerun import rerun as rerun
     from gbeam.solids.mesh import SolidMesh as SolidMesh
@@ -97,6 +105,14 @@ __version__ = "0.2.0"
 
 # Every public name, and the module it is in.
 _HOME = {
+    "Joint": "mechanics.tree.joints",
+    "Place": "mechanics.tree.system",
+    "PointForce": "mechanics.tree.system",
+    "RigidBody": "mechanics.tree.system",
+    "System": "mechanics.tree.system",
+    "SystemModes": "results.system",
+    "SystemResponse": "results.system",
+    "SystemRest": "results.system",
     "AxisLimit": "motion.centrifuge.limits",
     "Beam": "structure.beam",
     "Case": "analysis.case",

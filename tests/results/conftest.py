@@ -51,8 +51,16 @@ def every() -> dict[str, Any]:
         ),
         "placement": Placement("flight", "arm", {"tip": 1.0}, 0.3, options[0], options, 0.15, values),
         "models": ModelStudy("title", "exact", {"slew": "z"}, rows),
+        **{type(each).__name__: each for each in _of_a_system(structure)},
         "response": gb.simulate(structure, flight, duration=0.05, step=1e-3, name="flight"),
     }  # fmt: skip
+
+
+def _of_a_system(structure: gb.Structure) -> tuple[Any, ...]:
+    arm = gb.RigidBody(1.0, (0.1, 0.1, 0.1), points={"end": (0.3, 0.0, 0.0)})
+    hinge = gb.Joint("revolute", "arm", axes=[(0, 0, 1)], stiffness=5.0, effort=gb.Sine(1.0, 0.05))
+    system = gb.System({"arm": arm, "beam": structure}, {"hinge": hinge, "clamp": gb.Joint("fixed", "beam", "arm.end")})
+    return gb.static(system), gb.modes(system), gb.simulate(system, duration=0.05, step=5e-3, estimate=False)
 
 
 @pytest.fixture(scope="package")

@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from gbeam.errors import InputError
-from gbeam.figures import imitation, response, steady, studies
+from gbeam.figures import imitation, response, steady, studies, system
 from gbeam.figures.description import Figure
 from gbeam.results.cases import PROBABILITY, Sensitivity, Sweep
 from gbeam.results.equilibrium import CriticalMap, Deflection
@@ -21,6 +21,7 @@ from gbeam.results.modal import Campbell, Modes
 from gbeam.results.response import Response
 from gbeam.results.searches import Fit, Optimum, ShapedCommand
 from gbeam.results.study import ModelStudy, Study
+from gbeam.results.system import SystemModes, SystemResponse, SystemRest, named
 
 Describe = Callable[[], Figure]
 
@@ -72,9 +73,24 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
                 "shaping": partial(studies.shaping, result, title),
                 "robustness": partial(studies.robustness, result, title),
             }
+        case SystemResponse():
+            return _of_system(result, title)
+        case SystemRest():
+            return {"rest": partial(system.rest, result, title)}
+        case SystemModes():
+            return {"modes": partial(system.modes, result, title)} if len(result.frequency) else {}
         case Sensitivity():
             return {name: partial(studies.sensitivity, result, name, title) for name in result.measures}
     return {}
+
+
+def _of_system(result: SystemResponse, title: str) -> dict[str, Describe]:
+    every: dict[str, Describe] = {"points": partial(system.points, result, title)}
+    if named(result):
+        every["coordinates"] = partial(system.coordinates, result, title)
+    if result.invariants is not None:
+        every["energy"] = partial(system.energy, result, title)
+    return every
 
 
 def _of_deflections(deflections: Sequence[Deflection], title: str = "") -> dict[str, Describe]:

@@ -184,7 +184,7 @@ def compose(derivatives: Sequence[Any], inner: Series) -> Series:
     return result
 
 
-_STEP = 1e-30
+STEP = 1e-30
 
 
 def complex_step(
@@ -197,6 +197,6 @@ def complex_step(
     columns = []
     for k in range(len(x)):
         moved = x.astype(complex)
-        moved[k] += 1j * _STEP
-        columns.append(np.imag(function(moved)) / _STEP)
+        moved[k] += 1j * STEP
+        columns.append(np.imag(function(moved)) / STEP)
     return np.stack(columns, axis=-1)

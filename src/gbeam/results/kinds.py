@@ -18,6 +18,7 @@ from gbeam.results.result import Result
 from gbeam.results.searches import Fit, Optimum, ShapedCommand
 from gbeam.results.state_space import StateSpace
 from gbeam.results.study import ModelStudy, Study
+from gbeam.results.system import SystemModes, SystemResponse, SystemRest
 
 KINDS: dict[str, type[Result]] = {
     kind.__name__: kind
@@ -39,6 +40,9 @@ KINDS: dict[str, type[Result]] = {
         Fit,
         Optimum,
         ShapedCommand,
+        SystemResponse,
+        SystemRest,
+        SystemModes,
     )
 }
 

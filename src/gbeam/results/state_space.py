@@ -206,15 +206,10 @@ class StateSpace(Result):
             If python-control is not installed.
         """
         control = import_control()
-        return control.ss(
-            self.a,
-            self.b,
-            self.c,
-            self.d,
-            states=[each.name for each in self.states],
-            inputs=[each.name for each in self.inputs],
-            outputs=[each.name for each in self.outputs],
-        )
+        # It takes no dots, as those of a system's signals.
+        kinds = {"states": self.states, "inputs": self.inputs, "outputs": self.outputs}
+        names = {kind: [each.name.replace(".", "_") for each in signals] for kind, signals in kinds.items()}
+        return control.ss(self.a, self.b, self.c, self.d, **names)
 
     def to_mat(self, path: str | os.PathLike[str]) -> None:
         """Write a MATLAB file: A, B, C, D, the operating point, names and units, frequencies and their errors.

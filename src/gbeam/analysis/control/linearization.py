@@ -22,6 +22,7 @@ from gbeam.analysis.steady.operating_point import (
     steady_base,
 )
 from gbeam.analysis.steady.stability import hub_of
+from gbeam.analysis.system.linear import linearize_system
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.errors import InputError
@@ -32,6 +33,7 @@ from gbeam.mechanics.fields.basis import FAMILIES
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Sections, Structure
+from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.base import mapped
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.series import complex_step
@@ -222,25 +224,28 @@ def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gau
 
 @typed
 def linearize(
-    structure: Structure,
-    motion: Motion,
+    structure: Structure | System,
+    motion: Motion | None = None,
     time: float = 0.0,
     *,
     rate: float | None = None,
     q: ArrayLike | None = None,
     qd: ArrayLike | None = None,
     gauges: Sequence[Gauge] = (),
+    inputs: Sequence[str] | None = None,
+    outputs: Sequence[str] | None = None,
+    at: str = "rest",
     name: str = "",
 ) -> StateSpace:
     """State-space model of small departures from an operating point.
 
     Parameters
     ----------
-    structure : Structure
+    structure : Structure or System
     motion : Flight, Centrifuge or Hub
-        A free hub has the torque as input; on any other base the root's acceleration (specific force where gravity
-        acts, and then called so) and the angular acceleration are, in base axes. The components of each load on the
-        beam are inputs too.
+        Of the root of a structure, or of the ground of a system, which rests without one. A free hub has the torque as
+        input; on any other base the root's acceleration (specific force where gravity acts, and then called so) and the
+        angular acceleration are, in base axes. The components of each load on the beam are inputs too.
     time : float
         At which the motion is frozen, s.
     rate : float, optional
@@ -250,6 +255,12 @@ def linearize(
         the model is one of small departures from the motion that goes through this state.
     gauges : sequence of Gauge
         Where strain is measured.
+    inputs, outputs : sequence of str, optional
+        Of a system: efforts on coordinates (``hinge.angle``) and components of its forces (``thrust.force_x``); what is
+        measured, ``joint.angle``, ``joint.angle_rate``, ``body.point.place_x``, ``velocity_x``, ``acceleration_x``,
+        ``spin_x``. By default the driven coordinates and all forces; coordinates, rates and places.
+    at : str
+        Of a system: ``rest``, where it rests, or ``start``, the motion at its start.
     name : str
         Of the motion.
 
@@ -280,6 +291,10 @@ def linearize(
     >>> print(plant.frequency.round(2))
     [  36.56  183.71  229.1  1146.58 4243.13]
     """
+    if isinstance(structure, System):
+        return linearize_system(structure, motion, time, inputs=inputs, outputs=outputs, at=at, name=name)
+    if motion is None:
+        raise InputError("motion", "is missing", "give a Flight, a Hub or a Centrifuge")
     structure.require_damping("the state-space model")
     if rate is None:
         point = operating_point(structure, motion, time, q, qd)
@@ -291,8 +306,8 @@ def linearize(
             point = on_base(structure, steady_base(hub, rate), q, qd)
     linear = linear_matrices(point)
     n = len(linear.mass)
-    outputs = outputs_of(structure, point, gauges)
-    value, d = outputs.matrices(np.concatenate([point.y, point.yd, point.ydd, point.u]))
+    measured = outputs_of(structure, point, gauges)
+    value, d = measured.matrices(np.concatenate([point.y, point.yd, point.ydd, point.u]))
     c_y, c_yd, c_ydd, c_u = d[:, :n], d[:, n : 2 * n], d[:, 2 * n : 3 * n], d[:, 3 * n :]
     k, c, b = (np.linalg.solve(linear.mass, x) for x in (linear.stiffness, linear.velocity, linear.inputs))
     zero = np.zeros((n, n))
@@ -301,7 +316,7 @@ def linearize(
     out = np.concatenate([c_y - c_ydd @ k, c_yd - c_ydd @ c], axis=1)
     through = c_ydd @ b + c_u
     states = coordinate_signals(structure, point.first)
-    at, given = np.concatenate([point.y, point.yd]), np.asarray(point.u)
+    begun, given = np.concatenate([point.y, point.yd]), np.asarray(point.u)
     if not point.first:
         # u = (a, ω, α, loads): ω becomes a state where it acts, fed by α.
         acts = [i for i in range(3, 6) if np.abs(drive[:, i]).max() > 1e-12 or np.abs(through[:, i]).max() > 1e-12]
@@ -312,7 +327,7 @@ def linearize(
         out = np.concatenate([out, through[:, acts]], axis=1)
         drive, through = np.concatenate([drive[:, kept], fed]), through[:, kept]
         states += tuple(BASE_RATES[i - 3] for i in acts)
-        at, given = np.concatenate([at, given[acts]]), given[kept]
+        begun, given = np.concatenate([begun, given[acts]]), given[kept]
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)
     frequency, errors = np.zeros(0), None
     if q is None and qd is None:
@@ -332,7 +347,7 @@ def linearize(
         states=states,
         inputs=input_signals(structure, motion),
         outputs=output_signals(structure, gauges, motion),
-        state=at,
+        state=begun,
         input=given,
         output=value,
         model=structure.kind,

@@ -3,25 +3,38 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Unpack
+from typing import Any, Unpack, overload
 
 from gbeam.analysis.response.posed import pose
 from gbeam.analysis.response.problem import problem_of
 from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.settings import ResponseSettings, Settings
 from gbeam.analysis.response.stepping import answered, going_on, integrated, ramp, split, steps_beyond
+from gbeam.analysis.response.systems import simulate_system
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import StepErrors
 from gbeam.results.response import Response
+from gbeam.results.system import SystemResponse
 
 
-@typed
+@overload
+def simulate(
+    structure: System,
+    motion: Motion | None = None,
+    settings: ResponseSettings | None = None,
+    *,
+    name: str = "",
+    progress: Progress = None,
+    **options: Unpack[Settings],
+) -> SystemResponse: ...
+@overload
 def simulate(
     structure: Structure,
     motion: Motion,
@@ -30,8 +43,18 @@ def simulate(
     name: str = "",
     progress: Progress = None,
     **options: Unpack[Settings],
-) -> Response:
-    """Compute the response of a beam in one environment.
+) -> Response: ...
+@typed
+def simulate(
+    structure: Structure | System,
+    motion: Motion | None = None,
+    settings: ResponseSettings | None = None,
+    *,
+    name: str = "",
+    progress: Progress = None,
+    **options: Unpack[Settings],
+) -> Response | SystemResponse:
+    """Compute the response of a beam in one environment, or of a system of bodies.
 
     It starts in relative equilibrium with the base's motion at the start (a free hub at rest), without vibration,
     unless ``initial`` of the settings says otherwise: ``"undeformed"``, or an :class:`Initial` state. A
@@ -40,9 +63,10 @@ def simulate(
 
     Parameters
     ----------
-    structure : Structure
-        From :func:`gbeam.assemble`.
+    structure : Structure or System
+        From :func:`gbeam.assemble`, or a tree of bodies.
     motion : Flight, Centrifuge or Hub
+        Of the root of a structure; of the ground of a system, which rests without one.
     settings : ResponseSettings, optional
         Or what it is made of, by keyword: ``simulate(structure, motion, duration=10.0)``.
     name : str
@@ -52,11 +76,12 @@ def simulate(
 
     Returns
     -------
-    Response
-        With the loads along the beam. Its outcome is ``done``, ``diverged`` (the displacement left what the model can
-        mean, or the beam lost its stability) or ``not converged`` (Newton's method failed). Where JAX traces the
-        structure or the motion, its arrays are traced: their derivatives are those of the discrete solution; there is
-        no error estimate, and a step that fails leaves NaN.
+    Response or SystemResponse
+        Of a structure, with the loads along the beam; of a system, by default from Gauss's method, with momentum and
+        energy, its flexible bodies at first at rest relative to their roots. The outcome is ``done``, ``diverged`` (the
+        displacement left what the model can mean, or the beam lost its stability) or ``not converged`` (Newton's method
+        failed). Where JAX traces the structure or the motion, its arrays are traced: their derivatives are those of the
+        discrete solution; there is no error estimate, and a step that fails leaves NaN.
 
     Raises
     ------
@@ -78,7 +103,13 @@ def simulate(
     >>> print(f"{1e3 * response.peaks.max_abs[2]:.3f} mm, error {response.error_estimate:.0e}")
     2.302 mm, error 1e-02
     """
+    if isinstance(structure, System):
+        if settings is None:
+            options.setdefault("integrator", "gauss")
+        return simulate_system(structure, motion, settings_of(settings, options), name, progress)
     settings = settings_of(settings, options)
+    if motion is None:
+        raise InputError("motion", "is missing", "give a Flight, a Hub or a Centrifuge; Flight(z=0.0) is at rest")
     structure.require_damping("the response")
     motion = motion.over(settings.start, settings.start + settings.duration)
     if structure.holds_jax or holds_jax(motion):

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
 from gbeam.analysis.steady.frequency_errors import Richer, doubtful
 from gbeam.analysis.steady.operating_point import Linear, OperatingPoint, linear_matrices, operating_point
+from gbeam.analysis.system.linear import system_modes
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import ZERO, eigenvalues, growth_limit
 from gbeam.results.modal import Instability, Modes, outermost
 from gbeam.results.result import Complex, Floats
+from gbeam.results.system import SystemModes
 
 
 def _sensitivity(structure: Structure, q: Any) -> tuple[Floats, Floats]:
@@ -107,21 +110,30 @@ def _largest(shape: Complex) -> Complex:
     return flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)]
 
 
+@overload
+def modes(
+    structure: System, motion: Motion | None = None, time: float = 0.0, *, gyroscopic: bool = True, name: str = ""
+) -> SystemModes: ...
+@overload
+def modes(
+    structure: Structure, motion: Motion | None = None, time: float = 0.0, *, gyroscopic: bool = True, name: str = ""
+) -> Modes: ...
 @typed
 def modes(
-    structure: Structure,
+    structure: Structure | System,
     motion: Motion | None = None,
     time: float = 0.0,
     *,
     gyroscopic: bool = True,
     name: str = "",
-) -> Modes:
-    """Small vibrations of the beam about its relative equilibrium on a base frozen at a time.
+) -> Modes | SystemModes:
+    """Small vibrations of a beam about its relative equilibrium on a base frozen at a time, or of a system of bodies.
 
     Parameters
     ----------
-    structure : Structure
-        From :func:`gbeam.assemble`; the shapes are given at its stations.
+    structure : Structure or System
+        From :func:`gbeam.assemble`; the shapes are given at its stations. Of a system they are given at its points,
+        about its static equilibrium.
     motion : Flight, Centrifuge or Hub, optional
         Without one the base is at rest. A free hub turns with the beam: its angle is a coordinate, and its mode of zero
         frequency is left out.
@@ -134,7 +146,7 @@ def modes(
 
     Returns
     -------
-    Modes
+    Modes or SystemModes
 
     Raises
     ------
@@ -149,6 +161,8 @@ def modes(
     >>> print(gb.modes(structure).frequency.round(1))
     [  36.6  182.8  229.1 1145.5 4243.1]
     """
+    if isinstance(structure, System):
+        return system_modes(structure, motion, time, gyroscopic=gyroscopic, name=name)
     point = operating_point(structure, motion, time)
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)
     computed = modes_at(structure, point, gyroscopic=gyroscopic, name=name, time=time)

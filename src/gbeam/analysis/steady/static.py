@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import overload
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from gbeam.analysis.accuracy.estimate import LIMIT, UNKNOWN, cause_and_cure, of_
 from gbeam.analysis.accuracy.response_errors import IntArray, Quantities, driven, quantities
 from gbeam.analysis.steady.equilibrium import keeps, solve_equilibrium
 from gbeam.analysis.steady.operating_point import OperatingPoint, on_base, operating_point
+from gbeam.analysis.system.point import system_rest
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.enrichment import enrichment
@@ -22,6 +24,7 @@ from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
+from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
 from gbeam.results.equilibrium import Deflection
@@ -29,6 +32,7 @@ from gbeam.results.errors import ErrorEstimate, Errors
 from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Floats
+from gbeam.results.system import SystemRest
 
 NOTHING = 1e-6  # of the other load, over a length of the beam: a force or moment that is less is none
 LOST = "shapes and model are not judged: the exact model with more shapes comes to no equilibrium there"
@@ -116,7 +120,16 @@ def _solved(rich: Structure, point: OperatingPoint) -> Quantities | None:
     return quantities(rich, _resting(np.asarray(q), point))
 
 
-@typed
+@overload
+def static(
+    structure: System,
+    motion: Motion | None = None,
+    time: float = 0.0,
+    *,
+    acceleration: Sequence[float] | None = None,
+    name: str = "",
+) -> SystemRest: ...
+@overload
 def static(
     structure: Structure,
     motion: Motion | None = None,
@@ -124,13 +137,22 @@ def static(
     *,
     acceleration: Sequence[float] | None = None,
     name: str = "",
-) -> Deflection:
+) -> Deflection: ...
+@typed
+def static(
+    structure: Structure | System,
+    motion: Motion | None = None,
+    time: float = 0.0,
+    *,
+    acceleration: Sequence[float] | None = None,
+    name: str = "",
+) -> Deflection | SystemRest:
     """Equilibrium relative to a base whose motion is frozen at a time, and what its sections carry.
 
     Parameters
     ----------
-    structure : Structure
-        From :func:`gbeam.assemble`; shape and loads are given at its stations.
+    structure : Structure or System
+        From :func:`gbeam.assemble`; shape and loads are given at its stations. A system rests in its joints too.
     motion : Flight, Centrifuge or Hub, optional
         Without one the base is at rest, or accelerates as given.
     time : float
@@ -142,7 +164,7 @@ def static(
 
     Returns
     -------
-    Deflection
+    Deflection or SystemRest
 
     Raises
     ------
@@ -160,6 +182,10 @@ def static(
     >>> print(f"{1e3 * rest.tip[2]:.3f} mm")
     -2.297 mm
     """
+    if isinstance(structure, System):
+        if acceleration is not None:
+            raise InputError("acceleration", "is given of a system", "give it gravity, which is its opposite")
+        return system_rest(structure, motion, time, name)
     if acceleration is None:
         point = operating_point(structure, motion, time)
     elif motion is not None:

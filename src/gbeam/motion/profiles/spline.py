@@ -40,8 +40,8 @@ class SplineProfile(Profile):
     --------
     >>> import numpy as np
     >>> slew = gb.SplineProfile(2.0, np.repeat([0.0, 3.0], [6, 6]))
-    >>> print(slew.derivatives(1.0, 0)[0])
-    1.5
+    >>> print(f"{slew.derivatives(1.0, 0)[0]:.4f}")
+    1.5000
     """
 
     duration: Any

@@ -1,0 +1,188 @@
+"""Response of a system over time, with the error of its steps."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.step_errors import Run, difference, ratio, share
+from gbeam.analysis.response.stepping import MAX_STEPS, ONE_CORNER, _finer, scheme_of
+from gbeam.analysis.system.histories import histories
+from gbeam.analysis.system.point import Point, started
+from gbeam.errors import InputError
+from gbeam.integrate.driver import integrate
+from gbeam.integrate.equations import NonlinearEquations, Trajectory
+from gbeam.integrate.steps import Corners
+from gbeam.mechanics.tree.system import System
+from gbeam.motion.protocol import Motion
+from gbeam.progress import Progress, tell
+from gbeam.results.system import Invariants, SystemResponse
+
+Array = Any
+Floats = NDArray[np.float64]
+LEAST = 500  # steps of the results at least
+AT_ONCE = 20_000  # numbers of a state's frames computed together, times coordinates
+
+
+@dataclass(frozen=True, eq=False)
+class _Read:
+    """Reads the places of all points, and the joints' angles in metres of the system's size, (t, k), from a run."""
+
+    system: System
+    motion: Motion | None
+
+    def of(self, trajectory: Trajectory) -> Floats:
+        parts = []
+        for some in _pieces(trajectory, self.system):
+            state = self.system.tree.motion(some.q, some.qd, some.qdd, self.system.inputs(some.time, self.motion))
+            parts.append(np.concatenate([frame.p for body in state.points for frame in body], axis=-1))
+        places = np.concatenate(parts)
+        return places - places[0]
+
+
+def _pieces(trajectory: Trajectory, system: System) -> list[Trajectory]:
+    """A trajectory in pieces of which all frames are held in memory at once."""
+    size = max(1, AT_ONCE // system.tree.size)
+    names = ("time", "q", "qd", "qdd")
+    return [
+        replace(trajectory, **{name: getattr(trajectory, name)[first : first + size] for name in names})
+        for first in range(0, len(trajectory.time), size)
+    ]
+
+
+def simulate_system(
+    system: System, motion: Motion | None, settings: ResponseSettings, name: str, progress: Progress = None
+) -> SystemResponse:
+    """Compute the response of a system on the ground or on a moving base."""
+    if motion is not None:
+        if motion.free:
+            raise InputError("motion", "is a hub that turns freely", "give it as a body on a revolute joint")
+        if system.gravity is not None:
+            fix = "leave one out: a motion carries its own, as specific force"
+            raise InputError("gravity", "is given beside a motion of the base", fix)
+        motion = motion.over(settings.start, settings.start + settings.duration)
+    begin = settings.begin
+    if begin != type(begin)(begin.state):
+        raise InputError("initial", "displaces a tip", 'give "equilibrium" or "undeformed"; joints have initial values')
+    point = started(system, motion, settings.start, begin.state)
+    equations = NonlinearEquations(system.tree, lambda t: system.inputs(t, motion))
+    coarse = _first_step(system, motion, point, settings)
+    end = settings.start + settings.duration
+    felt = Corners.of(_corners(system, motion, coarse), equations.drive, settings.start, end)
+    read, scheme = _Read(system, motion), scheme_of(settings)
+
+    def run(step: float, what: str) -> tuple[Run, Floats]:
+        trajectory = integrate(
+            equations,
+            scheme,
+            point.y,
+            point.yd,
+            step=step,
+            count=math.ceil(settings.duration / step - 1e-6),
+            start=settings.start,
+            corners=felt,
+            progress=lambda done: tell(progress, what, done),
+        )
+        return Run(trajectory, step, None), read.of(trajectory)  # type: ignore[arg-type]
+
+    runs, error = [run(settings.step or 2 * coarse, "integrating")], math.nan
+    if settings.step is None:
+        runs.append(run(coarse, "refining"))
+        while True:
+            error = _error(runs, scheme.order)
+            whole = runs[-1][0].whole
+            if (error <= settings.aim and whole) or settings.duration / runs[-1][0].step > MAX_STEPS / 8:
+                break
+            finer = _finer(error / settings.aim if whole else math.nan, scheme.order)
+            if not (whole or runs[-2][0].whole) and len(runs) > 3:
+                break
+            step = runs[-1][0].step / finer
+            runs.append(run(step, f"refining the step to {1e3 * step:.3g} ms"))
+    elif settings.estimate:
+        runs.insert(0, run(2 * settings.step, "checking with twice the step"))
+        error = _error(runs, scheme.order)
+    chosen = runs[-1][0]
+    stride = 1 if settings.step is not None else round(coarse / chosen.step)
+    return _described(system, motion, settings, chosen, stride, error, name)
+
+
+def _error(runs: list[tuple[Run, Floats]], order: int) -> float:
+    """Error of the last of two or more runs, by the order observed in the last three."""
+    last = runs[-3:]
+    apart = [difference(a, b, ratio(x, y)) for (x, a), (y, b) in pairwise(last)]
+    return apart[-1] * share([each for each, _ in last], apart, min(order, 2.0))
+
+
+def _corners(system: System, motion: Motion | None, step: float) -> Floats:
+    moved = [] if motion is None else [motion.corners(step)]
+    return np.concatenate([system.corners(step), *moved])
+
+
+def _first_step(system: System, motion: Motion | None, point: Point, settings: ResponseSettings) -> float:
+    """Step of the results, s: 500 at least, twenty to the period of the slowest vibration, and none over a corner."""
+    _, k, _, m = point.local.slopes()
+    square = np.abs(np.linalg.eigvals(np.linalg.solve(m, k))) if len(k) else np.zeros(0)
+    largest = settings.duration / LEAST
+    oscillating = np.sqrt(square[square > 1e-9 * square.max(initial=0.0)])
+    if oscillating.size:
+        largest = min(largest, 2 * math.pi / float(oscillating.min()) / 20)
+    times = _corners(system, motion, largest) - settings.start
+    gaps = np.diff(np.unique(np.clip(times, 0.0, settings.duration)))
+    largest = min(largest, gaps.min(where=gaps > ONE_CORNER * settings.duration, initial=largest))
+    return settings.duration / (2 * math.ceil(settings.duration / largest / 2))
+
+
+def _described(
+    system: System,
+    motion: Motion | None,
+    settings: ResponseSettings,
+    run: Run,
+    stride: int,
+    error: float,
+    name: str,
+) -> SystemResponse:
+    """Describe a run at every `stride`-th of its steps."""
+    every = run.trajectory
+    names = ("time", "q", "qd", "qdd")
+    kept = replace(every, **{each: getattr(every, each)[::stride] for each in names})
+    columns: dict[str, list[Floats]] = {}
+    for some in _pieces(kept, system):
+        inputs = system.inputs(some.time, motion)
+        for key, value in histories(system, some.q, some.qd, some.qdd, inputs, inertial=motion is None).items():
+            columns.setdefault(key, []).append(value)
+    over_time: dict[str, Any] = {key: np.concatenate(values) for key, values in columns.items()}
+    invariants = None
+    if motion is None:
+        invariants = Invariants(*(over_time.pop(key) for key in ("momentum", "angular_momentum", "energy")))
+    outcome, message = "done", ""
+    if not every.whole:
+        outcome = "not converged"
+        message = (
+            f"Newton's method failed at {every.time[-1]:.4g} s: give a smaller step, or look for what breaks there"
+        )
+    warnings = (*settings.warnings,)
+    if outcome == "done" and error > settings.tolerance:
+        warnings += (f"the error of the steps is {100 * error:.2g} %: give a smaller step or tolerance",)
+    return SystemResponse(
+        name=name,
+        environment="ground" if motion is None else motion.kind,
+        outcome=outcome,
+        message=message,
+        time=kept.time,
+        points=system.points,
+        coordinates=system.coordinates,
+        invariants=invariants,
+        integrator=scheme_of(settings).name,
+        step=run.step,
+        steps=len(every.time) - 1,
+        error_estimate=error,
+        kept_every=settings.kept_every(len(kept.time), run.step * stride),
+        warnings=warnings + tuple(w for body in system.bodies.values() for w in getattr(body, "warnings", ())),
+        **over_time,
+    )

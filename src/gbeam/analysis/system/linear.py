@@ -1,0 +1,214 @@
+"""Small departures of a system from rest or from a motion: its modes, and its state-space model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.analysis.system.point import Point, rested, started
+from gbeam.guards.checks import choice
+from gbeam.mechanics.tree.frames import turned
+from gbeam.mechanics.tree.system import System
+from gbeam.motion.protocol import Motion
+from gbeam.numerics.eigen import ZERO, eigenvalues, growth_limit
+from gbeam.numerics.series import STEP
+from gbeam.results.state_space import Signal, StateSpace
+from gbeam.results.system import SystemModes
+
+Array = Any
+Floats = NDArray[np.float64]
+
+
+def system_modes(system: System, motion: Motion | None, time: float, *, gyroscopic: bool, name: str) -> SystemModes:
+    """Modes of a system about its static equilibrium."""
+    point = rested(system, motion, time).local
+    _, k, c, m = point.slopes()
+    value, mode = eigenvalues(m, c, k, gyroscopic=gyroscopic)
+    size = np.abs(value).max(initial=0.0)
+    zero, real = np.abs(value) <= RIGID * size, np.abs(value.imag) <= ZERO * size
+    chosen = np.flatnonzero(~zero & ~real & (value.imag > 0))
+    chosen = chosen[np.argsort(np.abs(value[chosen]), kind="stable")]
+    oscillating, coordinates = value[chosen], mode[:, chosen]
+    shape = np.einsum("pan,nk->kpa", _slopes_of_points(point), coordinates)
+    flat = shape.reshape(len(shape), -1)
+    largest = flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)] if flat.size else np.ones(len(shape))
+    growing = value[~zero & ((real & (value.real > 0)) | (value.real > growth_limit(value, size)))]
+    places = np.stack([frame.p for body in _frames(point, point.y, 0 * point.y) for frame in body])
+    return SystemModes(
+        name=name,
+        time=time,
+        eigenvalue=oscillating,
+        points=system.points,
+        bodies=system.order,
+        shape=shape / np.where(largest == 0, 1, largest)[:, None, None],
+        share=_shares(point, coordinates),
+        place=places,
+        rigid=len(m) - len(chosen) - int((real & ~zero).sum()) // 2,
+        growing=growing[np.argsort(-growing.real, kind="stable")],
+    )
+
+
+RIGID = 1e-7  # of the largest eigenvalue: what is smaller is the root of rounding about zero
+
+
+def _frames(point: Point, y: Array, yd: Array) -> Any:
+    return point.tree.motion(y, yd, 0 * y, point.inputs).points
+
+
+def _slopes_of_points(point: Point) -> Floats:
+    """Derivatives of the places of all points with respect to the coordinates, (p, 3, n), by a complex step."""
+    moved = point.y + 1j * STEP * np.eye(len(point.y))
+    frames = _frames(point, moved, 0 * moved)
+    return np.stack([frame.p.imag.T / STEP for body in frames for frame in body])
+
+
+def _shares(point: Point, modes: NDArray[np.complex128]) -> Floats:
+    """Shares (k, bodies) of the bodies in the kinetic energy of modes (n, k)."""
+    tree, energies = point.tree, np.zeros((modes.shape[1], len(point.tree.links)))
+    for rates in (modes.real.T, modes.imag.T):
+        state = tree.motion(np.broadcast_to(point.y, rates.shape), rates, 0 * rates, point.inputs)
+        for k, link in enumerate(tree.links):
+            energies[:, k] += link.body.moving(state.q[k][-1], state.qd[k][-1], state.roots[k])[0]
+    return energies / np.maximum(energies.sum(axis=1, keepdims=True), 1e-300)
+
+
+def linearize_system(
+    system: System,
+    motion: Motion | None,
+    time: float,
+    *,
+    inputs: Sequence[str] | None,
+    outputs: Sequence[str] | None,
+    at: str,
+    name: str,
+) -> StateSpace:
+    """State-space model of small departures of a system.
+
+    The inputs are efforts on joints' coordinates and the components of forces at points; the outputs are the joints'
+    coordinates and rates and the places of points, as they are named.
+    """
+    choice("at", at, ("rest", "start"))
+    point = rested(system, motion, time) if at == "rest" else started(system, motion, time, "equilibrium")
+    local = point.local
+    _, k, c, m = local.slopes()
+    n = len(m)
+    b, driving = _inputs(system, local, inputs)
+    signals, values, out = _outputs(system, local, outputs)
+    stiffness, damping, drive = (np.linalg.solve(m, each) for each in (k, c, b))
+    zero = np.zeros((n, n))
+    a = np.block([[zero, np.eye(n)], [-stiffness, -damping]])
+    c_y, c_yd, c_ydd = out
+    names = _names(system, local)
+    states = [Signal(each, "") for each in names] + [Signal(f"{each}_rate", "") for each in names]
+    return StateSpace(
+        a=a,
+        b=np.concatenate([0 * drive, drive]),
+        c=np.concatenate([c_y - c_ydd @ stiffness, c_yd - c_ydd @ damping], axis=1),
+        d=c_ydd @ drive,
+        states=tuple(states),
+        inputs=driving,
+        outputs=signals,
+        state=np.concatenate([local.y, local.yd]),
+        input=np.zeros(len(driving)),
+        output=values,
+        model="system",
+        motion=name,
+        time=time,
+    )
+
+
+def _names(system: System, local: Point) -> list[str]:
+    """Names of the local coordinates: those of the system, Euler parameters but for the first one as rotations."""
+    turns = {"e1": "rx", "e2": "ry", "e3": "rz"}
+    kept = [each for each in system.coordinates if each.rpartition(".")[2] != "e0"]
+    kept = [f"{head}.{turns.get(tail, tail)}" for head, _, tail in (each.rpartition(".") for each in kept)]
+    return [kept[k] for k in local.tree.free]
+
+
+def _inputs(system: System, local: Point, wanted: Sequence[str] | None) -> tuple[Floats, tuple[Signal, ...]]:
+    """Forces (n, m) of unit inputs on the coordinates, and their signals."""
+    names = _names(system, local)
+    efforts = {each: np.eye(len(names))[k] for k, each in enumerate(names) if each.partition(".")[0] in system.joints}
+    if local.inputs.wrenches is not None:
+        wrenches = np.asarray(local.inputs.wrenches, dtype=complex)
+        for k, force in enumerate(system.forces):
+            for i, component in enumerate(("force", "moment")):
+                for j, axis in enumerate("xyz"):
+                    moved = wrenches.copy()
+                    moved[k, 3 * i + j] += 1j * STEP
+                    driven = replace(local.inputs, wrenches=moved)
+                    left = local.tree(local.y + 0j, local.yd + 0j, local.ydd + 0j, driven)
+                    efforts[f"{force}.{component}_{axis}"] = -left.imag / STEP
+    if wanted is None:
+        driven_joints = {f"{name}.{each}" for name, joint in system.joints.items() for each in joint.efforts}
+        wanted = [each for each in efforts if each in driven_joints or each.partition(".")[0] in system.forces]
+    for each in wanted:
+        choice("inputs", each, efforts)
+    units = {"f": "N", "m": "N m", "x": "N", "y": "N", "z": "N", "d": "N"}
+    signals = tuple(Signal(each, units.get(each.rpartition(".")[2][0], "N m")) for each in wanted)
+    columns = [efforts[each] for each in wanted]
+    return np.stack(columns, axis=1) if columns else np.zeros((len(names), 0)), signals
+
+
+def _outputs(
+    system: System, local: Point, wanted: Sequence[str] | None
+) -> tuple[tuple[Signal, ...], Floats, tuple[Floats, Floats, Floats]]:
+    """Signals of outputs, their values, and their derivatives with respect to y, ẏ and ÿ."""
+    every = signals_of(system)
+    if wanted is None:
+        wanted = [
+            each for each in every if not each.rpartition(".")[2].startswith(("acceleration", "velocity", "spin"))
+        ]
+    for each in wanted:
+        choice("outputs", each, every)
+    n = len(local.y)
+    state = np.concatenate([local.y, local.yd, local.ydd])
+    moved = np.concatenate([state[None] + 0j, state + 1j * STEP * np.eye(3 * n)]).reshape(-1, 3, n)
+    measured = measurements(system, local.tree, moved[:, 0], moved[:, 1], moved[:, 2], local.inputs, wanted)
+    slopes = (measured[1:].imag / STEP).reshape(3, n, -1).transpose(0, 2, 1)
+    return tuple(Signal(each, every[each]) for each in wanted), measured[0].real, (slopes[0], slopes[1], slopes[2])
+
+
+def signals_of(system: System) -> dict[str, str]:
+    """Names of what may be measured of a system, with their units.
+
+    Of joints: ``joint.angle`` and ``joint.angle_rate`` and likewise; of points their ``place``, ``velocity`` (axes of
+    the ground), ``acceleration`` and ``spin``, as sensors there read them (axes of the point).
+    """
+    signals: dict[str, str] = {}
+    for name, joint in system.joints.items():
+        for each in joint.coordinates:
+            if each[0] != "e":
+                unit = "m" if each in ("x", "y", "z", "displacement") else "rad"
+                signals |= {f"{name}.{each}": unit, f"{name}.{each}_rate": f"{unit}/s"}
+    units = {"place": "m", "velocity": "m/s", "acceleration": "m/s^2", "spin": "rad/s"}
+    for point in system.points:
+        signals |= {f"{point}.{kind}_{axis}": unit for kind, unit in units.items() for axis in "xyz"}
+    return signals
+
+
+def measurements(system: System, tree: Any, y: Array, yd: Array, ydd: Array, inputs: Any, wanted: Sequence[str]) -> Any:
+    """Values (..., k) of what is measured, at unknown coordinates of the tree or of one local to it."""
+    state = tree.motion(y, yd, ydd, inputs)
+    columns = []
+    for each in wanted:
+        owner, _, kind = each.rpartition(".")
+        if owner in system.joints:
+            body = system.order.index(system.joints[owner].body)
+            rate = kind.endswith("_rate")
+            parts = (state.qd if rate else state.q)[body][:-1]
+            names = system.joints[owner].coordinates
+            k = names.index(kind.removesuffix("_rate"))
+            columns.append(np.concatenate(parts, axis=-1)[..., k])
+        else:
+            of, point = system.point("outputs", owner)
+            frame = state.points[system.order.index(of)][point]
+            name, _, axis = kind.partition("_")
+            vectors = {"place": frame.p, "acceleration": frame.a, "spin": frame.w}
+            vector = turned(frame.R, frame.v) if name == "velocity" else vectors[name]
+            columns.append(vector[..., "xyz".index(axis)])
+    return np.stack(columns, axis=-1) if columns else np.zeros((*y.shape[:-1], 0))

@@ -1,0 +1,131 @@
+"""Operating points of a system: where its flexible bodies rest, and the derivatives of its equations there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.analysis.system.histories import histories
+from gbeam.errors import ComputationError, InputError
+from gbeam.mechanics.tree.equations import Inputs, Tree
+from gbeam.mechanics.tree.system import System
+from gbeam.motion.protocol import Motion
+from gbeam.numerics.series import STEP
+from gbeam.results.system import SystemRest
+
+Array = Any
+Floats = NDArray[np.float64]
+ITERATIONS = 50
+MASSLESS = 1e-13  # of the largest: a smaller inertia is rounding
+CLOSE = 1e-12  # of the coordinates: a correction that is smaller has converged
+
+
+@dataclass(frozen=True)
+class Point:
+    """A tree at unknown coordinates and their rates (n,), and what drives it there."""
+
+    tree: Tree
+    y: Floats
+    yd: Floats
+    ydd: Floats
+    inputs: Inputs
+
+    @property
+    def local(self) -> Point:
+        """The point with as many coordinates as degrees of freedom."""
+        tree, given = self.tree, self.inputs.prescribed
+        states = [self.y, self.yd, self.ydd]
+        if given is not None:
+            states = [tree.whole(each, given[k]) for k, each in enumerate(states)]
+        reduced, y, yd, ydd = tree.local(states[0], states[1], states[2])
+        free = reduced.free
+        return Point(reduced, y[free], yd[free], ydd[free], self.inputs)
+
+    def slopes(self) -> tuple[Floats, Floats, Floats, Floats]:
+        """The residual (n,) and its derivatives K, C and M (n, n) with respect to y, ẏ and ÿ, by complex steps."""
+        n = len(self.y)
+        state = np.concatenate([self.y, self.yd, self.ydd])
+        moved = (state + 1j * STEP * np.eye(3 * n)).reshape(3 * n, 3, n)
+        values = self.tree(moved[:, 0], moved[:, 1], moved[:, 2], self.inputs)
+        k, c, m = (values.imag / STEP).reshape(3, n, -1).transpose(0, 2, 1)
+        return values[0].real, k, c, m
+
+
+def refuse_massless(system: System, mass: Floats, free: NDArray[np.int64]) -> None:
+    """Refuse a system in which some motion of the coordinates moves no mass."""
+    scale = np.sqrt(np.abs(mass).max(axis=1, initial=0.0))
+    scale = np.where(scale > 0, scale, 1.0)
+    _, sizes, rows = np.linalg.svd(mass / np.outer(scale, scale))
+    if sizes.size and sizes[-1] < MASSLESS * sizes[0]:
+        name = system.coordinates[free[np.abs(rows[-1]).argmax()]]
+        fix = "give the body that it moves a mass, and a moment of inertia about every axis that is free"
+        raise InputError("bodies", f"leave {name} without inertia", fix)
+
+
+def started(system: System, motion: Motion | None, time: float, initial: str) -> Point:
+    """The system at its joints' coordinates and rates at the start, with its flexible bodies undeformed, or where they
+    rest relative to their roots: in equilibrium they do not move and do not begin to.
+    """
+    tree, inputs = system.tree, system.inputs(np.asarray(time), motion)
+    free = tree.free
+    y, yd = (each[free] for each in system.start)
+    elastic = np.array([".q" in system.coordinates[k] for k in free], dtype=bool)
+    ydd, searched = np.zeros_like(y), np.where(elastic, initial == "equilibrium", False)
+    # Unknown are the coordinates of the bodies, and the accelerations of the joints.
+    for _ in range(ITERATIONS):
+        left, k, _, m = Point(tree, y, yd, ydd, inputs).slopes()
+        refuse_massless(system, m, tree.free)
+        change = np.linalg.solve(np.where(searched, k, m), -left)
+        y, ydd = y + np.where(searched, change, 0), ydd + np.where(searched, 0, change)
+        if np.abs(np.where(searched, change, 0)).max(initial=0.0) <= CLOSE * (
+            1e-3 + np.abs(y[elastic]).max(initial=0.0)
+        ):
+            return Point(tree, y, yd, ydd, inputs)
+    fix = 'begin with initial = "undeformed"'
+    raise ComputationError("no equilibrium", f"the bodies have no place to rest at the start; {fix}")
+
+
+def rested(system: System, motion: Motion | None, time: float) -> Point:
+    """The system at rest in static equilibrium, joints and bodies; of those that nothing holds, the nearest one."""
+    tree, inputs = system.tree, system.inputs(np.asarray(time), motion)
+    y, still = system.start[0][tree.free], np.zeros(len(tree.free))
+    size = np.inf
+    for _ in range(ITERATIONS):
+        left, k, _, m = Point(tree, y, still, still, inputs).slopes()
+        change = np.linalg.lstsq(k, -left, rcond=1e-12)[0]
+        size = float(np.abs(change).max(initial=0.0))
+        # Steps of a radian at most: a beam far from its equilibrium turns by as much.
+        y = y + change / max(1.0, size)
+        if size <= CLOSE * (1.0 + np.abs(y).max(initial=0.0)):
+            left = Point(tree, y, still, still, inputs).slopes()[0]
+            refuse_massless(system, m, tree.free)
+            acceleration = np.linalg.solve(m, -left)
+            break
+    else:
+        raise ComputationError("no equilibrium", "no place was found in which the system rests; hold what is free")
+    scale = np.abs(np.linalg.solve(m, np.abs(k) @ np.ones(len(y)))).max(initial=1.0)
+    if np.abs(acceleration).max(initial=0.0) > 1e-6 * scale:
+        raise ComputationError("no equilibrium", "what nothing holds is accelerated, and does not rest")
+    return Point(tree, y, still, still, inputs)
+
+
+def system_rest(system: System, motion: Motion | None, time: float, name: str) -> SystemRest:
+    """Describe where a system rests, and what holds it there."""
+    point, inputs = rested(system, motion, time), system.inputs(np.array([time]), motion)
+    first, _ = system.start
+    begun, resting = (
+        histories(system, y[None], point.yd[None], point.ydd[None], inputs, inertial=False)
+        for y in (first[system.tree.free], point.y)
+    )
+    at = {key: value[0] for key, value in resting.items()}
+    return SystemRest(
+        name=name,
+        time=time,
+        points=system.points,
+        coordinates=system.coordinates,
+        displacement=at["place"] - begun["place"][0],
+        **{key: at[key] for key in ("place", "attitude", "q", "effort", "ground_force", "ground_moment")},
+    )

@@ -1,0 +1,74 @@
+"""Figures of systems: places of points and coordinates over time, energies, and the shapes of modes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gbeam.figures.description import Bars, Figure, Line, Panel, estimated, scale_of
+from gbeam.results.system import ENERGIES, SystemModes, SystemResponse, SystemRest, named
+
+
+def points(response: SystemResponse, title: str = "") -> Figure:
+    """Describe the displacement of every point from its place at the start, a panel for each axis of the ground."""
+    moved = response.place - response.place[0]
+    scale, unit = scale_of("m", moved)
+    panels = tuple(
+        Panel(
+            f"{axis}, {unit}",
+            tuple(Line(response.time, scale * moved[:, k, i], name, colour=k) for k, name in _moving(response, moved)),
+            zero=True,
+            named=i == 0,
+        )
+        for i, axis in enumerate("xyz")
+        if np.abs(moved[..., i]).max(initial=0.0) > 1e-9 * np.abs(moved).max(initial=0.0)
+    )
+    about = "displacement of the points from the start, axes of the ground"
+    error = estimated({"steps": response.error_estimate})
+    return Figure(title, about, panels or (Panel(f"x, {unit}"),), error, (response.outcome,))
+
+
+def _moving(response: SystemResponse, moved: np.ndarray) -> list[tuple[int, str]]:
+    """Points that move, with their numbers."""
+    size = np.abs(moved).max(axis=(0, 2))
+    return [(k, name) for k, name in enumerate(response.points) if size[k] > 1e-9 * size.max(initial=0.0)]
+
+
+def coordinates(response: SystemResponse, title: str = "") -> Figure:
+    """Describe the joints' coordinates and the efforts of their drives."""
+    panels = []
+    for name, history in named(response).items():
+        k = response.coordinates.index(name)
+        panels.append(Panel(f"{name}, {'m' if _slides(name) else 'rad'}", (Line(response.time, history),)))
+        effort = response.effort[:, k]
+        if np.any(effort):
+            scale, unit = scale_of("N" if _slides(name) else "N m", effort)
+            panels.append(Panel(f"drive, {unit}", (Line(response.time, scale * effort),), zero=True))
+    return Figure(title, "coordinates of the joints", tuple(panels), outcomes=(response.outcome,))
+
+
+def _slides(name: str) -> bool:
+    return name.rpartition(".")[2] in ("x", "y", "z", "displacement")
+
+
+def energy(response: SystemResponse, title: str = "") -> Figure:
+    """Describe kinetic and elastic energy, that of gravity, and their sum."""
+    assert response.invariants is not None
+    parts = response.invariants.energy
+    lines = [Line(response.time, parts[:, k], name, colour=k) for k, name in enumerate(ENERGIES)]
+    lines.append(Line(response.time, parts.sum(axis=1), "whole", colour=len(ENERGIES), dash="dashed"))
+    return Figure(title, "energy", (Panel("energy, J", tuple(lines)),), outcomes=(response.outcome,))
+
+
+def rest(result: SystemRest, title: str = "") -> Figure:
+    """Describe how far every point is displaced at rest."""
+    scale, unit = scale_of("m", result.displacement)
+    values = {axis: scale * result.displacement[:, i] for i, axis in enumerate("xyz")}
+    bars = Bars(result.points, values)
+    return Figure(title, "displacement at rest", (Panel("", x=f"displacement, {unit}", bars=bars),))
+
+
+def modes(result: SystemModes, title: str = "") -> Figure:
+    """Describe which bodies move in which mode: their shares in the kinetic energy."""
+    names = tuple(f"{k + 1}: {frequency:.4g} Hz" for k, frequency in enumerate(result.frequency))
+    bars = Bars(names, {body: result.share[:, k] for k, body in enumerate(result.bodies)})
+    return Figure(title, "shares of the bodies in the kinetic energy", (Panel("", x="share", bars=bars),))

@@ -1,0 +1,331 @@
+"""The response and the modes of a system: a tree of bodies with named points."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from gbeam.errors import InputError
+from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity
+from gbeam.results.result import Complex, Figured, Floats, Part
+
+ENERGIES = ("kinetic", "elastic", "gravity")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Invariants(Part):
+    """Momentum and energy over time: where nothing acts from outside they stay what they were."""
+
+    momentum: Floats = quantity("N s", "momentum", "time", "axis", key=None, frame="ground")
+    angular_momentum: Floats = quantity(
+        "N m s", "angular momentum about the ground's origin", "time", "axis", key=None, frame="ground"
+    )
+    energy: Floats = quantity("J", "energy: kinetic, elastic and of gravity", "time", "form", key=None)
+
+    def _drift(self, history: Floats) -> float:
+        size = np.abs(history).max(initial=0.0)
+        return float(np.abs(history - history[0]).max(initial=0.0) / size) if size > 0 else 0.0
+
+    @declared("", "largest change of the momentum, over its largest size", role="fact")
+    def momentum_change(self) -> float:
+        """Largest change of the momentum over its largest size."""
+        return self._drift(self.momentum)
+
+    @declared("", "largest change of the angular momentum, over its largest size", role="fact")
+    def angular_momentum_change(self) -> float:
+        """Largest change of the angular momentum over its largest size."""
+        return self._drift(self.angular_momentum)
+
+    @declared("", "largest change of the energy, over the largest of its parts", role="fact")
+    def energy_change(self) -> float:
+        """Largest change of the whole energy over the largest of its parts."""
+        whole, size = self.energy.sum(axis=1), np.abs(self.energy).max(initial=0.0)
+        return float(np.abs(whole - whole[0]).max(initial=0.0) / size) if size > 0 else 0.0
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class SystemResponse(Figured):
+    """Response of a system over time, at its named points and coordinates.
+
+    Examples
+    --------
+    >>> rod = gb.RigidBody(1.0, (0.0, 1 / 12, 1 / 12), centre=(0.5, 0, 0), points={"end": (1, 0, 0)})
+    >>> hinge = gb.Joint("revolute", "rod", axes=[(0, 1, 0)], initial=0.1)
+    >>> pendulum = gb.System({"rod": rod}, {"hinge": hinge}, gravity=(0, 0, -9.81))
+    >>> response = gb.simulate(pendulum, duration=2.0)
+    >>> response.outcome, response.points
+    ('done', ('rod.end', 'rod.root'))
+    >>> response.at("rod.end").shape[1:]
+    (3,)
+    """
+
+    json_rows: ClassVar[dict[str, str]] = {"point": "points", "coordinate": "coordinates"}
+
+    name: str = fact("name of the motion of the ground", note="empty where it rests")
+    environment: str = fact("kind of the motion of the ground", note="ground where it rests")
+    outcome: str = fact("how it ended", note="done, diverged or not converged")
+    message: str = fact("what happened and what to try, where the outcome is not done")
+    time: Floats = quantity("s", "time", "time", role="coordinate", key=None)
+    points: tuple[str, ...] = labels("name of the point", "point", key="name")
+    coordinates: tuple[str, ...] = labels("name of the coordinate", "coordinate", key="name")
+    place: Floats = quantity("m", "place of the point", "time", "point", "axis", key=None, frame="ground")
+    velocity: Floats = quantity("m/s", "velocity of the point", "time", "point", "axis", key=None, frame="ground")
+    acceleration: Floats = quantity(
+        "m/s^2",
+        "acceleration of the point; specific force where gravity acts",
+        "time",
+        "point",
+        "axis",
+        key=None,
+        frame="axes of the point",
+    )
+    attitude: Floats = quantity(
+        "", "Euler parameters of the point's axes in those of the ground", "time", "point", "parameter", key=None
+    )
+    angular_velocity: Floats = quantity(
+        "rad/s", "angular velocity of the point", "time", "point", "axis", key=None, frame="axes of the point"
+    )
+    q: Floats = quantity(
+        "", "coordinates: m and rad of joints, their own of flexible bodies", "time", "coordinate", key=None
+    )
+    qd: Floats = quantity("", "rates of the coordinates", "time", "coordinate", name="rates", key=None)
+    effort: Floats = quantity(
+        "",
+        "force N or torque N m of the drive on each coordinate",
+        "time",
+        "coordinate",
+        key=None,
+        note="of prescribed coordinates what the motion needs",
+    )
+    ground_force: Floats = quantity("N", "force on the ground", "time", "axis", key=None, frame="ground")
+    ground_moment: Floats = quantity(
+        "N m", "moment on the ground about its origin", "time", "axis", key=None, frame="ground"
+    )
+    invariants: Invariants | None = part(
+        "momentum and energy", key="invariants", name=INSIDE, note="None on a base that moves", default=None
+    )
+    integrator: str = fact("integrator", default="gauss")
+    step: float = fact("time step", "s", default=math.nan)
+    steps: int = fact("number of steps", default=0)
+    error_estimate: float = fact(
+        "estimated error of the time steps, as a fraction of the largest displacement",
+        note="that of shapes and models of the bodies is not in it; NaN where there is no estimate",
+        default=math.nan,
+    )
+    kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
+
+    @declared(
+        "m", "displacement of the point from its place at the start, the largest", "point", key="displacement_max"
+    )
+    def largest(self) -> Floats:
+        """Largest distance of every point from its place at the start, (p,) m."""
+        return np.linalg.norm(self.place - self.place[0], axis=-1).max(axis=0)
+
+    @declared("m/s^2", "acceleration, the largest", "point", key="acceleration_max")
+    def largest_acceleration(self) -> Floats:
+        """Largest acceleration of every point, (p,) m/s²."""
+        return np.linalg.norm(self.acceleration, axis=-1).max(axis=0)
+
+    @declared("", "coordinate at the end", "coordinate", name="last", key="end")
+    def last(self) -> Floats:
+        """Coordinates at the end, (n,)."""
+        return self.q[-1]
+
+    def at(self, point: str) -> Floats:
+        """Return the place of a named point in axes of the ground, (t, 3) m.
+
+        Parameters
+        ----------
+        point : str
+            ``body.point``; a body's root is its point ``root``.
+
+        Raises
+        ------
+        InputError
+            If there is no such point.
+        """
+        return self.place[:, _index("point", point, self.points)]
+
+    def coordinate(self, name: str) -> Floats:
+        """Return a coordinate over time, (t,) m or rad: ``joint.angle``.
+
+        Parameters
+        ----------
+        name : str
+            ``joint.coordinate``, or ``body.q1`` and so on of a flexible body.
+
+        Raises
+        ------
+        InputError
+            If there is no such coordinate.
+        """
+        return self.q[:, _index("name", name, self.coordinates)]
+
+    def __repr__(self) -> str:
+        of = f" {self.name!r}" if self.name else ""
+        far = {name: value for name, value in zip(self.points, self.largest, strict=True)}
+        most = max(far, key=lambda name: far[name])
+        unknown = math.isnan(self.error_estimate)
+        error = "no error estimate" if unknown else f"estimated error of the steps {self.error_estimate:.2g}"
+        lines = [
+            f"SystemResponse{of} ({self.environment}): {self.outcome}",
+            *([self.message] if self.message else []),
+            f"{most} moves by up to {far[most]:.4g} m in {self.time[0]:.4g} to {self.time[-1]:.4g} s",
+            f"{self.integrator}, {self.steps} steps of {1e3 * self.step:.4g} ms; {error}",
+        ]
+        if self.invariants is not None:
+            lines.append(f"energy changes by {self.invariants.energy_change:.2g} of its largest part")
+        return self._with_warnings(*lines)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class SystemRest(Figured):
+    """Static equilibrium of a system.
+
+    Examples
+    --------
+    >>> rod = gb.RigidBody(1.0, (0.0, 1 / 12, 1 / 12), centre=(0.5, 0, 0), points={"end": (1, 0, 0)})
+    >>> hinge = gb.Joint("revolute", "rod", axes=[(0, 1, 0)], stiffness=10.0)
+    >>> held = gb.System({"rod": rod}, {"hinge": hinge}, gravity=(0, 0, -9.81))
+    >>> rest = gb.static(held)
+    >>> print(f"{rest.coordinate('hinge.angle'):.4f} rad, {rest.ground_force[2]:.2f} N")
+    0.4431 rad, -9.81 N
+    """
+
+    json_rows: ClassVar[dict[str, str]] = {"point": "points", "coordinate": "coordinates"}
+
+    name: str = fact("name of the motion of the ground", note="empty where it rests")
+    time: float = fact("time at which drives and motion are frozen", "s")
+    points: tuple[str, ...] = labels("name of the point", "point", key="name")
+    coordinates: tuple[str, ...] = labels("name of the coordinate", "coordinate", key="name")
+    place: Floats = quantity("m", "place of the point", "point", "axis", frame="ground")
+    displacement: Floats = quantity("m", "displacement from the start", "point", "axis", frame="ground")
+    attitude: Floats = quantity("", "Euler parameters of the point's axes in those of the ground", "point", "parameter")
+    q: Floats = quantity("", "coordinates: m and rad of joints, their own of flexible bodies", "coordinate")
+    effort: Floats = quantity("", "force N or torque N m of the drive on each coordinate", "coordinate")
+    ground_force: Floats = quantity("N", "force on the ground", "axis", frame="ground")
+    ground_moment: Floats = quantity("N m", "moment on the ground about its origin", "axis", frame="ground")
+
+    def at(self, point: str) -> Floats:
+        """Return the place of a named point in axes of the ground, (3,) m.
+
+        Parameters
+        ----------
+        point : str
+            ``body.point``.
+
+        Raises
+        ------
+        InputError
+            If there is no such point.
+        """
+        return self.place[_index("point", point, self.points)]
+
+    def coordinate(self, name: str) -> Floats:
+        """Return a coordinate, m or rad.
+
+        Parameters
+        ----------
+        name : str
+            ``joint.angle`` and likewise.
+
+        Raises
+        ------
+        InputError
+            If there is no such coordinate.
+        """
+        return self.q[_index("name", name, self.coordinates)]
+
+    def __repr__(self) -> str:
+        size = np.linalg.norm(self.displacement, axis=-1)
+        most = int(size.argmax())
+        force = ", ".join(f"{each:.4g}" for each in self.ground_force)
+        lines = [f"SystemRest: {self.points[most]} moves by {size[most]:.4g} m", f"force on the ground ({force}) N"]
+        return self._with_warnings(*lines)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class SystemModes(Figured):
+    """Small vibrations of a system about a place in which it rests, ascending in frequency.
+
+    Examples
+    --------
+    >>> rod = gb.RigidBody(1.0, (0.0, 1 / 12, 1 / 12), centre=(0.5, 0, 0), points={"end": (1, 0, 0)})
+    >>> hinge = gb.Joint("revolute", "rod", axes=[(0, 1, 0)], initial=1.0)
+    >>> pendulum = gb.System({"rod": rod}, {"hinge": hinge}, gravity=(0, 0, -9.81))
+    >>> print(gb.modes(pendulum).frequency.round(4))
+    [0.6105]
+    """
+
+    json_rows: ClassVar[dict[str, str]] = {"mode": "modes"}
+
+    name: str = fact("name of the motion of the ground", note="empty where it rests")
+    time: float = fact("time at which drives and motion are frozen", "s")
+    eigenvalue: Complex = quantity(
+        "1/s",
+        "eigenvalues of the oscillating modes",
+        "mode",
+        name=None,
+        key=None,
+        note="one of each pair, with the positive imaginary part",
+    )
+    points: tuple[str, ...] = labels("name of the point", "point", key="point_names")
+    bodies: tuple[str, ...] = labels("name of the body", "body", key="body_names")
+    shape: Complex = quantity(
+        "", "displacement of the point, largest component 1", "mode", "point", "axis", frame="ground"
+    )
+    share: Floats = quantity("", "share of the body in the kinetic energy", "mode", "body")
+    place: Floats = quantity("m", "place of the point at rest", "point", "axis", key=None, frame="ground")
+    rigid: int = fact("number of motions of zero frequency, left out")
+    growing: Complex = quantity(
+        "1/s", "eigenvalues that grow", "eigenvalue", name="growing", key=None, default_factory=lambda: np.empty(0)
+    )
+
+    @declared("Hz", "natural frequency", "mode")
+    def frequency(self) -> Floats:
+        """Natural frequencies |λ|/2π, (k,) Hz."""
+        return np.abs(self.eigenvalue) / (2 * np.pi)
+
+    @declared("", "ratio of critical damping; negative for flutter", "mode")
+    def damping_ratio(self) -> Floats:
+        """Ratios of critical damping −Re λ/|λ|, (k,)."""
+        return -self.eigenvalue.real / np.abs(self.eigenvalue)
+
+    @declared("", "whether nothing grows", role="fact")
+    def stable(self) -> bool:
+        """Whether nothing grows."""
+        return not len(self.growing)
+
+    @declared("", "body that moves most", "mode", name=None)
+    def foremost(self) -> tuple[str, ...]:
+        """Name of the body with the most kinetic energy in each mode."""
+        return tuple(self.bodies[k] for k in self.share.argmax(axis=1)) if len(self.share) else ()
+
+    def __repr__(self) -> str:
+        pairs = zip(self.frequency, self.foremost, strict=True)
+        listed = ", ".join(f"{frequency:.4g} Hz {body}" for frequency, body in list(pairs)[:6])
+        more = f" and {len(self.frequency) - 6} more" if len(self.frequency) > 6 else ""
+        lines = [f"SystemModes: {listed}{more}"]
+        if self.rigid:
+            lines.append(f"{self.rigid} motions of zero frequency are left out")
+        if not self.stable:
+            lines.append(
+                f"not stable: {len(self.growing)} motions grow, the fastest with {self.growing.real.max():.4g} 1/s"
+            )
+        return self._with_warnings(*lines)
+
+
+def _index(where: str, name: str, names: tuple[str, ...]) -> int:
+    if name not in names:
+        raise InputError(where, f"is {name!r}", f"choose from {', '.join(names)}")
+    return names.index(name)
+
+
+def named(response: SystemResponse) -> Mapping[str, Floats]:
+    """Histories of the joints' coordinates by name, without Euler parameters."""
+    chosen = [k for k, name in enumerate(response.coordinates) if name.rpartition(".")[2][0] not in "qe"]
+    return {response.coordinates[k]: response.q[:, k] for k in chosen}
