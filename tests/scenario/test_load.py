@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 import subprocess
 import sys
 import tomllib
@@ -34,6 +35,12 @@ def test_values_are_si(text: str) -> None:
 def test_is_frozen(text: str) -> None:
     with pytest.raises(ValidationError, match="frozen"):
         loads(text).beam.length = 1.0  # type: ignore[misc]
+
+
+def test_is_sent_to_other_processes(text: str) -> None:
+    force = 'loads = [ { at = 0.1, force = { z = { profile = "sine", amplitude = 1, duration = 1 } } } ]'
+    scenario = loads(text.replace("damping_ratio = 0.01", f"damping_ratio = 0.01\n{force}"))
+    assert pickle.loads(pickle.dumps(scenario)) == scenario
 
 
 def test_all_errors_at_once_in_order(text: str, errors: Errors) -> None:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from functools import reduce
-from operator import or_
-from typing import TYPE_CHECKING, Annotated, Any, Generic, Literal, TypeVar, get_args
+from typing import Annotated, Any, Generic, Literal, TypeVar, get_args
 
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
@@ -105,20 +103,35 @@ class Sum(Smoothed[L, S], Generic[L, S]):
     ] = Field(min_length=1, description="the profiles that are added")
 
 
-_PROFILES: dict[str, Any] = {
-    "constant": Constant, "trapezoid": Trapezoid, "smooth-step": SmoothStep, "sine": Sine, "table": Listed, "sum": Sum,
-}  # fmt: skip
-
-
-def _profile(level: Any, rate: Any) -> Any:
-    """Type of a profile of a quantity that has a rate of change."""
-    return Annotated[reduce(or_, (each[level, rate] for each in _PROFILES.values())), Discriminator("profile")]
-
-
-def _over_time(level: Any, rate: Any) -> Any:
-    """Type of a quantity, which is then constant, or of a profile of it."""
-    profiles = (Annotated[each[level, rate], Tag(name)] for name, each in _PROFILES.items())
-    return Annotated[reduce(or_, profiles, Annotated[level, Tag("one")]), Discriminator(_constant_or_profile)]
+# Written out: a generic alias of a union of pydantic models loses its parameters, and of models that a function makes
+# of a generic one none can be pickled.
+AccelerationProfile = Annotated[
+    Constant[Acceleration, Jerk]
+    | Trapezoid[Acceleration, Jerk]
+    | SmoothStep[Acceleration, Jerk]
+    | Sine[Acceleration, Jerk]
+    | Listed[Acceleration, Jerk]
+    | Sum[Acceleration, Jerk],
+    Discriminator("profile"),
+]
+RateProfile = Annotated[
+    Constant[AngularRate, AngularAcceleration]
+    | Trapezoid[AngularRate, AngularAcceleration]
+    | SmoothStep[AngularRate, AngularAcceleration]
+    | Sine[AngularRate, AngularAcceleration]
+    | Listed[AngularRate, AngularAcceleration]
+    | Sum[AngularRate, AngularAcceleration],
+    Discriminator("profile"),
+]
+TorqueProfile = Annotated[
+    Constant[Torque, TorqueRate]
+    | Trapezoid[Torque, TorqueRate]
+    | SmoothStep[Torque, TorqueRate]
+    | Sine[Torque, TorqueRate]
+    | Listed[Torque, TorqueRate]
+    | Sum[Torque, TorqueRate],
+    Discriminator("profile"),
+]
 
 
 def _constant_or_profile(value: Any) -> Any:
@@ -126,17 +139,33 @@ def _constant_or_profile(value: Any) -> Any:
     return value.get("profile") if isinstance(value, dict) else getattr(value, "profile", "one")
 
 
-if TYPE_CHECKING:  # type checkers call no functions
-    AccelerationProfile = Any
-    RateProfile = Any
-    TorqueProfile = Any
-    ForceOverTime = Any
-    MomentOverTime = Any
-    SpreadForceOverTime = Any
-else:
-    AccelerationProfile = _profile(Acceleration, Jerk)
-    RateProfile = _profile(AngularRate, AngularAcceleration)
-    TorqueProfile = _profile(Torque, TorqueRate)
-    ForceOverTime = _over_time(Force, ForceRate)
-    MomentOverTime = _over_time(Torque, TorqueRate)
-    SpreadForceOverTime = _over_time(ForcePerLength, ForcePerLengthRate)
+ForceOverTime = Annotated[
+    Annotated[Force, Tag("one")]
+    | Annotated[Constant[Force, ForceRate], Tag("constant")]
+    | Annotated[Trapezoid[Force, ForceRate], Tag("trapezoid")]
+    | Annotated[SmoothStep[Force, ForceRate], Tag("smooth-step")]
+    | Annotated[Sine[Force, ForceRate], Tag("sine")]
+    | Annotated[Listed[Force, ForceRate], Tag("table")]
+    | Annotated[Sum[Force, ForceRate], Tag("sum")],
+    Discriminator(_constant_or_profile),
+]
+MomentOverTime = Annotated[
+    Annotated[Torque, Tag("one")]
+    | Annotated[Constant[Torque, TorqueRate], Tag("constant")]
+    | Annotated[Trapezoid[Torque, TorqueRate], Tag("trapezoid")]
+    | Annotated[SmoothStep[Torque, TorqueRate], Tag("smooth-step")]
+    | Annotated[Sine[Torque, TorqueRate], Tag("sine")]
+    | Annotated[Listed[Torque, TorqueRate], Tag("table")]
+    | Annotated[Sum[Torque, TorqueRate], Tag("sum")],
+    Discriminator(_constant_or_profile),
+]
+SpreadForceOverTime = Annotated[
+    Annotated[ForcePerLength, Tag("one")]
+    | Annotated[Constant[ForcePerLength, ForcePerLengthRate], Tag("constant")]
+    | Annotated[Trapezoid[ForcePerLength, ForcePerLengthRate], Tag("trapezoid")]
+    | Annotated[SmoothStep[ForcePerLength, ForcePerLengthRate], Tag("smooth-step")]
+    | Annotated[Sine[ForcePerLength, ForcePerLengthRate], Tag("sine")]
+    | Annotated[Listed[ForcePerLength, ForcePerLengthRate], Tag("table")]
+    | Annotated[Sum[ForcePerLength, ForcePerLengthRate], Tag("sum")],
+    Discriminator(_constant_or_profile),
+]
