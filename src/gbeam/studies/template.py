@@ -105,7 +105,7 @@ class ScenarioTemplate:
 
 @dataclass(frozen=True)
 class CaseTemplate:
-    """A case made in Python: its values are the arguments of its objects, in SI."""
+    """A case made in Python, with the members of a ScenarioTemplate; its values are arguments of its objects, in SI."""
 
     case: Case
 
@@ -113,32 +113,26 @@ class CaseTemplate:
 
     @property
     def title(self) -> str:
-        """Title of all cases."""
         return self.case.title
 
     @property
     def motions(self) -> tuple[str, ...]:
-        """Names of the motions."""
         return tuple(self.case.motions)
 
     @property
     def imitations(self) -> dict[str, bool]:
-        """Centrifuges that track a flight, by name, each with whether limits of acceptance are set."""
         return {name: bool(self.case.accept.get(name)) for name in self.case.tracks}
 
     @property
     def distributions(self) -> Mapping[str, Distribution]:
-        """Distributions in place of values, by path."""
         return {}
 
     @property
     def provenance(self) -> Provenance | None:
-        """Origin of results."""
         return self.case.provenance
 
     @property
     def identity(self) -> dict[str, Any]:
-        """Words by which a store of cases knows the template."""
         try:
             content = pickle.dumps(self.case)
         except (pickle.PicklingError, AttributeError, TypeError) as error:
@@ -152,7 +146,6 @@ class CaseTemplate:
         return {"beam": case.beam, "model": case.model, "motion": case.motions, "response": case.response}
 
     def changed(self, changes: Sequence[str]) -> CaseTemplate:
-        """The template with changes PATH=VALUE; GbeamError if one is impossible."""
         if not changes:
             return self
         wanted: dict[Any, Any] = {}  # all of one object at once: a mass at the tip moves with the length
@@ -175,18 +168,15 @@ class CaseTemplate:
         return CaseTemplate(replace(self.case, **parts, motions=motions))
 
     def built(self) -> Case:
-        """Its objects."""
         return self.case
 
     def quantities(self) -> dict[str, tuple[float, str]]:
-        """Value in SI and kind of every quantity, by path."""
         every = {path_text(path): (value, kind) for path, value, kind in _numbers(self._tree, "", ())}
         # A machine that tracks a flight of the case has it from there.
         copies = tuple(f"motion.{machine}.flight." for machine in self.case.tracks)
         return {path: each for path, each in every.items() if not path.startswith(copies)}
 
     def unit(self, path: str) -> str:
-        """SI unit of the quantity at a path; empty where it has none."""
         node: Any = self._tree
         kind = ""
         for step in parse_path(path) or ():

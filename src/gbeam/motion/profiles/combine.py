@@ -191,7 +191,6 @@ class Clamped(Profile):
         assign(self, first=as_array(self.first), last=as_array(self.last))
 
     def series(self, t: Any, order: int) -> Series:
-        """Value and derivatives at times `t` (s)."""
         now = as_array(t)
         inner = self.profile.series(namespace(now, self.first, self.last).clip(now, self.first, self.last), order)
         inside = (now >= self.first) & (now <= self.last)  # the ends themselves belong to it, with their derivatives

@@ -118,7 +118,6 @@ class Convolved(Rounded):
         assign(self, width=as_array(self.width))
 
     def series(self, t: Any, order: int) -> Series:
-        """Value and derivatives at times `t` (s)."""
         now, breaks, width = as_array(t), self.profile.breaks, self.width
         xp = namespace(now, breaks, width)
         nodes = (breaks.size + 1) * _POINTS.size

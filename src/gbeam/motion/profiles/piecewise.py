@@ -63,7 +63,6 @@ class PiecewiseLinear(Profile):
         assign(self, times=t, values=v, slopes=xp.concatenate([level, rise, level]), summary=record)
 
     def series(self, t: Any, order: int) -> Series:
-        """Value and slope at times `t` (s)."""
         now = as_array(t)
         xp = namespace(now, self.times)
         return _line(self, now, xp.searchsorted(xp.asarray(self.times), now, side="right"), order)
@@ -155,7 +154,6 @@ class SmoothedPiecewiseLinear(Rounded):
         assign(self, table=table, bends=bends, times=xp.append(t, t[-1]), width=width, count=count)
 
     def series(self, t: Any, order: int) -> Series:
-        """Value and derivatives at times `t` (s)."""
         now = as_array(t)
         xp = namespace(now, self.times, self.bends, self.width)
         times, bends = xp.asarray(self.times), xp.asarray(self.bends)

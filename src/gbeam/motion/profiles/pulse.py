@@ -76,7 +76,6 @@ class SmoothStep(_Pulse):
         )
 
     def series(self, t: Any, order: int) -> Series:
-        """Value and derivatives at times `t` (s)."""
         phase = (as_array(t) - self.start) / self.duration
         # 2009 (43) is a step rounded by a Hann kernel of width T.
         orders = hann_orders(1, 1 + order, phase - 0.5)
@@ -127,7 +126,6 @@ class Sine(_Pulse):
         )
 
     def series(self, t: Any, order: int) -> Series:
-        """Value and derivatives at times `t` (s)."""
         phase = (as_array(t) - self.start) / self.duration
         xp = namespace(phase, self.amplitude)
         size = xp.where((phase >= 0) & (phase < 1), self.amplitude, 0.0)

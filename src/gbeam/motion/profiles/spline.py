@@ -60,7 +60,6 @@ class SplineProfile(Profile):
         )
 
     def series(self, t: Any, order: int) -> Series:
-        """Value and derivatives at times `t` (s)."""
         since = as_array(t) - self.start
         xp = namespace(since, self.coefficients)
         spline = Spline(0.0, self.duration / (self.coefficients.shape[0] - DEGREE), self.coefficients[:, None])

@@ -98,7 +98,6 @@ class QuasiStatic(Inverse):
     geometry: Geometry
 
     def pose(self, target: Profile, t: Any, order: int) -> Pose:
-        """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s)."""
         load = target.series(t, order)
         return speed(load, self.geometry), *gimbals(load, 0.0, self.geometry)
 
@@ -116,7 +115,6 @@ class Flat(Inverse):
     geometry: Geometry
 
     def pose(self, target: Profile, t: Any, order: int) -> Pose:
-        """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s)."""
         load = target.series(t, order + 1)
         rate = speed(load, self.geometry)
         lag = arctan2(rate.rate(), rate * rate)

@@ -52,7 +52,6 @@ class Exact(Inverse):
     lag: Spline
 
     def pose(self, target: Profile, t: Any, order: int) -> Pose:
-        """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s)."""
         load, lag = target.series(t, order), self.lag.series(t, order)[..., 0]
         horizontal = sqrt(square(load) - self.geometry.gravity**2)
         rate = sqrt(horizontal / self.geometry.arm * sin_cos(lag)[1])

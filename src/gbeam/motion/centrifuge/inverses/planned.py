@@ -54,7 +54,6 @@ class Planned(Inverse):
         return first, first + pieces * float(self.axes.step)
 
     def pose(self, target: Profile, t: Any, order: int) -> Pose:
-        """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s)."""
         axes = self.axes.series(t, order)
         return axes[..., 0], axes[..., 1], axes[..., 2]
 
