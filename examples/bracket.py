@@ -20,7 +20,7 @@ MATERIALS = {
     "bracket": gb.Material(density=2700, youngs_modulus=70e9, poissons_ratio=0.33, yield_strength=240e6),
     "camera": gb.Material(density=3300, youngs_modulus=70e9, poissons_ratio=0.33),
 }
-FOOT, RADIUS, ARM, WIDTH, THICKNESS = 40.0, 12.0, 72.0, 50.0, 6.0  # mm, along the middle of the sheet
+FOOT, RADIUS, ARM, WIDTH, THICKNESS = 40.0, 12.0, 72.0, 50.0, 3.0  # mm, along the middle of the sheet
 CAMERA = 24.0, 50.0  # mm of the arm's end, and how far the camera stands out
 # Nodes of a hexahedron of 20, in halves of its edges along x, y and z.
 NODES = 0, 200, 220, 20, 2, 202, 222, 22, 100, 210, 120, 10, 102, 212, 122, 12, 1, 201, 221, 21
@@ -33,8 +33,8 @@ def mesh(coarser: int = 1) -> meshio.Mesh:
     """
     turn, half = RADIUS * np.pi / 2, THICKNESS / 2
     corners, end = np.cumsum([0.0, FOOT, turn, ARM]), FOOT + turn + ARM
-    along = np.concatenate([divided(*corners[:2], 8 // coarser), divided(*corners[1:3], 4 // coarser)[1:],
-                            divided(*corners[2:], 12 // coarser)[1:]])  # fmt: skip
+    along = np.concatenate([divided(*corners[:2], 8 // coarser), divided(*corners[1:3], 6 // coarser)[1:],
+                            divided(*corners[2:], 18 // coarser)[1:]])  # fmt: skip
     across = divided(-WIDTH / 2, WIDTH / 2, 4 // coarser)
     sheet, cells = hexahedra(along, across, divided(-half, half, 2 // coarser))
     camera, more = hexahedra(

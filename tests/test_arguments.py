@@ -165,6 +165,10 @@ class Given:
                     "residual_from": None, "initial": "equilibrium", "estimate": True, "loads": True, "histories": 0.1,
                 },
             ),
+            "RigidSpecimen": (
+                (1.0, (0.0, 0.0, 0.0), np.eye(3), [(0.1, 0.0, 0.0)]),
+                {"bolts": np.eye(3), "bolt_axis": (0.0, 0.0, 1.0)},
+            ),
             "Root": ((1e6, 1e6, 1e6, 1e3, 1e3), {}),
             "Section": (("rectangle", {"width": (0.02,), "thickness": (0.004,)}), {"stations": (), "plate": False}),
             "Sine": ((1.0, 1.0, 0.0), {}),

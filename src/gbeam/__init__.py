@@ -86,6 +86,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.scenario.rerun import rerun as rerun
     from gbeam.solids.mesh import SolidMesh as SolidMesh
     from gbeam.solids.mesh import SolidModel as SolidModel
+    from gbeam.solids.rigid import RigidSpecimen as RigidSpecimen
     from gbeam.structure.attachments import Load as Load
     from gbeam.structure.attachments import Point as Point
     from gbeam.structure.attachments import PointMass as PointMass
@@ -138,6 +139,7 @@ _HOME = {
     "PointMass": "structure.attachments",
     "Response": "results.response",
     "ResponseSettings": "analysis.response.settings",
+    "RigidSpecimen": "solids.rigid",
     "Root": "structure.attachments",
     "Section": "structure.section",
     "Sensitivity": "results.cases",

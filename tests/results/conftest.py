@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,8 @@ from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.searches import CommandRun, Fit, FittedColumn, Optimum, Requirement, ShapedCommand
 from gbeam.results.study import ModelRow, ModelStudy
+
+from ..solids.bodies import STEEL, block, solid
 
 BEAM = gb.Beam(
     0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700.0, 70e9), [gb.PointMass(0.3, 0.01)], damping_ratio=0.01
@@ -38,7 +41,14 @@ def every() -> dict[str, Any]:
         ModelRow("TLAM", "slew", "diverged", "too fast", ("a warning",)),
     )
     flight = gb.Flight(z=gb.constant(9.81))
+    strong = dataclasses.replace(STEEL, yield_strength=3e8)
+    bracket = solid(block("hexahedron20", (2, 1, 1), (0.2, 0.05, 0.03)), strong).reduced(modes=2, damping_ratio=0.02)
+    box = gb.RigidSpecimen.box(
+        2.0, (0.3, 0.2, 0.1), (0, 0, 0.05), bolts=[(0, 0, 0), (0.1, 0, 0), (0, 0.1, 0)], bolt_axis=(0, 0, 1)
+    )
     return {
+        "stress": bracket.stress(gb.simulate(bracket.structure, flight, duration=0.01, step=1e-4)),
+        "specimen": box.loads(hub, 1.0, sample=0.5, name="spin"),
         "static": gb.static(structure, flight),
         "modes": gb.modes(structure, hub),
         "campbell": gb.campbell(structure, hub, speeds=np.linspace(0, 20, 3)),

@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from gbeam.errors import InputError
-from gbeam.figures import imitation, response, steady, studies, system
+from gbeam.figures import imitation, response, solids, steady, studies, system
 from gbeam.figures.description import Figure
 from gbeam.results.cases import PROBABILITY, Sensitivity, Sweep
 from gbeam.results.equilibrium import CriticalMap, Deflection
@@ -20,6 +20,7 @@ from gbeam.results.machine import AxesResult
 from gbeam.results.modal import Campbell, Modes
 from gbeam.results.response import Response
 from gbeam.results.searches import Fit, Optimum, ShapedCommand
+from gbeam.results.solids import SolidStress, SpecimenLoads
 from gbeam.results.study import ModelStudy, Study
 from gbeam.results.system import SystemModes, SystemResponse, SystemRest, named
 
@@ -79,6 +80,10 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
             return {"rest": partial(system.rest, result, title)}
         case SystemModes():
             return {"modes": partial(system.modes, result, title)} if len(result.frequency) else {}
+        case SolidStress():
+            return {"stress": partial(solids.stress, result, title)}
+        case SpecimenLoads():
+            return {"specimen": partial(solids.specimen, result, title)}
         case Sensitivity():
             return {name: partial(studies.sensitivity, result, name, title) for name in result.measures}
     return {}

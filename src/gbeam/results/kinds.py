@@ -16,6 +16,7 @@ from gbeam.results.modal import Campbell, Modes
 from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.searches import Fit, Optimum, ShapedCommand
+from gbeam.results.solids import SolidStress, SpecimenLoads
 from gbeam.results.state_space import StateSpace
 from gbeam.results.study import ModelStudy, Study
 from gbeam.results.system import SystemModes, SystemResponse, SystemRest
@@ -43,6 +44,8 @@ KINDS: dict[str, type[Result]] = {
         SystemResponse,
         SystemRest,
         SystemModes,
+        SolidStress,
+        SpecimenLoads,
     )
 }
 

@@ -21,6 +21,7 @@ from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion, HubResult, Response
 from gbeam.results.result import Floats
 from gbeam.results.searches import CommandRun, Fit, FittedColumn, Optimum, ShapedCommand
+from gbeam.results.solids import SolidStress, SpecimenLoads
 from gbeam.results.study import Study
 
 Facts = Mapping[str, Any]
@@ -293,4 +294,6 @@ _ALONE: dict[str, tuple[str, Callable[[Facts, Facts], Any]]] = {
     "Fit": ("measured", _fit),
     "Optimum": ("history", lambda facts, v: _read(Optimum, facts, v)),
     "ShapedCommand": ("command", _shaped),
+    "SolidStress": ("von_mises", lambda facts, v: _read(SolidStress, facts, v)),
+    "SpecimenLoads": ("acceleration", lambda facts, v: _read(SpecimenLoads, facts, v)),
 }

@@ -1,0 +1,208 @@
+"""Stress of a solid over time, and the loads of a rigid specimen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from gbeam.constants import STANDARD_GRAVITY
+from gbeam.results.declared import declared, fact, labels, part, quantity
+from gbeam.results.parts import yield_margin
+from gbeam.results.result import Figured, Floats, Part
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class StressAt(Part):
+    """Stress at a node and a time."""
+
+    von_mises: float = quantity("Pa", "von Mises stress")
+    principal: Floats = quantity("Pa", "principal stresses, the largest first", "principal")
+    time: float = quantity("s", "its time")
+    place: Floats = quantity("m", "place of the node from the root, undeformed", "axis")
+    node: int = quantity("", "number of the node in the mesh's file, from 1")
+    material: str = quantity("", "name of the material")
+    spread: float = quantity("", "how much the elements that share the node differ, as a fraction",
+                             note="an indication of the mesh's error there")  # fmt: skip
+    yield_strength: float | None = quantity("Pa", "yield strength of the material", optional=True, default=None)
+
+    @declared("", "yield strength over von Mises stress less one", optional=True)
+    def margin(self) -> float | None:
+        """Margin on yield; None where the strength is not known."""
+        if self.yield_strength is None:
+            return None
+        return float(yield_margin(self.yield_strength, np.array(self.von_mises)))
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class SolidStress(Figured):
+    """Stress of a solid in a response: anywhere, at its named points, and where it is worst.
+
+    Stresses are those of the coordinates, which hold the static answer to the base's motion, at the nodes: extrapolated
+    from the elements' best points and averaged over the elements of the same material.
+    """
+
+    json_rows: ClassVar[dict[str, str]] = {"point": "points"}
+
+    motion: str = fact("name of the motion")
+    model: str = fact("kind of the model")
+    time: Floats = quantity("s", "time", "time", role="coordinate", key=None)
+    von_mises: Floats = quantity("Pa", "largest von Mises stress in the solid at that time", "time", key=None)
+    worst: StressAt = part("where the von Mises stress is largest", name="worst_")
+    nearest_yield: StressAt | None = part(
+        "where the margin on yield is least", name="nearest_yield_", optional=True, default=None
+    )
+    points: tuple[str, ...] = labels("name of the point", "point", default=())
+    point_von_mises: Floats = quantity(
+        "Pa", "von Mises stress at the point", "time", "point", key=None, default_factory=lambda: np.empty((0, 0))
+    )
+    point_principal: Floats = quantity(
+        "Pa", "principal stresses at the point, the largest first", "time", "point", "principal",
+        key=None, default_factory=lambda: np.empty((0, 0, 3)),
+    )  # fmt: skip
+    nodes: Floats = quantity(
+        "m", "places of the nodes from the root, undeformed", "node", "axis", name="node_place", key=None,
+        default_factory=lambda: np.empty((0, 3)),
+    )  # fmt: skip
+    node_von_mises: Floats = quantity(
+        "Pa", "largest von Mises stress over time at the node", "node", key=None, default_factory=lambda: np.empty(0)
+    )
+
+    @declared("Pa", "largest von Mises stress", "point", name=None, key="von_mises")
+    def point_max(self) -> Floats:
+        return self.point_von_mises.max(axis=0)
+
+    @declared("s", "time of that stress", "point", name=None, key="time_of_max")
+    def point_time_of_max(self) -> Floats:
+        return self.time[self.point_von_mises.argmax(axis=0)]
+
+    def __repr__(self) -> str:
+        of = f" {self.motion!r}" if self.motion else ""
+        return self._with_warnings(f"SolidStress{of} ({self.model}): {said(self.worst)}", *self._margin())
+
+    def _margin(self) -> list[str]:
+        if self.nearest_yield is None:
+            return ["margin on yield not known: no material has a yield_strength"]
+        margin = self.nearest_yield.margin
+        assert margin is not None
+        words = "margin on yield" if margin >= 0 else "ABOVE YIELD: margin"
+        return [f"{words} {margin:.3g} in {self.nearest_yield.material or 'the material'}: {said(self.nearest_yield)}"]
+
+
+def said(stress: StressAt) -> str:
+    """A stress with its place and time, and how sure the mesh is of it."""
+    x, y, z = (1e3 * float(each) for each in stress.place)
+    return (
+        f"von Mises {1e-6 * stress.von_mises:.4g} MPa at ({x:.4g}, {y:.4g}, {z:.4g}) mm, node {stress.node}, at "
+        f"{stress.time:.4g} s; elements there differ by {100 * stress.spread:.2g} %"
+    )
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class CornerLoad(Part):
+    """Largest load at a point of a specimen."""
+
+    size: float = quantity("m/s^2", "largest size of the acceleration, or specific force where gravity acts")
+    time: float = quantity("s", "its time")
+    place: Floats = quantity("m", "place of the point from the root", "axis")
+
+    @declared("", "that in units of standard gravity", name=None)
+    def g(self) -> float:
+        return self.size / STANDARD_GRAVITY
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class SpecimenLoads(Figured):
+    """Loads of a rigid specimen over time: at its corners, on its fixture and on every bolt."""
+
+    json_rows: ClassVar[dict[str, str]] = {"bolt": "bolts", "corner": "corners"}
+
+    motion: str = fact("name of the motion")
+    environment: str = fact("flight, centrifuge or hub")
+    mass: float = fact("mass of the specimen", "kg")
+    time: Floats = quantity("s", "time", "time", role="coordinate", key=None)
+    corners: Floats = quantity("m", "place of the corner from the root", "corner", "axis", name="corner_place",
+                               key="place")  # fmt: skip
+    acceleration: Floats = quantity(
+        "m/s^2", "acceleration of the corner; specific force where gravity acts", "time", "corner", "axis", key=None
+    )
+    centre: Floats = quantity("m/s^2", "acceleration of the centre of mass, likewise", "time", "axis",
+                              name="centre_acceleration", key=None)  # fmt: skip
+    force: Floats = quantity("N", "force of the fixture on the specimen", "time", "axis", key=None)
+    moment: Floats = quantity("N m", "moment of the fixture on the specimen about the root", "time", "axis", key=None)
+    bolts: Floats = quantity(
+        "m", "place of the bolt from the root", "bolt", "axis", name="bolt_place", key="place",
+        default_factory=lambda: np.empty((0, 3)),
+    )  # fmt: skip
+    bolt_force: Floats = quantity(
+        "N", "force of the bolt on the specimen", "time", "bolt", "axis", key=None,
+        default_factory=lambda: np.empty((0, 0, 3)),
+    )  # fmt: skip
+    bolt_axis: Floats = quantity("", "direction of the bolts", "axis", key=None, optional=True,
+                                 default_factory=lambda: np.empty(0))  # fmt: skip
+
+    @declared("m/s^2", "largest size of the acceleration at the corner", "corner", name=None, key="max_abs")
+    def corner_max(self) -> Floats:
+        return np.linalg.norm(self.acceleration, axis=-1).max(axis=0)
+
+    @declared("", "largest load at any corner", role="part", name="largest_", key="largest_load")
+    def largest(self) -> CornerLoad:
+        size = np.linalg.norm(self.acceleration, axis=-1)
+        t, k = np.unravel_index(size.argmax(), size.shape)
+        return CornerLoad(float(size[t, k]), float(self.time[t]), self.corners[k])
+
+    @declared("", "largest difference of a corner's acceleration to the centre's, over the largest of the centre",
+              name="spread_max", key="spread")  # fmt: skip
+    def spread_max(self) -> float:
+        return float(self.spread.max())
+
+    @declared("", "largest difference of a corner's acceleration to the centre's, over the largest of the centre",
+              "time", key=None)  # fmt: skip
+    def spread(self) -> Floats:
+        """Spread of the load over the specimen, (t,): NaN where nothing accelerates."""
+        apart = np.linalg.norm(self.acceleration - self.centre[:, None], axis=-1).max(axis=1)
+        largest = np.linalg.norm(self.centre, axis=-1).max()
+        return apart / largest if largest > 0 else np.full(len(apart), np.nan)
+
+    @declared("N", "largest size of the force on the specimen", name=None, key="force.max_abs")
+    def force_max(self) -> float:
+        return float(np.linalg.norm(self.force, axis=-1).max())
+
+    @declared("N m", "largest size of the moment on the specimen about the root", name=None, key="moment.max_abs")
+    def moment_max(self) -> float:
+        return float(np.linalg.norm(self.moment, axis=-1).max())
+
+    @declared("N", "tension of the bolt; negative where the specimen is pressed on", "time", "bolt", key=None)
+    def tension(self) -> Floats:
+        # The bolt pulls the specimen against its axis, which points away from the fixture.
+        return -(self.bolt_force @ self.bolt_axis) if len(self.bolts) else np.empty((len(self.time), 0))
+
+    @declared("N", "shear of the bolt", "time", "bolt", key=None)
+    def shear(self) -> Floats:
+        if not len(self.bolts):
+            return np.empty((len(self.time), 0))
+        along = (self.bolt_force @ self.bolt_axis)[..., None] * self.bolt_axis
+        return np.linalg.norm(self.bolt_force - along, axis=-1)
+
+    @declared("N", "largest tension of the bolt", "bolt", name=None, key="tension")
+    def bolt_tension(self) -> Floats:
+        return self.tension.max(axis=0)
+
+    @declared("N", "largest shear of the bolt", "bolt", name=None, key="shear")
+    def bolt_shear(self) -> Floats:
+        return self.shear.max(axis=0)
+
+    def __repr__(self) -> str:
+        of, worst = f" {self.motion!r}" if self.motion else "", self.largest
+        x, y, z = (1e3 * float(each) for each in worst.place)
+        lines = [
+            f"SpecimenLoads{of} ({self.environment}): up to {worst.g:.4g} g at ({x:.4g}, {y:.4g}, {z:.4g}) mm, at "
+            f"{worst.time:.4g} s; spread over the specimen {100 * self.spread_max:.3g} %",
+            f"on the fixture up to {self.force_max:.4g} N and {self.moment_max:.4g} N m",
+        ]
+        if len(self.bolts):
+            lines.append(
+                f"bolts: tension up to {self.bolt_tension.max():.4g} N, shear up to {self.bolt_shear.max():.4g} N"
+            )
+        return self._with_warnings(*lines)

@@ -1,0 +1,219 @@
+"""A rigid specimen: a box on a centrifuge, of which the load at its corners and on its bolts is asked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gbeam.arrays.tree import Value
+from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
+from gbeam.guards.checks import array, positive
+from gbeam.guards.limits import SAMPLES, refuse_more
+from gbeam.motion.protocol import Motion
+from gbeam.results.result import Floats
+from gbeam.results.solids import SpecimenLoads
+
+ALIKE = 1e-9  # of the largest second moment: bolts on a line
+SAME = 1e-6  # of the time between samples: corners nearer to one are that one
+
+
+@typed
+@dataclass(frozen=True, eq=False)
+class RigidSpecimen(Value):
+    """A rigid body on a base that moves; see :meth:`box`.
+
+    Parameters
+    ----------
+    mass : float
+        kg.
+    centre : (3,)
+        Centre of mass from the root, base axes, m.
+    inertia : (3, 3)
+        Moments of inertia about the centre of mass, base axes, kg m²: the diagonal, and beside it minus the products.
+    corners : (c, 3)
+        Corners of its envelope, or other points where the load is of interest, from the root, m.
+    bolts : (b, 3), optional
+        Places of the bolts, or of other points that hold it, from the root, m.
+    bolt_axis : (3,), optional
+        Direction of the bolts, away from the fixture.
+
+    Raises
+    ------
+    InputError
+        If the mass is not positive, no body has such an inertia, or the bolts cannot carry a moment.
+
+    Examples
+    --------
+    >>> inertia = ((0.01, 0, 0), (0, 0.02, 0), (0, 0, 0.02))
+    >>> rod = gb.RigidSpecimen(2.0, (0.1, 0, 0), inertia, corners=[(0, 0, 0), (0.2, 0, 0)])
+    >>> loads = rod.loads(gb.Hub(radius=1.0, rate=10.0), duration=1.0, sample=0.5)
+    >>> loads.acceleration[0, :, 0]
+    array([-100., -120.])
+    """
+
+    mass: float
+    centre: Sequence[float]
+    inertia: ArrayLike
+    corners: ArrayLike
+    bolts: ArrayLike | None = None
+    bolt_axis: Sequence[float] | None = None
+
+    def __post_init__(self) -> None:
+        positive("mass", self.mass, "kg")
+        shapes = {"centre": (3,), "inertia": (3, 3), "corners": (-1, 3), "bolts": (-1, 3), "bolt_axis": (3,)}
+        for name, shape in shapes.items():
+            value = getattr(self, name)
+            if value is None and name.startswith("bolt"):
+                continue
+            value = np.asarray(array(name, value), dtype=float)
+            if value.ndim != len(shape) or value.shape[-1] != 3 or not value.size or not np.isfinite(value).all():
+                words = "three numbers" if shape == (3,) else "3 × 3 numbers" if name == "inertia" else "rows of three"
+                raise InputError(name, f"has the shape {value.shape}, or is not finite", f"give {words}")
+            object.__setattr__(self, name, value)
+        inertia = np.asarray(self.inertia)
+        value = np.linalg.eigvalsh((inertia + inertia.T) / 2)
+        if inertia.shape != (3, 3) or not np.allclose(inertia, inertia.T, atol=1e-9 * np.abs(inertia).max()):
+            raise InputError("inertia", "is not symmetric", "give moments on the diagonal, and minus the products")
+        if value[0] < -1e-12 * value[2] or value[2] > (1 + 1e-9) * (value[0] + value[1]):
+            problem = f"has the principal moments {value[0]:.4g}, {value[1]:.4g} and {value[2]:.4g} kg m²"
+            raise InputError("inertia", problem, "none is larger than the sum of the others; is it about the centre?")
+        if self.bolts is None:
+            return
+        if self.bolt_axis is None or not np.any(self.bolt_axis):
+            raise InputError("bolt_axis", "is missing beside bolts", "give their direction, such as (0, 0, 1)")
+        bolts = np.asarray(self.bolts)
+        moments = np.linalg.eigvalsh(_second_moments(bolts))
+        if not moments[0] > ALIKE * moments[2]:
+            raise InputError("bolts", f"are {len(bolts)} on a line, which carry no moment about it", "add one off it")
+
+    @classmethod
+    @typed
+    def box(
+        cls,
+        mass: float,
+        size: Sequence[float],
+        centre: Sequence[float],
+        *,
+        bolts: ArrayLike | None = None,
+        bolt_axis: Sequence[float] | None = None,
+    ) -> RigidSpecimen:
+        """A box of uniform density along the base axes.
+
+        Parameters
+        ----------
+        mass : float
+            kg.
+        size : (3,)
+            Edges along x, y and z, m.
+        centre : (3,)
+            From the root, m.
+        bolts, bolt_axis : optional
+            As of the class.
+
+        Raises
+        ------
+        InputError
+            If an edge is not positive.
+
+        Examples
+        --------
+        >>> gb.RigidSpecimen.box(3.0, (0.3, 0.2, 0.1), (0, 0, 0.05)).corners.shape
+        (8, 3)
+        """
+        edges = np.array([positive(f"size[{i}]", each, "m") for i, each in enumerate(size)])
+        if edges.shape != (3,):
+            raise InputError("size", f"has {len(edges)} edges", "give three")
+        inertia = np.diag(mass / 12 * (edges @ edges - edges**2))
+        corners = np.asarray(centre, dtype=float) + edges / 2 * np.array(list(product((-1, 1), repeat=3)))
+        return cls(mass, centre, inertia, corners, bolts, bolt_axis)
+
+    @typed
+    def loads(
+        self, motion: Motion, duration: float, *, sample: float, start: float = 0.0, name: str = ""
+    ) -> SpecimenLoads:
+        """Loads in a motion.
+
+        Parameters
+        ----------
+        motion : Flight, Centrifuge or Hub
+        duration : float
+            s.
+        sample : float
+            Longest time between the results' times, to which the motion's corners are added, s.
+        start : float
+            s.
+        name : str
+            For the result.
+
+        Returns
+        -------
+        SpecimenLoads
+
+        Raises
+        ------
+        InputError
+            If the motion is a result itself, as that of a free hub.
+
+        Examples
+        --------
+        >>> turn = gb.Flight(z=gb.trapezoid(78.5, jerk=39.2, start=0.5, hold=1.0))
+        >>> box = gb.RigidSpecimen.box(3.0, (0.3, 0.2, 0.1), (0, 0, 0.05))
+        >>> print(f"{box.loads(turn, duration=6.0, sample=0.01).force_max:.1f} N")
+        235.5 N
+        """
+        if motion.free:
+            raise InputError("motion", "is a free hub, whose motion is a result", "give a hub with a rate")
+        corners = np.asarray(self.corners)
+        count = math.ceil(positive("duration", duration, "s") / positive("sample", sample, "s")) + 1
+        refuse_more("sample", "times", count, SAMPLES, 8.0 * 9 * len(corners), "take a longer one")
+        end = start + duration
+        moving = motion.over(start, end)
+        breaks = np.asarray(moving.corners(sample))
+        inside = breaks[(breaks > start) & (breaks < end)]
+        time = np.union1d(np.linspace(start, end, count), inside)
+        time = time[np.append(True, np.diff(time) > SAME * sample)]
+        base = moving.base(time)
+        a, w, alpha = (np.broadcast_to(each, (len(time), 3)) for each in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B))
+
+        def accelerations(places: Floats) -> Floats:
+            spin, turn = w[:, None], alpha[:, None]
+            return a[:, None] + np.cross(turn, places) + np.cross(spin, np.cross(spin, places))
+
+        centre, inertia = np.asarray(self.centre), np.asarray(self.inertia)
+        of_centre = accelerations(centre[None])[:, 0]
+        force = self.mass * of_centre
+        about_centre = alpha @ inertia + np.cross(w, w @ inertia)  # Euler's equations; the inertia is symmetric
+        moment = about_centre + np.cross(centre, force)
+        held: dict[str, Any] = {} if self.bolts is None else self._shared(np.asarray(self.bolts), force, moment)
+        return SpecimenLoads(
+            motion=name,
+            environment=motion.kind,
+            mass=float(self.mass),
+            time=time,
+            corners=corners,
+            acceleration=accelerations(corners),
+            centre=of_centre,
+            force=force,
+            moment=moment,
+            **held,
+        )
+
+    def _shared(self, bolts: Floats, force: Floats, moment: Floats) -> dict[str, Any]:
+        """Forces (t, b, 3) of bolts that are alike, between rigid bodies, with their places and direction."""
+        centroid, axis = bolts.mean(axis=0), np.asarray(self.bolt_axis)
+        turn = np.linalg.solve(_second_moments(bolts), (moment - np.cross(centroid, force)).T).T
+        forces = force[:, None] / len(bolts) + np.cross(turn[:, None], bolts - centroid)
+        return {"bolts": bolts, "bolt_force": forces, "bolt_axis": axis / np.linalg.norm(axis)}
+
+
+def _second_moments(bolts: Floats) -> Floats:
+    """Second moments (3, 3) of points (b, 3) about their centroid, m²: a moment over a rotation of bolts alike."""
+    arms = bolts - bolts.mean(axis=0)
+    return np.asarray((arms**2).sum() * np.eye(3) - arms.T @ arms)

@@ -1,0 +1,113 @@
+"""Stress of a reduced solid over time, at its nodes: extrapolated in elements, averaged over those of a material."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from gbeam.results.result import Floats
+from gbeam.results.solids import SolidStress, StressAt
+from gbeam.solids.elements import TENSOR, Indices, chunks, extrapolation, stress_at
+
+BLOCK = 2**22  # numbers handled together
+
+
+class NodalStress:
+    """Stresses (p, 6, n) of unit coordinates at all pairs of a node and a material of its elements."""
+
+    def __init__(self, points: Floats, blocks: Any, shapes: Floats) -> None:
+        names = list(dict.fromkeys(block.material for block in blocks))
+        pairs = [names.index(block.material) * len(points) + np.unique(block.nodes) for block in blocks]
+        known = np.unique(np.concatenate(pairs))
+        self.points, self.blocks, self.shapes = points, blocks, shapes
+        self.node, self.material = known % len(points), [names[i] for i in known // len(points)]
+        every = np.arange(len(points))
+        self._pairs = {name: np.searchsorted(known, i * len(points) + every) for i, name in enumerate(names)}
+        total, count = np.zeros((len(known), 6, shapes.shape[-1])), np.zeros(len(known))
+        for pair, stress in self._elements():
+            np.add.at(total, pair, stress)
+            np.add.at(count, pair, 1)
+        self.table = total / count[:, None, None]
+
+    def _elements(self, wanted: int | None = None) -> Iterator[tuple[Indices, Floats]]:
+        """Pairs (m,) and stresses (m, 6, n) at the nodes of elements: of all, or of those at one pair."""
+        for block, part, _, gradients, _ in chunks(self.points, self.blocks, "stress"):
+            nodes = block.nodes[part]
+            pair = self._pairs[block.material][nodes]
+            chosen = slice(None) if wanted is None else (pair == wanted).any(axis=1)
+            stress = stress_at(block, nodes[chosen], gradients[chosen], self.shapes)
+            at_nodes = np.einsum("kq,eqvn->ekvn", extrapolation(block.kind), stress, optimize=True)
+            yield pair[chosen].ravel(), at_nodes.reshape(-1, *at_nodes.shape[2:])
+
+    def spread(self, pair: int, q: Floats) -> float:
+        """Difference of the elements at a pair in von Mises stress, as a fraction of that of their mean."""
+        parts = [stress[at == pair] @ q for at, stress in self._elements(pair)]
+        mean = float(von_mises(self.table[pair] @ q))
+        return float(np.ptp(von_mises(np.concatenate(parts)))) / mean if mean > 0 else 0.0
+
+    def histories(self, q: Floats) -> tuple[Floats, Indices, Floats]:
+        """Largest von Mises stress over time at every pair (p,), when (p,), and over all pairs at every time (t,)."""
+        count = len(self.node)
+        largest, when, over = np.full(count, -1.0), np.zeros(count, dtype=int), np.empty(len(q))
+        flat = self.table.reshape(count * 6, -1).T
+        step = max(1, BLOCK // (count * 6))
+        for start in range(0, len(q), step):
+            sizes = von_mises((q[start : start + step] @ flat).reshape(-1, count, 6))
+            over[start : start + step] = sizes.max(axis=1)
+            best = sizes.argmax(axis=0)
+            size = sizes[best, np.arange(count)]
+            more = size > largest
+            largest[more], when[more] = size[more], start + best[more]
+        return largest, when, over
+
+
+def von_mises(stress: Floats) -> Floats:
+    """Von Mises stress of stresses xx, yy, zz, yz, xz, xy, (..., 6)."""
+    xx, yy, zz, yz, xz, xy = np.moveaxis(stress, -1, 0)
+    squares: Floats = ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (yz**2 + xz**2 + xy**2)
+    return np.sqrt(squares)
+
+
+def principal(stress: Floats) -> Floats:
+    """Principal stresses of stresses (..., 6), the largest first, (..., 3)."""
+    return np.asarray(np.linalg.eigvalsh(stress[..., TENSOR])[..., ::-1])
+
+
+def solid_stress(mesh: Any, shapes: Floats, time: Floats, q: Floats, **about: Any) -> SolidStress:
+    """Return the stress of a mesh whose coordinates are (t, n) at times (t,)."""
+    nodal = NodalStress(mesh.points, mesh.blocks, shapes)
+    largest, when, over = nodal.histories(q)
+    strengths = np.array([mesh.strengths.get(name, np.inf) for name in nodal.material])
+
+    def at(pair: int) -> StressAt:
+        t, node, strength = int(when[pair]), int(nodal.node[pair]), float(strengths[pair])
+        return StressAt(
+            von_mises=float(largest[pair]),
+            principal=principal(nodal.table[pair] @ q[t]),
+            time=float(time[t]),
+            place=mesh.points[node],
+            node=int(mesh.numbers[node]) + 1,
+            material=nodal.material[pair],
+            spread=nodal.spread(pair, q[t]),
+            yield_strength=strength if np.isfinite(strength) else None,
+        )
+
+    # At a node of two materials, that which is stressed more.
+    chosen = [max(np.flatnonzero(nodal.node == node), key=largest.__getitem__) for node in mesh.stations.values()]
+    stress = np.einsum("pvn,tn->tpv", nodal.table[chosen], q, optimize=True)
+    every = np.zeros(len(mesh.points))
+    np.maximum.at(every, nodal.node, largest)
+    return SolidStress(
+        time=time,
+        von_mises=over,
+        worst=at(int(largest.argmax())),
+        nearest_yield=at(int((largest / strengths).argmax())) if np.isfinite(strengths).any() else None,
+        points=tuple(mesh.stations),
+        point_von_mises=von_mises(stress),
+        point_principal=principal(stress),
+        nodes=mesh.points,
+        node_von_mises=every,
+        **about,
+    )

@@ -1,0 +1,124 @@
+"""A rigid specimen: sums over particles, textbooks' bolts, and the F-16's record."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+from gbeam.motion import constant
+
+DATA = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
+G = 9.80665
+
+
+def tumbling(seed: int) -> gb.Flight:
+    rng = np.random.default_rng(seed)
+    times = np.linspace(0, 2, 9)
+    rates = gb.smoothed(gb.tabulated(times, rng.normal(size=(9, 3))), 0.3)
+    return gb.Flight(acceleration=gb.tabulated(times, 30 * rng.normal(size=(9, 3))), rates=rates)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_force_and_moment_are_those_of_particles(seed: int) -> None:
+    """D'Alembert's sum over a cloud of them, whose mass, centre and inertia the specimen has."""
+    rng = np.random.default_rng(seed)
+    mass, r = rng.random(20), rng.normal(size=(20, 3))
+    centre = mass @ r / mass.sum()
+    arms = r - centre
+    inertia = (mass * (arms**2).sum(axis=1)).sum() * np.eye(3) - (mass[:, None] * arms).T @ arms
+    body = gb.RigidSpecimen(mass.sum(), centre, inertia, corners=r)
+    flight = tumbling(seed)
+    loads = body.loads(flight, 2.0, sample=0.05)
+    assert loads.time[0] == 0 and loads.time[-1] == 2 and np.diff(loads.time).max() < 0.0501
+    np.testing.assert_allclose(loads.force, np.einsum("k,tki->ti", mass, loads.acceleration), atol=1e-10)
+    turned = np.cross(r, mass[:, None] * loads.acceleration).sum(axis=1)
+    np.testing.assert_allclose(loads.moment, turned, atol=1e-10 * np.abs(turned).max())
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_bolts_carry_what_the_fixture_gives(seed: int) -> None:
+    """Their forces and moments add up, however they lie."""
+    rng = np.random.default_rng(seed)
+    box = gb.RigidSpecimen.box(3.0, (0.3, 0.2, 0.1), (0.02, -0.01, 0.06), bolts=rng.random((5, 3)), bolt_axis=(0, 0, 2))
+    loads = box.loads(tumbling(seed), 2.0, sample=0.05)
+    np.testing.assert_allclose(loads.bolt_force.sum(axis=1), loads.force, atol=1e-9)
+    moment = np.cross(loads.bolts, loads.bolt_force).sum(axis=1)
+    np.testing.assert_allclose(moment, loads.moment, atol=1e-9)
+    np.testing.assert_allclose(loads.tension**2 + loads.shear**2, (loads.bolt_force**2).sum(axis=-1))
+
+
+def test_a_textbooks_bolt_group() -> None:
+    """Four bolts in a rectangle under a force above them: F/4 of shear each, and M y/Σy² of tension."""
+    bolts = [(0.1, 0.05, 0), (-0.1, 0.05, 0), (0.1, -0.05, 0), (-0.1, -0.05, 0)]
+    box = gb.RigidSpecimen.box(2.0, (0.1, 0.1, 0.2), (0, 0, 0.1), bolts=bolts, bolt_axis=(0, 0, 1))
+    loads = box.loads(gb.Flight(x=constant(50.0)), 1.0, sample=1.0)
+    # Accelerated along x at a height of 0.1 m: the rear pair holds it down.
+    np.testing.assert_allclose(loads.shear, 100 / 4)
+    np.testing.assert_allclose(loads.tension[0], 100 * 0.1 * 0.1 / (4 * 0.1**2) * np.array([1, -1, 1, -1]))
+    sideways = gb.RigidSpecimen.box(2.0, (0.1, 0.1, 0.2), (0.3, 0, 0), bolts=bolts, bolt_axis=(0, 0, 1))
+    twisted = sideways.loads(gb.Flight(y=constant(50.0)), 1.0, sample=1.0)
+    # In-plane: F/n and T r/Σr², Σr² = 4 (0.1² + 0.05²).
+    turn = 100 * 0.3 / (4 * (0.1**2 + 0.05**2))
+    np.testing.assert_allclose(twisted.bolt_force[0, 0], [-turn * 0.05, 25 + turn * 0.1, 0], atol=1e-12)
+
+
+def test_a_box_in_the_turn_of_the_f16() -> None:
+    """In translation the load is that of the record everywhere, and the force the weight times it."""
+    record = np.genfromtxt(DATA, delimiter=",", names=True)
+    load = G * np.stack([record["n_x_g"], -record["n_y_g"], -record["n_z_g"]], axis=1)
+    flight = gb.Flight(acceleration=gb.read_record(DATA, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g"))
+    box = gb.RigidSpecimen.box(3.0, (0.3, 0.2, 0.1), (0, 0, 0.05))
+    loads = box.loads(flight, 15.99, sample=0.01, name="flight")
+    np.testing.assert_allclose(loads.force, 3.0 * load, atol=1e-9)
+    np.testing.assert_allclose(loads.moment, np.cross((0, 0, 0.05), 3.0 * load), atol=1e-9)
+    size = np.linalg.norm(load, axis=1)
+    assert loads.largest.size == pytest.approx(size.max()) and loads.largest.time == pytest.approx(0.01 * size.argmax())
+    assert loads.spread_max < 1e-12 and f"{size.max() / G:.4g} g" in repr(loads)
+
+
+def test_a_box_on_a_centrifuge_by_hand() -> None:
+    """On a hub at 10 rad/s, ω² (R + x) along −x and gravity up: a spread of half the length over the radius."""
+    box = gb.RigidSpecimen.box(2.0, (0.4, 0.2, 0.1), (0.0, 0.0, 0.0))
+    loads = box.loads(gb.Hub(radius=2.0, rate=10.0), 1.0, sample=0.5)
+    far = np.hypot(100 * 2.2, 100 * 0.1)
+    assert loads.largest.size == pytest.approx(far) and loads.largest.place[0] == pytest.approx(0.2)
+    np.testing.assert_allclose(loads.force, [[-400.0, 0, 0]] * 3, atol=1e-9)
+    assert loads.spread_max == pytest.approx(np.hypot(0.2, 0.1) / 2.0)
+    spun = box.loads(gb.Hub(radius=2.0, rate=gb.SmoothStep(10.0, 4.0)), 4.0, sample=0.01)
+    # Euler's moment about the axis, I α, and the tangential force, m R α.
+    rate = np.gradient(100 * 0 + 10 * _smooth(spun.time / 4.0), spun.time)
+    np.testing.assert_allclose(spun.moment[5:-5, 2], 2.0 / 12 * (0.4**2 + 0.2**2) * rate[5:-5], atol=1e-3)
+    np.testing.assert_allclose(spun.force[5:-5, 1], 2.0 * 2.0 * rate[5:-5], atol=1e-2)
+
+
+def _smooth(s: np.ndarray) -> np.ndarray:
+    """s − sin(2πs)/2π."""
+    return s - np.sin(2 * np.pi * s) / (2 * np.pi)
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"mass": -1.0}, "mass is -1 kg"),
+        ({"corners": np.zeros((0, 3))}, r"corners has the shape \(0, 3\)"),
+        ({"inertia": np.diag([1.0, 1.0, 3.0])}, r"inertia has the principal moments 1, 1 and 3 kg m²; none is larger"),
+        ({"inertia": np.diag([-1.0, 1.0, 1.0])}, "inertia has the principal moments"),
+        ({"inertia": [[1, 0.5, 0], [0, 1, 0], [0, 0, 1]]}, "inertia is not symmetric"),
+        ({"bolts": [(0, 0, 0), (1, 0, 0)]}, "bolt_axis is missing beside bolts"),
+        ({"bolts": [(0, 0, 0), (1, 0, 0)], "bolt_axis": (0, 0, 1)}, "bolts are 2 on a line, which carry no moment"),
+    ],
+)
+def test_specimens_that_cannot_be_are_refused(changed: dict[str, Any], words: str) -> None:
+    sound = {"mass": 1.0, "centre": (0, 0, 0), "inertia": np.eye(3), "corners": [(0, 0, 0)]}
+    with pytest.raises(gb.InputError, match=words):
+        gb.RigidSpecimen(**(sound | changed))
+
+
+def test_a_free_hub_is_refused() -> None:
+    box = gb.RigidSpecimen.box(2.0, (0.4, 0.2, 0.1), (0.0, 0.0, 0.0))
+    with pytest.raises(gb.InputError, match="motion is a free hub"):
+        box.loads(gb.Hub(radius=2.0, inertia=10.0, torque=constant(1.0)), 1.0, sample=0.5)

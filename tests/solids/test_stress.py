@@ -1,0 +1,134 @@
+"""Stress of solids: bars and beams in closed form, NAFEMS LE10, and where margins are least."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.sparse import csc_matrix
+from scipy.sparse.linalg import spsolve
+
+import gbeam as gb
+from gbeam.solids.elements import KINDS, chunks, stiffness_matrix
+from gbeam.solids.stress import NodalStress, principal, von_mises
+
+from .bodies import STIFF, block, solid
+
+QUADRATIC = [kind for kind, each in KINDS.items() if not each.linear]
+L, B, H = 0.3, 0.02, 0.01
+
+
+def bar(kind: str, material: gb.Material = STIFF) -> gb.SolidModel:
+    mesh = block(kind, (12, 1, 1), (L, B, H))
+    points = {"middle": (L / 2, 0.0, H / 2), "root": (0.0, B / 2, H / 2)}
+    return solid(mesh, material, points=points).reduced(modes=4, damping_ratio=0.01)
+
+
+@pytest.mark.parametrize("kind", QUADRATIC)
+def test_a_bar_that_is_pulled_by_its_inertia(kind: str) -> None:
+    """ρ a (L − x), exact, principal along x and the same in all elements; spinning, ρ ω² (L² − x²)/2."""
+    model = bar(kind)
+    pulled = model.stress(gb.static(model.structure, acceleration=(-50.0, 0.0, 0.0)))
+    whole = STIFF.density * 50 * L
+    assert pulled.worst.von_mises == pytest.approx(whole, rel=1e-6) and pulled.worst.place[0] == 0
+    np.testing.assert_allclose(pulled.worst.principal, [whole, 0, 0], atol=1e-5 * whole)
+    assert pulled.worst.spread < 1e-5 and pulled.nearest_yield is None
+    np.testing.assert_allclose(pulled.point_von_mises, [[whole / 2, whole, 0]], atol=1e-5 * whole)
+    np.testing.assert_allclose(pulled.node_von_mises, whole * (1 - pulled.nodes[:, 0] / L), atol=1e-5 * whole)
+    spun = model.stress(gb.static(model.structure, gb.Hub(radius=0.0, rate=100.0)))
+    np.testing.assert_allclose(
+        spun.point_von_mises[0, :2], STIFF.density * 100**2 * L**2 / 2 * np.array([0.75, 1.0]), rtol=3e-3
+    )
+
+
+@pytest.mark.parametrize("kind", QUADRATIC)
+def test_a_beam_that_bends(kind: str) -> None:
+    """M c/I half-way, where the root no longer matters: under an acceleration along z the upper face is pressed."""
+    model = bar(kind)
+    rest = model.stress(gb.static(model.structure, acceleration=(0.0, 0.0, -10.0)))
+    wanted = STIFF.density * B * H * 10 * (L / 2) ** 2 / 2 * (H / 2) / (B * H**3 / 12)
+    close = 0.06 if kind == "tetra10" else 2e-3  # whose stress is linear in each of few elements
+    assert rest.point_von_mises[0, 0] == pytest.approx(wanted, rel=close)
+    # Its inertia pulls it up: the upper face is pressed.
+    assert rest.point_principal[0, 0, 2] == pytest.approx(-wanted, rel=close)
+    assert rest.worst.node > 0 and rest.worst.material == "" and rest.time == pytest.approx([0.0])
+
+
+def test_stress_over_time_is_that_of_each_time() -> None:
+    """At rest under a constant load what static has; the worst is the largest over time and place."""
+    model = bar("hexahedron20")
+    push = gb.Flight(z=gb.trapezoid(30.0, jerk=300.0, start=0.05, hold=0.3))
+    run = gb.simulate(model.structure, push, duration=0.8, step=1e-3, integrator="gauss", name="push")
+    stress = model.stress(run)
+    assert stress.motion == "push" and stress.von_mises.shape == run.time.shape
+    held = model.stress(gb.static(model.structure, push, 0.3))
+    assert np.interp(0.42, stress.time, stress.von_mises) == pytest.approx(held.worst.von_mises, rel=0.02)
+    assert stress.worst.von_mises == stress.von_mises.max() == stress.node_von_mises.max()
+    assert stress.worst.time == stress.time[stress.von_mises.argmax()]
+    assert "MPa at (" in repr(stress) and "margin on yield not known" in repr(stress)
+
+
+def test_the_margin_is_least_in_the_weaker_material() -> None:
+    """Half of a bar of half the strength, but at the tip's end, where the stress is a half."""
+    mesh = block("hexahedron20", (4, 1, 1), (L, B, H))
+    mesh.cell_sets = {"inner": [np.arange(2)], "outer": [np.arange(2, 4)]}
+    strong, weak = replace(STIFF, yield_strength=9e6), replace(STIFF, yield_strength=1e6)
+    model = solid(mesh, {"inner": strong, "outer": weak}).reduced(modes=2, damping_ratio=0)
+    stress = model.stress(gb.static(model.structure, acceleration=(-1000.0, 0.0, 0.0)))
+    whole = STIFF.density * 1000 * L
+    assert stress.worst.material == "inner" and stress.worst.margin == pytest.approx(9e6 / whole - 1, rel=1e-4)
+    near = stress.nearest_yield
+    assert near is not None and near.material == "outer" and near.place[0] == pytest.approx(L / 2)
+    assert near.margin == pytest.approx(1e6 / (whole / 2) - 1, rel=1e-4)
+    assert f"margin on yield {near.margin:.3g} in outer" in repr(stress)
+
+
+def test_an_answer_of_another_structure_is_refused() -> None:
+    model = bar("hexahedron20")
+    other = gb.static(solid(block("tetra10", (1, 1, 1), (L, B, H))).reduced(modes=1, damping_ratio=0).structure)
+    with pytest.raises(gb.InputError, match=r"answer is of solid, with \d+ coordinates; give one of this solid with"):
+        model.stress(other)
+
+
+def test_invariants_of_stress() -> None:
+    """In pure shear von Mises' is √3 of it, in pressure none, and neither depends on the axes."""
+    shear = np.array([0, 0, 0, 5.0, 0, 0])
+    assert von_mises(shear) == pytest.approx(5 * np.sqrt(3)) and principal(shear) == pytest.approx([5, 0, -5])
+    assert von_mises(np.array([2.0, 2, 2, 0, 0, 0])) == 0
+    stress = np.random.default_rng(3).normal(size=6)
+    first, second, third = principal(stress)
+    by_principal = np.sqrt(((first - second) ** 2 + (second - third) ** 2 + (third - first) ** 2) / 2)
+    assert von_mises(stress) == pytest.approx(by_principal)
+
+
+# NAFEMS, The Standard NAFEMS Benchmarks, LE10: σ_yy at D of a thick plate under 1 MPa, MPa.
+LE10 = -5.38
+
+
+def test_nafems_le10_thick_plate() -> None:
+    """A quarter of an elliptic plate, 0.6 m thick, held at its rim; D is (2, 0, 0.6) m."""
+
+    def plate(x: np.ndarray) -> np.ndarray:
+        s, angle, z = x[:, 0], np.pi / 2 * (x[:, 1] + 0.5), 0.6 * (x[:, 2] + 0.5)
+        return np.stack([(2 + 1.25 * s) * np.cos(angle), (1 + 1.75 * s) * np.sin(angle), z], axis=1)
+
+    steel = gb.Material(density=7800, youngs_modulus=210e9, poissons_ratio=0.3)
+    mesh = solid(block("hexahedron20", (6, 8, 4), (1.0, 1.0, 1.0), plate), steel)
+    x, y, z = mesh.points.T
+    rim = np.abs((x / 3.25) ** 2 + (y / 2.75) ** 2 - 1) < 1e-6
+    held = np.stack([rim | (x < 1e-9), rim | (y < 1e-9), rim & (np.abs(z - 0.3) < 1e-9)], axis=1).ravel()
+    top = z > 0.6 - 1e-9
+    load = np.zeros((len(z), 3))
+    for each, part, volume, gradients, _ in chunks(mesh.points, mesh.blocks, "stiffness"):
+        # By Gauss's theorem the integral of a shape function over the top.
+        np.add.at(load[:, 2], each.nodes[part], -1e6 * np.einsum("eq,eqk->ek", volume, gradients[..., 2]))
+    load[~top] = 0
+    area = np.pi / 4 * (3.25 * 2.75 - 2.0)
+    assert load[:, 2].sum() == pytest.approx(-1e6 * area, rel=1e-3)
+    stiffness = csc_matrix(stiffness_matrix(mesh.points, mesh.blocks))[~held][:, ~held]
+    moved = np.zeros(len(held))
+    moved[~held] = spsolve(stiffness, load.ravel()[~held])
+    stress = NodalStress(mesh.points, mesh.blocks, moved.reshape(-1, 3, 1))
+    (corner,) = np.flatnonzero(np.linalg.norm(mesh.points - (2.0, 0.0, 0.6), axis=1) < 1e-9)
+    assert 1e-6 * stress.table[corner, 1, 0] == pytest.approx(LE10, rel=0.01)
