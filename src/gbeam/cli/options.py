@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
+from gbeam.cli.publication import refuse_unwritable
 from gbeam.questions import QUESTIONS, differentiable
 
 if TYPE_CHECKING:
@@ -41,6 +43,30 @@ Report = Annotated[
         "beam in motion; without --out into out/NAME.",
     ),
 ]
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class Output:
+    """Options of every verb that answers: the changes of its scenario, and how its answer is printed and written."""
+
+    overrides: Overrides = ()
+    out: Out = None
+    json: Json = False
+    report: Report = False
+
+    def folder(self, scenario: Path, *, always: bool = False) -> Path | None:
+        """The folder of --out, which can be written to; without it out/ and the scenario's name for a page, or always.
+
+        With --json nothing is written that was not asked for.
+        """
+        default = self.report or (always and not self.json)
+        folder = self.out if self.out is not None or not default else Path("out") / scenario.stem
+        if folder is not None:
+            refuse_unwritable(folder)
+        return folder
+
+
 MotionName = Annotated[
     str | None, Parameter(name="--motion", help="Which [motion.NAME]; may be left out where only one can answer.")
 ]

@@ -10,8 +10,9 @@ from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Literal
 
 from gbeam.cli.inputs import naming, signed
+from gbeam.cli.options import Output
 from gbeam.cli.process import Watch, command, figures_wanted
-from gbeam.cli.publication import publish, refuse_unwritable
+from gbeam.cli.publication import publish
 from gbeam.errors import InputError
 from gbeam.printable import printable
 
@@ -30,9 +31,8 @@ def deliver(
     answer: Any,
     name: str,
     folder: Path | None,
+    output: Output,
     *,
-    json: bool,
-    report: bool = False,
     verb: str = "",  # that signs the figures, where it has another name
     origin: Provenance | None = None,  # where the answer does not say it
     title: str = "",  # of the scenario
@@ -64,7 +64,7 @@ def deliver(
             replace(answer, provenance=origin).save(hidden / f"{name}.nc")
         elif suffix:
             write_json(hidden / f"{name}.json", known())
-        if report:
+        if output.report:
             from gbeam.report.page.result import report_of
 
             html = report_of(answer, known(), described)
@@ -76,7 +76,7 @@ def deliver(
         if more is not None:
             more(hidden)
 
-    if not json:
+    if not output.json:
         from gbeam.report import text
 
         said = text(answer, **words)
@@ -88,8 +88,8 @@ def deliver(
     if folder is not None:
         with Watch("writing results and plots"):
             files = sorted([*publish(folder, make), *also])
-    if json:
-        show("", known(files if listed else None), json)
+    if output.json:
+        show("", known(files if listed else None), output.json)
     elif listed:
         list_files(folder, files)
 
@@ -138,14 +138,6 @@ def list_files(folder: Path | None, files: Sequence[Path]) -> None:
         kept = [file for file in files if file.suffix != ".svg"]
         names = [f"{file.stem}.png/.svg" if file.suffix == ".png" else file.name for file in kept]
         print(printable(f"\n{len(files)} files in {folder}: {', '.join(names)}"))
-
-
-def folder_of(out: Path | None, scenario: Path, *, default: bool = False) -> Path | None:
-    """The folder of --out, which can be written to; without it out/ and the scenario's name by `default`, else none."""
-    folder = out if out is not None or not default else Path("out") / scenario.stem
-    if folder is not None:
-        refuse_unwritable(folder)
-    return folder
 
 
 def write_json(file: Path, facts: Mapping[str, Any]) -> None:

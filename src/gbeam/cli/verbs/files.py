@@ -12,7 +12,7 @@ from cyclopts import Parameter
 
 from gbeam.cli.inputs import read, signed
 from gbeam.cli.options import Json, Out, Overrides, ScenarioFile, option
-from gbeam.cli.outputs import folder_of, show, write_json
+from gbeam.cli.outputs import show, write_json
 from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.errors import InputError
 from gbeam.printable import printable
@@ -25,7 +25,8 @@ def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = No
     and the duration; where a value is a distribution it takes the centre. With --out also writes check.json. Exit
     status: 0 the scenario is valid, 2 it is not.
     """
-    folder = folder_of(out, scenario)
+    if out is not None:
+        refuse_unwritable(out)
     loaded = read("check", scenario, overrides)
 
     from gbeam.analysis.case import describe
@@ -39,8 +40,8 @@ def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = No
     drawn = {path: str(each) for path, each in source.distributions.items()}
     description = replace(description, distributions=drawn)
     facts = signed(facts_of(description), loaded.case.provenance)
-    if folder is not None:
-        publish(folder, lambda hidden: write_json(hidden / "check.json", facts))
+    if out is not None:
+        publish(out, lambda hidden: write_json(hidden / "check.json", facts))
     show(report.text(description), facts, json)
     return 0
 

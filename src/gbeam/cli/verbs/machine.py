@@ -10,20 +10,8 @@ from cyclopts import Parameter
 
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import Input, naming, number, read
-from gbeam.cli.options import (
-    CentrifugeName,
-    Check,
-    IgnoreLimits,
-    Json,
-    Measure,
-    Out,
-    Overrides,
-    Report,
-    ScenarioFile,
-    Widths,
-    option,
-)
-from gbeam.cli.outputs import deliver, folder_of
+from gbeam.cli.options import CentrifugeName, Check, IgnoreLimits, Measure, Output, ScenarioFile, Widths, option
+from gbeam.cli.outputs import deliver
 from gbeam.cli.process import Watch, command
 from gbeam.cli.publication import publish
 from gbeam.errors import InputError
@@ -36,14 +24,11 @@ def plan(
     scenario: ScenarioFile,
     /,
     *,
-    overrides: Overrides = (),
-    out: Out = None,
-    json: Json = False,
+    output: Output = Output(),
     sample: Annotated[
         str | None, Parameter(help='Sample time of the commands, such as "5 ms"; else the scenario\'s, else 5 ms.')
     ] = None,
     ignore_limits: IgnoreLimits = False,
-    report: Report = False,
 ) -> int:
     """Plan the axis motions of the centrifuges of a scenario; it needs no beam.
 
@@ -53,12 +38,12 @@ def plan(
     (commands_NAME.csv and .mat) and plots, with --report plan.html. Exit status: 0 done, 1 a limit of the machine is
     exceeded or one of acceptance not kept, 2 the input is wrong.
     """
-    folder = folder_of(out, scenario, default=report)
+    folder = output.folder(scenario)
 
     from gbeam.scenario import build_machines, build_specimen, load_environments, provenance, schema
 
     with Watch(f"planning the machines of {scenario}"):
-        environments = load_environments(scenario, overrides)
+        environments = load_environments(scenario, output.overrides)
         machines, beam = build_machines(environments), build_specimen(environments)
     if not machines:
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
@@ -91,7 +76,7 @@ def plan(
             write_commands(each, analysis.axis_commands(machines[each.name], time), hidden)
 
     deliver(
-        plans, "plan", folder, json=json, report=report, origin=origin, title=environments.title, suffix="",
+        plans, "plan", folder, output, origin=origin, title=environments.title, suffix="",
         more=commands,
     )  # fmt: skip
     broken = [each for each in plans if each.outcome != "done"]
@@ -111,11 +96,8 @@ def place(
     motion: CentrifugeName = None,
     smoothing: Widths = (),
     check: Check = True,
-    overrides: Overrides = (),
-    out: Out = None,
-    json: Json = False,
+    output: Output = Output(),
     ignore_limits: IgnoreLimits = False,
-    report: Report = False,
     write_back: Annotated[
         bool,
         option("--write", "Write the answer into the scenario file."),
@@ -130,8 +112,8 @@ def place(
     """
     weights = parse(measure)
     widths = [number("--smoothing", text, "time") for text in smoothing]
-    folder = folder_of(out, scenario, default=report)
-    loaded = read("place", scenario, overrides)
+    folder = output.folder(scenario)
+    loaded = read("place", scenario, output.overrides)
     loaded.motion(motion, kind="centrifuge")
     name, current = machine_of(loaded.case, motion)
 
@@ -154,7 +136,7 @@ def place(
         )
     written = _apply(loaded, scenario, name, placement.changes) if write_back and placement.changes else None
     deliver(
-        placement, "place", folder, json=json, report=report, origin=loaded.case.provenance,
+        placement, "place", folder, output, origin=loaded.case.provenance,
         facts={"written": written}, listed=False, written=written,
     )  # fmt: skip
     if placement.outcome != "done":

@@ -10,8 +10,8 @@ from cyclopts import Parameter
 
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import names, number
-from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile, SmoothVerb, Verb, option
-from gbeam.cli.outputs import LIST, deliver, folder_of, list_figures
+from gbeam.cli.options import At, MotionName, Output, ScenarioFile, SmoothVerb, Verb, option
+from gbeam.cli.outputs import LIST, deliver, list_figures
 from gbeam.cli.process import Watch, command
 from gbeam.cli.publication import refuse_unwritable
 
@@ -59,10 +59,7 @@ def sweep(
     resume: Annotated[bool, option("--resume", "Compute only what is missing in --out.")] = False,
     yes: Annotated[bool, option("--yes", "More than 100,000 cases are meant.")] = False,
     netcdf: Annotated[bool, option("--netcdf", "Write sweep.nc beside sweep.zarr.")] = False,
-    overrides: Overrides = (),
-    out: Out = None,
-    json: Json = False,
-    report: Report = False,
+    output: Output = Output(),
 ) -> int:
     """Compute figures of many cases of one scenario: every combination of the values given, or samples of them.
 
@@ -75,8 +72,8 @@ def sweep(
     those too that do not keep limits, which are counted as not accepted, 1 some are not done, 2 the input is wrong.
     """
     if LIST in measure:
-        return list_figures(verb or "run", json)
-    folder = out if out is not None else Path("out") / f"{scenario.stem}-sweep"
+        return list_figures(verb or "run", output.json)
+    folder = output.out if output.out is not None else Path("out") / f"{scenario.stem}-sweep"
     refuse_unwritable(folder)
 
     from gbeam.studies.sweep import sweep as compute
@@ -91,7 +88,7 @@ def sweep(
             verb=verb,
             motion=motion,
             at=None if at is None else number("--at", at, "time"),
-            overrides=overrides,
+            overrides=output.overrides,
             samples=samples,
             sampler=sampler,
             seed=seed,
@@ -110,7 +107,7 @@ def sweep(
 
     write_zarr(answer, folder / "sweep.zarr")
     deliver(
-        answer, "sweep", folder, json=json, report=report, page="report", also=[folder / "sweep.zarr"],
+        answer, "sweep", folder, output, page="report", also=[folder / "sweep.zarr"],
         more=lambda hidden: answer.save(hidden / "sweep.nc") if netcdf else None,
     )  # fmt: skip
     if answer.lost:
@@ -139,10 +136,7 @@ def sensitivity(
     verb: SmoothVerb = "run",
     motion: MotionName = None,
     at: At = None,
-    overrides: Overrides = (),
-    out: Out = None,
-    json: Json = False,
-    report: Report = False,
+    output: Output = Output(),
 ) -> int:
     """Which values of a scenario a figure depends on, and how much: a ranked table and a tornado plot.
 
@@ -151,16 +145,23 @@ def sensitivity(
     done, 2 the input is wrong.
     """
     if LIST in of:
-        return list_figures(verb, json)
-    folder = folder_of(out, scenario, default=report)
+        return list_figures(verb, output.json)
+    folder = output.folder(scenario)
 
     from gbeam.studies.sensitivity import sensitivity as compute
 
     with Watch() as watch:
         time = None if at is None else number("--at", at, "time")
         answer = compute(
-            scenario, names(of), names(by), verb=verb, motion=motion, at=time, overrides=overrides, progress=watch
+            scenario,
+            names(of),
+            names(by),
+            verb=verb,
+            motion=motion,
+            at=time,
+            overrides=output.overrides,
+            progress=watch,
         )
 
-    deliver(answer, "sensitivity", folder, json=json, report=report, suffix=".nc")
+    deliver(answer, "sensitivity", folder, output, suffix=".nc")
     return 0

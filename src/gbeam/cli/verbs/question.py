@@ -11,14 +11,14 @@ from typing import Annotated, Any, get_args, get_type_hints
 from cyclopts import Parameter
 
 from gbeam.cli.inputs import number, read
-from gbeam.cli.options import At, Json, MotionName, Out, Overrides, Report, ScenarioFile
-from gbeam.cli.outputs import deliver, folder_of
+from gbeam.cli.options import At, MotionName, Output, ScenarioFile
+from gbeam.cli.outputs import deliver
 from gbeam.cli.process import Watch
 from gbeam.questions import QUESTIONS, Needs, Question
 
 _KEYWORD = inspect.Parameter.KEYWORD_ONLY
 _BEFORE = {"motion": (MotionName, None), "at": (At, None)}
-_AFTER = {"overrides": (Overrides, ()), "out": (Out, None), "json": (Json, False), "report": (Report, False)}
+_AFTER = {"output": (Output, Output())}
 _STATUS = "Exit status: 0 done, 1 there is no answer, 2 the input is wrong."
 
 
@@ -67,14 +67,11 @@ def _answer(
     *,
     motion: str | None,
     at: str | None,
-    overrides: tuple[str, ...],
-    out: Path | None,
-    json: bool,
-    report: bool,
+    output: Output,
     **options: Any,
 ) -> int:
-    folder = folder_of(out, scenario, default=report)
-    loaded = read(question.name, scenario, overrides)
+    folder = output.folder(scenario)
+    loaded = read(question.name, scenario, output.overrides)
     chosen = motion
     if question.motion is not None or motion is not None:
         chosen, _ = loaded.motion(motion, kind=question.motion or "")
@@ -87,7 +84,7 @@ def _answer(
         answer = question.answer(loaded.case, chosen, time, Needs(shapes=True), **options)
 
     deliver(
-        answer, name, folder, verb=question.name, json=json, report=report, origin=loaded.case.provenance,
+        answer, name, folder, output, verb=question.name, origin=loaded.case.provenance,
         title=loaded.case.title, listed=False,
     )  # fmt: skip
     return 0

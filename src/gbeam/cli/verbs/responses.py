@@ -17,8 +17,8 @@ from cyclopts import Parameter
 
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import read
-from gbeam.cli.options import IgnoreLimits, Json, Out, Overrides, Report, ScenarioFile
-from gbeam.cli.outputs import deliver, folder_of, show
+from gbeam.cli.options import IgnoreLimits, Json, Out, Output, ScenarioFile
+from gbeam.cli.outputs import deliver, show
 from gbeam.cli.process import Watch, figures_wanted
 from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.errors import InputError
@@ -34,11 +34,8 @@ def run(
     scenario: ScenarioFile,
     /,
     *,
-    overrides: Overrides = (),
-    out: Out = None,
-    json: Json = False,
+    output: Output = Output(),
     ignore_limits: IgnoreLimits = False,
-    report: Report = False,
 ) -> int:
     """Compute the response in every environment of a scenario, and compare them.
 
@@ -46,8 +43,8 @@ def run(
     --json only if --out or --report is given. Exit status: 0 done, 1 the computation failed, a machine's limit is
     exceeded or a [motion.NAME.accept] is not met, 2 the input is wrong.
     """
-    folder = folder_of(out, scenario, default=report or not json)
-    loaded = read("run", scenario, overrides)
+    folder = output.folder(scenario, always=True)
+    loaded = read("run", scenario, output.overrides)
     if folder is not None:
         # A second of imports, beside the computation, which leaves a core idle.
         Thread(target=_import_leaves, daemon=True).start()
@@ -57,7 +54,7 @@ def run(
     with Watch() as watch, loaded.placing():
         answer = study(loaded.case, watch)
 
-    deliver(answer, "result", folder, verb="run", json=json, report=report, suffix=".nc", page="report")
+    deliver(answer, "result", folder, output, verb="run", suffix=".nc", page="report")
     for name, failure in answer.unfinished.items():
         complain(f"motion.{name} {failure.outcome}: {failure.message}")
     broken = {name: each.axes.exceeding for name, each in answer.responses.items() if each.axes}
@@ -77,21 +74,21 @@ def _import_leaves() -> None:
         import gbeam.io.netcdf  # noqa: F401
 
 
-def models(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = None, json: Json = False) -> int:
+def models(scenario: ScenarioFile, /, *, output: Output = Output()) -> int:
     """Compute a scenario by every model, and compare them with the exact one.
 
     Peak, residual vibration, its phase and the cost. A model that diverges or cannot answer has a row that says why.
-    The exact model in three dimensions takes minutes. With --out also writes models.json and a plot. Exit status: 0
-    done, 1 exact has no answer to compare with, 2 the input is wrong.
+    The exact model in three dimensions takes minutes. With --out also writes models.json and a plot, with --report
+    models.html. Exit status: 0 done, 1 exact has no answer to compare with, 2 the input is wrong.
     """
-    folder = folder_of(out, scenario)
-    loaded = read("models", scenario, overrides)
+    folder = output.folder(scenario)
+    loaded = read("models", scenario, output.overrides)
 
     from gbeam.analysis.model_study import compare_models
 
     with Watch() as watch, loaded.placing():
         study = compare_models(loaded.case, progress=watch)
-    deliver(study, "models", folder, json=json, listed=False)
+    deliver(study, "models", folder, output, listed=False)
     for row in study.rows:
         if row.model == study.reference and row.outcome != "done":
             complain(f"motion.{row.motion}: nothing to compare with, {row.model} {row.outcome}: {row.message}")
@@ -200,11 +197,18 @@ def _answered(file: Path, origin: Provenance, scenario: Path, changes: tuple[str
     arguments = bound.arguments
     if "scenario" not in arguments:
         raise InputError(str(file), "is of no verb that reads a scenario", "give the result of another")
-    arguments |= {"scenario": scenario, "overrides": (*arguments.get("overrides", ()), *changes), "json": True}
-    written = {"out": None, "report": False, "write": None, "write_back": False}  # nothing is
-    arguments |= {name: value for name, value in written.items() if name in bound.signature.parameters}
-    if "resume" in bound.signature.parameters:  # a sweep has a store in any case; its cluster may be gone
-        arguments |= {"out": scenario.parent / "out", "resume": False, "scheduler": None}
+    known, asked = bound.signature.parameters, arguments.get("output", Output())
+    out = None
+    written = {"write": None, "write_back": False}  # nothing is
+    arguments |= {"scenario": scenario} | {name: value for name, value in written.items() if name in known}
+    if "resume" in known:  # a sweep has a store in any case; its cluster may be gone
+        out = scenario.parent / "out"
+        arguments |= {"resume": False, "scheduler": None}
+    again = Output((*asked.overrides, *changes), out, json=True)
+    if "output" in known:
+        arguments["output"] = again
+    else:  # check, which has no page
+        arguments |= {"overrides": (*arguments.get("overrides", ()), *changes), "out": None, "json": True}
     printed = io.StringIO()
     with redirect_stdout(printed):
         verb(*bound.args, **bound.kwargs)

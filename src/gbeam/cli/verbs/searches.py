@@ -9,21 +9,8 @@ from cyclopts import Parameter
 
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.inputs import names, number, search_bounds
-from gbeam.cli.options import (
-    At,
-    Json,
-    MotionName,
-    Out,
-    Overrides,
-    Report,
-    ScenarioFile,
-    SearchBounds,
-    SmoothVerb,
-    Starts,
-    WriteTo,
-    option,
-)
-from gbeam.cli.outputs import LIST, deliver, folder_of, list_figures, refuse_changes, write_found
+from gbeam.cli.options import At, MotionName, Output, ScenarioFile, SearchBounds, SmoothVerb, Starts, WriteTo, option
+from gbeam.cli.outputs import LIST, deliver, list_figures, refuse_changes, write_found
 from gbeam.cli.process import Watch
 
 
@@ -47,10 +34,7 @@ def fit(
     at: At = None,
     starts: Starts = 1,
     write: WriteTo = None,
-    overrides: Overrides = (),
-    out: Out = None,
-    json: Json = False,
-    report: Report = False,
+    output: Output = Output(),
 ) -> int:
     """Find values of a scenario from measured histories, or from frequencies and damping, by least squares.
 
@@ -58,8 +42,8 @@ def fit(
     plot of data and residuals, with --report fit.html. Exit status: 0 done, 1 the data do not say the values, 2 the
     input is wrong.
     """
-    folder = folder_of(out, scenario, default=report)
-    refuse_changes(write, overrides)
+    folder = output.folder(scenario)
+    refuse_changes(write, output.overrides)
 
     from gbeam.studies.fit import fit as compute
 
@@ -74,12 +58,12 @@ def fit(
             motion=motion,
             at=time,
             starts=starts,
-            overrides=overrides,
+            overrides=output.overrides,
             progress=watch,
         )
 
     write_found(answer, scenario, write)
-    deliver(answer, "fit", folder, json=json, report=report, suffix=".nc", written=write)
+    deliver(answer, "fit", folder, output, suffix=".nc", written=write)
     return 0
 
 
@@ -111,10 +95,7 @@ def optimize(
     at: At = None,
     starts: Starts = 1,
     write: WriteTo = None,
-    overrides: Overrides = (),
-    out: Out = None,
-    json: Json = False,
-    report: Report = False,
+    output: Output = Output(),
 ) -> int:
     """Find the values of a scenario at which a figure is least, within bounds and limits, by exact derivatives.
 
@@ -123,9 +104,9 @@ def optimize(
     keep the requirements, 2 the input is wrong.
     """
     if minimise == LIST:
-        return list_figures(verb, json)
-    folder = folder_of(out, scenario, default=report)
-    refuse_changes(write, overrides)
+        return list_figures(verb, output.json)
+    folder = output.folder(scenario)
+    refuse_changes(write, output.overrides)
 
     from gbeam.studies.optimise import optimise as compute
 
@@ -141,12 +122,12 @@ def optimize(
             motion=motion,
             at=None if at is None else number("--at", at, "time"),
             starts=starts,
-            overrides=overrides,
+            overrides=output.overrides,
             progress=watch,
         )
 
     write_found(answer, scenario, write)
-    deliver(answer, "optimum", folder, verb="optimize", json=json, report=report, suffix=".nc", written=write)
+    deliver(answer, "optimum", folder, output, verb="optimize", suffix=".nc", written=write)
     if answer.outcome != "done":
         complain(f"{answer.outcome}: no values were found that keep the requirements")
         return FAILED
@@ -169,10 +150,7 @@ def shape(
         Parameter(help="Model that the commands are run on; the scenario's by default."),
     ] = None,
     motion: MotionName = None,
-    overrides: Overrides = (),
-    out: Out = None,
-    json: Json = False,
-    report: Report = False,
+    output: Output = Output(),
 ) -> int:
     """Find the rate or torque of a hub that leaves the least vibration of its beam, beside ZVD and a smooth step.
 
@@ -182,7 +160,7 @@ def shape(
     are wrong, with --report shaping.html. Exit status: 0 done, 1 no command does it or a run is not done, 2 the
     input is wrong.
     """
-    folder = folder_of(out, scenario, default=report)
+    folder = output.folder(scenario)
 
     from gbeam.studies.shape import hub_of, scenario_with
     from gbeam.studies.shape import shape_hub_command as compute
@@ -192,7 +170,7 @@ def shape(
 
     from gbeam.scenario.build import read_scenario
 
-    case = read_scenario(scenario, overrides)
+    case = read_scenario(scenario, output.overrides)
     free = hub_of(case, motion)[1].free
     bound = given("--limit", limit, "torque" if free else "angular acceleration")
     with Watch() as watch:
@@ -211,7 +189,7 @@ def shape(
     def write_command(hidden: Path) -> None:
         (hidden / "command.json").write_text(scenario_with(answer, case) + "\n", encoding="utf-8")
 
-    deliver(answer, "shaping", folder, verb="shape", json=json, report=report, suffix=".nc", more=write_command)
+    deliver(answer, "shaping", folder, output, verb="shape", suffix=".nc", more=write_command)
     if answer.outcome != "done":
         complain(f"a command's run has {answer.outcome}")
         return FAILED

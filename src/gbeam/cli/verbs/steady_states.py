@@ -15,23 +15,20 @@ from gbeam.cli.options import (
     At,
     Balanced,
     Inputs,
-    Json,
     Masses,
     ModesKept,
     MotionName,
-    Out,
+    Output,
     Outputs,
-    Overrides,
     Positions,
     Rate,
-    Report,
     ScenarioFile,
     Speed,
     StrainAt,
     To,
     Vary,
 )
-from gbeam.cli.outputs import deliver, folder_of
+from gbeam.cli.outputs import deliver
 from gbeam.cli.process import Watch
 from gbeam.errors import InputError
 
@@ -45,10 +42,7 @@ def campbell(
     end: Annotated[Speed, Parameter(name="--to")] = None,
     modes: Annotated[int, Parameter(name="--modes", help="How many to follow.")] = 8,
     orders: Annotated[int, Parameter(name="--orders", help="Multiples of the speed, 1 to this.")] = 4,
-    overrides: Overrides = (),
-    out: Out = None,
-    json: Json = False,
-    report: Report = False,
+    output: Output = Output(),
 ) -> int:
     """Frequencies against the speed of a hub, in the unit of --to or --from, and where its multiples meet them.
 
@@ -56,8 +50,8 @@ def campbell(
     name; with --json only if --out or --report is given. Exit status: 0 done, 1 there is no equilibrium, 2 the input is
     wrong, such as a motion without a hub.
     """
-    folder = folder_of(out, scenario, default=report or not json)
-    loaded = read("campbell", scenario, overrides)
+    folder = output.folder(scenario, always=True)
+    loaded = read("campbell", scenario, output.overrides)
     name, chosen = loaded.motion(motion, kind="hub")
     low = 0.0 if start is None else number("--from", start, "angular rate")
     high = None if end is None else number("--to", end, "angular rate")
@@ -77,7 +71,7 @@ def campbell(
     unit, size = unit_of(end or start or "0", "angular rate")
     figures = {"campbell": partial(steady.campbell, diagram, loaded.case.title, (1 / size, unit))}
     deliver(
-        diagram, "campbell", folder, json=json, report=report, origin=loaded.case.provenance, figures=figures,
+        diagram, "campbell", folder, output, origin=loaded.case.provenance, figures=figures,
         unit=unit, size=size,
     )  # fmt: skip
     return 0
@@ -96,10 +90,7 @@ def critical_speed(
     to: To = None,
     masses: Masses = None,
     positions: Positions = None,
-    overrides: Overrides = (),
-    out: Out = None,
-    json: Json = False,
-    report: Report = False,
+    output: Output = Output(),
 ) -> int:
     """The hub rate, load or acceleration at which the beam's equilibrium is lost.
 
@@ -107,8 +98,8 @@ def critical_speed(
     exit status 0. 2: the input is wrong, such as a motion without a hub. With --out writes critical_speed.json, and a
     map also as CSV and plot; with --report also critical_speed.html.
     """
-    folder = folder_of(out, scenario, default=report)
-    loaded = read("critical-speed", scenario, overrides)
+    folder = output.folder(scenario)
+    loaded = read("critical-speed", scenario, output.overrides)
     upper = None if to is None else number("--to", to, KINDS[vary])
     if upper is not None and not upper > 0:
         raise InputError("--to", f"is {to}", "give a value above zero, where the search ends")
@@ -117,14 +108,14 @@ def critical_speed(
     if masses is not None:
         if vary != "rate":
             raise InputError("--masses", f"stands beside --vary {vary}", "a map is of hub rates")
-        return critical_map(loaded, motion, masses, positions, upper, folder, json, report)
+        return critical_map(loaded, motion, masses, positions, upper, folder, output)
     name, _ = loaded.motion(motion, kind="hub")
     time = loaded.time(at)
 
     with Watch() as watch, loaded.placing():
         critical = questions.critical_speed(loaded.case, name, time, vary=vary, upper=upper, progress=watch)
     deliver(
-        critical, "critical_speed", folder, json=json, report=report, origin=loaded.case.provenance, listed=False,
+        critical, "critical_speed", folder, output, origin=loaded.case.provenance, listed=False,
         motion=name,
     )  # fmt: skip
     return 0
@@ -136,9 +127,8 @@ def critical_map(
     masses: str,
     positions: str | None,
     upper: float | None,
-    out: Path | None,
-    json: bool,
-    report: bool,
+    folder: Path | None,
+    output: Output,
 ) -> int:
     """Print and write the map; the arguments are those of :func:`~.critical_speed.critical_speed`."""
     name, chosen = given.motion(motion, kind="hub")
@@ -158,7 +148,7 @@ def critical_map(
             case.beam, case.model, chosen, kilograms, places, upper, name=name, progress=watch
         )
     deliver(
-        critical, "critical_speed", out, verb="critical-speed", json=json, report=report, origin=case.provenance,
+        critical, "critical_speed", folder, output, verb="critical-speed", origin=case.provenance,
         figures={"critical_speed": partial(steady.critical_map, critical, case.title)}, listed=False,
         more=lambda hidden: (hidden / "critical_speed.csv").write_text(map_csv(critical), encoding="utf-8"),
     )  # fmt: skip
@@ -177,16 +167,15 @@ def linearize(
     strain_at: StrainAt = (),
     inputs: Inputs = None,
     outputs: Outputs = None,
-    overrides: Overrides = (),
-    out: Out = None,
-    json: Json = False,
+    output: Output = Output(),
 ) -> int:
     """State-space model A, B, C, D about the equilibrium at one time of a motion.
 
-    With --out writes linear.json and linear.mat. Exit status: 0 done, 1 there is no equilibrium, 2 the input is wrong.
+    With --out writes linear.json and linear.mat, with --report linear.html. Exit status: 0 done, 1 there is no
+    equilibrium, 2 the input is wrong.
     """
-    folder = folder_of(out, scenario)
-    loaded = read("linearize", scenario, overrides)
+    folder = output.folder(scenario)
+    loaded = read("linearize", scenario, output.overrides)
     name, chosen = loaded.motion(motion, kind="" if rate is None else "hub")
     time = loaded.time(at)
     steady = None if rate is None else number("--rate", rate, "angular rate")
@@ -216,7 +205,7 @@ def linearize(
                 system, _ = reduction.balanced_truncation(system, balanced)
     system = replace(system, provenance=loaded.case.provenance)
     deliver(
-        system, "linear", folder, json=json, facts={"gauges": [asdict(gauge) for gauge in gauges]}, listed=False,
+        system, "linear", folder, output, facts={"gauges": [asdict(gauge) for gauge in gauges]}, listed=False,
         more=lambda hidden: system.to_mat(hidden / "linear.mat"), gauges=gauges,
     )  # fmt: skip
     return 0

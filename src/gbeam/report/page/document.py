@@ -37,42 +37,10 @@ class Page(NamedTuple):
     of_motions: tuple[str, ...] = ()
 
 
-PAGES = {
-    "Study": Page("run", study.body, ("motions", "comparisons")),
-    "Comparison": Page("run", machine.comparison_body, ("verdict", "flight", "centrifuge")),
-    "Deflection": Page("static", steady.static_body, ("motions",), ("displacement", "tip", "stable")),
-    "MachinePlan": Page("plan", machine.plan_body, ("motions",), ("limits", "tracks")),
-    "Modes": Page("modes", steady.modes_body, ("modes", "instabilities")),
-    "Campbell": Page("campbell", steady.campbell_body, ("tracks", "crossings")),
-    "Critical": Page("critical-speed", steady.critical_body, ("quantity", "searched_to", "reason")),
-    "CriticalMap": Page("critical-speed --masses", steady.critical_map_body, ("mass", "position", "critical_speed")),
-    "Placement": Page("place", cases.placement_body, ("fraction_of_length", "options")),
-    "Sweep": Page("sweep", cases.sweep_body, ("parameters", "measures")),
-    "Fit": Page("fit", searches.fit_body, ("covariance", "columns")),
-    "Optimum": Page("optimize", searches.optimum_body, ("minimise", "subject_to")),
-    "Sensitivity": Page("sensitivity", searches.sensitivity_body, ("measures", "run_error")),
-    "ShapedCommand": Page("shape", searches.shaping_body, ("commands", "coefficients")),
-}
-
-
-def _kind(facts: Mapping[str, Any]) -> str | None:
-    if "form" in facts:
-        return str(facts["form"]["kind"])
-    motions = facts.get("motions", {}).values()
-    for name, page in PAGES.items():
-        if facts.keys() >= set(page.keys) and all(motion.keys() >= set(page.of_motions) for motion in motions):
-            return name
-    return None
-
-
-def _body(kind: str) -> Body:
-    return PAGES[kind].body if kind in PAGES else _figures
-
-
 _APART = ("form", "units", "provenance", "warnings", "files", "title", "outcome", "state")
 
 
-def _figures(facts: Mapping[str, Any], _: str, plots: str) -> str:
+def _quantities(facts: Mapping[str, Any], _: str, plots: str) -> str:
     """The inside of the page of a kind that has none of its own: its quantities, and a table for each list of them."""
     units = facts.get("units", {})
     known = {key: value for key, value in facts.items() if key not in _APART}
@@ -103,6 +71,40 @@ def _shown(value: Any) -> Value:
     return {True: "yes", False: "no"}[value] if isinstance(value, bool) else value
 
 
+PAGES = {
+    "Study": Page("run", study.body, ("motions", "comparisons")),
+    "Comparison": Page("run", machine.comparison_body, ("verdict", "flight", "centrifuge")),
+    "ModelStudy": Page("models", _quantities, ("reference", "rows")),
+    "StateSpace": Page("linearize", _quantities, ("states", "inputs", "outputs")),
+    "Deflection": Page("static", steady.static_body, ("motions",), ("displacement", "tip", "stable")),
+    "MachinePlan": Page("plan", machine.plan_body, ("motions",), ("limits", "tracks")),
+    "Modes": Page("modes", steady.modes_body, ("modes", "instabilities")),
+    "Campbell": Page("campbell", steady.campbell_body, ("tracks", "crossings")),
+    "Critical": Page("critical-speed", steady.critical_body, ("quantity", "searched_to", "reason")),
+    "CriticalMap": Page("critical-speed --masses", steady.critical_map_body, ("mass", "position", "critical_speed")),
+    "Placement": Page("place", cases.placement_body, ("fraction_of_length", "options")),
+    "Sweep": Page("sweep", cases.sweep_body, ("parameters", "measures")),
+    "Fit": Page("fit", searches.fit_body, ("covariance", "columns")),
+    "Optimum": Page("optimize", searches.optimum_body, ("minimise", "subject_to")),
+    "Sensitivity": Page("sensitivity", searches.sensitivity_body, ("measures", "run_error")),
+    "ShapedCommand": Page("shape", searches.shaping_body, ("commands", "coefficients")),
+}
+
+
+def _kind(facts: Mapping[str, Any]) -> str | None:
+    if "form" in facts:
+        return str(facts["form"]["kind"])
+    motions = facts.get("motions", {}).values()
+    for name, page in PAGES.items():
+        if facts.keys() >= set(page.keys) and all(motion.keys() >= set(page.of_motions) for motion in motions):
+            return name
+    return None
+
+
+def _body(kind: str) -> Body:
+    return PAGES[kind].body if kind in PAGES else _quantities
+
+
 def html(
     facts: Mapping[str, Any],
     variables: Mapping[str, Any] | None = None,
@@ -113,7 +115,7 @@ def html(
     facts = json.loads(as_json(facts))  # what is not finite is null, as in a file
     kind = _kind(facts)
     if kind is None:
-        fix = f"give the result of {', '.join(f'gbeam {page.verb}' for page in PAGES.values())}"
+        fix = f"give the result of {', '.join(dict.fromkeys(f'gbeam {page.verb}' for page in PAGES.values()))}"
         raise InputError("result", "is of a kind that has no report", fix)
     origin = facts.get("provenance") or origin or {}
     numbers = Numbers()
