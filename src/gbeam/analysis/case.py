@@ -138,7 +138,7 @@ def describe(case: Case) -> Description:
     return Description(
         title=case.title,
         length=beam.length,
-        mass=beam.material.density * float(np.sum(beam.section.at(rule.node).area * rule.weight)),
+        mass=beam.density * float(np.sum(beam.section.at(rule.node).area * rule.weight)),
         bodies=tuple((body.at, body.mass) for body in beam.masses),
         model=case.model.kind,
         counts={name: n for name, n in zip(FAMILIES, case.model.counts, strict=True) if n or name in FAMILIES[:3]},

@@ -25,6 +25,7 @@ from gbeam.mechanics.structure import Sections, Source, Structure
 from gbeam.motion.profiles.piecewise import constant
 from gbeam.structure.attachments import TIP
 from gbeam.structure.beam import Beam
+from gbeam.structure.matrices import TETRAHEDRON, body_of, condensed, radii
 from gbeam.structure.plausibility import implausible_beam, refuse_disparate, refuse_unknown
 
 Array = Any
@@ -77,13 +78,16 @@ def assemble(
         if any((axial, y, z, twist, shear_y, shear_z)):
             model = Model(model, axial, y, z, shapes or "clamped-free", False, twist, shear_y, shear_z)
         else:
-            model = Model.of(model, shapes or (None if beam.line is None else "clamped-free"))
+            model = Model.of(model, shapes or ("clamped-free" if beam.coupled else None))
     row, counts = model.row, model.counts
     _refuse_traced_places(beam, adapted=model.shapes == "adapted")
     refuse_disparate(beam)
     if beam.line is not None and model.shapes == "adapted":
         fix = 'give shapes = "clamped-free", which are polynomials there'
         raise InputError("shapes", "are adapted, and the beam is not straight at rest", fix)
+    if beam.material is None and model.shapes == "adapted":
+        fix = 'give shapes = "clamped-free"'
+        raise InputError("shapes", "are adapted, and the section's matrices couple the directions", fix)
     refuse_unknown(beam, twist=model.twist > 0, shear_y=model.shear_y > 0, shear_z=model.shear_z > 0)
     at = _stations(beam, stations)
     bodies = [m.at for m in beam.masses]
@@ -208,7 +212,7 @@ def _refuse_traced_places(beam: Beam, *, adapted: bool) -> None:
         if is_jax(value):
             raise InputError(where, "is traced by JAX, and the shapes are placed by its number", "give a number")
     material, dimensions = beam.material, list(beam.section.dimensions.values())
-    if adapted and holds_jax(material.youngs_modulus, material.density, material.poissons_ratio, dimensions):
+    if adapted and material and holds_jax([*vars(material).values()], dimensions):
         fix = 'give shapes = "clamped-free"'
         raise InputError("shapes", "adapted to a beam that JAX traces would be traced with it", fix)
 
@@ -230,12 +234,17 @@ TRIANGLE = np.sqrt(2) * np.array([(np.cos(angle), np.sin(angle)) for angle in 2 
 
 def particles_of(beam: Beam, rule: Quadrature, *, rotary: bool) -> tuple[Array, Array, Array]:
     """Point, mass kg and offset m from the axis of every particle of the beam and its bodies; the sections, which come
-    first, are one each, or three where they have `rotary` inertia.
+    first, are one each, three where they have `rotary` inertia, or four of a mass matrix.
     """
     nodes, section = len(rule.node), beam.section.at(rule.node)
-    line = beam.material.density * section.area * rule.weight
+    line = beam.density * section.area * rule.weight
     station, mass, offset = [np.arange(nodes)], [line], [np.zeros((nodes, 3))]
-    if rotary:
+    if beam.material is None:
+        slices = beam.section.matrices(rule.node)[1]
+        arms = TETRAHEDRON if rotary else np.zeros((1, 3))
+        station, mass = station * len(arms), [line / len(arms)] * len(arms)
+        offset = [body_of(slices)[1] + radii(slices) @ arm for arm in arms]
+    elif rotary:
         xp = namespace(section.area, section.inertia_y, section.inertia_z)
         gyration = [xp.sqrt(moment / section.area) for moment in (section.inertia_z, section.inertia_y)]
         station, mass = station * 3, [line / 3] * 3
@@ -254,11 +263,17 @@ def stiffness_of(beam: Beam, rule: Quadrature, strains: Array) -> Array:
     springs last (2009 (10); 2020 (8), corrected; with shear and twist Timoshenko's).
     """
     springs = [*beam.root.springs.values()]
-    parts = [
-        shapes.T @ ((rigidity * rule.weight)[:, None] * shapes)
-        for rigidity, shapes in zip(beam.stiffnesses(rule.node), strains, strict=True)
-        if shapes.any()
-    ]
+    if beam.material is None:
+        shaped = [k for k in range(6) if strains[k].any()]
+        matrix = condensed(beam.section.matrices(rule.node)[0], shaped)
+        forces = np.einsum("g,gab,bgj->agj", rule.weight, matrix, strains[shaped])
+        parts = [np.einsum("agi,agj->ij", strains[shaped], forces)]
+    else:
+        parts = [
+            shapes.T @ ((rigidity * rule.weight)[:, None] * shapes)
+            for rigidity, shapes in zip(beam.stiffnesses(rule.node), strains, strict=True)
+            if shapes.any()
+        ]
     xp = namespace(*springs, *parts)
     n = strains.shape[2]
     held = xp.concatenate([np.zeros(n - len(springs)), xp.asarray(springs, dtype=float)])
@@ -316,6 +331,6 @@ def sections_of(
         root_axes=np.eye(3) if beam.line is None else beam.line.places(0.0)[1][0],
         mass=beyond[:, particles[1]] * particles[0],
         loaded=beyond[:, loaded],
-        yield_strength=beam.material.yield_strength,
-        fatigue_exponent=beam.material.fatigue_exponent,
+        yield_strength=None if beam.material is None else beam.material.yield_strength,
+        fatigue_exponent=np.nan if beam.material is None else beam.material.fatigue_exponent,
     )

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.mechanics.assembly import assembled, breaks_of, forms_of, particles_of
+from gbeam.mechanics.assembly import assembled, breaks_of, forms_of, particles_of, stiffness_of
 from gbeam.mechanics.fields.adapted import GROUPS, Space, adapted_shapes, spaces_of
 from gbeam.mechanics.fields.basis import Array, Counts, Families, Family, Quadrature, Shapes, quadrature
 from gbeam.mechanics.fields.strains import STRAINS, strain_field
@@ -29,7 +29,7 @@ def axial_force(beam: Beam, rule: Quadrature, along: Array, spin: Array) -> Arra
     """Axial force (g,) N at the nodes when largest, under root accelerations (t,) m/s² along and squared rates (t,)
     across the beam.
     """
-    line = beam.material.density * beam.section.at(rule.node).area
+    line = beam.density * beam.section.at(rule.node).area
     until = rule.cumulative(rule.node)
     mass, moment = (rule.weight @ f - until @ f for f in (line, line * rule.node))
     for body in beam.masses:
@@ -67,12 +67,14 @@ def _lacking(
         strain = shapes.curvature if family in (1, 2) else shapes.slope
         columns.append(np.zeros((size, strain.shape[1])))
         columns[-1][of.block(family)] = strain
-    root = np.sqrt(of.stiffness)[:, None]
-    known = np.linalg.qr(root * np.concatenate(columns, axis=1))[0]
+    known = np.linalg.qr(of.scaled(np.concatenate(columns, axis=1)))[0]
 
     def shortest(vectors: Array) -> float:
         """Square of the shortest period, over 4π², of vectors that are orthonormal in energy."""
-        return float(np.linalg.eigvalsh((vectors / root).T @ of.mass @ (vectors / root))[0]) if vectors.size else np.inf
+        if not vectors.size:
+            return np.inf
+        strains = of.scaled(vectors, back=True)
+        return float(np.linalg.eigvalsh(strains.T @ of.mass @ strains)[0])
 
     least = min(least, shortest(known) / 10)
     loads = _loads(beam, of, along)
@@ -80,11 +82,12 @@ def _lacking(
     for flexibility in _flexibilities(of, force):
         vectors = flexibility @ loads
         for _ in range(LEVELS[along]):
-            for vector in (root * vectors).T:
-                length = np.linalg.norm(vector)
+            for vector, whole in zip(vectors.T, of.scaled(vectors).T, strict=True):
+                length = np.linalg.norm(whole)
                 for family in of.families:
-                    rest = np.zeros(size)
-                    rest[of.block(family)] = vector[of.block(family)]
+                    part = np.zeros((size, 1))
+                    part[of.block(family), 0] = vector[of.block(family)]
+                    rest = of.scaled(part)[:, 0]
                     rest = rest - known @ (known.T @ rest)
                     rest = rest - known @ (known.T @ rest)
                     if not np.linalg.norm(rest) > NEW * length:
@@ -97,7 +100,11 @@ def _lacking(
                         known = wider
                         added[family].append(rest)
             vectors = flexibility @ (of.mass @ vectors)
-    return {family: of.family(family, np.stack(each, axis=1) / root) for family, each in added.items() if each}
+    return {
+        family: of.family(family, of.scaled(np.stack(each, axis=1), back=True))
+        for family, each in added.items()
+        if each
+    }
 
 
 def _joined(family: Family, more: Family) -> Family:
@@ -110,13 +117,13 @@ def _joined(family: Family, more: Family) -> Family:
 def _period(beam: Beam, of: Space, along: int) -> float:
     """Square of the longest period, over 4π², by the answer to an even acceleration."""
     force = _loads(beam, of, along)[:, 0]
-    answer = force / of.stiffness
+    answer = _alone(of) @ force
     return float(answer @ of.mass @ answer / (answer @ force))
 
 
 def _flexibilities(of: Space, force: Array | None) -> list[Array]:
     """The inverse of the stiffness, and of that with what an axial force adds where that matters."""
-    alone = np.diag(1 / of.stiffness)
+    alone = _alone(of)
     if force is None or not bends(of, force):
         return [alone]
     _, slope = of.sensitivity(of.rule.node)
@@ -126,20 +133,28 @@ def _flexibilities(of: Space, force: Array | None) -> list[Array]:
     return [alone, np.asarray(np.linalg.inv(stiffness))]
 
 
+def _alone(of: Space) -> Array:
+    """The inverse of the stiffness."""
+    if of.upper is None:
+        return np.diag(1 / of.stiffness)
+    inverse = np.linalg.inv(of.upper)
+    return np.asarray(inverse @ inverse.T)
+
+
 def bends(of: Space, force: Array) -> bool:
     """Whether an axial force (g,) is large enough beside the stiffness to change the shapes."""
     size = np.abs(force).max() * of.length**2 / np.min(of.stiffness[: len(force)] / of.rule.weight)
     return of.bends and bool(size >= TENSION)
 
 
-def curved_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
-    """The space of all motions of a beam that is curved at rest, whose strains move it in all directions at once."""
+def coupled_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
+    """The space of all motions of a beam whose strains move it in several directions at once."""
     families = tuple(family for family in range(6) if family < 3 or counts[family])
     nodes, springs = len(rule.node), [*beam.root.springs.values()]
     strained = len(families) * nodes
     strains = np.zeros((6, nodes, strained + len(springs)))
     for k, family in enumerate(families):
-        strains[STRAINS[family], :, k * nodes : (k + 1) * nodes] = np.eye(nodes)
+        strains[STRAINS[family], :, k * nodes : (k + 1) * nodes] = np.eye(nodes) * (-1 if family == 2 else 1)
     move, turn = (np.concatenate([np.zeros((3, strained)), each], axis=1) for each in beam.root.directions())
     loaded = [load.at for load in beam.loads if load.at is not None]
     x = np.concatenate([rule.node, [body.at for body in beam.masses], loaded])
@@ -164,6 +179,7 @@ def curved_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
         ]
     stiffnesses = beam.stiffnesses(rule.node)
     stiffness = [*(stiffnesses[STRAINS[family]] * rule.weight for family in families), springs]
+    energy = stiffness_of(beam, rule, strains) if beam.material is None else None
     return Space(
         rule=rule,
         length=beam.length,
@@ -174,6 +190,7 @@ def curved_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
         stiffness=np.concatenate(stiffness),
         sensitivity=lambda _: (slopes, angles),
         loads=np.stack(loads, axis=1),
+        upper=None if energy is None else np.linalg.cholesky(energy).T,
     )
 
 
@@ -206,13 +223,13 @@ def enrichment(structure: Structure, base: Base | None = None) -> Enrichment:
     """Find a structure's own shapes and those that it lacks under what the base, at one time or many, pulls along the
     beam.
     """
-    alone = _alone(structure)
+    alone = _without_force(structure)
     force = None if base is None else alone.bent_by(base)
     return alone if force is None else Enrichment(structure, force)
 
 
 @lru_cache(maxsize=4)  # keyed by values: runs of equal structures look for what they lack once
-def _alone(structure: Structure) -> Enrichment:
+def _without_force(structure: Structure) -> Enrichment:
     return Enrichment(structure)
 
 
@@ -229,8 +246,8 @@ class Enrichment:
         breaks = [*breaks_of(beam), *marks]
         panels = len(quadrature(beam.length, 1, breaks).edges) - 1
         self.rule = quadrature(beam.length, max(PER_PANEL, -(-(NODES + 2 * max(counts)) // panels)), breaks)
-        straight = beam.line is None
-        self.spaces = spaces_of(beam, self.rule, counts) if straight else (curved_space(beam, self.rule, counts),)
+        coupled = (coupled_space(beam, self.rule, counts),) if beam.coupled else None
+        self.spaces = coupled or spaces_of(beam, self.rule, counts)
         self.families, self.new = enriched_shapes(beam, self.spaces, own_families(structure, beam, self.rule), force)
         self.beam = beam
         self._made: dict[Any, tuple[Structure, NDArray[np.int_]]] = {}

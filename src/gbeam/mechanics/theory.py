@@ -22,6 +22,7 @@ from gbeam.mechanics.fields.basis import Families, Quadrature
 from gbeam.mechanics.fields.strains import STRAINS, StrainField, shaped_strains, strain_field
 from gbeam.mechanics.structure import Structure
 from gbeam.structure.beam import Beam
+from gbeam.structure.matrices import condensed
 
 Array = NDArray[np.float64]
 ZONE = 0.9  # of one term's length: what several terms leave of it
@@ -31,6 +32,8 @@ def stiffening(beam: Beam, x: Array, bent: Array) -> tuple[Array, Array]:
     """Factors (p,) on EI_y and EI_z at x (p,) by which the strip is stiffer than a beam, at sizes of curvatures (2, p),
     1/m.
     """
+    if beam.material is None:  # what its matrices say is all that is known
+        return np.ones(len(x)), np.ones(len(x))
     ratio, (width, thickness) = float(beam.material.ratio), beam.section.at(x).extents()
     most = ratio**2 / (1 - ratio**2)
     flat = [
@@ -121,6 +124,7 @@ class _Parts:
         stiff = [strain for strain, each in zip(SHEAR, slender, strict=True) if each and strain not in self.modelled]
         # Without its torsion constant a section does not twist.
         self.known = ~np.isnan(self.stiffness) & ~np.isin(self.families, stiff)
+        self.coupling = None if beam.material is not None else beam.section.matrices(x)[0] * rule.weight[:, None, None]
         loaded = [load.at for load in beam.loads if load.at is not None]
         self.first = len(x) + len(beam.masses)
         self.first_station = self.first + len(loaded)
@@ -169,12 +173,33 @@ class _Parts:
             for load in range(len(self.beam.loads)):
                 act = np.bincount(points, work.weight * (work.load == load), len(self.points))[:, None] * even
                 loads += [self.pulled(act, still), self.pulled(still, act)]
-        with np.errstate(divide="ignore"):
-            flexibility = np.where(self.known, 1 / self.stiffness, 0.0)[:, None]
-        answers = [flexibility * np.concatenate(loads, axis=1)]
+        answers = [self.answer(np.concatenate(loads, axis=1))]
         for _ in range(LEVELS - 1):
-            answers.append(flexibility * of(answers[-1]))
+            answers.append(self.answer(of(answers[-1])))
         return np.concatenate(answers, axis=1)
+
+    def answer(self, forces: Array) -> Array:
+        """Strains (m, k) under generalised forces (m, k)."""
+        with np.errstate(divide="ignore"):
+            alone = np.where(self.known, 1 / self.stiffness, 0.0)[:, None] * forces
+        if self.coupling is None:
+            return np.asarray(alone)
+        return self._at_nodes(np.asarray(np.linalg.inv(self.coupling)), forces, alone)
+
+    def scaled(self, strains: Array, *, back: bool = False) -> Array:
+        """Strains (m, k) of which the strain energy is half the square, or `back` from there."""
+        root = np.sqrt(np.where(self.known, self.stiffness, 1.0))[:, None]
+        alone = strains / root if back else strains * root
+        if self.coupling is None:
+            return np.asarray(alone)
+        upper = np.swapaxes(np.linalg.cholesky(self.coupling), 1, 2)
+        return self._at_nodes(np.linalg.inv(upper) if back else upper, strains, alone)
+
+    def _at_nodes(self, matrices: Array, strains: Array, springs: Array) -> Array:
+        """Products of matrices (g, 6, 6) and nodal strains (m, k), and the last rows, of the root's springs."""
+        nodes, count = len(self.rule.node), strains.shape[1]
+        nodal = np.einsum("gab,bgk->agk", matrices, strains[: 6 * nodes].reshape(6, nodes, count))
+        return np.concatenate([nodal.reshape(6 * nodes, count), springs[6 * nodes :]])
 
     def work(self, field: StrainField) -> tuple[LoadWork, Any]:
         """The loads on a field, and the points where they act."""
@@ -219,24 +244,34 @@ class _Parts:
 
     def others(self, answers: Array, families: tuple[int, ...], own: Array | None = None) -> Array:
         """The part of some answers in families of strains, without that of own shapes, orthonormal in energy."""
-        chosen = np.isin(self.families, families) & self.known
-        root = np.sqrt(np.where(chosen, self.stiffness, 0.0))[:, None]
-        known = np.zeros((len(root), 0)) if own is None else np.linalg.qr(root * own)[0]
-        whole = np.sqrt((np.where(self.known, self.stiffness, 0.0)[:, None] * answers**2).sum(axis=0))
+        chosen = (np.isin(self.families, families) & self.known)[:, None]
+        known = np.zeros((len(chosen), 0)) if own is None else np.linalg.qr(self.scaled(chosen * own))[0]
+        whole = np.linalg.norm(self.scaled(self.known[:, None] * answers), axis=0)
         first = known.shape[1]
-        for vector, length in zip((root * answers).T, whole, strict=True):
+        for vector, length in zip(self.scaled(chosen * answers).T, whole, strict=True):
             rest = vector - known @ (known.T @ vector)
             rest = rest - known @ (known.T @ rest)
             if np.linalg.norm(rest) > NEW * length:
                 known = np.concatenate([known, (rest / np.linalg.norm(rest))[:, None]], axis=1)
-        return np.where(root > 0, known[:, first:] / np.where(root > 0, root, 1), 0.0)
+        return np.where(chosen, self.scaled(known[:, first:], back=True), 0.0)
+
+    def energy(self, strains: Array) -> Array:
+        """Stiffness (n, n) of strains (m, n); those that none of these has follow without a force of their own."""
+        if self.coupling is None:
+            return np.asarray(strains.T @ (np.where(self.known, self.stiffness, 0.0)[:, None] * strains))
+        nodal, root = np.split(strains, [6 * len(self.rule.node)])
+        nodal = nodal.reshape(6, -1, strains.shape[1])
+        kept = [k for k in range(6) if nodal[k].any()]
+        forces = np.einsum("gab,bgj->agj", condensed(self.coupling, kept), nodal[kept])
+        springs = root.T @ (self.stiffness[-len(root) :, None] * root) if len(root) else 0.0
+        return np.asarray(np.einsum("agi,agj->ij", nodal[kept], forces) + springs)
 
     def model(self, strains: Array, *, rotary: bool) -> Structure:
         """The linear structure with shapes of some strains (m, n)."""
         structure, beam, rest = self.structure, self.beam, np.zeros(strains.shape[1])
         field, (at, mass, offset) = self.field(strains), particles_of(beam, self.rule, rotary=rotary)
         places, geometric = inertia_of(field.points(at, offset), mass).about(rest)
-        stiffness = strains.T @ (np.where(self.known, self.stiffness, 0.0)[:, None] * strains)
+        stiffness = self.energy(strains)
         work, loaded, loads = None, np.zeros(0, int), None
         if beam.loads:
             work, loaded = self.work(field)

@@ -144,7 +144,8 @@ def _beam(parts: Collector, table: schema.Beam) -> Beam | None:
 
     dimensions = table.section.model_dump(exclude={"shape", "stations"}, exclude_none=True)
     section = parts.attempt("beam.section", Section.of, table.section.shape, table.section.stations, **dimensions)
-    material = parts.attempt("beam.material", Material, **table.material.model_dump(exclude_none=True))
+    given = None if table.material is None else table.material.model_dump(exclude_none=True)
+    material = None if given is None else parts.attempt("beam.material", Material, **given)
     masses = []
     for i, body in enumerate(table.masses):
         moments = (body.inertia.x, body.inertia.y, body.inertia.z) if body.inertia else (0.0, 0.0, 0.0)
@@ -155,7 +156,7 @@ def _beam(parts: Collector, table: schema.Beam) -> Beam | None:
     loads = [_load(parts, f"beam.loads[{i}]", entry) for i, entry in enumerate(table.loads)]
     points = [parts.attempt(f"beam.points[{i}]", Point, each.name, each.at) for i, each in enumerate(table.points)]
     line = None if table.line is None else _line(parts, table.line)
-    if section is None or material is None or root is None or None in [*masses, *loads, *points]:
+    if section is None or (material is None) != (given is None) or root is None or None in [*masses, *loads, *points]:
         return None
     if line is None and table.line is not None:
         return None

@@ -121,7 +121,8 @@ class _Page:
         if schema["type"] == "array":
             return f"list of: {self._value(schema['items'], of)}"
         least = f", {schema['minimum']} or more" if "minimum" in schema else ""
-        return {"string": "text", "boolean": "`true` or `false`", "integer": "whole number"}[schema["type"]] + least
+        plain = {"string": "text", "boolean": "`true` or `false`", "integer": "whole number", "number": "number"}
+        return plain[schema["type"]] + least
 
     def _quantity(self, schema: dict[str, Any], of: str) -> str:
         name, (number, _, *others) = schema["x-quantity"], schema["anyOf"]

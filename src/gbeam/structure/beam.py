@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gbeam.arrays.namespace import holds_jax
+from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -19,7 +19,7 @@ from gbeam.structure.attachments import TIP, Load, Point, PointMass, Root
 from gbeam.structure.line import Line
 from gbeam.structure.material import ASSUMED_RATIO, Material
 from gbeam.structure.section import Section
-from gbeam.structure.shapes import ASSUMED_SHEAR
+from gbeam.structure.shapes import ASSUMED_SHEAR, MATRICES
 
 NO_TWIST = "no twist (section.torsion_constant is not given)"
 
@@ -35,6 +35,7 @@ class Beam(Value):
         Of its line, m.
     section : Section
     material : Material
+        None of a section by matrices, which have its stiffness and mass.
     masses : sequence of PointMass
     damping_ratio : float or sequence of float, optional
         Modal damping ratio: one for all modes, or one per mode of the model, ascending in frequency; of the modes of
@@ -66,7 +67,7 @@ class Beam(Value):
 
     length: float
     section: Section
-    material: Material
+    material: Material | None = None
     masses: Sequence[PointMass] = field(default=())
     damping_ratio: float | Sequence[float] | None = None
     root: Root = field(default_factory=Root)
@@ -101,7 +102,11 @@ class Beam(Value):
                 f"cover {stations[0]:g} to {stations[-1]:g} m",
                 f"start at the root, 0 m, and end at the tip, {self.length:g} m",
             )
-        if self.section.plate and self.material.poissons_ratio is None:
+        if (self.material is None) != (self.section.shape == MATRICES):
+            if self.material is None:
+                raise InputError("material", "is missing", "give density and youngs_modulus")
+            raise InputError("material", "is given beside a section by matrices, which have it", "leave it out")
+        if self.section.plate and self.metal.poissons_ratio is None:
             raise InputError("material.poissons_ratio", "is missing, and a plate bends by it", "give it, such as 0.3")
         ratios = self.damping_ratio
         if ratios is None or holds_jax(ratios):
@@ -144,16 +149,37 @@ class Beam(Value):
         at = np.asarray(x, dtype=float)
         return at[:, None] * np.eye(3)[0], np.broadcast_to(np.eye(3), (len(at), 3, 3))
 
+    @property
+    def coupled(self) -> bool:
+        """Whether it moves in several directions at once: by its line, or by a section's matrices."""
+        return self.line is not None or self.material is None
+
+    @property
+    def metal(self) -> Material:
+        """The material, of a section that is not given by matrices."""
+        assert self.material is not None
+        return self.material
+
+    @property
+    def density(self) -> Any:
+        """Mass per volume, kg/m³; 1 of a section by matrices, whose area is its mass per length."""
+        return 1.0 if self.material is None else self.material.density
+
     def rigidities(self, x: ArrayLike) -> tuple[Any, Any, Any]:
         """EA N, EI_y and EI_z N m² at positions `x`, m: against stretching, bending along z and bending along y."""
+        if self.material is None:
+            axial, *_, about_y, about_z = self.stiffnesses(x)
+            return axial, about_y, about_z
         section, modulus = self.section.at(x), self.material.youngs_modulus
         flat = 1 / (1 - self.material.ratio**2) if self.section.plate else 1.0
         return modulus * section.area, modulus * section.inertia_y * flat, modulus * section.inertia_z
 
     def stiffnesses(self, x: ArrayLike) -> tuple[Any, ...]:
         """EA, kGA along y and along z N, GJ, EI_y and EI_z N m² at positions `x`, m: against stretch and shears, twist
-        and curvatures about y and z; GJ is NaN where the torsion constant is not known.
+        and curvatures about y and z; GJ is NaN where the torsion constant is not known; the diagonal of matrices.
         """
+        if self.material is None:
+            return tuple(np.moveaxis(np.diagonal(self.section.matrices(x)[0], axis1=-2, axis2=-1), -1, 0))
         axial, about_y, about_z = self.rigidities(x)
         shear, area, ratio = self.material.rigidity, self.section.at(x).area, self.material.ratio
         in_shear = (shear * area * k for k in self.section.shear_coefficients(x, ratio))
@@ -170,6 +196,8 @@ def refuse_curved(beam: Beam | None, asked: str) -> None:
 def assumptions(beam: Beam) -> tuple[str, ...]:
     """Assumptions of the beam theory's stated error where the beam does not say: ``Poisson's ratio 0.3``."""
     words = []
+    if beam.material is None:
+        return ()
     if beam.material.poissons_ratio is None:
         words.append(f"Poisson's ratio {ASSUMED_RATIO:g}")
     if beam.section.shape == "general":
@@ -182,6 +210,10 @@ def assumptions(beam: Beam) -> tuple[str, ...]:
 
 def fibre_strain(beam: Beam, at: Any, force: Any, moment: Any, y: Any, z: Any) -> Any:
     """Normal strain, (..., s), at places (y, z) m in a beam's sections `at` (s,) m, by what these carry."""
+    if beam.material is None:
+        carried = namespace(force, moment).concatenate([force, moment], axis=-1)[..., None]
+        strain = np.linalg.inv(beam.section.matrices(at)[0]) @ carried
+        return strain[..., 0, 0] + strain[..., 4, 0] * z - strain[..., 5, 0] * y
     axial, along_z, along_y = beam.rigidities(at)
     return force[..., 0] / axial + moment[..., 1] * z / along_z - moment[..., 2] * y / along_y
 

@@ -30,7 +30,7 @@ def implausible_beam(beam: Beam, bends: tuple[bool, bool]) -> tuple[str, ...]:
     """Warn, in the scenario's names, of what is implausible in a beam that `bends` along y and z; never where JAX
     traces it.
     """
-    if _traced(beam):
+    if _traced(beam) or beam.material is None:
         return ()
     alone = (*_material(beam), *_dimensions(beam))
     # A wrong unit makes ratios wrong as well: they are looked at where each value is plausible.
@@ -49,7 +49,7 @@ def refuse_disparate(beam: Beam) -> None:
 
 def refuse_unknown(beam: Beam, *, twist: bool, shear_y: bool, shear_z: bool) -> None:
     """Raise InputError where a beam lacks a stiffness, or the inertia, of strains that a model has."""
-    if not (twist or shear_y or shear_z):
+    if beam.material is None or not (twist or shear_y or shear_z):
         return
     material, section = beam.material, beam.section
     if material.shear_modulus is None and material.poissons_ratio is None:
@@ -76,23 +76,23 @@ def _shares(beam: Beam) -> Iterator[tuple[str, float, str, str, float]]:
         yield f"masses[{i}].mass", body.mass, "kg", "mass", body.mass / mass
         yield f"masses[{i}].inertia", largest, "kg m^2", inertia, largest / turned
         yield f"masses[{i}].offset", arm, "m", inertia, body.mass * arm**2 / turned
-    section = beam.section.at(np.asarray(beam.section.stations or (0.0,)))
-    axial, modulus = np.mean(section.area) / length, beam.material.youngs_modulus
-    turning = np.sqrt(np.mean(section.inertia_y) * np.mean(section.inertia_z)) / length
+    along, about_y, about_z = (np.mean(each) for each in beam.rigidities(np.asarray(beam.section.stations or (0.0,))))
+    turning = np.sqrt(about_y * about_z) / length
     for name, value in beam.root.springs.items():
         unit, stiffness = ("N m/rad", turning) if name.startswith("rotation") else ("N/m", turning / length**2)
-        stiffness = axial if name == "translation_x" else stiffness
-        yield f"root.{name}", value, unit, "stiffness", float(value / (modulus * stiffness))
+        stiffness = along / length if name == "translation_x" else stiffness
+        yield f"root.{name}", value, unit, "stiffness", float(value / stiffness)
 
 
 def _traced(beam: Beam) -> bool:
     bodies = [(body.mass, body.inertia, body.offset) for body in beam.masses]
-    values = beam.length, [*vars(beam.material).values()], [*beam.section.dimensions.values()], beam.damping_ratio
+    material = [] if beam.material is None else [*vars(beam.material).values()]
+    values = beam.length, material, [*beam.section.dimensions.values()], beam.damping_ratio
     return holds_jax(*values, bodies)
 
 
 def _material(beam: Beam) -> Iterator[str]:
-    material = beam.material
+    material = beam.metal
     yield from implausible("beam.material.density", "density", material.density)
     yield from implausible("beam.material.youngs_modulus", "modulus", material.youngs_modulus)
     if material.yield_strength is not None:
@@ -117,7 +117,7 @@ def _dimensions(beam: Beam) -> Iterator[str]:
 
 def _matching(beam: Beam) -> Iterator[str]:
     """Properties of the material that no material has together, each plausible alone."""
-    material = beam.material
+    material = beam.metal
     modulus, density = float(material.youngs_modulus), float(material.density)
     speed = float(np.sqrt(modulus / density))
     soft = density > DENSE and speed < SLOWEST
@@ -177,4 +177,4 @@ def _bodies(beam: Beam) -> Iterator[str]:
 def _mass(beam: Beam) -> float:
     at = np.linspace(0, beam.length, 41)
     area: Any = beam.section.at(at).area
-    return float(beam.material.density * np.mean(area) * beam.length)
+    return float(beam.density * np.mean(area) * beam.length)

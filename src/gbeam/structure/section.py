@@ -15,7 +15,9 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive
 from gbeam.guards.ranges import possible
-from gbeam.structure.shapes import ROUND, SHAPES
+from gbeam.structure.matrices import between, refuse_impossible
+from gbeam.structure.matrices import listed as matrices
+from gbeam.structure.shapes import MATRICES, ROUND, SHAPES
 
 Array = NDArray[np.float64]
 
@@ -43,14 +45,14 @@ _UNITS = {"area": "m²", "second moment": "m⁴", "shear coefficient": "(a numbe
 class Section(Value):
     """Cross-section of the beam, constant or given at stations and interpolated linearly in its dimensions.
 
-    Build it with :meth:`rectangle`, :meth:`circle`, :meth:`tube` or :meth:`general`.
+    Build it with :meth:`rectangle`, :meth:`circle`, :meth:`tube`, :meth:`general` or :meth:`of_matrices`.
 
     Parameters
     ----------
     shape : str
-        ``rectangle``, ``circle``, ``tube`` or ``general``.
+        ``rectangle``, ``circle``, ``tube``, ``general`` or ``matrices``.
     dimensions : dict of str to sequence of float
-        The shape's dimensions, one value per station (m; ``general``: m², m⁴, m).
+        The shape's dimensions, one value per station (m; ``general``: m², m⁴, m; ``matrices``: (6, 6) each).
     stations : sequence of float
         Positions along x from the root, m, strictly increasing; empty for a constant section.
     plate : bool
@@ -87,8 +89,10 @@ class Section(Value):
                     name, f"does not belong to a {self.shape}", f"it takes {', '.join(required + optional)}"
                 )
         count = max(len(self.stations), 1)
+        if self.shape == MATRICES:
+            refuse_impossible(self.dimensions)
         for name, values in self.dimensions.items():
-            for i, value in enumerate(values):
+            for i, value in enumerate(() if self.shape == MATRICES else values):
                 place = f"{name}[{i}]" if len(values) > 1 else name
                 kind = KINDS.get(name, "section")
                 possible(place, kind, positive(place, value, _UNITS.get(kind, "m")))
@@ -146,7 +150,7 @@ class Section(Value):
         values: dict[str, tuple[Any, ...]] = {}
         for name, value in dimensions.items():
             if value is not None:
-                listed = _listed(name, value)
+                listed = (matrices if shape == MATRICES else _listed)(name, value)
                 values[name] = listed * len(at) if len(listed) == 1 and at else listed
         return cls(shape, values, at, plate)
 
@@ -255,8 +259,36 @@ class Section(Value):
             shear_coefficient_z=shear_coefficient_z,
         )
 
+    @classmethod
+    @typed
+    def of_matrices(cls, stiffness: ArrayLike, mass: ArrayLike, stations: ArrayLike = ()) -> Section:
+        """Section by its stiffness and mass matrices, of a beam without a material.
+
+        Rows and columns are in the order stretch, shear along y, shear along z, twist, curvature about y, curvature
+        about z, in axes with x along the beam. VABS has the same order; of BECAS, whose z is along the beam, take
+        ``K[np.ix_(order, order)]`` with ``order = [2, 0, 1, 5, 3, 4]``. The axis of the beam is where the matrices are
+        taken: axes of tension, shear and mass may lie beside it. A strain for which a model has no shapes moves nothing
+        and follows the others without a force of its own: held at zero it would stiffen them by their coupling with it.
+
+        Parameters
+        ----------
+        stiffness : array_like
+            (6, 6), or (stations, 6, 6): N, N m and N m².
+        mass : array_like
+            (6, 6) of a rigid slice, or one per station: kg/m, kg and kg m.
+        stations : array_like
+            Positions from the root at which the matrices are listed, m; empty for a constant section.
+
+        Raises
+        ------
+        InputError
+            If a matrix has another shape, is not symmetric, the stiffness not positive definite, or the mass that of no
+            rigid body.
+        """
+        return cls.of(MATRICES, stations, stiffness=stiffness, mass=mass)
+
     def at(self, x: ArrayLike) -> SectionValues:
-        """Area, second moments and extreme fibres at positions `x`, m (any shape)."""
+        """Area, second moments and extreme fibres at positions `x`, m (any shape), of matrices by mass."""
         area, inertia_y, inertia_z, fibre_y, fibre_z = SHAPES[self.shape].values(**self._local(x))
         return SectionValues(area, inertia_y, inertia_z, fibre_y, fibre_z, round=self.shape in ROUND)
 
@@ -269,9 +301,16 @@ class Section(Value):
         y, z = SHAPES[self.shape].shear(poissons_ratio, **self._local(x))
         return np.broadcast_to(y, np.shape(x)), np.broadcast_to(z, np.shape(x))
 
+    def matrices(self, x: ArrayLike) -> tuple[Array, Array]:
+        """Stiffness and mass matrices (..., 6, 6) at positions `x`, m, of a section that has them."""
+        local = self._local(x)
+        return local["stiffness"], local["mass"]
+
     def _local(self, x: ArrayLike) -> dict[str, Any]:
         """The dimensions at positions."""
         where = array("x", x)
+        if self.shape == MATRICES:
+            return {name: between(self.stations, each, where) for name, each in self.dimensions.items()}
         xp = namespace(*self.dimensions.values(), *(v[0] for v in self.dimensions.values()))
         if self.stations:
             return {k: xp.interp(where, np.asarray(self.stations), xp.asarray(v)) for k, v in self.dimensions.items()}

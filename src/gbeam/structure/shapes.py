@@ -11,7 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.arrays.namespace import namespace
+from gbeam.structure import matrices
 
+MATRICES = "matrices"
 Array = Any
 Rule = Callable[..., tuple[Array, ...]]
 ASSUMED_SHEAR = 0.5  # shear coefficient of a section known by its properties only: between a tube's and a channel's web
@@ -125,5 +127,6 @@ SHAPES: dict[str, Shape] = {
             "shear_coefficient_z",
         ),
     ),
+    MATRICES: Shape(matrices.values, matrices.no_torsion, matrices.no_shear, ("stiffness", "mass")),
 }
 ROUND = ("circle", "tube")

@@ -29,6 +29,7 @@ from gbeam.mechanics.fields.strains import StrainField, Tangents
 from gbeam.mechanics.fields.taylor import Places
 
 Array = Any
+NOTHING = 1e-13  # of the moments of inertia: a smaller product is rounding
 
 
 @record
@@ -53,7 +54,8 @@ class Bodies:
     """Rigid sections on the axis of a strain field, and particles beside it, the field's points (p,) kg.
 
     The places of sections are constant sums C t of the field's tangents: `pairs` CᵀmC (G, G) and `first` Cᵀm (G,), kg,
-    have their `mass`. `turning` (3, G) kg m² are principal moments of inertia of the sections, or None.
+    have their `mass`. `turning` kg m² are the sections' moments of inertia about the axis, the principal ones (3, G) or
+    those and the products xy, yz, zx (6, G), or None; `aside` (3, G) kg m their first moments, or None.
     """
 
     field: StrainField
@@ -62,6 +64,7 @@ class Bodies:
     pairs: Array
     first: Array
     turning: Array | None
+    aside: Array | None = None
 
     def forces(self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array) -> tuple[Array, Vector, Vector]:
         """Forces, resultant and moment, as of particles."""
@@ -74,6 +77,11 @@ class Bodies:
         about = _summed(cross(tangents.t, force))
         if self.turning is not None:
             turn = self._turning(tangents, split(w), split(alpha))
+            if self.aside is not None:
+                push, lever = self._aside(tangents, relative, base, split(w), split(alpha))
+                force, turn = add(force, mapped(push, self.field.node_cumulative.T)), add(turn, lever)
+                place = mapped(tangents.t, self.field.node_cumulative)
+                total, about = add(total, _summed(push)), add(about, _summed(cross(place, push)))
             moment, about = mapped(turn, self.field.node_cumulative.T), add(about, _summed(turn))
         if len(self.beside):
             r, rd, rdd = self.field.carried(tangents)
@@ -92,8 +100,25 @@ class Bodies:
         return turned(inward, add(torque, cross(rate, momentum)))
 
     def _about_axes(self, vector: Vector) -> Vector:
-        x, y, z = (times(moment, part) for moment, part in zip(self.turning, vector, strict=True))  # type: ignore[arg-type]
-        return x, y, z
+        x, y, z, *products = self.turning  # type: ignore[misc]
+        if not products:
+            return times(x, vector[0]), times(y, vector[1]), times(z, vector[2])
+        xy, yz, zx = products
+        rows = (x, xy, zx), (xy, y, yz), (zx, yz, z)
+        return turned(rows, vector)
+
+    def _aside(
+        self, tangents: Tangents, relative: Vector, base: Vector, w: Vector, alpha: Vector
+    ) -> tuple[Vector, Vector]:
+        """Forces of the sections' mass beside the axis, and moments about it of the whole, that the nodes' motion asks
+        for.
+        """
+        assert self.aside is not None
+        x, y, z = self.aside
+        arm = turned(tangents.rotation, (x, y, z))
+        change = add(tangents.alpha, alpha, cross(w, tangents.w))
+        axis = add(mapped(relative, self.field.node_cumulative), base)
+        return swept(add(tangents.w, w), change, arm), cross(arm, axis)
 
 
 @record
@@ -146,11 +171,32 @@ def inertia_of(field: StrainField | Places, mass: Array, line: int = 0, nodes: i
         beside[line:] = True if is_jax(offset) else np.any(offset[line:], axis=1)
     on_axis, off_axis = np.flatnonzero(~beside), np.flatnonzero(beside)
     c, held = field.cumulative[on_axis], mass[on_axis]
-    turning = None
-    if line > nodes and offset is not None:
-        squares = (mass[:line, None] * offset[:line] ** 2).reshape(-1, nodes, 3).sum(axis=0)
-        principal = squares.sum(axis=1)[:, None] - squares
-        turning = namespace(principal).pad(principal.T, ((0, 0), (field.strains.shape[1] - nodes, 0)))
+    turning, aside = None, None
+    if offset is not None and (line > nodes or not is_jax(offset)) and line:
+        turning, aside = _moments(mass[:line], offset[:line], nodes, field.strains.shape[1] - nodes)
     points = field[off_axis] if len(off_axis) else field.points(off_axis)
     pairs, first = c.T @ (held[:, None] * c), c.T @ held
-    return Inertia(field, mass, Bodies(points, mass[off_axis], held.sum(), pairs, first, turning))
+    return Inertia(field, mass, Bodies(points, mass[off_axis], held.sum(), pairs, first, turning, aside))
+
+
+def _moments(mass: Array, offset: Array, nodes: int, before: int) -> tuple[Array | None, Array | None]:
+    """Moments of inertia about the axis and first moments of sections by their particles, behind `before` nodes of the
+    root; None where they have none.
+    """
+    xp = namespace(mass, offset)
+
+    def at_nodes(values: Array) -> Array:
+        return xp.pad(values.reshape(-1, nodes, values.shape[-1]).sum(axis=0).T, ((0, 0), (before, 0)))
+
+    squares = at_nodes(mass[:, None] * offset**2)
+    principal = squares.sum(axis=0) - squares
+    if is_jax(principal):  # shapes of sections that can be traced are symmetric
+        return principal, None
+    size = principal.max(initial=0.0)
+    if size == 0:
+        return None, None
+    products = at_nodes(-mass[:, None] * offset * np.roll(offset, -1, axis=1))
+    aside = at_nodes(mass[:, None] * offset)
+    coupled, beside = (np.abs(each).max() > NOTHING * most for each, most in ((products, size), (aside, mass.max())))
+    turning = np.concatenate([principal, products]) if coupled else principal
+    return turning, aside if beside else None

@@ -40,7 +40,7 @@ def _family(rule: Quadrature, nodal: Array, length: float, *, axial: bool) -> Fa
 class Space(NamedTuple):
     """All motions in one direction, or about x, that nodal strains of some families and the free root make; K (n,) is
     diagonal, `line` (g,) kg and `turning` (g,) kg m² are the inertia of the sections, and `loads` (n, k) are known of
-    motions in all directions.
+    motions in all directions; with `upper` (n, n) K is upperᵀ upper.
     """
 
     rule: Quadrature
@@ -52,6 +52,14 @@ class Space(NamedTuple):
     stiffness: Array
     sensitivity: Callable[[Array], tuple[Array, Array]]
     loads: Array | None = None
+    upper: Array | None = None
+
+    def scaled(self, strains: Array, *, back: bool = False) -> Array:
+        """Columns (n, k) of which the strain energy is half the square, or `back` from there."""
+        if self.upper is None:
+            root = np.sqrt(self.stiffness)[:, None]
+            return strains / root if back else root * strains
+        return np.asarray(np.linalg.solve(self.upper, strains) if back else self.upper @ strains)
 
     @property
     def bends(self) -> bool:
@@ -84,9 +92,9 @@ def space(beam: Beam, rule: Quadrature, along: int, counts: Counts) -> Space:
     first, *others = GROUPS[along]
     families = (first, *(family for family in others if counts[family]))
     section, stiffnesses = beam.section.at(rule.node), beam.stiffnesses(rule.node)
-    line = beam.material.density * section.area * rule.weight
+    line = beam.density * section.area * rule.weight
     about = (0 * line, section.inertia_z, section.inertia_y, section.inertia_y + section.inertia_z)[along]
-    turning = beam.material.density * about * rule.weight * beam.rotary_inertia
+    turning = beam.density * about * rule.weight * beam.rotary_inertia
     springs = beam.root.springs
     held = [springs.get(name) for name in _HELD[along]]
     free = [i for i, k in enumerate(held) if k is not None]

@@ -164,6 +164,32 @@ class General(Flat):
     )
 
 
+Entry = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Row = Annotated[tuple[Entry, ...], Field(min_length=6, max_length=6)]
+Matrix = Annotated[tuple[Row, ...], Field(min_length=6, max_length=6)]
+
+
+def _depth(value: Any) -> str:
+    try:
+        return "list" if isinstance(value[0][0], (list, tuple)) else "one"
+    except (TypeError, LookupError):
+        return "one"
+
+
+Matrices = Annotated[
+    Annotated[Matrix, Tag("one")] | Annotated[tuple[Matrix, ...], Field(min_length=1, max_length=ENTRIES), Tag("list")],
+    Discriminator(_depth),
+]
+
+
+class ByMatrices(Stations):
+    """A section by its stiffness and mass matrices, in SI; rows: stretch, shears y and z, twist, curvatures y and z."""
+
+    shape: Literal["matrices"] = Field(description="name of the shape")
+    stiffness: Matrices = Field(description="(6, 6) in N, N m and N m^2, or one per station; VABS has the same order")
+    mass: Matrices = Field(description="(6, 6) of a rigid slice in kg/m, kg and kg m, or one per station")
+
+
 def _shape(section: Any) -> str | None:
     if not isinstance(section, dict):
         return getattr(section, "shape", None)
@@ -176,7 +202,8 @@ Section = Annotated[
     Annotated[Rectangle, Tag("rectangle")]
     | Annotated[Circle, Tag("circle")]
     | Annotated[Tube, Tag("tube")]
-    | Annotated[General, Tag("general")],
+    | Annotated[General, Tag("general")]
+    | Annotated[ByMatrices, Tag("matrices")],
     Discriminator(_shape),
 ]
 
@@ -295,7 +322,10 @@ class Beam(Table):
         default=None, description="length from root to tip, along the line; left out where the line says it"
     )
     section: Section = Field(description="cross-section, by shape or by properties: { area, inertia_y, inertia_z }")
-    material: Material = Field(description="linear elastic material: { density, youngs_modulus, yield_strength }")
+    material: Material | None = Field(
+        default=None,
+        description="linear elastic material: { density, youngs_modulus, yield_strength }; none beside matrices",
+    )
     damping_ratio: Ratios | None = Field(
         default=None,
         description="modal damping ratio: one for all modes, or a list with one per mode, ascending in frequency; of "
@@ -324,7 +354,10 @@ class Beam(Table):
     )
 
     @model_validator(mode="after")
-    def _length(self) -> Beam:
+    def _complete(self) -> Beam:
+        if self.material is None and not isinstance(self.section, ByMatrices):
+            hint = "add material = { density, youngs_modulus }: linear elastic material"
+            refuse([((), wrong("material is missing", hint, mark="key"))])
         if self.length is None and (self.line is None or self.line.stations is not None):
             refuse([((), wrong("length is missing", 'add length = "20 mm": length from root to tip', mark="key"))])
         return self

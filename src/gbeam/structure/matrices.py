@@ -1,0 +1,126 @@
+"""Sections by their stiffness and mass matrices (6, 6), of composites and of any shape.
+
+The order of strains and of rows is that of the exact field: stretch, shears along y and z, twist, curvatures about y
+and z; x is along the beam. VABS has the same order. BECAS, whose z is along the beam, has shears, stretch, curvatures
+and twist: its rows (2, 0, 1, 5, 3, 4) are those of axes y = its x and z = its y.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.errors import InputError
+from gbeam.guards.checks import array
+
+Array = NDArray[np.float64]
+Matrix = tuple[tuple[float, ...], ...]
+CLOSE = 1e-3  # of the largest alike entry: tables are printed with four digits
+# Particles in place of a section that has second moments about three axes, in radii of gyration.
+TETRAHEDRON = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)], dtype=float)
+
+
+def listed(name: str, value: Any) -> tuple[Matrix, ...]:
+    """Matrices, one per station, of an array (6, 6) or (stations, 6, 6)."""
+    matrices = array(name, value)
+    matrices = matrices[None] if np.ndim(matrices) == 2 else matrices
+    if matrices.ndim != 3 or matrices.shape[1:] != (6, 6) or not np.isfinite(matrices).all():
+        raise InputError(name, f"is an array {np.shape(value)}", "give (6, 6), or (stations, 6, 6), finite")
+    return tuple(tuple(map(tuple, matrix.tolist())) for matrix in matrices)
+
+
+def refuse_impossible(dimensions: dict[str, tuple[Any, ...]]) -> None:
+    """Raise InputError where a matrix is not symmetric, no energy belongs to it, or no mass."""
+    for name, matrices in dimensions.items():
+        for i, matrix in enumerate(np.asarray(matrices)):
+            place = f"{name}[{i}]" if len(matrices) > 1 else name
+            size = np.sqrt(np.abs(np.outer(np.diag(matrix), np.diag(matrix))))
+            if not (np.abs(matrix - matrix.T) <= CLOSE * size + 1e-300).all():
+                raise InputError(place, "is not symmetric", "give energy's second derivatives: K[i, j] = K[j, i]")
+            if name == "stiffness" and not _least(matrix) > 0:
+                fix = "every strain takes energy; is the order stretch, shears, twist, curvatures?"
+                raise InputError(place, "is not positive definite", fix)
+            if name == "mass":
+                _refuse_no_body(place, matrix)
+
+
+def _least(matrix: Array) -> float:
+    """Least eigenvalue, over the diagonal's sizes; minus one where one of these is not positive."""
+    size = np.diag(matrix)
+    if not (size > 0).all():
+        return -1.0
+    return float(np.linalg.eigvalsh((matrix + matrix.T) / 2 / np.sqrt(np.outer(size, size)))[0])
+
+
+def _refuse_no_body(place: str, matrix: Array) -> None:
+    if not matrix[0, 0] > 0:
+        raise InputError(place, f"has the mass {matrix[0, 0]:g} kg/m", "give a positive one in the first three rows")
+    mass, (x, y, z), _ = body_of(matrix)
+    couples = mass * np.array([[0, z, -y], [-z, 0, x], [y, -x, 0]])
+    size = mass * np.sqrt(max(float(np.abs(matrix[3:, 3:]).max()) / mass, 1e-300))
+    alike = np.abs(matrix[:3, :3] - mass * np.eye(3)).max() <= CLOSE * mass
+    if not alike or np.abs(matrix[:3, 3:] - couples).max() > CLOSE * size:
+        fix = "give m 1, m [c]× and the moments of inertia about the axis of one and the same body"
+        raise InputError(place, "is that of no rigid body", fix)
+    if radii(matrix[None]) is None:
+        raise InputError(place, "has moments that no body has", "none exceeds the sum of the other two")
+
+
+def body_of(matrix: Any) -> tuple[Any, Any, Any]:
+    """Mass kg/m, centre m and second moments ∫ r rᵀ dm about the centre, kg m, of mass matrices (..., 6, 6)."""
+    mass = matrix[..., 0, 0]
+    z = (matrix[..., 0, 4] - matrix[..., 1, 3]) / 2 / mass
+    y = (matrix[..., 2, 3] - matrix[..., 0, 5]) / 2 / mass
+    x = (matrix[..., 1, 5] - matrix[..., 2, 4]) / 2 / mass
+    centre = np.stack([x, y, z], axis=-1)
+    about = (matrix[..., 3:, 3:] + np.swapaxes(matrix[..., 3:, 3:], -1, -2)) / 2
+    second = np.trace(about, axis1=-2, axis2=-1)[..., None, None] / 2 * np.eye(3) - about
+    return mass, centre, second - mass[..., None, None] * centre[..., :, None] * centre[..., None, :]
+
+
+def radii(matrix: Any) -> Any:
+    """Matrices (..., 3, 3) L with L Lᵀ the second moments over the mass; None where these are no body's."""
+    mass, _, second = body_of(np.asarray(matrix))
+    value, vector = np.linalg.eigh(second / mass[..., None, None])
+    if (value < -CLOSE * np.abs(value).max(axis=-1, keepdims=True) - 1e-300).any():
+        return None
+    return vector * np.sqrt(np.maximum(value, 0))[..., None, :]
+
+
+def between(stations: tuple[float, ...], matrices: tuple[Matrix, ...], x: Any) -> Array:
+    """Matrices (..., 6, 6) at positions, linear between the stations."""
+    given, at = np.asarray(matrices), np.asarray(x, dtype=float)
+    if not stations:
+        return np.broadcast_to(given[0], (*at.shape, 6, 6))
+    i = np.clip(np.searchsorted(stations, at) - 1, 0, len(stations) - 2)
+    low, high = np.asarray(stations)[i], np.asarray(stations)[i + 1]
+    share = np.clip((at - low) / (high - low), 0, 1)[..., None, None]
+    return np.asarray((1 - share) * given[i] + share * given[i + 1])
+
+
+def condensed(stiffness: Array, kept: list[int]) -> Array:
+    """Stiffness (..., k, k) of some strains, the others of which follow without a force of their own."""
+    if len(kept) == 6:
+        return stiffness
+    some = np.linalg.inv(stiffness)[..., kept, :][..., kept]
+    return np.asarray(np.linalg.inv(some))
+
+
+def values(stiffness: Array, mass: Array) -> tuple[Array, ...]:
+    """Mass, and its second moments ∫z² dm and ∫y² dm about the centre, as of a material of unit density; no fibres."""
+    line, _, second = body_of(mass)
+    unknown = np.full_like(line, np.nan)
+    return line, second[..., 2, 2], second[..., 1, 1], unknown, unknown
+
+
+def no_torsion(stiffness: Array, **_: Array) -> Array:
+    """The torsion constant, which matrices have in their stiffness: not known."""
+    return np.full(stiffness.shape[:-2], np.nan)
+
+
+def no_shear(_: float, stiffness: Array, **__: Array) -> tuple[Array, Array]:
+    """The shear coefficients, likewise."""
+    unknown = np.full(stiffness.shape[:-2], np.nan)
+    return unknown, unknown
