@@ -1,18 +1,15 @@
-"""Groups written to a netCDF-4 file by h5py alone, and what such a file holds.
-
-netCDF-4 is HDF5 with rules: a dimension is a dimension scale, which is its coordinate variable where it has one; every
-variable has the scales of its dimensions attached; things are kept in the order of their creation. xarray and h5netcdf
-know the rules as well, but importing the one and the bookkeeping of the other take longer than many a computation.
-"""
+"""Groups written to a netCDF-4 file, and what such a file holds; xarray takes longer to import than many a run."""
 
 from __future__ import annotations
 
+import io
 import os
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import h5netcdf
 import h5py
 import numpy as np
 
@@ -20,8 +17,9 @@ from gbeam.errors import InputError
 from gbeam.io.groups import Group, Variable
 from gbeam.printable import storable
 
-_BOOKKEEPING = ("DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME", "_Netcdf4Dimid", "_Netcdf4Coordinates")
-_NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable.{:10d}"  # the format's words
+# Attributes of the format.
+_BOOKKEEPING = {"DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME", "_NCProperties"}
+_BOOKKEEPING |= {"_Netcdf4Dimid", "_Netcdf4Coordinates"}
 
 
 def write_groups(groups: Mapping[str, Group], path: str | os.PathLike[str]) -> None:
@@ -50,18 +48,17 @@ def write_whole(path: str | os.PathLike[str], data: bytes) -> None:
 
 def image(groups: Mapping[str, Group]) -> bytes:
     """Bytes of the file, made in memory: HDF5 ends the process where a disk is full as it closes a file."""
-    dimensions = 0  # so far, in the whole file
-    options = {"driver": "core", "backing_store": False, "libver": ("earliest", "v110"), "track_order": True}
-    with h5py.File("result.nc", "w", **options) as file:
+    buffer = io.BytesIO()
+    with h5netcdf.File(buffer, "w", libver=("earliest", "v110")) as file:
         for path, group in groups.items():
-            place = file
-            for part in filter(None, path.split("/")):
-                place = place[part] if part in place else place.create_group(part, track_order=True)
-            for key, value in group.attrs.items():
-                _describe(place, key, value)
-            dimensions = _fill(place, group, dimensions)
-        file.flush()
-        return bytes(file.id.get_file_image())
+            place = file.create_group(path) if path else file
+            _describe(place, group.attrs)
+            for name, each in (group.coordinates | group.variables).items():
+                for dim, size in zip(each.dims, each.values.shape, strict=True):
+                    if dim not in place.dimensions:
+                        place.dimensions[dim] = size
+                _create(place, name, each)
+    return buffer.getvalue()
 
 
 def contents(path: str) -> dict[str, Any]:
@@ -98,44 +95,15 @@ def _present(value: Any) -> Any:
     return "" if isinstance(value, h5py.Empty) else value
 
 
-def _fill(place: h5py.Group, group: Group, dimensions: int) -> int:
-    """Write a group's dimensions, then its variables; return the number of dimensions so far."""
-    scales: dict[str, h5py.Dataset] = {}
-    every = group.coordinates | group.variables
-    for each in every.values():
-        for dim, size in zip(each.dims, each.values.shape, strict=True):
-            if dim in scales:
-                continue
-            if dim in group.coordinates:
-                scale = _create(place, dim, group.coordinates[dim])
-                scale.make_scale(dim)
-            else:
-                scale = place.create_dataset(dim, shape=(size,), dtype=">f4", track_order=True)
-                scale.make_scale(_NO_VARIABLE.format(size))
-            scale.attrs["_Netcdf4Dimid"] = np.int32(dimensions)
-            scales[dim], dimensions = scale, dimensions + 1
-    for name, each in group.variables.items():
-        dataset = _create(place, name, each)
-        for axis, dim in enumerate(each.dims):
-            dataset.dims[axis].attach_scale(scales[dim])
-    return dimensions
-
-
-def _create(place: h5py.Group, name: str, variable: Variable) -> h5py.Dataset:
+def _create(place: h5netcdf.Group, name: str, variable: Variable) -> None:
     values = variable.values
     kind = values.dtype
     if kind.kind in "OU":
         kind = h5py.string_dtype("utf-8")
         values = np.array([storable(str(each)) for each in values.flat], dtype=object).reshape(values.shape)
     fill = np.nan if values.dtype.kind == "f" else None  # what xarray takes for a missing number
-    dataset = place.create_dataset(name, data=values, dtype=kind, fillvalue=fill, track_order=True)
-    if fill is not None:
-        dataset.attrs["_FillValue"] = np.array([fill])
-    for key, value in variable.attrs.items():
-        _describe(dataset, key, value)
-    return dataset
+    _describe(place.create_variable(name, variable.dims, kind, values, fill), variable.attrs)
 
 
-def _describe(place: h5py.Group | h5py.Dataset, key: str, value: str | float | np.ndarray) -> None:
-    """Set an attribute: text, or numbers, which netCDF keeps in arrays of one dimension."""
-    place.attrs[key] = storable(value) if isinstance(value, str) else np.atleast_1d(value)
+def _describe(place: h5netcdf.Group | h5netcdf.Variable, attrs: Mapping[str, Any]) -> None:
+    place.attrs.update({key: storable(value) if isinstance(value, str) else value for key, value in attrs.items()})
