@@ -26,6 +26,7 @@ from gbeam.motion.protocol import Motion
 from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
 from gbeam.structure.section import extreme_stresses, worst_fibre
+from gbeam.structure.stress import von_mises
 
 Array = Any
 _BLOCK = 256  # times handled together: what stays in a cache
@@ -70,6 +71,11 @@ def section_forces(
         section_moment=section_moment,
         stress_tension=tension,
         stress_compression=compression,
+        von_mises=None
+        if is_jax(tension)
+        else np.maximum(
+            von_mises(section_data.stresses, section_force, section_moment), np.maximum(tension, -compression)
+        ),
         acceleration=a,
         root_fibre=None if is_jax(tension) else worst_fibre(section_data.values, 0, section_force, section_moment),
         yield_strength=section_data.yield_strength,

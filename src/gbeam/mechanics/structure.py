@@ -38,13 +38,14 @@ Array = Any
 @record
 class Sections:
     """Sections at root and stations: values (s,), outboard masses (s, particles) kg, shares of loads (s, loaded),
-    axes of the root's section in columns (3, 3), strength Pa.
+    axes of the root's section in columns (3, 3), stresses by unit loads (points, 3, 6, s), strength Pa.
     """
 
     values: Any
     mass: Array
     loaded: Array
     root_axes: Array
+    stresses: Array | None = None
     yield_strength: Any = None
     fatigue_exponent: Any = np.nan
 

@@ -135,6 +135,10 @@ class LoadPeaks(Part):
     compression: Extremes = part(
         "smallest normal stress over the section", "section", unit="Pa", name="stress_compression_min_", key=None
     )
+    von_mises: Extremes | None = part(
+        "largest von Mises stress over the section", "section", unit="Pa", name="von_mises_max_", key=None,
+        optional=True, default=None,
+    )  # fmt: skip
     beam_torque: Extremes | None = part(
         "largest size of the torque that the beam takes from a hub", unit="N m", name=None, optional=True, default=None
     )
@@ -163,7 +167,7 @@ class LoadPeaks(Part):
     @declared("", "least margin on yield of the section", "section", name=None, key="margin", optional=True)
     def section_margin(self) -> Floats | None:
         """Least margin on yield of each section, (s,); None where the strength is not known."""
-        return None if self.yield_strength is None else yield_margin(self.yield_strength, self.stress.value)
+        return None if self.yield_strength is None else yield_margin(self.yield_strength, self.equivalent.value)
 
     @declared("Pa", "largest size of the normal stress", role="part", name=None, key="stress", optional=True)
     def largest_stress(self) -> StressPeak | None:
@@ -181,10 +185,23 @@ class LoadPeaks(Part):
     @declared("1", "least margin on yield", role="part", name=None, key="margin", optional=True)
     def least_margin(self) -> Lowest | None:
         """Least margin on yield, where the stress is largest; None where the strength or fibres are unknown."""
-        margin, k = self.section_margin, self._stressed
+        margin, equivalent = self.section_margin, self.equivalent
         if margin is None or not np.isfinite(self.tension.value).all():
             return None
-        return Lowest(float(margin[k]), float(self.stress.time[k]), float(self.stations[k]))
+        k = int(equivalent.value.argmax())
+        return Lowest(float(margin[k]), float(equivalent.time[k]), float(self.stations[k]))
+
+    @property
+    def equivalent(self) -> Extremes:
+        """Largest von Mises stress over each section, (s,) Pa; of the normal stress where that is not known."""
+        return self.stress if self.von_mises is None else self.von_mises
+
+    @declared("Pa", "largest von Mises stress", role="part", name=None, key="von_mises", optional=True)
+    def largest_von_mises(self) -> Highest | None:
+        """Largest von Mises stress along the beam; None where it is not known."""
+        if self.von_mises is None:
+            return None
+        return Highest(*self._place(self.von_mises, int(self.von_mises.value.argmax())))
 
     @property
     def _stressed(self) -> int:
@@ -260,7 +277,9 @@ class Loads(Part):
     fixed to the beam at a station counts as outboard of it. The first of the sections is the root, the last the tip.
 
     Stresses over the section are N/A ± (|M_y| c_z/I_y + |M_z| c_y/I_z), of a round section N/A ± √(M_y² + M_z²) c/I,
-    with the section's extreme fibres c_y and c_z; NaN where these are unknown.
+    with the section's extreme fibres c_y and c_z; NaN where these are unknown. Von Mises' has Saint-Venant's torsion
+    and the shear forces' parabola besides, at 37 points of a rectangle and 24 around a circle or a tube; it is NaN of
+    sections by properties or matrices, whose shear stress is not known. The margin on yield is by it where it is known.
     """
 
     stations: Floats = quantity("m", "position of the section along the beam from the root", "section",
@@ -301,6 +320,10 @@ class Loads(Part):
         note="None where a run is traced",
         default=None,
     )
+    von_mises: Floats | None = quantity(
+        "Pa", "largest von Mises stress over the section", "time", "section", optional=True, default=None,
+        note="NaN of sections by properties or matrices",
+    )  # fmt: skip
     yield_strength: float | None = fact("yield strength of the material", "Pa", name=None, optional=True, default=None)
     fatigue_exponent: float = fact("exponent of the material's Wöhler curve", name=None, key=None, default=math.nan)
 
@@ -321,7 +344,10 @@ class Loads(Part):
     @declared("", "yield strength over stress less one", "time", "section", name="yield_margin", optional=True)
     def margin(self) -> Floats | None:
         """Margin on yield, yield strength over stress less one, (t, s); None where the strength is not given."""
-        return None if self.yield_strength is None else yield_margin(self.yield_strength, self.stress)
+        if self.yield_strength is None:
+            return None
+        known = self.von_mises is not None and np.isfinite(self.von_mises).all()
+        return yield_margin(self.yield_strength, np.asarray(self.von_mises) if known else self.stress)
 
     @declared("N", "force of the base on the beam", "time", "axis", name=None)
     def root_force(self) -> Floats:

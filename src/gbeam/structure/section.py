@@ -301,6 +301,14 @@ class Section(Value):
         y, z = SHAPES[self.shape].shear(poissons_ratio, **self._local(x))
         return np.broadcast_to(y, np.shape(x)), np.broadcast_to(z, np.shape(x))
 
+    def stresses(self, x: ArrayLike) -> Array | None:
+        """Stresses (points, 3, 6, s) Pa, normal and shear along two directions, by unit loads at positions `x` (s,), m;
+        None where the shape has no formulas.
+        """
+        of = SHAPES[self.shape].stresses
+        local = self._local(x)
+        return None if of is None or any(map(is_jax, local.values())) else np.asarray(of(**local))
+
     def matrices(self, x: ArrayLike) -> tuple[Array, Array]:
         """Stiffness and mass matrices (..., 6, 6) at positions `x`, m, of a section that has them."""
         local = self._local(x)

@@ -12,6 +12,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import namespace
 from gbeam.structure import matrices
+from gbeam.structure.stress import rectangle_stresses, round_stresses
 
 MATRICES = "matrices"
 Array = Any
@@ -99,8 +100,8 @@ def general_shear(
 
 
 class Shape(NamedTuple):
-    """A shape: area m², I_y, I_z m⁴ and extreme fibres m (`values`), torsion constant m⁴, shear coefficients, of its
-    dimensions.
+    """A shape: area m², I_y, I_z m⁴ and extreme fibres m (`values`), torsion constant m⁴, shear coefficients, and where
+    there are formulas stresses by unit loads (points, 3, 6, s), of its dimensions.
     """
 
     values: Rule
@@ -108,12 +109,13 @@ class Shape(NamedTuple):
     shear: Callable[..., tuple[Array, Array]]
     required: tuple[str, ...]
     optional: tuple[str, ...] = ()
+    stresses: Callable[..., Array] | None = None
 
 
 SHAPES: dict[str, Shape] = {
-    "rectangle": Shape(rectangle, rectangle_torsion, rectangle_shear, ("width", "thickness")),
-    "circle": Shape(circle, round_torsion, round_shear, ("diameter",)),
-    "tube": Shape(tube, round_torsion, round_shear, ("diameter", "wall")),
+    "rectangle": Shape(rectangle, rectangle_torsion, rectangle_shear, ("width", "thickness"), (), rectangle_stresses),
+    "circle": Shape(circle, round_torsion, round_shear, ("diameter",), (), round_stresses),
+    "tube": Shape(tube, round_torsion, round_shear, ("diameter", "wall"), (), round_stresses),
     "general": Shape(
         general,
         general_torsion,

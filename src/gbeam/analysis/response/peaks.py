@@ -96,6 +96,7 @@ def load_peaks(loads: Loads, loads_at: Callable[[Indices], Loads | None], time: 
         moment=vectors[s:],
         tension=Extremes(v[:s], w[:s]),
         compression=Extremes(-v[s : 2 * s], w[s : 2 * s]),
+        von_mises=Extremes(v[2 * s : 3 * s], w[2 * s : 3 * s]) if _sheared(loads) else None,
         beam_torque=None if loads.beam_torque is None else Extremes(v[-1], w[-1]),
         stations=loads.stations,
         yield_strength=loads.yield_strength,
@@ -120,13 +121,19 @@ def peaks_of_coordinates(trajectory: Trajectory, vectors: Floats, of: Callable[[
 
 
 def _table(loads: Loads) -> Floats:
-    """Loads with peaks, (t, c): forces, moments, tension, compression (zero if unknown), and the torque for the beam on
-    a hub.
+    """Loads with peaks, (t, c): forces, moments, tension, compression (zero if unknown), von Mises' stress if known,
+    and the torque for the beam on a hub.
     """
     torque = [] if loads.beam_torque is None else [loads.beam_torque[:, None]]
     vectors = (x.reshape(len(x), -1) for x in (loads.section_force, loads.section_moment))
     stresses = (np.nan_to_num(x) for x in (loads.stress_tension, -loads.stress_compression))
-    return np.concatenate([*vectors, *stresses, *torque], axis=1)
+    sheared = [np.asarray(loads.von_mises)] if _sheared(loads) else []
+    return np.concatenate([*vectors, *stresses, *sheared, *torque], axis=1)
+
+
+def _sheared(loads: Loads) -> bool:
+    """Whether von Mises' stress is known."""
+    return loads.von_mises is not None and bool(np.isfinite(loads.von_mises).all())
 
 
 def _sizes(vectors: Floats) -> Floats:

@@ -214,7 +214,7 @@ class Material(Table):
     density: Density = Field(description="mass per volume")
     youngs_modulus: Pressure = Field(description="Young's modulus")
     yield_strength: Pressure | None = Field(
-        default=None, description="normal stress at which it yields; with it results give the margin"
+        default=None, description="stress at which it yields; with it results give the margin"
     )
     fatigue_exponent: Exponent | None = Field(
         default=None,
