@@ -73,6 +73,8 @@ class Given:
         self.fast.write_text(FAST, encoding="utf-8")
         self.slew.write_text(FREE_HUB, encoding="utf-8")
         self.data.write_text("mode,frequency\n1,38\n2,180\n", encoding="utf-8")
+        self.matrix = folder / "k.npy"
+        np.save(self.matrix, np.eye(2))
         self.record = Path(__file__).parents[1] / "examples" / "data" / "f16_8g_turn.csv"
         self.case = gb.read_scenario(self.fast)
         self.system = gb.linearize(self.structure, self.hub)
@@ -233,6 +235,7 @@ class Given:
                 ("machine", self.centrifuge.over(0.0, 0.1), "flight"),
                 {"beam": self.beam, "tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5}, "title": "a"},
             ),
+            "read_matrix": ((self.matrix, "k"), {}),
             "read_record": (
                 (self.record, *columns),
                 {"time_unit": "s", "quantity": "specific-force", "span": (None, 0.1)},

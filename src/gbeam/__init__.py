@@ -44,6 +44,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.errors import ComputationError as ComputationError
     from gbeam.errors import GbeamError as GbeamError
     from gbeam.errors import InputError as InputError
+    from gbeam.io.matrices import read_matrix as read_matrix
     from gbeam.mechanics.assembly import assemble as assemble
     from gbeam.mechanics.models import Model as Model
     from gbeam.mechanics.structure import Structure as Structure
@@ -177,6 +178,7 @@ _HOME = {
     "optimise": "studies.optimise",
     "place": "analysis.imitation.place",
     "plan": "analysis.imitation.plan",
+    "read_matrix": "io.matrices",
     "read_record": "motion.records.record",
     "read_scenario": "scenario.build",
     "rerun": "scenario.rerun",

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.solids import factor
+from gbeam.numerics import factor
 
 from .bodies import STEEL, block, solid
 
@@ -132,7 +132,7 @@ def test_too_many_unknowns_say_what_they_would_cost() -> None:
 
 
 def test_more_modes_than_unknowns() -> None:
-    with pytest.raises(gb.InputError, match=r"modes is 100, of 72 unknowns; give 1 to 71"):
+    with pytest.raises(gb.InputError, match=r"modes is 100, of 72 unknowns; give 1 to 72"):
         solid(mesh()).reduced(modes=100, damping_ratio=0)
 
 

@@ -15,7 +15,9 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.guards.units import UnitError, quantity
 from gbeam.mechanics.equations.linear import geometric_of
+from gbeam.mechanics.reduction import inertial_loads, linear_fields, reduce
 from gbeam.mechanics.structure import Structure
+from gbeam.numerics.factor import refuse_cost
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
@@ -31,9 +33,7 @@ from gbeam.solids.elements import (
     shape_functions,
     stiffness_matrix,
 )
-from gbeam.solids.factor import refuse_cost
 from gbeam.solids.foreign import elements_in, no_group, nodes_in, read_mesh, solid_blocks
-from gbeam.solids.reduction import Reduced, linear_fields, particles_of, reduce
 from gbeam.solids.stress import solid_stress
 from gbeam.structure.attachments import TIP, checked_name
 from gbeam.structure.material import Material, Orthotropic
@@ -229,26 +229,28 @@ class SolidMesh(Value):
         mass = (mass_matrix(self.points, self.blocks) + diags_array(self.point_masses)).tocsr()
         # Body forces −1, −x, −y and −z along x, then along y, then along z.
         weights = mass @ linear_fields(self.points)
-        loads = -np.einsum("kf,ac->kcaf", weights, np.eye(3)).reshape(3 * len(weights), 12)
+        loads = inertial_loads(weights)
         free = np.repeat(~self.clamped, 3)
         stiffness = stiffness_matrix(self.points, self.blocks)
         reduced = reduce(stiffness, kron(mass, eye_array(3), format="csr"), loads, free, modes)
         del stiffness
-        n = len(reduced.squares)
-        fields = geometric_stiffness(self.points, self.blocks, reduced.static, reduced.shapes).reshape(3, 4, n, n)
+        shapes, still = (each.reshape(len(weights), 3, -1) for each in (reduced.shapes, reduced.static))
+        fields = geometric_stiffness(self.points, self.blocks, still, shapes).reshape(3, 4, *2 * shapes.shape[2:])
         frequency = np.sqrt(reduced.squares[:modes]) / (2 * np.pi)
         error, doubts = _mesh_errors(frequency, coarser)
-        structure = structure_of(
-            self.points,
-            reduced,
+        structure = Structure.of_particles(
             mass,
-            geometric_of(fields[:, 0], fields[:, 1:].swapaxes(0, 1)),
-            self.stations,
-            damping_ratio,
-            kind,
-            (*self.warnings, *doubts),
+            self.points,
+            shapes,
+            np.diag(reduced.squares),
+            geometric=geometric_of(fields[:, 0], fields[:, 1:].swapaxes(0, 1)),
+            damping_ratio=damping_ratio,
+            stations=list(self.stations.values()),
+            points=tuple(self.stations),
+            kind=kind,
+            warnings=(*self.warnings, *doubts),
         )
-        return SolidModel(self, structure, reduced.shapes, frequency, error)
+        return SolidModel(self, structure, shapes, frequency, error)
 
 
 @dataclass(frozen=True, eq=False)
@@ -336,34 +338,6 @@ def _mesh_errors(frequency: Floats, coarser: SolidModel | None) -> tuple[Floats,
     if error[0] <= ROUGH:
         return error, ()
     return error, (f"the mesh: a coarser one changes the lowest frequency by {100 * error[0]:.2g} %; mesh it finer",)
-
-
-def structure_of(
-    points: Floats,
-    reduced: Reduced,
-    mass: Any,
-    geometric: Any,
-    stations: Mapping[str, int],
-    damping_ratio: Any,
-    kind: str,
-    warnings: tuple[str, ...],
-) -> Structure:
-    """The structure of a reduction: particles with the products of its mass matrix, and without mass the stations."""
-    masses, places, first = particles_of(points, reduced.shapes, mass)
-    nodes = list(stations.values())
-    return Structure.of_particles(
-        np.append(masses, np.zeros(len(nodes))),
-        np.concatenate([places, points[nodes]]),
-        np.concatenate([first, reduced.shapes[nodes]]),
-        np.diag(reduced.squares),
-        geometric=geometric,
-        damping_ratio=damping_ratio,
-        stations=np.arange(-len(nodes), 0),
-        points=tuple(stations),
-        length=float(np.linalg.norm(points, axis=1).max()),
-        kind=kind,
-        warnings=warnings,
-    )
 
 
 def _node(at: Floats, name: str, place: Any, group: Any) -> int:

@@ -13,18 +13,19 @@ from typing import Any
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.results.result import Floats
-from gbeam.solids.factor import factorised
+from gbeam.numerics.eigen import Floats
+from gbeam.numerics.factor import factorised
 
 ZERO = 1e-10  # of the largest of the eigenvalues computed: a smaller one is that of a motion without strain
 ALIKE = 1e-9  # of its energy: what is left of a static answer beside the modes and the others adds nothing
+HOLD = "hold the structure so that nothing moves without strain"
 FAINT = 1e-14  # of the largest: a product of shapes that is rounding
 
 
 @dataclass(frozen=True, eq=False)
 class Reduced:
-    """Shapes (k, 3, n) of unit modal mass, ascending in frequency, squares (n,) of their circular frequencies, and the
-    static displacements (k, 3, 12) under body forces of −1 and −x, −y, −z along each axis, axis by axis.
+    """Shapes (u, n) of unit modal mass, ascending in frequency, squares (n,) of their circular frequencies, and static
+    displacements (u, m) under the loads.
     """
 
     shapes: Floats
@@ -37,20 +38,26 @@ def linear_fields(points: Floats) -> Floats:
     return np.concatenate([np.ones((len(points), 1)), points], axis=1)
 
 
+def inertial_loads(weights: Floats) -> Floats:
+    """Loads (3 k, 12) of body forces of −1, −x, −y and −z along x, then along y, then along z, by the products (k, 4)
+    of the mass matrix with 1, x, y and z.
+    """
+    return -np.einsum("kf,ac->kcaf", weights, np.eye(3)).reshape(3 * len(weights), 12)
+
+
 def reduce(stiffness: Any, mass: Any, loads: Floats, free: Any, modes: int) -> Reduced:
-    """Reduce matrices of all unknowns, (3 k, 3 k), held but for the `free` ones, under `loads` (3 k, 12)."""
+    """Reduce matrices of all unknowns, (u, u), held but for the `free` ones, under `loads` (u, m)."""
     from scipy.sparse import csc_matrix
     from scipy.sparse.linalg import LinearOperator, eigsh
 
     k_free, m_free, f = csc_matrix(stiffness)[free][:, free], csc_matrix(mass)[free][:, free], loads[free]
     count = len(f)
-    if not 1 <= modes < count:
-        raise InputError("modes", f"is {modes}, of {count} unknowns", f"give 1 to {count - 1}")
+    if not 1 <= modes <= count:
+        raise InputError("modes", f"is {modes}, of {count} unknowns", f"give 1 to {count}")
     with factorised(k_free) as solve:
         static = solve(f)
         if modes > count // 2:  # too many for Lanczos' iteration: these are small
-            square, vector = _dense(k_free.toarray(), m_free.toarray())
-            square, vector = square[:modes], vector[:, :modes]
+            square, vector = _dense(k_free.toarray(), m_free.toarray(), modes)
         else:
             inverse = LinearOperator(k_free.shape, matvec=solve, dtype=float)
             start = np.cos(np.arange(count))  # the same one each time
@@ -58,24 +65,30 @@ def reduce(stiffness: Any, mass: Any, loads: Floats, free: Any, modes: int) -> R
     order = np.argsort(square)
     square, vector = square[order], vector[:, order]
     if not square[0] > ZERO * square[-1]:
-        fix = "hold the structure so that nothing moves without strain"
-        raise InputError("stiffness", "is not positive definite", fix)
+        raise InputError("stiffness", "is not positive definite", HOLD)
     rest = _complement(k_free, m_free, vector, static)
     basis = np.concatenate([vector, rest], axis=1)
-    square, within = _dense(basis.T @ (k_free @ basis), basis.T @ (m_free @ basis))
+    square, within = _dense(basis.T @ (k_free @ basis), basis.T @ (m_free @ basis), basis.shape[1])
     shapes, still = np.zeros((loads.shape[0], basis.shape[1])), np.zeros_like(loads)
     shapes[free], still[free] = basis @ within, static
-    return Reduced(shapes.reshape(-1, 3, basis.shape[1]), square, still.reshape(-1, 3, loads.shape[1]))
+    return Reduced(shapes, square, still)
 
 
-def _dense(stiffness: Floats, mass: Floats) -> tuple[Floats, Floats]:
+def _dense(stiffness: Floats, mass: Floats, modes: int) -> tuple[Floats, Floats]:
+    """The lowest eigenvalues and vectors of unit modal mass; of unknowns without mass, whose eigenvalues are infinite,
+    by the inverse.
+    """
     from scipy.linalg import eigh
 
     try:
-        return eigh(stiffness, mass)
+        inverse, vector = eigh(mass, stiffness)
     except np.linalg.LinAlgError:
-        fix = "give the unknowns mass, or condense those without"
-        raise InputError("mass", "is not positive definite", fix) from None
+        raise InputError("stiffness", "is not positive definite", HOLD) from None
+    inverse, vector = inverse[::-1][:modes], vector[:, ::-1][:, :modes]
+    if not inverse[-1] > ZERO * inverse[0]:
+        have = int((inverse > ZERO * inverse[0]).sum())
+        raise InputError("modes", f"is {modes}, and only {have} motions move mass", f"give at most {have}")
+    return 1 / inverse, vector / np.sqrt(inverse)
 
 
 def _complement(stiffness: Any, mass: Any, modes: Floats, static: Floats) -> Floats:

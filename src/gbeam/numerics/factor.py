@@ -10,7 +10,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import in_bytes
-from gbeam.results.result import Floats
+from gbeam.numerics.eigen import Floats
 
 # Measured on solids of quadratic tetrahedra: bytes for each of n^(4/3), seconds for each of n² unknowns.
 BYTES = {"Pardiso": 170.0, "SuperLU": 700.0}
@@ -59,7 +59,7 @@ def factorised(matrix: Any, where: str = "stiffness") -> Iterator[Callable[[Floa
         try:
             try:
                 pardiso.factorize(upper)
-            except PyPardisoError:
+            except (PyPardisoError, ValueError):  # which it raises of an empty row
                 raise InputError(where, "is not positive definite", fix) from None
             yield lambda b: pardiso.solve(upper, np.asfortranarray(b)).reshape(b.shape)
         finally:

@@ -1,0 +1,165 @@
+"""Matrices of other programs: beams of nodes with rotations, solids written out, files, and what they cannot be."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.io
+from scipy import sparse
+
+import gbeam as gb
+from gbeam.motion import constant
+from gbeam.solids.elements import mass_matrix, stiffness_matrix
+
+from .bodies import block, solid
+
+L, E, RHO, B, H = 0.5, 70e9, 2700.0, 0.02, 0.01
+EI_Y, EI_Z, EA, GJ, MU = E * B * H**3 / 12, E * H * B**3 / 12, E * B * H, 1e3, RHO * B * H  # about y: bending along z
+
+
+def frame(elements: int, rotary: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Mass and stiffness of a beam along x by Hermite's elements with lumped masses, six unknowns a node, and nodes."""
+    h, count = L / elements, elements + 1
+    k = np.zeros((6 * count, 6 * count))
+    for e in range(elements):
+        i, j = 6 * e, 6 * e + 6
+        for unknown, stiffness in ((0, EA), (3, GJ)):
+            pair = [i + unknown, j + unknown]
+            k[np.ix_(pair, pair)] += stiffness / h * np.array([[1, -1], [-1, 1]])
+        for way, turn, sign, stiffness in ((1, 5, 1, EI_Z), (2, 4, -1, EI_Y)):
+            four, s = [i + way, i + turn, j + way, j + turn], sign
+            k[np.ix_(four, four)] += stiffness / h**3 * np.array(
+                [[12, 6 * h * s, -12, 6 * h * s], [6 * h * s, 4 * h * h, -6 * h * s, 2 * h * h],
+                 [-12, -6 * h * s, 12, -6 * h * s], [6 * h * s, 2 * h * h, -6 * h * s, 4 * h * h]]
+            )  # fmt: skip
+    lumps = np.full(count, MU * h)
+    lumps[[0, -1]] /= 2
+    m = np.diag(np.kron(lumps, [1, 1, 1, rotary, rotary, rotary]))
+    return m, k, np.stack([np.linspace(0, L, count), *np.zeros((2, count))], axis=1)
+
+
+def test_a_beam_of_nodes_is_the_beam() -> None:
+    """Euler and Bernoulli's frequencies and deflection; the base's acceleration reaches all nodes."""
+    m, k, nodes = frame(40)
+    model = gb.Structure.of_matrices(m, k, nodes, modes=6, damping_ratio=0.01, clamp=[0], points={"middle": 20})
+    unit = np.sqrt(EI_Y / MU / L**4)
+    flap = [f for f, way in zip(gb.modes(model).frequency, gb.modes(model).direction, strict=True) if way == "z"]
+    np.testing.assert_allclose(2 * np.pi * np.array(flap[:2]) / unit, [3.51602, 22.0345], rtol=2e-3)
+    rest = gb.static(model, acceleration=(0.0, 0.0, 5.0))
+    assert -rest.tip[2] == pytest.approx(5 * MU * L**4 / 8 / EI_Y, rel=1e-3)
+    np.testing.assert_allclose(rest.displacement[0, 2] / rest.tip[2], 17 / 48, rtol=1e-3)
+    rigid = model.coefficients.rigid
+    np.testing.assert_allclose(rigid[[0, 1, 4]], [MU * L, MU * L**2 / 2, MU * L**3 / 3], rtol=1e-3)
+    flown = gb.simulate(model, gb.Flight(z=constant(5.0)), duration=0.05, step=1e-3)
+    assert flown.points == ("middle", "tip") and flown.outcome == "done"
+    assert any("no geometric stiffness is given" in each for each in flown.warnings)
+
+
+def test_matrices_of_a_solid_are_the_solid_without_its_geometric_stiffness() -> None:
+    """To the last digits, sparse; what is left out is what a spin shows."""
+    mesh = solid(block("hexahedron20", (3, 1, 1), (0.3, 0.03, 0.02)))
+    m = sparse.kron(mass_matrix(mesh.points, mesh.blocks), sparse.eye_array(3))
+    k = stiffness_matrix(mesh.points, mesh.blocks)
+    whole = mesh.reduced(modes=5, damping_ratio=0.02).structure
+    ours = gb.Structure.of_matrices(
+        m, k, mesh.points, modes=5, damping_ratio=0.02, clamp=np.flatnonzero(mesh.clamped).tolist(),
+        total_mass=7850 * 0.3 * 0.03 * 0.02, centre=(0.15, 0, 0),
+    )  # fmt: skip
+    assert ours.size == whole.size
+    for name in ("mass", "damping", "stiffness", "rigid"):
+        theirs = getattr(whole.coefficients, name)
+        np.testing.assert_allclose(getattr(ours.coefficients, name), theirs, atol=1e-7 * np.abs(theirs).max())
+    at = dict(acceleration=(3.0, -20.0, 40.0))
+    flight = gb.Flight(acceleration=constant(np.array(at["acceleration"])))
+    tips = [gb.static(each, flight).tip for each in (ours, whole)]
+    np.testing.assert_allclose(tips[0], tips[1], rtol=1e-4)
+    spun = [gb.modes(each, gb.Hub(radius=0.0, rate=300.0)).frequency[0] for each in (ours, whole)]
+    assert spun[0] < spun[1]
+
+
+def test_rotations_with_mass_are_said_to_be_left_out() -> None:
+    """The frequencies are those of the whole matrix; of too much mass in rotations nothing is computed."""
+    m, k, nodes = frame(20, rotary=1e-5)
+    model = gb.Structure.of_matrices(m, k, nodes, modes=4, damping_ratio=0, clamp=[0])
+    assert any("of a mode's mass does not feel the base's motion" in each for each in model.warnings)
+    kf, mf = k[6:, 6:], m[6:, 6:]
+    square = np.sort(np.linalg.eigvals(np.linalg.solve(mf, kf)).real)
+    np.testing.assert_allclose(model.rest[0][:4] ** 2, square[:4], rtol=1e-8)
+    with pytest.raises(gb.InputError, match=r"mass has \d+ % of a mode's mass in rotations, or between directions"):
+        gb.Structure.of_matrices(*frame(20, rotary=1e-2)[:2], nodes, modes=4, damping_ratio=0, clamp=[0])
+
+
+SPRINGS = np.diag([100.0, 200.0, 300.0])
+
+
+def skewed() -> np.ndarray:
+    each = SPRINGS.copy()
+    each[0, 1] = 50.0
+    return each
+
+
+BAD: list[tuple[dict[str, Any], str]] = [
+    ({"stiffness": skewed()}, r"stiffness is not symmetric: 50 in row 0, column 1, and 0 across"),
+    ({"stiffness": -SPRINGS}, r"stiffness is not positive: -100 on the diagonal in row 0"),
+    ({"stiffness": np.array([[1, 2, 0], [2, 1, 0], [0, 0, 1.0]])}, r"stiffness is not positive definite; hold"),
+    ({"mass": np.array([[1, 2, 0], [2, 1, 0], [0, 0, 1.0]])}, r"modes is 2, and only|mass"),
+    ({"stiffness": np.zeros((3, 3))}, r"stiffness is not positive definite; hold|stiffness is singular"),
+    ({"stiffness": np.eye(2)}, r"stiffness has 2 rows; give 3, as the other matrix has"),
+    ({"mass": np.ones((3, 2))}, r"mass has the shape \(3, 2\); give a square matrix"),
+    ({"mass": np.full((3, 3), np.nan)}, r"mass has values that are not finite"),
+    ({"mass": "M.mtx"}, r"mass is no matrix of numbers"),
+    ({"nodes": np.zeros((2, 3))}, r"nodes has the shape \(2, 3\), and the matrices 3 rows"),
+    ({"total_mass": 2e-3}, r"total_mass is 0\.002 kg, and the matrix has 2 kg; are the units those of SI"),
+    ({"centre": (0.4, 0, 0), "nodes": [(0.1, 0, 0)]}, r"centre is not that of the matrix, \(0\.1, 0, 0\) m"),
+    ({"inertia": np.eye(3)}, r"inertia is not that of the matrix, 0, 0, 0 kg m² on the diagonal"),
+    ({"points": {"camera": 1}}, r"points\.camera is 1; give a node from 0 to 0"),
+    ({"clamp": [-1]}, r"clamp\[0\] is -1; give a node from 0 to 0"),
+    ({"modes": 4}, r"modes is 4, of 3 unknowns"),
+]
+
+
+@pytest.mark.parametrize(("changed", "words"), BAD)
+def test_matrices_that_cannot_be_are_refused(changed: dict[str, Any], words: str) -> None:
+    sound = {"mass": 2 * np.eye(3), "stiffness": SPRINGS, "nodes": [(0.1, 0.0, 0.0)], "modes": 2, "damping_ratio": 0.0}
+    gb.Structure.of_matrices(**sound)
+    with pytest.raises(gb.InputError, match=words):
+        gb.Structure.of_matrices(**(sound | changed))
+
+
+WRITERS: dict[str, Callable[[Path], Any]] = {
+    "k.mtx": lambda path: scipy.io.mmwrite(path, sparse.coo_array(SPRINGS), symmetry="symmetric"),
+    "k.npz": lambda path: sparse.save_npz(path, sparse.csr_array(SPRINGS)),
+    "k.npy": lambda path: np.save(path, SPRINGS),
+    "both.npz": lambda path: np.savez(path, K=SPRINGS, M=np.eye(3), name=np.array("model")),
+    "both.mat": lambda path: scipy.io.savemat(path, {"K": sparse.csc_array(SPRINGS), "M": np.eye(3), "count": 3}),
+}
+
+
+@pytest.mark.parametrize("name", WRITERS)
+def test_matrices_come_from_files(tmp_path: Path, name: str) -> None:
+    WRITERS[name](tmp_path / name)
+    which = "K" if name.startswith("both") else ""
+    found = gb.read_matrix(tmp_path / name, which)
+    np.testing.assert_array_equal(found.toarray() if sparse.issparse(found) else found, SPRINGS)
+    if which:
+        with pytest.raises(gb.InputError, match="name is missing; choose from"):
+            gb.read_matrix(tmp_path / name)
+        with pytest.raises(gb.InputError, match=r"name is 'C', which is no matrix of .*; choose from"):
+            gb.read_matrix(tmp_path / name, "C")
+
+
+def test_files_without_matrices_are_refused(tmp_path: Path) -> None:
+    for name in ("a.mtx", "a.npz", "a.mat", "a.npy"):
+        (tmp_path / name).write_text("garbage", encoding="utf-8")
+        with pytest.raises(gb.InputError, match=r"path .* cannot be read"):
+            gb.read_matrix(tmp_path / name)
+    (tmp_path / "a.csv").write_text("1,2", encoding="utf-8")
+    with pytest.raises(gb.InputError, match=r"path .*a\.csv ends in \.csv; give one of \.npz"):
+        gb.read_matrix(tmp_path / "a.csv")
+    np.savez(tmp_path / "b.npz", name=np.array("model"))
+    with pytest.raises(gb.InputError, match=r"path .*b\.npz holds no matrix"):
+        gb.read_matrix(tmp_path / "b.npz")
