@@ -33,14 +33,14 @@ SECONDS = 3600  # of processor time, and of time altogether
 QUEUED = 100
 PAUSE = 1.0  # s until what is used up is asked for again, and between looks at whether a run's folder is there
 DAMAGED = "damaged"  # state of a run of which nothing else is known
-_STATE, _LOG, _MESSAGES, _ANSWER, _WORDS = "state.json", "progress.txt", "messages.txt", "answer.json", "words.txt"
+_STATE, _LOG, _MESSAGES, _ANSWER = "state.json", "progress.txt", "messages.txt", "answer.json"
 _SCENARIO = "scenario.toml"
 _BEFORE = ".before"  # has the scenario as it came, of a verb that writes into it
 # What may be downloaded, by its name there, and where it is; besides, of what the verb writes, files of these kinds.
 DOWNLOADS = {
     _SCENARIO: _SCENARIO,
     _ANSWER: _ANSWER,
-    _WORDS: _WORDS,
+    "words.txt": "words.txt",  # of runs of version 0.2
     _MESSAGES: _MESSAGES,
     "found.toml": "found.toml",
     "command.json": "out/command.json",
@@ -273,9 +273,8 @@ class Jobs:
 async def _begun(place: Path, command: Sequence[str]) -> asyncio.subprocess.Process:
     """Start a command in a run's folder, whose files are for their owner only."""
     environment = {**os.environ, "GBEAM_PROGRESS": "0.5", "GBEAM_PROGRESS_FILE": _LOG, "PYTHONUNBUFFERED": "1"}
-    if "--report" in command:  # which has the figures
-        environment["GBEAM_FIGURES"] = "none"
-    with private(place / _MESSAGES) as messages, private(place / _stdout(command)) as answer:
+    environment["GBEAM_FIGURES"] = "none"  # the report has them
+    with private(place / _MESSAGES) as messages, private(place / _ANSWER) as answer:
         return await asyncio.create_subprocess_exec(
             *command,
             cwd=place,
@@ -313,9 +312,8 @@ def _last_line(log: Path) -> str:
 
 
 def _command(state: Mapping[str, Any]) -> list[str]:
-    """A verb with its result as a report and as JSON; in words where it has no report."""
-    result = ["--report", "--json"] if verbs()[state["verb"]].report else []
-    arguments = [state["verb"], _SCENARIO, *state["arguments"], "--out", "out", *result]
+    """A verb with its result as a report and as JSON."""
+    arguments = [state["verb"], _SCENARIO, *state["arguments"], "--out", "out", "--report", "--json"]
     return [sys.executable, "-m", "gbeam.app.limited", str(MEMORY), str(SECONDS), *arguments]
 
 
@@ -331,10 +329,6 @@ def _state(place: Path, otherwise: str) -> str:
     except (ValueError, LookupError, TypeError, AttributeError):  # words, or half an answer
         return otherwise
     return "done" if state in GOOD else state
-
-
-def _stdout(command: Sequence[str]) -> str:
-    return _ANSWER if "--json" in command else _WORDS
 
 
 def _files(place: Path) -> dict[str, Path]:

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from cyclopts import ArgumentCollection
 
 PLAIN = 'give text such as "2 s" or "tip.z.max_abs"'
-# The page itself sets, shows and writes; what computes are the processes of this computer.
-_OF_THE_PAGE = {"SCENARIO", "set", "out", "json", "report", "scheduler", "resume", "yes"}
+# The page itself sets, shows and writes; what computes are the processes of this computer. A record of options is *.
+_OF_THE_PAGE = {"SCENARIO", "*", "set", "out", "json", "report", "scheduler", "resume", "yes"}
 _WRITTEN = "found.toml"  # a scenario that a verb makes
 _REPEATED = re.compile("any number of times|given twice")
 
@@ -44,18 +44,17 @@ class Option:
 
 @dataclass(frozen=True)
 class Verb:
-    """A verb: what it answers, its options, and whether it writes a report; the others answer in words."""
+    """A verb: what it answers, and its options."""
 
     about: str
     options: tuple[Option, ...] = ()
-    report: bool = True
 
 
 @cache
 def verbs() -> dict[str, Verb]:
     """Return the verbs that compute something of a scenario, as the command line has them."""
     return {
-        name: Verb(about, _options(arguments), any(each.name == "--report" for each in arguments))
+        name: Verb(about, _options(arguments))
         for name, about in program.verbs().items()
         if (arguments := program.arguments(name))[0].name == "SCENARIO" and name != "check"  # the page does that
     }

@@ -51,7 +51,6 @@ export interface Option {
 export interface Verb {
   about: string;
   options: Option[];
-  report: boolean;
 }
 
 export interface Run {

@@ -138,8 +138,8 @@ export class Verbs {
   }
 
   private say(): void {
-    const report = this.verbs[this.verb]?.report ? ["--report"] : [];
-    this.command.say(["gbeam", this.verb, fileName(this.text()), ...this.options().map((each) => each.line), ...report]);
+    const options = this.options().map((each) => each.line);
+    this.command.say(["gbeam", this.verb, fileName(this.text()), ...options, "--report"]);
   }
 
   private async submit(): Promise<void> {
