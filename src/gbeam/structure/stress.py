@@ -14,28 +14,25 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 ALONG = np.linspace(-1, 1, 9)  # of a face, between corners
+_EDGE = np.array([(u, v) for u in ALONG for v in (-1.0, 1.0)])
+POINTS = np.concatenate([_EDGE, _EDGE[:, ::-1], np.zeros((1, 2))])  # of a rectangle: y and z over half of its sides
 AROUND = 2 * np.pi * np.arange(24) / 24
-TERMS = np.arange(1, 80, 2.0)  # of Saint-Venant's series
+TERMS = np.arange(1, 40, 2.0)  # of Saint-Venant's series
 BLOCK = 1 << 21  # numbers at once
 
 
 def rectangle_stresses(width: Array, thickness: Array) -> Array:
     """Stresses of rectangles (s,) at points of their faces and at the centre, by unit loads, (points, 3, 6, s)."""
-    ends = [(u, v) for u in ALONG for v in (-1.0, 1.0)]
-    points = [*ends, *((v, u) for u, v in ends), (0.0, 0.0)]
-    out = np.zeros((len(points), 3, 6, len(width)))
+    u, v = POINTS[:, :1], POINTS[:, 1:]
     area, about_y, about_z = width * thickness, width * thickness**3 / 12, thickness * width**3 / 12
     wide = width >= thickness
     long, thin = np.where(wide, width, thickness), np.where(wide, thickness, width)
-    for point, (u, v) in zip(out, points, strict=True):
-        y, z = u * width / 2, v * thickness / 2
-        along, across = np.where(wide, u, v), np.where(wide, v, u)
-        on_long, on_short = saint_venant(long, thin, along, across)
-        # T is the integral of y τ_xz − z τ_xy.
-        xy, xz = np.where(wide, -on_long, -on_short), np.where(wide, on_short, on_long)
-        point[0, 0], point[0, 4], point[0, 5] = 1 / area, z / about_y, -y / about_z
-        point[1, 1], point[1, 3] = 1.5 * (1 - u**2) / area, xy
-        point[2, 2], point[2, 3] = 1.5 * (1 - v**2) / area, xz
+    on_long, on_short = saint_venant(long, thin, np.where(wide, u, v), np.where(wide, v, u))
+    out = np.zeros((len(POINTS), 3, 6, len(width)))
+    out[:, 0, 0], out[:, 0, 4], out[:, 0, 5] = 1 / area, v * thickness / 2 / about_y, -u * width / 2 / about_z
+    # T is the integral of y τ_xz − z τ_xy.
+    out[:, 1, 1], out[:, 1, 3] = 1.5 * (1 - u**2) / area, np.where(wide, -on_long, -on_short)
+    out[:, 2, 2], out[:, 2, 3] = 1.5 * (1 - v**2) / area, np.where(wide, on_short, on_long)
     return out
 
 
@@ -43,7 +40,7 @@ def saint_venant(long: Array, thin: Array, along: Array, across: Array) -> tuple
     """Shear stress of a rectangle by a unit torque, along its long side and along its short one, at places −1 to 1 of
     both (Timoshenko and Goodier, Theory of Elasticity, 109).
     """
-    n = TERMS[:, None]
+    n = TERMS[:, None, None] if np.ndim(along) > 1 else TERMS[:, None]
     half, reach = thin / 2, n * np.pi / 2
     slender = long / thin
     grown = np.exp(reach * slender * (np.abs(along) - 1)) * (1 + np.exp(-2 * reach * slender * np.abs(along)))
@@ -65,10 +62,9 @@ def round_stresses(diameter: Array, wall: Array | None = None) -> Array:
     area, inertia = np.pi * (radius**2 - inner**2), np.pi / 4 * (radius**4 - inner**4)
     shear = 4 / 3 * (radius**2 + radius * inner + inner**2) / (radius**2 + inner**2) / area
     out = np.zeros((len(AROUND), 3, 6, len(diameter)))
-    for point, angle in zip(out, AROUND, strict=True):
-        c, s = np.cos(angle), np.sin(angle)
-        point[0, 0], point[0, 4], point[0, 5] = 1 / area, s * radius / inertia, -c * radius / inertia
-        point[1, 1], point[1, 2], point[1, 3] = -s * shear, c * shear, radius / (2 * inertia)
+    c, s = np.cos(AROUND)[:, None], np.sin(AROUND)[:, None]
+    out[:, 0, 0], out[:, 0, 4], out[:, 0, 5] = 1 / area, s * radius / inertia, -c * radius / inertia
+    out[:, 1, 1], out[:, 1, 2], out[:, 1, 3] = -s * shear, c * shear, radius / (2 * inertia)
     return out
 
 
