@@ -50,6 +50,7 @@ def saint_venant(long: Array, thin: Array, along: Array, across: Array) -> tuple
     sign = (-1.0) ** ((n - 1) / 2)
     scale = 8 / np.pi**2 * 2 * half
     on_long = scale * (np.pi**2 / 8 * across - (sign / n**2 * decay * np.sin(reach * across)).sum(axis=0))
+    on_long = np.where(np.abs(along) < 1, on_long, 0.0)  # where the series is that of the first term
     on_short = scale * (sign / n**2 * sinh * np.cos(reach * across)).sum(axis=0)
     constant = long * thin**3 / 3 * (1 - 192 / np.pi**5 / slender * (np.tanh(reach * slender) / n**5).sum(axis=0))
     return on_long / constant, on_short / constant
