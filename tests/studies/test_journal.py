@@ -22,20 +22,28 @@ from hypothesis.strategies import DataObject, binary, data, integers, just, one_
 
 import gbeam as gb
 from gbeam.errors import InputError
-from gbeam.studies.journal import Journal
+from gbeam.studies.journal import NAME, Journal
+
+from ..scenarios import FAST
 
 Call = Callable[..., Any]
+Whole = tuple[Any, list[bytes]]
 OVER = ["motion.flight.acceleration.z.level=2 g:8 g:40"]
 MEASURE = ["flight.tip.z"]
 STATIC = {"verb": "static", "motion": "flight"}
 ARGUMENTS = ("--verb", "static", "--motion", "flight", "--over", *OVER, "--measure", *MEASURE, "--out", "there")
 
 
-def _whole(fast: Path) -> Any:
-    return gb.sweep(fast, OVER, MEASURE, **STATIC).measures["flight.tip.z"]
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Whole:
+    """Figures of the sweep in one go, and its store."""
+    folder = tmp_path_factory.mktemp("whole")
+    (folder / "fast.toml").write_text(FAST, encoding="utf-8")
+    figures = gb.sweep(folder / "fast.toml", OVER, MEASURE, **STATIC, store=folder).measures["flight.tip.z"]
+    return figures, (folder / NAME).read_bytes().splitlines(keepends=True)
 
 
-def test_a_killed_sweep_is_resumed(fast: Path, gbeam: Call) -> None:
+def test_a_killed_sweep_is_resumed(fast: Path, whole: Whole, gbeam: Call) -> None:
     slow = "import time, gbeam.studies.evaluate as e, gbeam.studies.sweep as s\n"
     slow += "from gbeam.cli import main\ns._LONGEST = 1\n"
     slow += "row = e.Question.row\ndef later(*a):\n    time.sleep(0.05)\n    return row(*a)\ne.Question.row = later\n"
@@ -54,7 +62,7 @@ def test_a_killed_sweep_is_resumed(fast: Path, gbeam: Call) -> None:
     assert gbeam("sweep", fast, *ARGUMENTS, "--resume").status == 0
     assert lines[: lines.rfind(b"\n")] in journal.read_bytes()  # what was done is not computed again
     found = gb.sweep(fast, OVER, MEASURE, **STATIC, store="there", resume=True)
-    assert np.array_equal(found.measures["flight.tip.z"], _whole(fast))
+    assert np.array_equal(found.measures["flight.tip.z"], whole[0])
 
 
 def test_a_full_disk_keeps_what_is_done(fast: Path, gbeam: Call, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -136,14 +144,15 @@ def test_a_file_system_without_locks_will_do(fast: Path, monkeypatch: pytest.Mon
     gb.sweep(fast, OVER, MEASURE, **STATIC, store="there")
 
 
-def _stored(fast: Path) -> tuple[Path, list[bytes]]:
-    gb.sweep(fast, OVER, MEASURE, **STATIC, store="there")
+def _stored(whole: Whole) -> tuple[Path, list[bytes]]:
+    Path("there").mkdir()
     journal = Path("there/cases.jsonl")
-    return journal, journal.read_bytes().splitlines(keepends=True)
+    journal.write_bytes(b"".join(whole[1]))
+    return journal, list(whole[1])
 
 
-def test_damaged_lines_are_named_and_the_others_kept(fast: Path, gbeam: Call) -> None:
-    journal, lines = _stored(fast)
+def test_damaged_lines_are_named_and_the_others_kept(fast: Path, whole: Whole, gbeam: Call) -> None:
+    journal, lines = _stored(whole)
     digit = lines[4].replace(b'"values": [', b'"values": [1')  # whole JSON, and wrong by a factor
     journal.write_bytes(b"".join([*lines[:4], digit, *lines[5:8], b"\x00\xff{]\n", *lines[9:20]]))
     answer = gbeam("sweep", fast, *ARGUMENTS, "--resume")
@@ -152,11 +161,11 @@ def test_damaged_lines_are_named_and_the_others_kept(fast: Path, gbeam: Call) ->
     kept = journal.read_bytes().splitlines(keepends=True)
     assert kept[:7] == [*lines[:4], *lines[5:8]] and len(kept) == 41  # and no damaged one
     found = gb.sweep(fast, OVER, MEASURE, **STATIC, store="there", resume=True)
-    assert np.array_equal(found.measures["flight.tip.z"], _whole(fast)) and not found.warnings
+    assert np.array_equal(found.measures["flight.tip.z"], whole[0]) and not found.warnings
 
 
-def test_what_is_kept_is_never_rewritten_in_place(fast: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    journal, lines = _stored(fast)
+def test_what_is_kept_is_never_rewritten_in_place(fast: Path, whole: Whole, monkeypatch: pytest.MonkeyPatch) -> None:
+    journal, lines = _stored(whole)
     cut = b"".join(lines[:30]) + lines[30][:20]
     journal.write_bytes(cut)
 
@@ -169,16 +178,18 @@ def test_what_is_kept_is_never_rewritten_in_place(fast: Path, monkeypatch: pytes
             gb.sweep(fast, OVER, MEASURE, **STATIC, store="there", resume=True)
     assert journal.read_bytes() == cut
     before = journal.stat()
-    whole = b"".join(lines[:30])
-    journal.write_bytes(whole)
+    kept = b"".join(lines[:30])
+    journal.write_bytes(kept)
     gb.sweep(fast, OVER, MEASURE, **STATIC, store="there", resume=True)
-    assert journal.stat().st_ino == before.st_ino and journal.read_bytes().startswith(whole)  # only appended to
+    assert journal.stat().st_ino == before.st_ino and journal.read_bytes().startswith(kept)  # only appended to
     assert {each.name for each in Path("there").iterdir()} <= {"cases.jsonl", ".lock", "cases.new"}
 
 
-def test_a_sweep_that_was_begun_in_the_meantime_is_not_lost(fast: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_sweep_that_was_begun_in_the_meantime_is_not_lost(
+    fast: Path, whole: Whole, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Whether another's cases would be lost is asked again when the lock is held."""
-    journal, lines = _stored(fast)
+    journal, lines = _stored(whole)
     begun = b"".join(lines[:10])
     journal.unlink()
     begin = Journal._begin
@@ -235,20 +246,20 @@ def test_a_folder_in_its_place_is_a_message(fast: Path, gbeam: Call, name: str) 
 
 @given(data())
 @settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_no_damage_of_a_store_changes_a_figure(fast: Path, draw: DataObject) -> None:
+def test_no_damage_of_a_store_changes_a_figure(fast: Path, whole: Whole, draw: DataObject) -> None:
     """A few bytes changed, cut out or doubled anywhere: refused by name, or the same figures."""
     shutil.rmtree("there", ignore_errors=True)
-    journal, lines = _stored(fast)
-    whole = b"".join(lines)
-    at, size = draw.draw(integers(0, len(whole) - 1)), draw.draw(integers(0, 300))
-    inside = draw.draw(one_of(binary(max_size=4), just(whole[at : at + 2 * size]), just(b"\n")))
-    journal.write_bytes(whole[:at] + inside + whole[at + size :])
+    journal, lines = _stored(whole)
+    text = b"".join(lines)
+    at, size = draw.draw(integers(0, len(text) - 1)), draw.draw(integers(0, 300))
+    inside = draw.draw(one_of(binary(max_size=4), just(text[at : at + 2 * size]), just(b"\n")))
+    journal.write_bytes(text[:at] + inside + text[at + size :])
     try:
         found = gb.sweep(fast, OVER, MEASURE, **STATIC, store="there", resume=True)
     except InputError as error:
         assert error.where == "--out"
         return
-    assert np.array_equal(found.measures["flight.tip.z"], _whole(fast)) and found.counts == {"done": 40}
+    assert np.array_equal(found.measures["flight.tip.z"], whole[0]) and found.counts == {"done": 40}
 
 
 def test_a_figure_that_a_case_does_not_have_is_kept_as_none(fast: Path) -> None:

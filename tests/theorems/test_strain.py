@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -11,12 +12,22 @@ from hypothesis import strategies as st
 
 import gbeam as gb
 from gbeam.analysis.control.linearization import surface_gauge
+from gbeam.results.errors import FrequencyErrors
 from gbeam.studies.measurement import read_measurement
 
 from .strategies import EXACT, beams, few, first_frequency, numbers, theorem, vectors
 
 AGREES = 1e-6  # of the largest strain
 FACES = ("z", "y", "-z", "-y")
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _no_errors_of_poles() -> Iterator[None]:
+    """Leave out the errors of poles, which take most of a linear model's time and have tests of their own."""
+    with pytest.MonkeyPatch.context() as patch:
+        none = np.ones(1), FrequencyErrors(*np.zeros((4, 1)))
+        patch.setattr("gbeam.analysis.control.linearization.pole_errors", lambda *_: none)
+        yield
 
 
 @st.composite

@@ -219,6 +219,8 @@ def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gau
     if gauges or points.size:
         rows = list(range(len(structure.stations) + 1))
     outboard = replace(every, mass=every.mass[rows], loaded=every.loaded[rows])
+    # Without its words, which are a part of compiled programs: beams of one size share them.
+    structure = replace(structure, source=None, warnings=(), points=())
     return Outputs(structure, point.residual, outboard, which, strains, points)
 
 
