@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from gbeam.results.facts import facts_of
 from gbeam.results.provenance import Provenance
 from gbeam.results.study import Reproduction
 
@@ -13,19 +14,7 @@ LISTED = 20  # differences in words
 
 def to_json(provenance: Provenance) -> dict[str, Any]:
     """Provenance as JSON: the scenario's text, hashes and versions; of records not the bytes."""
-    provenance, environment = provenance.stated()
-    return {
-        "date": provenance.date,
-        "command": provenance.command,
-        "scenario": provenance.scenario,
-        "overrides": list(provenance.overrides),
-        "scenario_sha256": provenance.sha256,
-        "records": [{"motion": r.motion, "file": r.file, "sha256": r.sha256} for r in provenance.records],
-        "gbeam": environment.gbeam,
-        "python": environment.python,
-        "platform": environment.platform,
-        "dependencies": dict(environment.dependencies),
-    }
+    return facts_of(provenance.stated()[0])
 
 
 def reproduction_json(again: Reproduction) -> dict[str, Any]:

@@ -7,50 +7,35 @@ import platform
 import re
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from functools import cache
 from types import MappingProxyType
 
-
-@dataclass(frozen=True)
-class RecordFile:
-    """A flight's record as it was read.
-
-    Parameters
-    ----------
-    motion : str
-        Name of the flight.
-    file : str
-        Path as the scenario and its folder make it.
-    sha256 : str
-        Of its bytes.
-    content : bytes or None
-        All of them, where they are few enough to go with the result.
-    """
-
-    motion: str
-    file: str
-    sha256: str
-    content: bytes | None = field(default=None, repr=False)
+from gbeam.results.declared import INSIDE, fact, part, rows
+from gbeam.results.result import Part
 
 
 @dataclass(frozen=True)
-class Environment:
-    """Versions and platform that computed a result.
+class RecordFile(Part):
+    """A flight's record as it was read."""
 
-    Parameters
-    ----------
-    gbeam, python, platform : str
-        Versions; system, its release and the processor's kind.
-    dependencies : mapping of str to str
-        Version of each package that gbeam needs.
-    """
+    motion: str = fact("name of the flight")
+    file: str = fact("path as the scenario and its folder make it")
+    sha256: str = fact("hash of its bytes")
+    content: bytes | None = fact(
+        "all its bytes, where they are few enough to go with the result", key=None, default=None, repr=False
+    )
 
-    gbeam: str
-    python: str
-    platform: str
-    dependencies: Mapping[str, str]
+
+@dataclass(frozen=True)
+class Environment(Part):
+    """Versions and platform that computed a result."""
+
+    gbeam: str = fact("version of gbeam")
+    python: str = fact("version of Python")
+    platform: str = fact("system, its release and the processor's kind")
+    dependencies: Mapping[str, str] = fact("version of each package that gbeam needs")
 
     def changes(self, other: Environment) -> dict[str, tuple[str, str]]:
         """Differences to another: its name, here and there."""
@@ -64,33 +49,23 @@ class Environment:
 
 
 @dataclass(frozen=True)
-class Provenance:
-    """Where a result comes from.
+class Provenance(Part):
+    """Where a result comes from."""
 
-    Parameters
-    ----------
-    scenario : str
-        Text of the scenario file; empty where there was none.
-    overrides : tuple of str
-        The ``key=value`` changes made to it, in order.
-    sha256 : str
-        Of the scenario with its changes: of what it says, not of how it is written.
-    records : tuple of RecordFile
-    command : str
-        The command line; empty where gbeam was called from Python.
-    environment : Environment or None
-        None: the present one.
-    date : str
-        When the result was written, UTC, as ISO 8601 has it; empty: now, or what ``SOURCE_DATE_EPOCH`` says.
-    """
-
-    scenario: str = field(default="", repr=False)
-    overrides: tuple[str, ...] = ()
-    sha256: str = ""
-    records: tuple[RecordFile, ...] = ()
-    command: str = ""
-    environment: Environment | None = None
-    date: str = ""
+    scenario: str = fact("text of the scenario file; empty where there was none", default="", repr=False)
+    overrides: tuple[str, ...] = fact("the ``key=value`` changes made to it, in order", default=())
+    sha256: str = fact(
+        "hash of the scenario with its changes: of what it says, not of how it is written",
+        key="scenario_sha256",
+        default="",
+    )
+    records: tuple[RecordFile, ...] = rows("records of flights", "record", default=())
+    command: str = fact("the command line; empty where gbeam was called from Python", default="")
+    environment: Environment | None = part("versions and platform; None: the present ones", key=INSIDE, default=None)
+    date: str = fact(
+        "when the result was written, UTC, as ISO 8601 has it; empty: now, or what ``SOURCE_DATE_EPOCH`` says",
+        default="",
+    )
 
     def stated(self) -> tuple[Provenance, Environment]:
         """Provenance with its date and its environment, which takes some time to find, and that."""
