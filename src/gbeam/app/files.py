@@ -6,7 +6,6 @@ import errno
 import os
 import re
 import stat
-import tempfile
 from importlib.resources import files as resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import BinaryIO
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import TEXT_BYTES
+from gbeam.io.hdf5 import write_whole
 from gbeam.scenario.template import template
 from gbeam.scenario.text.revise import with_entry
 
@@ -52,18 +52,8 @@ def private(file: Path) -> BinaryIO:
 
 
 def write(file: Path, content: bytes) -> None:
-    """Write a file for its owner only: beside its place, onto the disk, then there; whole or not at all."""
-    # A link at its place is replaced and not followed.
-    handle, new = tempfile.mkstemp(prefix=f".{file.name}.", dir=file.parent)
-    try:
-        with os.fdopen(handle, "wb") as opened:
-            opened.write(content)
-            opened.flush()
-            os.fsync(opened.fileno())
-        os.replace(new, file)
-    except BaseException:
-        Path(new).unlink(missing_ok=True)
-        raise
+    """Write a file for its owner only, whole or not at all."""
+    write_whole(file, content, private=True)
 
 
 def store(folder: Path, name: str, content: bytes) -> Path:

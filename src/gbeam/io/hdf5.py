@@ -27,8 +27,11 @@ def write_groups(groups: Mapping[str, Group], path: str | os.PathLike[str]) -> N
     write_whole(path, image(groups))
 
 
-def write_whole(path: str | os.PathLike[str], data: bytes) -> None:
-    """Write a file under another name beside it, and rename it once it is on the disk; OSError if that cannot be."""
+def write_whole(path: str | os.PathLike[str], data: bytes, *, private: bool = False) -> None:
+    """Write a file under another name beside it, and rename it once it is on the disk; OSError if that cannot be.
+
+    A link at its place is replaced and not followed; a private file is for its owner only.
+    """
     final = Path(path)
     handle, name = tempfile.mkstemp(prefix=f".{final.name}-", dir=final.parent)
     try:
@@ -36,10 +39,10 @@ def write_whole(path: str | os.PathLike[str], data: bytes) -> None:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
-        # mkstemp's files are for their owner only; a result is as readable as any other new file.
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(name, 0o666 & ~mask)
+        if not private:  # as mkstemp's files are: a result is as readable as any other new file
+            mask = os.umask(0)
+            os.umask(mask)
+            os.chmod(name, 0o666 & ~mask)
         os.replace(name, final)
     except BaseException:
         os.unlink(name)
