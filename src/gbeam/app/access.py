@@ -12,6 +12,7 @@ import asyncio
 import secrets
 import socket
 import sys
+from functools import cached_property
 from typing import Any
 from urllib.parse import parse_qs
 
@@ -164,11 +165,26 @@ class Connections:
             if other in self._open:
                 self._wait(other)
 
-    def protocol(self, **given: Any) -> asyncio.Protocol:
-        """Return what speaks HTTP on a new connection, as uvicorn asks for it."""
+    @cached_property
+    def protocol(self) -> type[asyncio.Protocol]:
+        """HTTP as uvicorn speaks it, on connections that are counted."""
         from uvicorn.protocols.http.auto import AutoHTTPProtocol
 
-        return _Watched(AutoHTTPProtocol(**given), self)
+        connections = self
+
+        class Watched(AutoHTTPProtocol):  # type: ignore[misc, valid-type]  # one of two classes, chosen as it is imported
+            """A connection that is counted."""
+
+            def connection_made(self, transport: Any) -> None:
+                self.other = transport.get_extra_info("peername") or transport
+                connections.opened(self.other, transport)
+                super().connection_made(transport)
+
+            def connection_lost(self, error: Exception | None) -> None:
+                connections.closed(self.other)
+                super().connection_lost(error)
+
+        return Watched
 
     def opened(self, other: Any, transport: asyncio.Transport) -> None:
         """Keep a new connection, in place of the longest idle one where there are too many."""
@@ -207,32 +223,3 @@ def _descriptors() -> int:
 
     limit: int = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
     return 4 * MOST if limit == resource.RLIM_INFINITY else limit
-
-
-class _Watched(asyncio.Protocol):
-    """A protocol whose connection is counted."""
-
-    def __init__(self, inner: asyncio.Protocol, connections: Connections) -> None:
-        self._inner, self._connections = inner, connections
-        self._other: Any = None
-
-    def connection_made(self, transport: Any) -> None:
-        self._other = transport.get_extra_info("peername") or transport
-        self._connections.opened(self._other, transport)
-        self._inner.connection_made(transport)
-
-    def connection_lost(self, error: Exception | None) -> None:
-        self._connections.closed(self._other)
-        self._inner.connection_lost(error)
-
-    def data_received(self, data: bytes) -> None:
-        self._inner.data_received(data)
-
-    def eof_received(self) -> bool | None:
-        return self._inner.eof_received()
-
-    def pause_writing(self) -> None:
-        self._inner.pause_writing()
-
-    def resume_writing(self) -> None:
-        self._inner.resume_writing()

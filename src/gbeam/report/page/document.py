@@ -68,7 +68,9 @@ def _rows_table(rows: list[Mapping[str, Any]], units: Mapping[str, str], place: 
 
 
 def _shown(value: Any) -> Value:
-    return {True: "yes", False: "no"}[value] if isinstance(value, bool) else value
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return str(value) if isinstance(value, int) else value
 
 
 PAGES = {
