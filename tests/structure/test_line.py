@@ -143,6 +143,22 @@ def test_the_error_of_shapes_of_a_curved_beam_is_what_more_shapes_move() -> None
     np.testing.assert_allclose(lowest.errors.shapes[:3], above, rtol=0.1, atol=1e-6)
 
 
+@pytest.mark.parametrize("kind", ["TLAM", "FOAM", "CFOAM"])
+def test_the_polynomials_begin_at_the_exact_places(kind: str) -> None:
+    """And with their slopes, bodies beside the line too; to second order but for TLAM."""
+    bow = beam(
+        gb.Line.of_pieces([0.2, 0.0, 0.3], turn_z=[1.2, 0.5, 0.0], twist=[0.0, 0.0, 0.6]),
+        masses=[gb.PointMass(0.4, 0.5, offset=(0.01, 0.02, 0.05))],
+    )
+    one, two = (gb.assemble(bow, each, axial=1, y=2, z=2, twist=1) for each in (kind, "exact"))
+    body, exact = (structure.places[-1:] for structure in (one, two))
+    np.testing.assert_allclose(body.r0, exact.r0, atol=1e-9)
+    np.testing.assert_allclose(body.first, exact.first, atol=1e-9)
+    q = 1e-2 * np.arange(1.0, one.size + 1)
+    away = np.abs(one.particles.positions(q)[-1] - two.particles.positions(q)[-1]).max()
+    assert away < (1e-3 if kind == "TLAM" else 3e-5) and (kind != "TLAM" or away > 1e-4)
+
+
 def test_a_curved_beam_responds_alike_in_foam_and_in_the_exact_model() -> None:
     bow = beam(gb.Line.of_pieces([LENGTH], turn_z=1.2))
     turn = gb.Flight(z=gb.trapezoid(2.0, jerk=40.0, start=0.02, hold=0.2))

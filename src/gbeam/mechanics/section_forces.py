@@ -71,17 +71,19 @@ def section_forces(
         section_moment=section_moment,
         stress_tension=tension,
         stress_compression=compression,
-        von_mises=None
-        if is_jax(tension)
-        else np.maximum(
-            von_mises(section_data.stresses, section_force, section_moment), np.maximum(tension, -compression)
-        ),
+        von_mises=None if is_jax(tension) else _equivalent(section_data, section_force, section_moment),
         acceleration=a,
         root_fibre=None if is_jax(tension) else worst_fibre(section_data.values, 0, section_force, section_moment),
         yield_strength=section_data.yield_strength,
         fatigue_exponent=section_data.fatigue_exponent,
     )
     return about_the_hub(loads, motion, base.alpha_WB_B)
+
+
+def _equivalent(of: Sections, force: Array, moment: Array) -> Array:
+    """Von Mises stress of sections (t, s), which at a place between the points may be that of normal stress alone."""
+    tension, compression = extreme_stresses(of.values, force, moment)
+    return np.maximum(von_mises(of.stresses, force, moment), np.maximum(tension, -compression)) + 0.0  # no minus zero
 
 
 def sections(
