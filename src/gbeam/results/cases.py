@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.results.declared import BESIDE, declared, fact, labels, quantity, rows
-from gbeam.results.imitation.criteria import EXCEEDED, NOT_ACCEPTED
+from gbeam.results.imitation.criteria import BROKEN, EXCEEDED, NOT_ACCEPTED
 from gbeam.results.result import Figured, Flags, Floats, Part
 
 CONFIDENCE = 0.95
@@ -54,7 +54,7 @@ class Indices(Part):
 
 SAMPLE = "sample"  # the dimension of what is drawn from distributions
 # Outcomes of cases that are computed to the end, with every figure, and do not keep limits.
-ANSWERED = (NOT_ACCEPTED, EXCEEDED, "limits exceeded")
+ANSWERED = (NOT_ACCEPTED, EXCEEDED, BROKEN)
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -119,7 +119,6 @@ class Fit(Figured):
         return self._with_warnings(f"Fit of {len(self.parameters)} values to {self.data}", *rows)
 
 
-BROKEN = "limits exceeded"  # an outcome
 _TIGHT = 1e-3  # of a bound: nearer, it decides
 
 

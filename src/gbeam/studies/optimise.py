@@ -19,8 +19,9 @@ from gbeam.guards.kinds import KINDS
 from gbeam.guards.units import UnitError, argument
 from gbeam.mechanics.models import Model
 from gbeam.progress import Progress
+from gbeam.results.imitation.criteria import BROKEN
 from gbeam.results.result import Floats
-from gbeam.results.searches import BROKEN, Optimum, Requirement
+from gbeam.results.searches import Optimum, Requirement
 from gbeam.results.study import Study
 from gbeam.studies.answers import Facts
 from gbeam.studies.derivatives import Neighbourhood

@@ -31,7 +31,8 @@ from gbeam.motion.centrifuge.limits import exceeded
 from gbeam.numerics.filters import low_pass
 from gbeam.numerics.minimise import refine
 from gbeam.numerics.samples import interpolated
-from gbeam.results.imitation.placement import EXCEEDED, MEASURES, Candidate, Placement, Verification
+from gbeam.results.imitation.criteria import BROKEN
+from gbeam.results.imitation.placement import MEASURES, Candidate, Placement, Verification
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.structure.beam import refuse_curved
@@ -200,7 +201,7 @@ def place(
         verifications=verify(structure, flight, machines, settings) if check and allowed else (),
         refused=tuple(trials.refused),
         widths=(choice.widths[0], choice.widths[-1]),
-        outcome="done" if allowed else EXCEEDED,
+        outcome="done" if allowed else BROKEN,
         warnings=input_warnings(structure, flight, name=names[0], span=trials.span),
     )
 

@@ -21,7 +21,7 @@ from gbeam.motion.bases.base import gradient
 from gbeam.motion.centrifuge.history import axes_result, columns
 from gbeam.motion.plausibility import implausible_motion
 from gbeam.results.imitation.accounting import TOLERANCE, PeakPair
-from gbeam.results.imitation.criteria import Limit, checked_limits
+from gbeam.results.imitation.criteria import BROKEN, Limit, checked_limits
 from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.machine import Commands
 from gbeam.structure.beam import Beam, refuse_curved
@@ -78,7 +78,7 @@ def plan(
     first, last = (float(end) for end in motion.extent)
     time = times_between(first, last)
     axes = axes_result(motion, time)
-    outcome = "done" if axes.within_limits else "limits exceeded"
+    outcome = "done" if axes.within_limits else BROKEN
     where, span = f"motion.{name}" if name else "motion", motion.target.span
     warnings = implausible_motion(motion, where, span)
     warnings += implausible_motion(motion.flight, f"motion.{tracks}" if tracks else "flight", span)

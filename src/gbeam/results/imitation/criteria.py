@@ -21,6 +21,7 @@ Limit = float | tuple[float, float]
 Value = tuple[float, str]  # and where it occurs
 SETTINGS = ("tolerance", "tolerance_of")  # beside the limits in a table of acceptance
 NOT_ACCEPTED, EXCEEDED = "not accepted", "machine limits exceeded"
+BROKEN = "limits exceeded"  # outcome of a plan, a placement or a search
 GOOD = ("done", "accepted")  # states of which nothing is to be said
 
 

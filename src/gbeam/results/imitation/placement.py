@@ -12,7 +12,6 @@ from gbeam.results.machine import LimitUse
 from gbeam.results.result import Part, Result
 
 MEASURES = ("root-shear", "root-moment", "vibration", "tip")
-EXCEEDED = "limits exceeded"  # an outcome
 _LEVER = 0.1  # least part of the total error that a move must save to be worth it
 _FULL = 0.99  # share of a limit from which on it is used up
 _SAME = 1e-3  # of the length: control points nearer than this are one
