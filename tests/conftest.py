@@ -50,16 +50,3 @@ def _release_programs() -> Iterator[None]:
 
         jax.clear_caches()
         gc.collect()
-
-
-@pytest.fixture(scope="module")
-def optimized_steps() -> Iterator[None]:
-    """Let nonlinear steps, where there are thousands, be an optimized program: compiling costs less than it saves."""
-    import jax
-
-    from gbeam.integrate import newton
-
-    with pytest.MonkeyPatch.context() as patch:
-        options = {"xla_backend_optimization_level": 1}
-        patch.setattr(newton, "quick", jax.jit(newton.steps, compiler_options=options))
-        yield

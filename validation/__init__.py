@@ -12,6 +12,7 @@ MODULES: tuple[str, ...] = (
     "codes.kane",
     "codes.hermite",
     "codes.calculix",
+    "codes.calculix_solid",
     "codes.exudyn_plane",
     "codes.exudyn_space",
     "published.paper2009",

@@ -52,7 +52,7 @@ VARYING = LinearEquations(_MASS, _varying, lambda t: t)  # C, K and F vary with 
 @record
 class Pendulum:
     def __call__(self, q: Any, qd: Any, qdd: Any, force: Any) -> Any:
-        return qdd + 0.1 * qd + namespace(q).sin(q) - force
+        return qdd + 0.1 * qd + namespace(q).sin(q) - force[..., None]
 
 
 PENDULUM = NonlinearEquations(Pendulum(), lambda t: namespace(t).cos(t))
@@ -63,7 +63,7 @@ class Pushed:
     """q̈ = F(t), as a residual."""
 
     def __call__(self, q: Any, qd: Any, qdd: Any, force: Any) -> Any:
-        return qdd - force
+        return qdd - force[..., None]
 
 
 @record
@@ -71,7 +71,7 @@ class Bead:
     """On a parabola: its mass depends on where it is."""
 
     def __call__(self, q: Any, qd: Any, qdd: Any, force: Any) -> Any:
-        return (1 + q**2) * qdd + q * qd**2 + q - force
+        return (1 + q**2) * qdd + q * qd**2 + q - force[..., None]
 
 
 BEAD = NonlinearEquations(Bead(), lambda t: 0.5 * np.sin(t))

@@ -132,7 +132,7 @@ class Rootless:
     """q̈ + k q² + L = 0, the load L from t = 1 s on: no step of these lengths has a solution with it."""
 
     def __call__(self, q: Any, qd: Any, qdd: Any, t: Any) -> Any:
-        return qdd + 1e7 * q**2 + namespace(t).where(t > 1 - 1e-9, 1e7, 0.0)
+        return qdd + 1e7 * q**2 + namespace(t).where(t > 1 - 1e-9, 1e7, 0.0)[..., None]
 
 
 @record
@@ -140,13 +140,13 @@ class Massless:
     """(1 or 0) q̈ = 1: no mass from t = 1 s on."""
 
     def __call__(self, q: Any, qd: Any, qdd: Any, t: Any) -> Any:
-        return namespace(t).where(t > 1 - 1e-9, 0.0, 1.0) * qdd - 1
+        return namespace(t).where(t > 1 - 1e-9, 0.0, 1.0)[..., None] * qdd - 1
 
 
 @record
 class Undefined:
     def __call__(self, q: Any, qd: Any, qdd: Any, t: Any) -> Any:
-        return qdd - namespace(t).sqrt(1 - t)
+        return qdd - namespace(t).sqrt(1 - t)[..., None]
 
 
 @pytest.mark.parametrize("residual", [Rootless(), Massless(), Undefined()], ids=["no root", "no mass", "not a number"])
@@ -164,7 +164,7 @@ def test_failure_ends_the_run_at_the_last_good_step(residual: Any, count: int) -
 @record
 class Impossible:
     def __call__(self, q: Any, qd: Any, qdd: Any, t: Any) -> Any:
-        return qdd**2 + 1 + t
+        return qdd**2 + 1 + t[..., None]
 
 
 def test_failure_at_the_start() -> None:

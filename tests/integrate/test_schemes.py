@@ -159,7 +159,7 @@ def cornered(t: Any) -> Any:
 @record
 class Duffing:
     def __call__(self, q: Any, qd: Any, qdd: Any, force: Any) -> Any:
-        return qdd + 0.2 * qd + 20 * q + 5 * q**3 - force
+        return qdd + 0.2 * qd + 20 * q + 5 * q**3 - force[..., None]
 
 
 def duffing_at(end: float, cubic: float) -> np.ndarray:

@@ -20,8 +20,6 @@ from validation.published.tables import SLEWS, TORQUES
 
 from .test_hubbeam2009 import structure
 
-pytestmark = pytest.mark.usefixtures("optimized_steps")
-
 # A step for all models: its error, of 5e-4 and less, is common to them and drops out of their differences.
 STEP = 0.02  # s
 EXACT, SHAPES, BENDING = (2, 5), (5, 5), (0, 5)  # BENDING: the Lagrangian form of SFOAM

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 import gbeam as gb
 from gbeam.motion import constant
-from gbeam.solids.elements import KINDS, mass_matrix, stiffness_matrix
+from gbeam.solids.elements import KINDS, STRAIN, chunks, mass_matrix, stiffness_matrix
 
 from .bodies import PAIRS, STEEL, STIFF, block, solid
 
@@ -236,6 +236,44 @@ def test_a_mesh_comes_back_from_files(tmp_path: Path, name: str) -> None:
     # A wall by its corners alone holds as well.
     assert held.clamped.sum() == (8 if name.endswith(".inp") else 4)
     assert held.mass == pytest.approx((STEEL.density + STIFF.density) * 0.1 * 0.05 * 0.03)
+
+
+def energy(mesh: gb.SolidMesh, moved: np.ndarray) -> float:
+    """Strain energy of displacements (k, 3) with Green's strain."""
+    total = 0.0
+    for part, which, volume, gradients, _ in chunks(mesh.points, mesh.blocks, "stiffness"):
+        slopes = np.einsum("eqkd,ekc->eqcd", gradients, moved[part.nodes[which]])
+        green = slopes + np.einsum("eqca,eqcd->eqad", slopes, slopes) / 2
+        strain = np.einsum("vcd,eqcd->eqv", STRAIN, green)
+        total += 0.5 * np.einsum("eq,eqv,vw,eqw->", volume, strain, part.elasticity, strain)
+    return total
+
+
+@pytest.mark.parametrize("angle", [0.0, 1.2])
+def test_loads_stiffen_as_the_energy_of_greens_strain_says(angle: float) -> None:
+    """Of a strip and of one bent about y: the mixed third derivative of its energy, by a load and twice by a mode."""
+
+    def bent(x: np.ndarray) -> np.ndarray:
+        turn = angle * x[:, 0] / 0.3
+        radius = 0.3 / max(angle, 1e-9) - x[:, 2]
+        return np.stack([radius * np.sin(turn), x[:, 1], radius * (1 - np.cos(turn)) + x[:, 2]], axis=1) if angle else x
+
+    mesh = solid(block("hexahedron20", (6, 1, 1), (0.3, 0.05, 0.01), bent))
+    model = mesh.reduced(modes=3, damping_ratio=0)
+    c = model.structure.coefficients
+    for load in (np.array([1.0, 0, 0]), np.array([0, 0, 1.0])):
+        pushed = model.shapes @ np.linalg.solve(c.stiffness, c.f_a.T @ load)
+        added = np.tensordot(load, c.k_a, axes=1)
+        for mode in range(3):
+            shape = model.shapes[:, :, mode]
+            a, b = 1e-3 / np.abs(pushed).max(), 1e-3 / np.abs(shape).max()
+            odd = sum(
+                i * (energy(mesh, i * a * pushed + j * b * shape) - energy(mesh, i * a * pushed))
+                for i in (1, -1)
+                for j in (1, -1)
+            )
+            scale = max(abs(added[mode, mode]), 1e-6 * c.stiffness[mode, mode])
+            assert odd / (2 * a * b**2) == pytest.approx(added[mode, mode], abs=1e-3 * scale)
 
 
 def test_the_bracket_of_the_examples_is_what_its_script_makes() -> None:

@@ -29,8 +29,8 @@ def bar(kind: str, material: gb.Material = STIFF) -> gb.SolidModel:
 def test_a_bar_that_is_pulled_by_its_inertia(kind: str) -> None:
     """ρ a (L − x), exact, principal along x and the same in all elements; spinning, ρ ω² (L² − x²)/2."""
     model = bar(kind)
-    pulled = model.stress(gb.static(model.structure, acceleration=(-50.0, 0.0, 0.0)))
-    whole = STIFF.density * 50 * L
+    pulled = model.stress(gb.static(model.structure, acceleration=(-0.5, 0.0, 0.0)))
+    whole = STIFF.density * 0.5 * L
     assert pulled.worst.von_mises == pytest.approx(whole, rel=1e-6) and pulled.worst.place[0] == 0
     np.testing.assert_allclose(pulled.worst.principal, [whole, 0, 0], atol=1e-5 * whole)
     assert pulled.worst.spread < 1e-5 and pulled.nearest_yield is None

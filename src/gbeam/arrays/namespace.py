@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from typing import Any
+
+import numpy as np
 
 _PLAIN = frozenset({"numpy", "builtins"})  # modules whose types JAX has no part in: most values, known at once
 
@@ -25,9 +28,17 @@ def namespace(*values: Any) -> Any:
             import gbeam.arrays.jax_setup  # noqa: F401
 
             return jnp
-    import numpy as np
-
     return np
+
+
+def concatenated(parts: Sequence[Any]) -> Any:
+    """Concatenate arrays (..., n) along their last axis, the others broadcast."""
+    xp = namespace(*parts)
+    shapes = {part.shape[:-1] for part in parts}
+    if len(shapes) > 1:
+        shape = np.broadcast_shapes(*shapes)
+        parts = [xp.broadcast_to(part, (*shape, part.shape[-1])) for part in parts]
+    return xp.concatenate(parts, axis=-1)
 
 
 def has_unit(value: Any) -> bool:
@@ -57,3 +68,9 @@ def holds_jax(*records: Any) -> bool:
     """Whether an array anywhere in some records is JAX's, or traced by it."""
     jax = sys.modules.get("jax")
     return jax is not None and any(is_jax(leaf) for leaf in jax.tree.leaves(records))
+
+
+def holds_tracer(*records: Any) -> bool:
+    """Whether an array anywhere in some records is traced by JAX."""
+    jax = sys.modules.get("jax")
+    return jax is not None and any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree.leaves(records))

@@ -105,6 +105,22 @@ def altered(value: Any, **changes: Any) -> Any:
     return type(value)(**{**(arguments_of(value) or {}), **changes})
 
 
+def each_leaf(function: Callable[[Any], Any], tree: Any) -> Any:
+    """Apply a function to every array of records, tuples, lists and None; JAX's `tree.map` without JAX."""
+    if tree is None:
+        return None
+    if dataclasses.is_dataclass(tree):
+        leaves, _ = leaves_and_statics(type(tree))
+        changed: Any = object.__new__(type(tree))
+        for field in dataclasses.fields(tree):
+            value = getattr(tree, field.name)
+            object.__setattr__(changed, field.name, each_leaf(function, value) if field.name in leaves else value)
+        return changed
+    if isinstance(tree, list | tuple):
+        return type(tree)([each_leaf(function, part) for part in tree])
+    return function(tree)
+
+
 def register_all(register: Callable[[type], None]) -> None:
     """Give every record, those so far and those to come, to `register`; called once, when JAX is imported."""
     global _register

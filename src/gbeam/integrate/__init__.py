@@ -1,8 +1,8 @@
 """Structural time integration; knows nothing of beams.
 
 A scheme is data: which combinations of the last state its stages start from, and what their accelerations add. Linear
-equations become one affine map a step, found for many steps at once; nonlinear ones a fixed number of corrections with
-a Jacobian per chunk, checked afterwards.
+equations become one affine map a step, found for many steps at once; nonlinear ones are solved in windows of many
+steps by Newton's method. Neither compiles anything; batches and what JAX traces are compiled.
 """
 
 from gbeam.integrate.driver import integrate

@@ -34,11 +34,6 @@ class Chunk:
         """Flags of the steps that are no fillings."""
         return (np.arange(len(self.steps) // len(self.last)) <= self.last[:, None]).ravel()
 
-    @cached_property
-    def kept(self) -> Any:
-        """Flags of the steps that belong to the result."""
-        return self.inside & self.steps.kept
-
     @property
     def count(self) -> int:
         """Groups that are not of fillings."""
@@ -48,19 +43,6 @@ class Chunk:
     def end(self) -> Steps:
         """The last step that is no filling."""
         return self.steps[np.flatnonzero(self.inside)[-1]]
-
-    def given(self, carry: Any) -> tuple[Any, Any, Any, Any, Any]:
-        """Arguments of :func:`newton.steps`."""
-        return self.tableau, carry, self.inputs, self.at_ends, self.last
-
-    def one_by_one(self, scheme: Scheme, carry: Any) -> tuple[Any, Any, Any, Any]:
-        """Arguments of :func:`newton.safe`."""
-        import jax
-
-        flat = [
-            jax.tree.map(lambda leaf: leaf.reshape(-1, *leaf.shape[2:]), part) for part in (self.inputs, self.at_ends)
-        ]
-        return scheme.tableau(self.steps.length), carry, flat[0], flat[1]
 
 
 @dataclass(frozen=True)

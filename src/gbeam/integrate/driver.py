@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.namespace import holds_tracer, is_jax, namespace
 from gbeam.integrate import linear
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations, Trajectory
 from gbeam.integrate.schemes import Scheme, added
 from gbeam.integrate.steps import Corners, Floats, Steps, fitted
+from gbeam.integrate.windows import windows
 
 _LINEAR_CHUNK = 500  # steps whose maps are found at once: as many as stay in a cache
 Piece = tuple[Any, ...]  # q, q̇, q̈ (k, n), and which of the steps were solved (k,)
@@ -82,59 +83,22 @@ def _linear(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: 
 
 
 def _nonlinear(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:
-    import jax
-
-    from gbeam.integrate import newton
-    from gbeam.integrate.chunks import chunks, stretches
-
-    drive, residual = equations.drive, equations.residual
-    qdd = newton.accelerations(residual, q[None], qd[None], drive(steps.first[:1]))
-    traced = isinstance(qdd, jax.core.Tracer)
-    xp: Any = jax.numpy if traced else np
-    qdd = xp.asarray(qdd)[0]
-    yield *(xp.asarray(x, dtype=float)[None] for x in (q, qd, qdd)), np.array([True])
-
-    def begun(q: Any, qd: Any, qdd: Any, length: Any) -> newton.Carry:
-        x = xp.broadcast_to(qdd, (len(scheme.offsets), len(q)))
-        return newton.Carry(scheme.tableau(length).first @ xp.stack([q, qd, qdd]), x, x)
-
-    carry, corrections = begun(q, qd, qdd, steps.length[0]), newton.CORRECTIONS[scheme.order]
-    if traced:
-        yield _traced(equations, scheme, carry, steps)
-        return
-    sound = True
-    for chunk in chunks(drive, scheme, stretches(scheme, steps, newton.PER_JACOBIAN[scheme.order])):
-        for tries in (corrections, *newton.PATIENT):
-            after, (*piece, left) = newton.quick(residual, *chunk.given(carry), tries, chunk.count)
-            if np.all(np.asarray(left)[chunk.inside] <= newton.ACCEPTED):  # NaN is not
-                solved = np.ones(len(chunk.inside), dtype=bool)
-                break
-        else:
-            after, (*piece, solved) = newton.safe(residual, *chunk.one_by_one(scheme, carry), chunk.inside)
-        piece = [np.asarray(values) for values in piece]
-        carry, end = after, chunk.end
-        if scheme.ends and end.anew:
-            q, qd = (values[chunk.inside][-1] for values in piece[:2])
-            begin, final = (
-                np.asarray(newton.accelerations(residual, q[None], qd[None], drive(np.array([t]))))[0]
-                for t in (end.resume, end.end)
-            )
-            carry = begun(q, qd, begin, end.following)
-            at_end = np.arange(len(chunk.inside)) == np.flatnonzero(chunk.inside)[-1]
-            piece[2] = np.where(at_end[:, None], final, piece[2])
-        # A part of a step that has not been solved spoils what follows.
-        solved = np.logical_and.accumulate(np.append(sound, np.asarray(solved)[chunk.inside]))[1:]
-        sound = bool(solved[-1])
-        yield *(values[chunk.kept] for values in piece), solved[chunk.steps.kept[chunk.inside]]
+    if holds_tracer(equations.residual, q, qd, equations.drive(steps.first[:1])):
+        return _traced(equations, scheme, q, qd, steps)
+    return windows(equations, scheme, np.asarray(q, dtype=float), np.asarray(qd, dtype=float), steps)
 
 
-def _traced(equations: NonlinearEquations, scheme: Scheme, carry: Any, steps: Steps) -> Piece:
+def _traced(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:
     """All steps in one program; from one that fails on, the values are NaN, and so are their derivatives."""
     import jax
     import jax.numpy as jnp
 
     from gbeam.integrate import newton
 
+    qdd = newton.accelerations(equations.residual, q[None], qd[None], equations.drive(steps.first[:1]))[0]
+    yield *(jnp.asarray(each, dtype=float)[None] for each in (q, qd, qdd)), np.array([True])
+    x = jnp.broadcast_to(qdd, (len(scheme.offsets), len(q)))
+    carry = newton.Carry(scheme.tableau(steps.length[0]).first @ jnp.stack([q, qd, qdd]), x, x)
     times = np.stack([steps.times(offset) for offset in scheme.offsets], axis=1)
     inputs = jax.tree.map(lambda leaf: leaf.reshape(*times.shape, *leaf.shape[1:]), equations.drive(times.ravel()))
     at_ends = None if scheme.ends else equations.drive(steps.end)
@@ -142,4 +106,4 @@ def _traced(equations: NonlinearEquations, scheme: Scheme, carry: Any, steps: St
     tableau = scheme.tableau(steps.length)
     _, (*piece, solved) = newton.safe(equations.residual, tableau, carry, inputs, at_ends, every)
     sound = jnp.where(jnp.cumprod(solved), 1.0, jnp.nan)[:, None]
-    return *(sound * values for values in piece), every
+    yield *(sound * values for values in piece), every

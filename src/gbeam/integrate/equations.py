@@ -52,7 +52,9 @@ class LinearEquations:
 
 @dataclass(frozen=True, eq=False)
 class NonlinearEquations:
-    """r(q, q̇, q̈; inputs(t)) = 0, (n,), linear in q̈; the residual's arrays are arguments of the compiled program."""
+    """r(q, q̇, q̈; inputs(t)) = 0, (..., n), analytic and linear in q̈; leading axes of its arguments are broadcast. Its
+    arrays are arguments of a compiled program.
+    """
 
     residual: Any
     drive: Drive

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import namespace
+from gbeam.integrate.derivatives import solved
 from gbeam.integrate.equations import LinearEquations
 from gbeam.integrate.schemes import Scheme
 from gbeam.integrate.steps import Steps
@@ -22,18 +23,8 @@ def start(equations: LinearEquations, scheme: Scheme, steps: Steps, q: Array, qd
     """The first z (m, n) from an initial state, and the accelerations (n,) that its equations demand."""
     c, k, f = (x[0] for x in equations.matrices(equations.drive(steps.first[:1])))
     xp = namespace(equations.mass, k, q)
-    qdd = _solved(xp, equations.mass, (f - k @ q - c @ qd)[:, None])[:, 0]
+    qdd = solved(equations.mass, (f - k @ q - c @ qd)[:, None])[:, 0]
     return scheme.tableau(steps.length[0]).first @ xp.stack([q, qd, qdd]), qdd
-
-
-def _solved(xp: Any, left: Array, right: Array) -> Array:
-    """Solutions of linear systems; NaN where one is singular, which NumPy raises an error for."""
-    try:
-        return xp.linalg.solve(left, right)
-    except np.linalg.LinAlgError:
-        if left.ndim == 2:
-            return np.full_like(right, np.nan)
-        return np.stack([_solved(xp, *pair) for pair in zip(left, right, strict=True)])
 
 
 def _sum(weights: Array, values: Array) -> Array:
@@ -60,18 +51,18 @@ def chunk(
     at = [(c + added[1], k, f) for c, k, f in at]
     anew = scheme.ends and not steps.equal
     groups = [np.arange(n)] if xp is not np or anew else _uncoupled(mass, at)
-    solved = [_stages(xp, t, mass, at, group, m) for group in groups]
-    maps = solved[0][1] if len(groups) == 1 else np.zeros((count, m, n, m * n + 1))
+    answers = [_stages(xp, t, mass, at, group, m) for group in groups]
+    maps = answers[0][1] if len(groups) == 1 else np.zeros((count, m, n, m * n + 1))
     if anew:
-        ends = _sum(t.end_z, _unit(m, n)) + _sum(t.end_x, solved[0][0])
+        ends = _sum(t.end_z, _unit(m, n)) + _sum(t.end_x, answers[0][0])
         maps = _started_anew(equations, scheme, maps, ends, steps)
-    for group, (_, part) in zip(groups, solved, strict=True):
+    for group, (_, part) in zip(groups, answers, strict=True):
         if len(groups) > 1:
             columns = np.append((n * np.arange(m)[:, None] + group).ravel(), m * n)
             maps[:, :, group[:, None], columns] = part
     before, last = _recur(xp, xp.reshape(maps, (count, m * n, m * n + 1)), xp.reshape(z, (-1,)))
     states, parts = xp.reshape(before, (count, m, n)), []
-    for group, (x, _) in zip(groups, solved, strict=True):
+    for group, (x, _) in zip(groups, answers, strict=True):
         state = xp.reshape(states if len(groups) == 1 else states[:, :, group], (count, -1, 1))
         flat = xp.reshape(x, (count, stages * len(group), -1))
         parts.append(xp.reshape((flat[..., :-1] @ state)[..., 0] + flat[..., -1], (count, stages, -1)))
@@ -124,7 +115,7 @@ def _stages(
         rows.append(xp.concatenate(blocks, axis=-1) if stages > 1 else blocks[0])
         sides.append(xp.concatenate([*onto, xp.broadcast_to(f, onto[0].shape[:2])[..., None]], axis=-1))
     left = xp.concatenate(rows, axis=-2) if stages > 1 else rows[0]
-    x = _solved(xp, left, xp.concatenate(sides, axis=-2) if stages > 1 else sides[0])
+    x = solved(left, xp.concatenate(sides, axis=-2) if stages > 1 else sides[0])
     x = xp.reshape(x, (-1, stages, n, m * n + 1))
     return x, _sum(t.g, _unit(m, n)) + _sum(t.d, x)
 
@@ -138,7 +129,7 @@ def _started_anew(equations: LinearEquations, scheme: Scheme, maps: Array, ends:
     q, qd = ends[some, 0], ends[some, 1]
     force = -(k @ q + c @ qd)
     force[..., -1] += f
-    qdd = _solved(np, equations.mass, force)
+    qdd = solved(equations.mass, force)
     maps[some] = _sum(scheme.tableau(steps.following[some]).first, np.stack([q, qd, qdd], axis=1))
     return maps
 

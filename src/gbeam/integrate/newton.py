@@ -1,9 +1,9 @@
-"""Nonlinear equations in time, compiled by JAX: steps without conditions, and the safe way for those that fail.
+"""Nonlinear equations in time, compiled by JAX: steps of many runs without conditions, and what JAX differentiates.
 
 On a CPU a loop with a condition inside costs as much as the arithmetic of a step. So a step makes a given number of
 corrections from an extrapolated guess, with the inverse Jacobian of its chunk's beginning; the size of the last two
 says what error is left. A run of steps in which one leaves too much is done again with more corrections by the same
-program, and where these do not suffice by Newton's method proper.
+program. What JAX traces takes Newton's method proper.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from gbeam.integrate.schemes import Tableau
 Array = Any
 # By the order of the scheme, since a higher one takes longer steps: corrections per step, steps per Jacobian.
 CORRECTIONS, PER_JACOBIAN = {2: 4, 4: 5}, {2: 20, 4: 2}
-PATIENT = 8, 25  # corrections where those did not suffice
+PATIENT = 8  # corrections where those did not suffice
 ACCEPTED = 1e-8  # of the largest acceleration: the error that the last correction may leave
 _TOLERANCE, _ROUNDING, _ITERATIONS = 1e-9, 1e3, 25  # Newton's method proper
 
@@ -146,9 +146,6 @@ def _first(group: Any, carry: Carry, by_group: Any, count: Any, shape: tuple[int
 
     history = (*[jnp.zeros(shape)] * 3, jnp.zeros(shape[:-1]))
     return jax.lax.fori_loop(0, count, turn, (carry, history))
-
-
-quick = jax.jit(steps)
 
 
 @jax.jit

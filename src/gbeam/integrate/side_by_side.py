@@ -204,7 +204,7 @@ def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
         tableau, inputs, at_ends = _stacked([(chunk.tableau, chunk.inputs, chunk.at_ends) for chunk in every])
         result: Any = None
         solved = np.zeros(len(runs), dtype=bool)
-        for tries in (corrections, newton.PATIENT[0]):
+        for tries in (corrections, newton.PATIENT):
             arguments = tableau, carry, inputs, at_ends, every[0].last, tries, every[0].count
             new = jax.tree.map(np.asarray, _quick(*residual, *arguments))
             # A run that is solved keeps what it has: nothing of it depends on the others.

@@ -7,7 +7,6 @@ first order, whatever the scheme; a corner one of third, which only schemes of f
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -15,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.arrays.tree import each_leaf
 from gbeam.integrate.equations import Drive
 from gbeam.integrate.schemes import Scheme
 
@@ -45,26 +45,18 @@ class Corners:
         # Between them the drive is seen at its size: a sine is zero at both its ends.
         between = time + _BETWEEN * np.diff(time, append=end)
         count, jump = len(time), np.zeros(len(time), dtype=bool)
-        for leaf in leaves(drive(np.concatenate([time - beside, time + beside, between]))):
+
+        def judge(leaf: Any) -> None:
             values = np.asarray(leaf).reshape(3, count, -1)
             change = np.abs(values[1] - values[0]).max(axis=1, initial=0.0)
-            jump |= change > _JUMP * np.abs(values).max(initial=0.0)
+            jump[:] |= change > _JUMP * np.abs(values).max(initial=0.0)
+
+        each_leaf(judge, drive(np.concatenate([time - beside, time + beside, between])))
         return Corners(time, jump)
 
     def felt_by(self, scheme: Scheme) -> Corners:
         """Times at which a scheme's steps have to end."""
         return self if scheme.order > 2 else Corners(self.time[self.jump], self.jump[self.jump])
-
-
-def leaves(inputs: Any) -> Iterator[Any]:
-    """Arrays of what a drive returns: records, tuples, arrays and None."""
-    if dataclasses.is_dataclass(inputs):
-        inputs = [getattr(inputs, field.name) for field in dataclasses.fields(inputs)]
-    if isinstance(inputs, list | tuple):
-        for part in inputs:
-            yield from leaves(part)
-    elif inputs is not None:
-        yield inputs
 
 
 @dataclass(frozen=True, eq=False)

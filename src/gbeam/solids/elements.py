@@ -16,6 +16,7 @@ from gbeam.results.result import Floats
 
 Indices = NDArray[np.intp]
 CHUNK = 4000  # elements at once
+NEAR = 1.5  # ratio of two frequencies
 
 _CORNERS = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
 _EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
@@ -186,16 +187,30 @@ def stress_at(block: Block, nodes: Indices, gradients: Floats, u: Floats) -> Flo
     return np.einsum("vw,wcd,eqcdm->eqvm", block.elasticity, STRAIN, moved, optimize=True)
 
 
-def geometric_stiffness(points: Floats, blocks: Sequence[Block], static: Floats, shapes: Floats) -> Floats:
-    """Geometric stiffness (m, n, n) in `shapes` (k, 3, n) at the stress of static displacements (k, 3, m)."""
+def geometric_stiffness(
+    points: Floats, blocks: Sequence[Block], static: Floats, shapes: Floats, squares: Floats
+) -> Floats:
+    """Stiffness (m, n, n) that static displacements (k, 3, m) add in `shapes` (k, 3, n), to first order: with Green's
+    strain, the static stress in the squares of the slopes, and the stress of the shapes in their slopes as they turn.
+
+    `squares` (n,) are those of the shapes' frequencies. The second part couples soft coordinates with stiff ones by a
+    multiple of the stiff ones' stiffness. The square of that, which terms of fourth degree would take away again, is of
+    second order: of it only near coordinates are coupled.
+    """
     m, n = static.shape[-1], shapes.shape[-1]
-    total = np.zeros((m, n, n))
+    stressed, turned = np.zeros((2, m, n, n))
     for block, part, volume, gradients, _ in chunks(points, blocks, "stiffness"):
         nodes = block.nodes[part]
-        stress = stress_at(block, nodes, gradients, static)[:, :, TENSOR] * volume[..., None, None, None]
+        weights = volume[..., None, None, None]
+        stress = stress_at(block, nodes, gradients, static)[:, :, TENSOR] * weights
+        of_shapes = (stress_at(block, nodes, gradients, shapes)[:, :, TENSOR] * weights).reshape(-1, n)
         slopes = np.einsum("eqkd,ekcn->eqdcn", gradients, shapes[nodes], optimize=True)
-        flat = slopes.reshape(-1, n)
+        moved = np.einsum("eqkd,ekcm->eqdcm", gradients, static[nodes], optimize=True)
+        flat, wide = slopes.reshape(-1, n), slopes.swapaxes(2, 3).reshape(*slopes.shape[:2], 3, -1)
         for load in range(m):
             pulled = np.matmul(stress[..., load], slopes.reshape(*slopes.shape[:3], -1))
-            total[load] += flat.T @ pulled.reshape(-1, n)
-    return (total + total.swapaxes(1, 2)) / 2
+            stressed[load] += flat.T @ pulled.reshape(-1, n)
+            turned[load] += of_shapes.T @ np.matmul(moved[..., load], wide).reshape(-1, n)
+    ratio = np.sqrt(np.maximum.outer(squares, squares) / np.minimum.outer(squares, squares))
+    total = stressed / 2 + turned * (ratio < NEAR)
+    return total + total.swapaxes(1, 2)

@@ -235,7 +235,9 @@ class SolidMesh(Value):
         reduced = reduce(stiffness, kron(mass, eye_array(3), format="csr"), loads, free, modes)
         del stiffness
         shapes, still = (each.reshape(len(weights), 3, -1) for each in (reduced.shapes, reduced.static))
-        fields = geometric_stiffness(self.points, self.blocks, still, shapes).reshape(3, 4, *2 * shapes.shape[2:])
+        fields = geometric_stiffness(self.points, self.blocks, still, shapes, reduced.squares).reshape(
+            3, 4, *2 * shapes.shape[2:]
+        )
         frequency = np.sqrt(reduced.squares[:modes]) / (2 * np.pi)
         error, doubts = _mesh_errors(frequency, coarser)
         structure = Structure.of_particles(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import concatenated, namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.equations.hub import FreeHub, Ground, free_hub
 from gbeam.mechanics.equations.inertia import Inertia
@@ -68,7 +68,6 @@ class CompleteHub:
 
     def residual(self, y: Array, yd: Array, ydd: Array, torque: Array, load_values: Array | None = None) -> Array:
         """Residual (..., n + 1) of hub and beam under a torque on the hub, N m, and load components (..., loads, 6)."""
-        xp = namespace(y, torque, self.mount.R_HB)
         (angle, q), (rate, qd), (change, qdd) = ((each[..., 0], each[..., 1:]) for each in (y, yd, ydd))
         _, onward, axis = self.mount.R_HB  # the hub's axes in those of the base
         base = self.mount.base(angle, rate, change)
@@ -80,7 +79,7 @@ class CompleteHub:
         # About the root, and of the resultant there, e × r_O being along y of the hub.
         about = moment @ axis + self.mount.radius * (force @ onward)
         turning = self.ground.torque(angle, rate, change) + about - torque
-        return xp.concatenate([turning[..., None], beam], axis=-1)
+        return concatenated([turning[..., None], beam])
 
     def about(self, c: Coefficients) -> FreeHub:
         """Put a linear model on the hub's rim."""

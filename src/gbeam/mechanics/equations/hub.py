@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import concatenated, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.equations.linear import Coefficients, LoadTerms
 
@@ -40,16 +40,15 @@ class Weight:
     s2: Array
 
     def forces(self, angle: Array, q: Array) -> tuple[Array, Array]:
-        """Torque of gravity about the axis, N m, and its forces on the coordinates, (n,)."""
+        """Torque (...) of gravity about the axis, N m, and its forces on the coordinates, (..., n)."""
         xp = namespace(self.s0, angle, q)
         x, y, z = self.gravity
         c, s = xp.cos(angle), xp.sin(angle)
-        g = xp.stack([c * x + s * y, c * y - s * x, z + 0 * c]) @ self.R_HB
-        moment = self.s0 + self.s1 @ q + 0.5 * (self.s2 @ q) @ q
-        ex, ey, ez = self.R_HB[2]
-        mx, my, mz = moment
-        across = xp.stack([ey * mz - ez * my, ez * mx - ex * mz, ex * my - ey * mx])  # e × S
-        return across @ g, g @ (self.s1 + self.s2 @ q)
+        g = xp.stack([c * x + s * y, c * y - s * x, z + 0 * c], axis=-1) @ self.R_HB
+        slope = self.s1 + xp.einsum("aij,...j->...ai", self.s2, q)
+        moment = self.s0 + ((self.s1 + slope) / 2 * q[..., None, :]).sum(axis=-1)
+        across = xp.cross(self.R_HB[2], moment)  # e × S
+        return _dot(across, g), (g[..., :, None] * slope).sum(axis=-2)
 
 
 @record
@@ -76,25 +75,27 @@ class FreeHub:
     hub_force: bool = static()
 
     def residual(self, y: Array, yd: Array, ydd: Array, torque: Array, load_values: Array | None = None) -> Array:
-        """Residual (n + 1,) of hub and beam, y = (θ, q), under a torque on the hub, N m, and load components."""
-        xp = namespace(self.mass, y, yd, ydd, torque, load_values)
-        q, qd, qdd, rate, alpha = y[1:], yd[1:], ydd[1:], yd[0], ydd[0]
+        """Residual (..., n + 1) of hub and beam, y = (θ, q), under a torque on the hub, N m, and load components (...,
+        loads, 6).
+        """
+        (angle, q), (rate, qd), (alpha, qdd) = ((each[..., 0], each[..., 1:]) for each in (y, yd, ydd))
         # Products of constants with one vector stand together: one matrix product in a compiled step.
-        elastic, k2q, b1q = _rows(xp, q, self.stiffness, self.k2, self.b1)
-        damped, turned, b1qd = _rows(xp, qd, self.damping, self.gyroscopic, self.b1)
+        elastic, k2q, b1q = _rows(q, self.stiffness, self.k2, self.b1)
+        damped, turned, b1qd = _rows(qd, self.damping, self.gyroscopic, self.b1)
         swept, coupling = self.f2 - k2q, self.b0 + b1q
-        turning = self.ground.torque(y[0], rate, alpha) - torque
-        turning = turning + (self.rigid + (self.f2 + swept) @ q) * alpha + coupling @ qdd
+        turning = self.ground.torque(angle, rate, alpha) - torque
+        turning = turning + (self.rigid + _dot(self.f2 + swept, q)) * alpha + _dot(coupling, qdd)
         if self.hub_force:
-            turning = turning + 2 * rate * (swept @ qd) + qd @ b1qd
-        beam = self.mass @ qdd + damped + rate * turned + elastic - rate**2 * swept + alpha * coupling
+            turning = turning + 2 * rate * _dot(swept, qd) + _dot(qd, b1qd)
+        rate, alpha = rate[..., None], alpha[..., None]
+        beam = qdd @ self.mass + damped + rate * turned + elastic - rate**2 * swept + alpha * coupling
         if self.weight is not None:
-            about, along = self.weight.forces(y[0], q)
+            about, along = self.weight.forces(angle, q)
             turning, beam = turning - about, beam - along
         if self.loads is not None and load_values is not None:
             forces = self.loads.generalised(q, load_values)
-            turning, beam = turning - self.twist @ forces[:6], beam - forces[6:]
-        return xp.concatenate([xp.reshape(turning, (1,)), beam])
+            turning, beam = turning - forces[..., :6] @ self.twist, beam - forces[..., 6:]
+        return concatenated([turning[..., None], beam])
 
     def momentum(self, y: Array, yd: Array) -> Array:
         """Angular momentum of hub and beam about the axis, N m s."""
@@ -103,9 +104,14 @@ class FreeHub:
         return inertia * rate + (self.b0 + self.b1 @ q) @ qd
 
 
-def _rows(xp: Any, vector: Array, *matrices: Array) -> Any:
-    """Products of some (n, n) matrices with a vector, (n,) each."""
-    return xp.reshape(xp.concatenate(matrices) @ vector, (len(matrices), -1))
+def _rows(vector: Array, *matrices: Array) -> Any:
+    """Products of some (n, n) matrices with vectors (..., n), (..., n) each."""
+    products, n = vector @ namespace(*matrices).concatenate(matrices).T, len(matrices[0])
+    return tuple(products[..., k * n : (k + 1) * n] for k in range(len(matrices)))
+
+
+def _dot(left: Array, right: Array) -> Array:
+    return (left * right).sum(axis=-1)
 
 
 def free_hub(c: Coefficients, mount: Any, ground: Ground, *, hub_force: bool = True) -> FreeHub:

@@ -48,9 +48,12 @@ class LoadTerms:
     slope: Array
 
     def generalised(self, q: Array, values: Array) -> Array:
-        """Resultant at the root and forces on the coordinates under load components (loads, 6), (6 + n,)."""
-        xp = namespace(self.constant, q, values)
-        return xp.einsum("li,lij->j", values, self.constant + self.slope @ q)
+        """Resultant at the root and forces on the coordinates under load components (..., loads, 6), (..., 6 + n)."""
+        xp, n = namespace(self.constant, q, values), q.shape[-1]
+        flat = xp.reshape(values, (*values.shape[:-2], -1))
+        constant, slope = (xp.reshape(each, (flat.shape[-1], -1)) for each in (self.constant, self.slope))
+        turned = xp.reshape(flat @ slope, (*flat.shape[:-1], -1, n))
+        return flat @ constant + (turned * q[..., None, :]).sum(axis=-1)
 
 
 @record

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import concatenated, namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.fields.components import NONE, Vector, absent, cross, joined, split
 
@@ -64,12 +64,12 @@ class Places:
     def along(self, q: Any, push: Vector) -> Any:
         """Generalised forces (..., n) of forces on the points, by components (..., p)."""
         xp, (points, axes, n) = namespace(self.first, q), self.first.shape
-        force = joined(xp, push, (*q.shape[:-1], points))
-        flat = xp.reshape(force, (*q.shape[:-1], points * axes))
+        force = xp.stack(xp.broadcast_arrays(*push), axis=-1)
+        flat = xp.reshape(force, (*force.shape[:-2], points * axes))
         straight = flat @ xp.reshape(self.first, (-1, n))
         if self.second is None:
             return straight
-        curved = xp.reshape(flat @ xp.reshape(self.second, (points * axes, n * n)), (*q.shape[:-1], n, n))
+        curved = xp.reshape(flat @ xp.reshape(self.second, (points * axes, n * n)), (*flat.shape[:-1], n, n))
         return straight + xp.sum(curved * q[..., None, :], axis=-1)
 
     def _linear(self, q: Any) -> Any:
@@ -82,9 +82,9 @@ class Places:
         """J·linear + H:quadratic, of (..., n) and (..., n, n): one matrix product over all times."""
         xp = namespace(self.first, linear)
         points, axes, n = self.first.shape
-        rows = xp.concatenate([linear, xp.reshape(quadratic, (*linear.shape[:-1], n * n))], axis=-1)
+        rows = concatenated([linear, xp.reshape(quadratic, (*quadratic.shape[:-2], n * n))])
         table = xp.concatenate([self.first, xp.reshape(self.second, (points, axes, n * n))], axis=-1)
-        return xp.reshape(rows @ xp.reshape(table, (points * axes, -1)).T, (*linear.shape[:-1], points, axes))
+        return xp.reshape(rows @ xp.reshape(table, (points * axes, -1)).T, (*rows.shape[:-1], points, axes))
 
 
 def _outer(left: Any, right: Any) -> Any:

@@ -245,8 +245,7 @@ class LinearBody:
         along = along + xp.einsum("aij,...a,...j->...i", c.gyroscopic, root.w, qd)
         along = along - 0.5 * xp.einsum("...abi,...a,...b->...i", Ji, root.w, root.w)
         if loads is not None and c.loads is not None:
-            forces = xp.einsum("...li,lij->...j", loads, c.loads.constant)
-            forces = forces + xp.einsum("...li,lijk,...k->...j", loads, c.loads.slope, q)
+            forces = c.loads.generalised(q, loads)
             force, moment, along = force - forces[..., :3], moment - forces[..., 3:6], along - forces[..., 6:]
         return along, Wrench(force, moment)
 

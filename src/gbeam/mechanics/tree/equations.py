@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import concatenated, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.tree.bodies import Acting, Body
 from gbeam.mechanics.tree.frames import Frame, Wrench, cross, turned, turned_back
@@ -95,29 +95,46 @@ class Force:
 
 
 class State:
-    """The motion of every frame of a tree at coordinates and rates, all of them, prescribed ones too."""
+    """The motion of the frames of a tree at coordinates and rates, all of them, prescribed ones too: of each body's
+    root, and of its points once they are asked for.
+    """
 
     def __init__(self, tree: Tree, y: Array, yd: Array, ydd: Array, ground: Frame) -> None:
-        xp, shape = namespace(y, ground.a), y.shape[:-1]
+        xp, shape = namespace(y, ground.a), np.broadcast_shapes(y.shape[:-1], yd.shape[:-1], ydd.shape[:-1])
         R, *vectors = ground.R, ground.p, ground.v, ground.w, ground.a, ground.alpha
         ground = Frame(xp.broadcast_to(R, (*shape, 3, 3)), *(xp.broadcast_to(each, (*shape, 3)) for each in vectors))
+        self.links, self._relative, self._points = tree.links, dict[int, list[Any]](), dict[int, list[Frame]]()
         self.q, self.qd, self.qdd = (tree.parted(each) for each in (y, yd, ydd))
         self.roots: list[Frame] = []
-        self.points: list[list[Frame]] = []
-        self.relative: list[Any] = []  # of each body: how its points move in its root's axes
         self.steps: list[Any] = []  # of each body: the motion of each step of its joint
         for k, link in enumerate(tree.links):
-            frame = ground if link.parent < 0 else self.points[link.parent][link.on]
+            frame = ground if link.parent < 0 else self.points_of(link.parent)[link.on]
             steps = []
-            *joint, body = zip(self.q[k], self.qd[k], self.qdd[k], strict=True)
+            *joint, _ = zip(self.q[k], self.qd[k], self.qdd[k], strict=True)
             for step, coordinates in zip(link.steps, joint, strict=True):
                 steps.append(step.motion(*coordinates))
                 frame = frame.carried(steps[-1])
-            relative = link.body.relative(*body)
             self.steps.append(steps)
             self.roots.append(frame)
-            self.relative.append(relative)
-            self.points.append([*(frame.carried(by) for by in relative), frame])
+
+    def relative(self, body: int) -> list[Any]:
+        """Motions of a body's points in its root's axes."""
+        if body not in self._relative:
+            coordinates = self.q[body][-1], self.qd[body][-1], self.qdd[body][-1]
+            self._relative[body] = self.links[body].body.relative(*coordinates)
+        return self._relative[body]
+
+    def points_of(self, body: int) -> list[Frame]:
+        """Motions of a body's points, its root the last."""
+        if body not in self._points:
+            root = self.roots[body]
+            self._points[body] = [*(root.carried(by) for by in self.relative(body)), root]
+        return self._points[body]
+
+    @property
+    def points(self) -> list[list[Frame]]:
+        """Motions of the points of every body, its root the last."""
+        return [self.points_of(body) for body in range(len(self.links))]
 
 
 @record
@@ -171,13 +188,13 @@ class Tree:
         on_roots: list[list[Wrench]] = [[] for _ in self.links]
 
         def act(body: int, on: int, wrench: Wrench) -> None:
-            if on == len(state.relative[body]):
+            if on == len(state.relative(body)):
                 on_roots[body].append(wrench)
             else:
-                on_points[body].append(Acting(on, state.relative[body][on], wrench))
+                on_points[body].append(Acting(on, state.relative(body)[on], wrench))
 
         for k, force in enumerate(self.forces):
-            frame = state.points[force.body][force.on]
+            frame = state.points_of(force.body)[force.on]
             assert inputs.wrenches is not None
             f, m = -inputs.wrenches[..., k, :3], -inputs.wrenches[..., k, 3:]
             if not force.follower:
@@ -200,13 +217,13 @@ class Tree:
             if of_joint:
                 q, qd = (xp.concatenate([each[i] for each in joint], axis=-1) for i in (0, 1))
                 held = link.holder.forces(q, qd)
-                along = xp.concatenate([xp.concatenate(of_joint, axis=-1) + held, along], axis=-1)
+                along = concatenated([concatenated(of_joint) + held, along])
             rows.insert(0, along)
             if link.parent < 0:
                 ground = ground + wrench
             else:
                 act(link.parent, link.on, wrench)
-        demanded = xp.concatenate(rows, axis=-1)
+        demanded = concatenated(rows)
         return demanded if inputs.efforts is None else demanded - inputs.efforts, ground
 
     def invariants(self, y: Array, yd: Array, inputs: Inputs, gravity: Array) -> tuple[Array, Array, Array]:

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import concatenated, namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.tree.frames import Relative, Wrench, cross, product
 
@@ -107,7 +107,7 @@ class Ball:
 
     def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
         kept = (q * qdd + qd * qd + 2 * q * qd + q * q / 2).sum(axis=-1, keepdims=True) - 0.5
-        return namespace(q, qdd).concatenate([wrench.moment, kept], axis=-1)
+        return concatenated([wrench.moment, kept])
 
     def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
         # About the vector zero its rates are those of the body: T is one there, and Ṫ φ̇ zero.

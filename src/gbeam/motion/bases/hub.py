@@ -72,7 +72,7 @@ class Mount:
     def base(self, angle: Any, rate: Any, acceleration: Any) -> Base:
         """Motion of the base, specific force where gravity acts, at angles, rates and accelerations of one shape."""
         xp = namespace(angle, rate, acceleration, self.radius, self.R_HB, self.gravity)
-        a_WO_H = xp.stack(self.root_acceleration(angle, rate, acceleration), axis=-1)
+        a_WO_H = xp.stack(xp.broadcast_arrays(*self.root_acceleration(angle, rate, acceleration)), axis=-1)
         axis = self.R_HB[2]
         return Base(a_WO_H @ self.R_HB, rate[..., None] * axis, acceleration[..., None] * axis)
 

@@ -1,0 +1,65 @@
+"""Derivatives of a residual by complex steps, at many states in one call: nothing is compiled, nothing differenced.
+
+The residual is analytic, and its arrays and what drives it may have leading axes, which are broadcast: what depends on
+q alone is computed once for all derivatives with respect to q̇ and q̈.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import each_leaf
+from gbeam.numerics.series import STEP
+
+Array = Any
+AT_ONCE = 50_000  # numbers of the states that are evaluated at once: more of them would leave a cache
+
+
+def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple[Array, Array, Array]:
+    """Derivatives K, C and M (t, n, n) of a residual with respect to q, q̇ and q̈ (t, n) at inputs (t, ...)."""
+    n, pieces = q.shape[1], []
+    for some in _pieces(q):
+        at, given = [each[some] for each in (q, qd, qdd)], each_leaf(lambda leaf: leaf[some], inputs)  # noqa: B023
+        values = np.empty((3 * n, *at[0].shape), dtype=complex)
+        values[:n] = residual(_moved(at[0]), at[1], at[2], given)
+        still = np.zeros((n, 1, 1))
+        rates, changes = np.concatenate([_moved(at[1]), at[1] + still]), np.concatenate([at[2] + still, _moved(at[2])])
+        values[n:] = residual(at[0], rates, changes, given)
+        pieces.append(values.imag / STEP)
+    k, c, m = np.concatenate(pieces, axis=1).reshape(3, n, -1, n).transpose(0, 2, 3, 1)
+    return k, c, m
+
+
+def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
+    """q̈ (t, n) that equations linear in q̈ demand at q, q̇ (t, n) and inputs (t, ...); NaN where M is singular."""
+    pieces = []
+    for some in _pieces(q):
+        given = each_leaf(lambda leaf: leaf[some], inputs)  # noqa: B023
+        values = residual(q[some], qd[some], _moved(0 * q[some]), given)
+        mass = (values.imag / STEP).transpose(1, 2, 0)
+        pieces.append(solved(mass, -values[0].real[..., None])[..., 0])
+    return np.concatenate(pieces)
+
+
+def _pieces(q: Array) -> list[slice]:
+    count, n = q.shape
+    size = max(1, AT_ONCE // n**2)
+    return [slice(first, first + size) for first in range(0, count, size)]
+
+
+def _moved(state: Array) -> Array:
+    """States (t, n), each of their numbers moved by a complex step, (n, t, n)."""
+    return state + 1j * STEP * np.eye(state.shape[1])[:, None]
+
+
+def solved(left: Array, right: Array) -> Array:
+    """Solutions of linear systems; NaN where one is singular, which NumPy raises an error for."""
+    try:
+        return namespace(left, right).linalg.solve(left, right)
+    except np.linalg.LinAlgError:
+        if left.ndim == 2:
+            return np.full_like(right, np.nan)
+        return np.stack([solved(*pair) for pair in zip(left, right, strict=True)])

@@ -1,0 +1,227 @@
+"""Nonlinear equations in time without compiling: windows of many steps solved together.
+
+One call of the residual evaluates all stages of a window, and one correction of Newton's method for all its unknowns is
+a recurrence over its steps: with the residual r of a step's stages, its Jacobian J with respect to their accelerations
+x and L with respect to the state z before it,
+
+    δx = −J⁻¹ (r + L δz),    δz₊ = g δz + d δx + (g z + d x − z₊).
+
+A window begins with every step like the last one before it, of which the first correction makes the linear response
+about that state. Derivatives are found at some of its steps and interpolated between these. Where the corrections do
+not shrink, what has converged at the window's beginning is kept and a shorter window begins behind it, a single step
+at last, which takes Newton's method proper.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from gbeam.arrays.tree import each_leaf
+from gbeam.integrate.derivatives import accelerations, slopes, solved
+from gbeam.integrate.equations import NonlinearEquations
+from gbeam.integrate.schemes import Scheme, Tableau
+from gbeam.integrate.steps import Steps
+
+Array = Any
+Piece = tuple[Any, ...]
+FIRST, MOST = 100, 200  # steps in a window: at first, and at most
+NEAR, APART, FAR = 4, 8, 20  # stages between derivatives: at least, at first, and at most
+CORRECTIONS, ALONE = 10, 25  # of a window at most, and of a single step
+MOVED = 0.1  # size of a correction after which derivatives are found anew
+FEW = 3  # times, after which a window that is still so far away ends, and up to which the next one may be longer
+SLOW, FAST = (
+    0.3,
+    0.01,
+)  # of the last correction: where one is larger, derivatives are closer, where smaller farther apart
+LEAST = 4  # steps behind those that have converged, which go on with what they have: at least
+TOLERANCE, ROUNDING = 1e-9, 1e-6  # of the largest acceleration: error left by the last correction, and where it stalls
+
+
+def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, steps: Steps) -> Iterator[Piece]:
+    """Integrate; yields the initial state, then window by window q, q̇, q̈ (k, n) at the steps that are kept and whether
+    each was solved.
+    """
+    residual, drive = equations.residual, equations.drive
+
+    def demanded(t: Any, q: Array, qd: Array) -> Array:
+        return accelerations(residual, q[None], qd[None], drive(np.array([t])))[0]
+
+    with np.errstate(all="ignore"):  # of iterates that diverge
+        qdd = demanded(steps.first[0], q, qd)
+    yield q[None], qd[None], qdd[None], np.array([True])
+    # A scheme whose last stage is the end of a step begins anew after a jump: no window goes beyond one.
+    ends = np.append(np.flatnonzero(steps.anew[:-1]) + 1 if scheme.ends else [], len(steps)).astype(int)
+    z, x = scheme.tableau(steps.length[0]).first @ np.stack([q, qd, qdd]), qdd
+    done, size, apart, slope = 0, FIRST, APART, None
+    while done < len(steps):
+        part = steps[done : min(done + size, ends[np.searchsorted(ends, done, side="right")])]
+        with np.errstate(all="ignore"):
+            window = _Window(residual, drive, scheme, part, z, x, slope, apart)
+            count, near, times = window.solve()
+            apart = window.apart
+            if not count and len(part) == 1:
+                failed = np.full((1, z.shape[-1]), np.nan)
+                yield failed, failed, failed, np.array([False])
+                return
+            if count == len(part):
+                size = min(size + size // 2 + 1, MOST) if times <= FEW else size
+            elif near > count + LEAST:
+                size = near - count
+            else:
+                size = max(count, len(part) // 2)
+            if near > count + LEAST:
+                z, x, slope = window.behind(count, near)
+            elif count:
+                z, x, slope = window.z[count], window.x[count - 1, -1], window.slope_at(count - 1)
+            if not count:
+                continue
+            q, qd, qdd = window.ended(count)
+            end = part[count - 1]
+            if scheme.ends and end.anew:
+                x = demanded(end.resume, q[-1], qd[-1])
+                qdd[-1] = demanded(end.end, q[-1], qd[-1])
+                z = scheme.tableau(end.following).first @ np.stack([q[-1], qd[-1], x])
+        done, kept = done + count, part.kept[:count]
+        yield q[kept], qd[kept], qdd[kept], np.ones(np.count_nonzero(kept), dtype=bool)
+
+
+class _Window:
+    """Steps that are solved together: their states z (t + 1, m, n) and accelerations x (t, s, n), corrected in place,
+    and the `slope` of the equations, K, C and M (1 or t, s, n, n), from stages so far `apart`.
+    """
+
+    def __init__(
+        self, residual: Any, drive: Any, scheme: Scheme, steps: Steps, z: Array, x: Array, slope: Any, apart: int
+    ) -> None:
+        self.residual, self.drive, self.scheme, self.steps, self.apart = residual, drive, scheme, steps, apart
+        equal = bool((steps.length == steps.length[0]).all())
+        self.t: Tableau = scheme.tableau(steps.length[:1] if equal else steps.length)
+        self.inputs = drive(np.stack([steps.times(offset) for offset in scheme.offsets], axis=1).ravel())
+        self.z = np.array(np.broadcast_to(z, (len(steps) + 1, *z.shape[-2:])))
+        self.x = np.array(np.broadcast_to(x, (len(steps), len(scheme.offsets), x.shape[-1])))
+        self.slope = slope
+        if slope is None:
+            self._differentiate(alone=True)
+
+    def solve(self) -> tuple[int, int, int]:
+        """Correct the window; returns how many of its steps have converged, from the first on, how many are near, and
+        how many times derivatives were found.
+        """
+        count, times = len(self.steps), 0
+        size, good = np.full(count, np.inf), np.zeros(count, dtype=bool)
+        maps = self._maps()
+        for _ in range(ALONE if count == 1 else CORRECTIONS):
+            before, size = size, self._correct(*maps)
+            good = _left(size, before) <= TOLERANCE
+            last, largest = before.max(), size.max()
+            if good.all() or not np.isfinite(size[0]) or (largest > MOVED and times > FEW and count > 1):
+                break
+            if largest > MOVED or not largest <= SLOW * last:
+                if times and largest <= MOVED:
+                    self.apart = max(self.apart // 2, NEAR)
+                self._differentiate()
+                maps, times = self._maps(), times + 1
+            elif largest < FAST * last:
+                self.apart = min(self.apart + 1, FAR)
+        return _first(good), _first(size <= MOVED), times
+
+    def ended(self, count: int) -> tuple[Array, Array, Array]:
+        """q, q̇, q̈ (count, n) at the ends of the first steps."""
+        z, x, t = self.z[:count], self.x[:count], self.t
+        ends = t.end_z[:count] @ z + t.end_x[:count] @ x
+        q, qd = ends[:, 0], ends[:, 1]
+        if self.scheme.ends:
+            return q, qd, x[:, -1].copy()
+        inputs, mass, c = self.drive(self.steps.end[:count]), self.slope[2][:count, -1], self.scheme.offsets
+        qdd, size = x[:, -1] + (x[:, -1] - x[:, 0]) * (1 - c[-1]) / (c[-1] - c[0]), np.full(count, np.inf)
+        for _ in range(CORRECTIONS):  # with the mass at hand, for the equations are linear in q̈
+            change = solved(mass, self.residual(q, qd, qdd, inputs)[..., None])[..., 0]
+            qdd = qdd - change
+            before, size = size, _size(change, qdd)
+            if (_left(size, before) <= TOLERANCE).all():
+                return q, qd, qdd
+        return q, qd, accelerations(self.residual, q, qd, inputs)
+
+    def behind(self, count: int, near: int) -> tuple[Array, Array, Any]:
+        """States, accelerations and slope of the steps from `count` to `near`."""
+        some = slice(count, near)
+        slope = tuple(each[some] if len(each) > 1 else each for each in self.slope)
+        return self.z[count : near + 1], self.x[some], slope
+
+    def slope_at(self, step: int) -> tuple[Array, ...]:
+        """K, C and M (1, 1, n, n) at the last stage of a step."""
+        return tuple(each[step:, -1:][:1] if len(each) > 1 else each[:, -1:] for each in self.slope)
+
+    def _stages(self) -> tuple[Array, Array, Array]:
+        """q, q̇, q̈ (t s, n) at the stages."""
+        t, z, x = self.t, self.z[:-1], self.x
+        q, qd = t.w_q @ z + t.c_q @ x, t.w_v @ z + t.c_v @ x
+        n = x.shape[-1]
+        return q.reshape(-1, n), qd.reshape(-1, n), x.reshape(-1, n)
+
+    def _differentiate(self, *, alone: bool = False) -> None:
+        """Find K, C and M at some stages, and between these; at the first `alone`."""
+        count, stages, n = self.x.shape
+        samples = 1 if alone else 1 + math.ceil((count * stages - 1) / (1 if count == 1 else self.apart))
+        at = np.linspace(0, count * stages - 1, samples).round().astype(int)
+        inputs = each_leaf(lambda leaf: leaf[at], self.inputs)
+        q, qd, qdd = (each[at] for each in self._stages())
+        slope: Any = slopes(self.residual, q, qd, qdd, inputs)
+        if samples > 1:
+            weight = np.stack([np.interp(np.arange(count * stages), at, unit) for unit in np.eye(len(at))], axis=1)
+            slope = tuple(np.tensordot(weight, each, 1).reshape(count, stages, n, n) for each in slope)
+        else:
+            slope = tuple(each[None] for each in slope)
+        self.slope = slope
+
+    def _maps(self) -> tuple[Array, Array, Array]:
+        """Inverse J⁻¹ (t, s n, s n) of steps, J⁻¹ L (t, s n, m n), and maps of δz over the steps, (t, m n, m n)."""
+        (k, c, m), t = (each[:, :, :, None, :] for each in self.slope), self.t
+        c_q, c_v, w_q, w_v = (each[:, :, None, :, None] for each in (t.c_q, t.c_v, t.w_q, t.w_v))
+        stages, states, n = t.w_q.shape[1], t.w_q.shape[2], k.shape[-1]
+        own = np.eye(stages)[:, None, :, None]
+        jacobian = (c_q * k + c_v * c + own * m).reshape(-1, stages * n, stages * n)
+        onto = (w_q * k + w_v * c).reshape(-1, stages * n, states * n)
+        unit = np.broadcast_to(np.eye(stages * n), jacobian.shape)
+        both = solved(jacobian, np.concatenate([unit, onto], axis=-1))
+        inverse, answer = both[..., : stages * n], both[..., stages * n :]
+        step = (t.g[:, :, None, :, None] * np.eye(n)[:, None, :]).reshape(-1, states * n, states * n)
+        through = t.d @ answer.reshape(-1, stages, n * states * n)
+        return inverse, answer, step - through.reshape(-1, states * n, states * n)
+
+    def _correct(self, inverse: Array, answer: Array, step: Array) -> Array:
+        """Correct every step; returns the sizes of the corrections, (t,)."""
+        t, count = self.t, len(self.x)
+        alone = inverse @ self.residual(*self._stages(), self.inputs).reshape(count, -1, 1)
+        defect = t.g @ self.z[:-1] + t.d @ (self.x - alone.reshape(self.x.shape)) - self.z[1:]
+        moved = np.zeros((count + 1, self.z[0].size))
+        steps = step if len(step) > 1 else np.broadcast_to(step, (count, *step.shape[1:]))
+        for one, more, before, after in zip(steps, defect.reshape(count, -1), moved[:-1], moved[1:], strict=True):
+            np.dot(one, before, out=after)
+            after += more
+        change = (alone + answer @ moved[:-1, :, None]).reshape(self.x.shape)
+        self.z += moved.reshape(self.z.shape)
+        self.x -= change
+        return _size(change, self.x)
+
+
+def _first(flags: Array) -> int:
+    """Number of flags before the first that is false."""
+    return len(flags) if flags.all() else int(np.argmin(flags))
+
+
+def _size(change: Array, x: Array) -> Array:
+    """Sizes of corrections of accelerations (t, ..., n), relative to what a step can move, (t,)."""
+    axes = tuple(range(1, x.ndim))
+    return np.abs(change).max(axis=axes) / (1.0 + np.abs(x).max(axis=axes))
+
+
+def _left(size: Array, before: Array) -> Array:
+    """Errors left after the last of two corrections, which shrink by a constant factor; none where they stall."""
+    shrunk = np.where(np.isfinite(before), size / np.maximum(before, 1e-300), 1.0)
+    left = size * np.minimum(shrunk, 1.0)
+    return np.where((size > before / 2) & (size <= ROUNDING), 0.0, left)

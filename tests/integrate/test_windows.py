@@ -1,0 +1,128 @@
+"""Windows of steps: what the compiled way finds step by step, whatever their sizes, and nothing is compiled."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from typing import Any
+
+import jax
+import numpy as np
+import pytest
+
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record
+from gbeam.integrate import Corners, NonlinearEquations, gauss, generalized_alpha, integrate, newmark, windows
+from gbeam.integrate.derivatives import accelerations, slopes
+
+PUSH = 1.3  # s: the load jumps
+
+
+@record
+class Swing:
+    """Two pendulums in one frame, coupled through their masses, far from linear; a load that turns with the first."""
+
+    def __call__(self, q: Any, qd: Any, qdd: Any, force: Any) -> Any:
+        xp = namespace(q, qd, qdd, force)
+        (a, b), (u, v), (x, y) = ((each[..., 0], each[..., 1]) for each in (q, qd, qdd))
+        c, s = xp.cos(a - b), xp.sin(a - b)
+        first = 2 * x + c * y + s * v**2 + 20 * xp.sin(a) + 0.1 * u - force[..., 0] * xp.cos(a)
+        second = y + c * x - s * u**2 + 10 * xp.sin(b) - force[..., 1]
+        return xp.stack(xp.broadcast_arrays(first, second), axis=-1)
+
+
+def load(t: Any) -> Any:
+    xp = namespace(t)
+    return xp.stack([xp.where(t < PUSH, 0.0, 8.0) + 0 * t, 3 * xp.sin(5 * t)], axis=-1)
+
+
+SWING = NonlinearEquations(Swing(), load)
+START = np.array([1.2, -0.7]), np.array([0.5, 3.0])
+KNOWN = {"step": 0.01, "count": 300, "corners": Corners.of([PUSH], load, 0.0, 3.0)}
+
+
+@pytest.mark.parametrize("make", [newmark, lambda: generalized_alpha(0.7), gauss])
+def test_windows_find_what_the_compiled_steps_find(make: Any) -> None:
+    """Newton's method proper, step by step, is what JAX traces; only schemes without a stage at the end meet a jump."""
+    scheme = make()
+    driven = NonlinearEquations(Swing(), load if not scheme.ends else lambda t: load(t + PUSH))
+
+    def run(q: Any, qd: Any) -> Any:
+        made = integrate(driven, scheme, q, qd, **KNOWN if not scheme.ends else {"step": 0.01, "count": 300})
+        return made.q, made.qd, made.qdd
+
+    for made, expected in zip(run(*START), jax.jit(run)(*START), strict=True):
+        assert isinstance(made, np.ndarray) and len(made) == 301
+        np.testing.assert_allclose(made, expected, atol=1e-8 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("make", [newmark, gauss])
+def test_no_digit_that_counts_depends_on_the_windows(make: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    expected = integrate(SWING, make(), *START, **KNOWN)
+    for sizes in ({"FIRST": 1, "MOST": 1}, {"FIRST": 7, "MOST": 13}, {"FEW": 1}, {"LEAST": 300, "MOVED": 0.5}):
+        with monkeypatch.context() as patch:
+            for name, value in sizes.items():
+                patch.setattr(windows, name, value)
+            made = integrate(SWING, make(), *START, **KNOWN)
+        np.testing.assert_allclose(made.q, expected.q, atol=1e-8)
+
+
+def test_a_window_too_long_for_newton_is_cut() -> None:
+    """A pendulum that nearly stands on its head, in steps of a tenth of a second: 100 s, energy kept."""
+
+    @record
+    class Pendulum:
+        def __call__(self, q: Any, qd: Any, qdd: Any, inputs: Any) -> Any:
+            return qdd + np.sin(q)
+
+    solved: list[float] = []
+    upright = NonlinearEquations(Pendulum(), lambda t: t)
+    run = integrate(
+        upright,
+        gauss(),
+        np.array([3.1]),
+        np.zeros(1),
+        step=0.1,
+        count=1000,
+        progress=solved.append,
+    )
+    assert run.whole and len(solved) > 8 and solved[-1] == 1.0
+    energy = run.qd[:, 0] ** 2 / 2 - np.cos(run.q[:, 0])
+    np.testing.assert_allclose(energy, energy[0], atol=1e-5)
+
+
+def test_stop_ends_the_run_where_it_says() -> None:
+    def past_two(q: np.ndarray) -> int | None:
+        high = np.flatnonzero(np.abs(q[:, 1]) > 1.0)
+        return int(high[0]) + 1 if high.size else None
+
+    run = integrate(SWING, gauss(), *START, **KNOWN, stop=past_two)
+    assert run.stopped and run.converged
+    assert np.abs(run.q[-1, 1]) > 1.0 >= np.abs(run.q[1:-1, 1]).max()
+
+
+def test_derivatives_are_those_of_automatic_differentiation() -> None:
+    state = np.random.default_rng(1).normal(size=(3, 5, 2))
+    force = load(np.linspace(0.0, 3.0, 5))
+    made = slopes(Swing(), *state, force)
+    expected = jax.vmap(jax.jacfwd(Swing(), argnums=(0, 1, 2)))(*state, force)
+    for one, other in zip(made, expected, strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-12)
+    qdd = accelerations(Swing(), *state[:2], force)
+    np.testing.assert_allclose(Swing()(*state[:2], qdd, force), 0.0, atol=1e-12)
+
+
+RUNS = """
+import sys
+import gbeam as gb
+strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+hub = gb.Hub(radius=0.5, inertia=0.02, torque=gb.Sine(0.2, 1.0))
+for model in ("FOAM", "CFOAM", "exact"):
+    gb.simulate(gb.assemble(beam, model, y=2, z=2), hub, duration=0.1, step=0.001, estimate=False)
+assert "jax" not in sys.modules
+"""
+
+
+def test_a_run_on_a_free_hub_needs_no_jax() -> None:
+    subprocess.run([sys.executable, "-c", RUNS], check=True, capture_output=True, text=True)

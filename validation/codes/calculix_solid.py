@@ -1,0 +1,125 @@
+"""A solid in CalculiX and in gbeam on the same mesh: the bracket of examples/bracket.py, hexahedra of 20 nodes with 27
+points each, C3D20 there. Displacements under a small acceleration, the largest von Mises stress at those points, ten
+modes at rest, and what a spin changes in them: CalculiX's prestressed modes come after a static step with large
+deformations, gbeam's coefficients are of first order in the load. What a spin changes says more than the frequency
+itself: with the static stress alone, without the turning of what is bent, the second would be a fifth and the fourth of
+the wrong sign.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+import gbeam as gb
+from gbeam.constants import STANDARD_GRAVITY as G
+from gbeam.solids.elements import chunks, stress_at
+from gbeam.solids.stress import von_mises
+from validation.table import Row
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))
+import bracket as example
+
+TITLE = "CalculiX: a bracket of solid elements"
+NEEDS = ("calculix-ccx", "numpy", "scipy", "scikit-fem", "meshio")
+STATIC, MODES, STRESS, SHIFT = 1e-4, 1e-5, 1e-4, 2e-2
+RATE, RADIUS = 10.0, 0.3  # rad/s about z, m from the axis to the root
+COUNT, SHIFTED = 10, 6
+SMALL = 1e-3  # of 1 g: gbeam's static answer has the stiffness of the load in it
+
+
+@cache
+def solid() -> gb.SolidMesh:
+    """The bracket with its camera."""
+    return gb.SolidMesh.read(example.mesh(), materials=example.MATERIALS, clamp="screwed", unit="mm")
+
+
+@cache
+def model() -> gb.SolidModel:
+    """The bracket in twenty modes and its static shapes."""
+    return solid().reduced(modes=20, damping_ratio=0.0)
+
+
+def rows() -> Iterator[Row]:
+    """Under accelerations, at rest and spinning."""
+    mesh, ours = solid(), model()
+    source = f"{sum(len(block.nodes) for block in mesh.blocks)} C3D20"
+    tip = next(iter(mesh.stations.values()))
+    for way, load in zip("xyz", np.eye(3), strict=True):
+        moved, stress = static(f"EALL, GRAV, {G}, {load[0]}, {load[1]}, {load[2]}")
+        rest = gb.static(ours.structure, acceleration=tuple(-SMALL * G * load))
+        for i, axis in enumerate("xyz"):
+            if abs(moved[tip, i]) > 0.01 * np.abs(moved[tip]).max():
+                name = f"displacement {axis} of the camera's edge"
+                yield Row(
+                    f"1 g along {way}", name, 1e6 * moved[tip, i], 1e6 * rest.tip[i] / SMALL, "µm", STATIC, source
+                )
+        pulled = (ours.shapes @ rest.q)[..., None] / SMALL
+        parts = [
+            von_mises(stress_at(block, block.nodes[part], gradients, pulled)[..., 0]).max()
+            for block, part, _, gradients, _ in chunks(mesh.points, mesh.blocks, "stiffness")
+        ]
+        yield Row(
+            f"1 g along {way}", "largest von Mises stress", 1e-6 * stress, 1e-6 * max(parts), "MPa", STRESS, source
+        )
+    still = frequencies(0.0), gb.modes(ours.structure, gb.Hub(radius=RADIUS, rate=0.0)).frequency
+    for n in range(COUNT):
+        yield Row("at rest", f"mode {n + 1}", still[0][n], still[1][n], "Hz", MODES, source)
+    spun = frequencies(RATE), gb.modes(ours.structure, gb.Hub(radius=RADIUS, rate=RATE), gyroscopic=False).frequency
+    for n in range(SHIFTED):
+        theirs, mine = (1e3 * (spinning[n] - resting[n]) for spinning, resting in zip(spun, still, strict=True))
+        yield Row(f"{RATE:g} rad/s", f"change of mode {n + 1}", theirs, mine, "mHz", SHIFT, source)
+
+
+def static(load: str) -> tuple[np.ndarray, float]:
+    """Displacements (k, 3) of the nodes, m, and the largest von Mises stress at the points of the elements, Pa."""
+    steps = f"*STEP\n*STATIC\n*DLOAD\n{load}\n*NODE PRINT, NSET=NALL\nU\n*EL PRINT, ELSET=EALL\nS\n*END STEP\n"
+    moved, _, stress = run(steps, "dat").partition(" stresses ")
+    rows = np.array([line.split() for line in moved.splitlines() if re.match(r" +\d+ +[-\d]", line)], dtype=float)
+    points = np.array([line.split()[2:] for line in stress.splitlines() if re.match(r" +\d+ +\d+ ", line)], dtype=float)
+    return rows[:, 1:], float(von_mises(points[:, [0, 1, 2, 5, 4, 3]]).max())  # xy, xz, yz there
+
+
+def frequencies(rate: float) -> np.ndarray:
+    """Natural frequencies at rest or about the stress of a spin, Hz."""
+    steps = ""
+    if rate:
+        spin = f"EALL, CENTRIF, {rate**2}, {-RADIUS}, 0., 0., 0., 0., 1."
+        steps = f"*STEP, NLGEOM\n*STATIC\n1., 1.\n*DLOAD\n{spin}\n*END STEP\n"
+    steps += f"*STEP{', PERTURBATION' if rate else ''}\n*FREQUENCY\n{COUNT}\n*END STEP\n"
+    value = r"([-+]?\d\.\d+E[-+]\d+)"
+    table = re.split(r"E I G E N V A L U E   O U T P U T", run(steps, "dat"))[1]
+    found = re.findall(rf"^ +\d+ +{value} +{value} +{value} +{value}$", table, re.MULTILINE)
+    return np.array([row[2] for row in found], dtype=float)
+
+
+def run(steps: str, kind: str) -> str:
+    """Run ccx in a folder of its own, and return what it wrote."""
+    mesh = solid()
+    lines = ["*NODE, NSET=NALL"]
+    lines += [f"{i}, {x:.12g}, {y:.12g}, {z:.12g}" for i, (x, y, z) in enumerate(mesh.points, 1)]
+    number = 1
+    for block in mesh.blocks:
+        lines.append(f"*ELEMENT, TYPE=C3D20, ELSET={block.material.upper()}")
+        for nodes in block.nodes + 1:
+            lines += [", ".join(map(str, [number, *nodes[:10]])) + ",", ", ".join(map(str, nodes[10:]))]
+            number += 1
+    lines += ["*ELSET, ELSET=EALL", *(block.material.upper() for block in mesh.blocks)]
+    lines += ["*NSET, NSET=FOOT", *(f"{i}" for i in np.flatnonzero(mesh.clamped) + 1), "*BOUNDARY", "FOOT, 1, 3"]
+    for name, metal in example.MATERIALS.items():
+        lines += [f"*MATERIAL, NAME={name.upper()}", "*ELASTIC", f"{metal.youngs_modulus}, {metal.poissons_ratio}"]
+        lines += ["*DENSITY", f"{metal.density}"]
+        lines.append(f"*SOLID SECTION, ELSET={name.upper()}, MATERIAL={name.upper()}")
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "solid.inp").write_text("\n".join(lines) + "\n" + steps, encoding="ascii")
+        environment = os.environ | {"OMP_NUM_THREADS": "1"}
+        subprocess.run(["ccx", "solid"], cwd=folder, check=True, capture_output=True, env=environment)
+        return (Path(folder) / f"solid.{kind}").read_text(encoding="ascii")
