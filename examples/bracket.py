@@ -1,6 +1,7 @@
-"""A camera on a bent bracket in the F-16's turn: the mesh of data/bracket.msh, its modes and its response.
+"""A camera on a bent bracket in the F-16's turn: the mesh of data/bracket.msh, its modes, response and stress.
 
-The mesh, hexahedra of 20 nodes, is made here: `python examples/bracket.py` writes it again and prints how it moves.
+The mesh, hexahedra of 20 nodes, is made here: `python examples/bracket.py` writes it again, prints how the bracket
+moves and where its stress is largest, and writes out/bracket/stress.png and a page, stress.html.
 """
 
 from __future__ import annotations
@@ -88,11 +89,17 @@ def flight() -> gb.Flight:
 
 
 def main() -> None:
-    """Write the mesh, and print the modes and the response."""
+    """Write the mesh, the picture and the page, and print the modes, the response and the stress."""
     meshio.write(HERE / "data" / "bracket.msh", mesh(), file_format="gmsh22", binary=False)
     bracket = model(HERE / "data" / "bracket.msh", coarser=model(mesh(coarser=2)))
     print(bracket.mesh, bracket, sep="\n")
-    print(gb.simulate(bracket.structure, flight(), duration=15.99, step=1e-3, integrator="gauss"))
+    run = gb.simulate(bracket.structure, flight(), duration=15.99, step=1e-3, integrator="gauss", name="flight")
+    stress = bracket.stress(run)
+    print(run, stress, sep="\n")
+    folder = HERE.parent / "out" / "bracket"
+    folder.mkdir(parents=True, exist_ok=True)
+    stress.plot()[0].figure.savefig(folder / "stress.png")
+    stress.report(folder / "stress.html")
 
 
 if __name__ == "__main__":

@@ -13,8 +13,8 @@ from gbeam.guards.limits import in_bytes
 from gbeam.numerics.eigen import Floats
 
 # Measured on solids of quadratic tetrahedra: bytes for each of n^(4/3), seconds for each of n² unknowns.
-BYTES = {"Pardiso": 170.0, "SuperLU": 700.0}
-SECONDS = {"Pardiso": 2.5e-9, "SuperLU": 1.1e-8}
+BYTES = {"Pardiso": 260.0, "SuperLU": 700.0}
+SECONDS = {"Pardiso": 2e-9, "SuperLU": 1e-8}
 MOST = 64e9  # bytes
 
 
