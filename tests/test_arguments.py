@@ -80,6 +80,7 @@ class Given:
         self.brief = gb.Case("brief", self.beam, gb.Model("FOAM", y=1, z=1), {"flight": self.still}, self.settings)
         self.system = gb.linearize(self.structure, self.hub)
         self.bar = gb.RigidBody(1.0, (1.0, 1.0, 1.0), points={"end": (0.1, 0.0, 0.0)})
+        self.law = (np.zeros((0, 0)), np.zeros((0, 1)), np.zeros((1, 0)), -np.ones((1, 1)))
         self.hinge = gb.Joint("revolute", "bar", axes=[(0.0, 1.0, 0.0)])
 
     def calls(self) -> dict[str, tuple[tuple[Any, ...], dict[str, Any]]]:
@@ -116,6 +117,10 @@ class Given:
             ),
             "Choice": ((lambda mounting, width: self.centrifuge, ("upright",), (0.0,)), {"refined": True,
             "limited": True}),
+            "Feedback": (
+                (self.law, ["hinge.angle"], ["hinge.angle"], 0.01),
+                {"delay": 0.01, "limit": 5.0, "reference": 0.1, "state": None},
+            ),
             "Flight": ((), {"x": 1.0, "y": 2.0, "z": 3.0}),
             "Gauge": ((0.1,), {"y": 0.0, "z": 0.002}),
             "Hub": (
@@ -144,7 +149,7 @@ class Given:
             ),
             "System": (
                 ({"bar": self.bar}, {"hinge": self.hinge}),
-                {"forces": {"push": gb.PointForce("bar.end")}, "gravity": (0.0, 0.0, -9.8)},
+                {"forces": {"push": gb.PointForce("bar.end")}, "gravity": (0.0, 0.0, -9.8), "controllers": {}},
             ),
             "MachineLimits": ((gb.AxisLimit(), gb.AxisLimit(), gb.AxisLimit()), {"inertia": 1.0, "power": 1.0}),
             "Material": (

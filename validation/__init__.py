@@ -15,6 +15,7 @@ MODULES: tuple[str, ...] = (
     "codes.calculix_solid",
     "codes.exudyn_plane",
     "codes.exudyn_space",
+    "codes.exudyn_trees",
     "published.paper2009",
     "published.paper2020",
     "published.references",

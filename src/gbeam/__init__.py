@@ -48,6 +48,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.mechanics.assembly import assemble as assemble
     from gbeam.mechanics.models import Model as Model
     from gbeam.mechanics.structure import Structure as Structure
+    from gbeam.mechanics.tree.control import Feedback as Feedback
     from gbeam.mechanics.tree.joints import Joint as Joint
     from gbeam.mechanics.tree.system import Place as Place
     from gbeam.mechanics.tree.system import PointForce as PointForce
@@ -107,6 +108,7 @@ __version__ = "0.2.0"
 
 # Every public name, and the module it is in.
 _HOME = {
+    "Feedback": "mechanics.tree.control",
     "Joint": "mechanics.tree.joints",
     "Place": "mechanics.tree.system",
     "PointForce": "mechanics.tree.system",

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import gbeam as gb
-from gbeam.analysis.system.linear import measurements, signals_of
 from gbeam.mechanics.tree.frames import turned
+from gbeam.mechanics.tree.signals import measurements, signals_of
 from gbeam.mechanics.tree.steps import parameters_of_all, rotation_by_parameters, rotation_by_vector
 from gbeam.numerics.series import STEP
 from tests.system.trees import JOINTS, flexible, tree
@@ -56,7 +56,7 @@ def test_rates_of_points_are_derivatives(kinds: list[tuple[str, str, int]], seed
     y = y + (np.array([name.endswith("e0") for name in system.coordinates]) * 1.0)
     inputs, step = system.inputs(np.asarray(0.0)), 1j * STEP
     moving = system.tree.motion(y + step * yd, yd + step * ydd, ydd + 0j, inputs)
-    for frame in (each for body in moving.points for each in body):
+    for frame in moving.every_point:
         velocity = turned(frame.R, frame.v)
         np.testing.assert_allclose(frame.p.imag / STEP, velocity.real, rtol=1e-9, atol=1e-9)
         specific = turned(frame.R.real, frame.a.real) + GRAVITY
@@ -81,15 +81,14 @@ def test_forces_do_their_work_and_euler_parameters_are_a_rotation_vector(
     force = without(q, qd, qdd, still.inputs(np.asarray(0.0))) - local(q, qd, qdd, pushed)
     body, point = system.tree.forces[0].body, system.tree.forces[0].on
     moving = local.motion(q + 1j * STEP * np.eye(len(q)), 0j * np.eye(len(q)), 0j * np.eye(len(q)), pushed)
-    frame = moving.points[body][point]
+    frame = moving.points_of(body)[point]
     turn = (frame.R.imag / STEP) @ frame.R[0].real.T
     angle = np.stack([turn[:, 2, 1], turn[:, 0, 2], turn[:, 1, 0]], axis=1)
     work = frame.p.imag / STEP @ [1.0, 2.0, 3.0] + angle @ [0.3, 0.2, 0.1]
     np.testing.assert_allclose(force, work, rtol=1e-8, atol=1e-8 * np.abs(work).max(initial=1.0))
     # And the points are where they were.
     whole, reduced = (
-        [frame for body in state.points for frame in body]
-        for state in (system.tree.motion(y, yd, ydd, pushed), local.motion(q, qd, qdd, pushed))
+        state.every_point for state in (system.tree.motion(y, yd, ydd, pushed), local.motion(q, qd, qdd, pushed))
     )
     for one, other in zip(whole, reduced, strict=True):
         for name in ("R", "p", "v", "w", "a", "alpha"):

@@ -93,6 +93,8 @@ def _of_system(result: SystemResponse, title: str) -> dict[str, Describe]:
     every: dict[str, Describe] = {"points": partial(system.points, result, title)}
     if named(result):
         every["coordinates"] = partial(system.coordinates, result, title)
+    if result.loop is not None:
+        every["loop"] = partial(system.loop, result, title)
     if result.invariants is not None:
         every["energy"] = partial(system.energy, result, title)
     return every

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gbeam.figures.description import Bars, Figure, Line, Panel, estimated, scale_of
+from gbeam.figures.description import REFERENCE, Bars, Figure, Line, Panel, estimated, raised, scale_of
 from gbeam.results.system import ENERGIES, SystemModes, SystemResponse, SystemRest, named
 
 
@@ -48,6 +48,25 @@ def coordinates(response: SystemResponse, title: str = "") -> Figure:
 
 def _slides(name: str) -> bool:
     return name.rpartition(".")[2] in ("x", "y", "z", "displacement")
+
+
+def loop(response: SystemResponse, title: str = "") -> Figure:
+    """Describe measurements and commands of the controllers, as asked for and as applied."""
+    assert response.loop is not None
+    panels = [
+        Panel(f"{name.rpartition(': ')[2]}, {raised(unit)}", (Line(response.time, response.loop.measured[:, k]),))
+        for k, (name, unit) in enumerate(zip(response.loop.measurements, response.loop.units, strict=True))
+    ]
+    for k, name in enumerate(response.loop.drives):
+        unit = "N" if _slides(name) or ".force_" in name else "N m"
+        asked, applied = response.loop.asked[:, k], response.loop.applied[:, k]
+        scale, unit = scale_of(unit, asked, applied)
+        lines = (
+            Line(response.time, scale * asked, "asked for", colour=REFERENCE, dash="dashed"),
+            Line(response.time, scale * applied, "applied"),
+        )
+        panels.append(Panel(f"{name}, {unit}", lines, zero=True))
+    return Figure(title, "controllers", tuple(panels), outcomes=(response.outcome,))
 
 
 def energy(response: SystemResponse, title: str = "") -> Figure:

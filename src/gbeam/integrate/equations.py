@@ -58,6 +58,8 @@ class NonlinearEquations:
 
     residual: Any
     drive: Drive
+    controllers: Any = None
+    samplings: Any = None
 
 
 @dataclass(frozen=True)

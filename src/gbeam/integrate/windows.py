@@ -23,6 +23,7 @@ import numpy as np
 from gbeam.arrays.tree import each_leaf
 from gbeam.integrate.derivatives import accelerations, slopes, solved
 from gbeam.integrate.equations import NonlinearEquations
+from gbeam.integrate.sampled import Held, sampling_of
 from gbeam.integrate.schemes import Scheme, Tableau
 from gbeam.integrate.steps import Steps
 
@@ -33,10 +34,7 @@ NEAR, APART, FAR = 4, 8, 20  # stages between derivatives: at least, at first, a
 CORRECTIONS, ALONE = 10, 25  # of a window at most, and of a single step
 MOVED = 0.1  # size of a correction after which derivatives are found anew
 FEW = 3  # times, after which a window that is still so far away ends, and up to which the next one may be longer
-SLOW, FAST = (
-    0.3,
-    0.01,
-)  # of the last correction: where one is larger, derivatives are closer, where smaller farther apart
+SLOW, FAST = 0.3, 0.01  # of the last correction: where one is larger, derivatives are closer, where smaller farther
 LEAST = 4  # steps behind those that have converged, which go on with what they have: at least
 TOLERANCE, ROUNDING = 1e-9, 1e-6  # of the largest acceleration: error left by the last correction, and where it stalls
 
@@ -45,7 +43,7 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
     """Integrate; yields the initial state, then window by window q, q̇, q̈ (k, n) at the steps that are kept and whether
     each was solved.
     """
-    residual, drive = equations.residual, equations.drive
+    residual, drive, sampling = equations.residual, equations.drive, sampling_of(equations, steps)
 
     def demanded(t: Any, q: Array, qd: Array) -> Array:
         return accelerations(residual, q[None], qd[None], drive(np.array([t])))[0]
@@ -60,7 +58,8 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
     while done < len(steps):
         part = steps[done : min(done + size, ends[np.searchsorted(ends, done, side="right")])]
         with np.errstate(all="ignore"):
-            window = _Window(residual, drive, scheme, part, z, x, slope, apart)
+            held = None if sampling is None else Held(sampling, done, len(part))
+            window = _Window(residual, drive, scheme, part, z, x, slope, apart, held)
             count, near, times = window.solve()
             apart = window.apart
             if not count and len(part) == 1:
@@ -95,7 +94,16 @@ class _Window:
     """
 
     def __init__(
-        self, residual: Any, drive: Any, scheme: Scheme, steps: Steps, z: Array, x: Array, slope: Any, apart: int
+        self,
+        residual: Any,
+        drive: Any,
+        scheme: Scheme,
+        steps: Steps,
+        z: Array,
+        x: Array,
+        slope: Any,
+        apart: int,
+        held: Held | None,
     ) -> None:
         self.residual, self.drive, self.scheme, self.steps, self.apart = residual, drive, scheme, steps, apart
         equal = bool((steps.length == steps.length[0]).all())
@@ -103,7 +111,10 @@ class _Window:
         self.inputs = drive(np.stack([steps.times(offset) for offset in scheme.offsets], axis=1).ravel())
         self.z = np.array(np.broadcast_to(z, (len(steps) + 1, *z.shape[-2:])))
         self.x = np.array(np.broadcast_to(x, (len(steps), len(scheme.offsets), x.shape[-1])))
-        self.slope = slope
+        self.slope, self.held, self.free = slope, held, self.inputs
+        if held is not None:
+            held.begin(self.z[:-1])
+            self.inputs = held.driven(self.free, len(scheme.offsets))
         if slope is None:
             self._differentiate(alone=True)
 
@@ -136,7 +147,7 @@ class _Window:
         q, qd = ends[:, 0], ends[:, 1]
         if self.scheme.ends:
             return q, qd, x[:, -1].copy()
-        inputs, mass, c = self.drive(self.steps.end[:count]), self.slope[2][:count, -1], self.scheme.offsets
+        inputs, mass, c = self._at_ends(count), self.slope[2][:count, -1], self.scheme.offsets
         qdd, size = x[:, -1] + (x[:, -1] - x[:, 0]) * (1 - c[-1]) / (c[-1] - c[0]), np.full(count, np.inf)
         for _ in range(CORRECTIONS):  # with the mass at hand, for the equations are linear in q̈
             change = solved(mass, self.residual(q, qd, qdd, inputs)[..., None])[..., 0]
@@ -145,6 +156,11 @@ class _Window:
             if (_left(size, before) <= TOLERANCE).all():
                 return q, qd, qdd
         return q, qd, accelerations(self.residual, q, qd, inputs)
+
+    def _at_ends(self, count: int) -> Any:
+        """Inputs at the ends of the first steps."""
+        inputs = self.drive(self.steps.end[:count])
+        return inputs if self.held is None else self.held.at_ends(inputs, count)
 
     def behind(self, count: int, near: int) -> tuple[Array, Array, Any]:
         """States, accelerations and slope of the steps from `count` to `near`."""
@@ -190,6 +206,8 @@ class _Window:
         both = solved(jacobian, np.concatenate([unit, onto], axis=-1))
         inverse, answer = both[..., : stages * n], both[..., stages * n :]
         step = (t.g[:, :, None, :, None] * np.eye(n)[:, None, :]).reshape(-1, states * n, states * n)
+        if self.held is not None:
+            self.held.push(inverse, t, self._stages(), self.inputs)
         through = t.d @ answer.reshape(-1, stages, n * states * n)
         return inverse, answer, step - through.reshape(-1, states * n, states * n)
 
@@ -200,10 +218,18 @@ class _Window:
         defect = t.g @ self.z[:-1] + t.d @ (self.x - alone.reshape(self.x.shape)) - self.z[1:]
         moved = np.zeros((count + 1, self.z[0].size))
         steps = step if len(step) > 1 else np.broadcast_to(step, (count, *step.shape[1:]))
-        for one, more, before, after in zip(steps, defect.reshape(count, -1), moved[:-1], moved[1:], strict=True):
+        if self.held is not None:
+            self.held.measure(self.z[:-1])
+        every = zip(steps, defect.reshape(count, -1), moved[:-1], moved[1:], strict=True)
+        for k, (one, more, before, after) in enumerate(every):
             np.dot(one, before, out=after)
             after += more
+            if self.held is not None:
+                after += self.held.sampled(k, before)
         change = (alone + answer @ moved[:-1, :, None]).reshape(self.x.shape)
+        if self.held is not None:
+            change = change + self.held.changed(self.x.shape)
+            self.inputs = self.held.driven(self.free, self.x.shape[1])
         self.z += moved.reshape(self.z.shape)
         self.x -= change
         return _size(change, self.x)

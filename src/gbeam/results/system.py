@@ -48,6 +48,23 @@ class Invariants(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
+class Loop(Part):
+    """Controllers over time: what they sampled, asked for and applied, each held until the next."""
+
+    json_rows: ClassVar[dict[str, str]] = {"drive": "drives"}
+
+    measurements: tuple[str, ...] = labels("name of the measurement", "measurement", key="/measurements")
+    units: tuple[str, ...] = quantity(
+        "", "SI unit of the measurement", "measurement", name="measurement_unit", key=None
+    )
+    drives: tuple[str, ...] = labels("name of the drive", "drive", key="name")
+    measured: Floats = quantity("", "measurement, held from its sample", "time", "measurement", key=None, note="SI")
+    asked: Floats = quantity("", "effort that the law asks for, held from its sample", "time", "drive", key=None)
+    applied: Floats = quantity("", "effort that acts, limited and delayed", "time", "drive", key=None)
+    saturated: Floats = quantity("", "share of the samples that were limited", "drive")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
 class SystemResponse(Figured):
     """Response of a system over time, at its named points and coordinates.
 
@@ -108,6 +125,7 @@ class SystemResponse(Figured):
     invariants: Invariants | None = part(
         "momentum and energy", key="invariants", name=INSIDE, note="None on a base that moves", default=None
     )
+    loop: Loop | None = part("controllers", key="loop", name=INSIDE, note="None without any", default=None)
     integrator: str = fact("integrator", default="gauss")
     step: float = fact("time step", "s", default=math.nan)
     steps: int = fact("number of steps", default=0)
@@ -177,7 +195,7 @@ class SystemResponse(Figured):
             f"{most} moves by up to {far[most]:.4g} m in {self.time[0]:.4g} to {self.time[-1]:.4g} s",
             f"{self.integrator}, {self.steps} steps of {1e3 * self.step:.4g} ms; {error}",
         ]
-        if self.invariants is not None:
+        if self.invariants is not None and self.loop is None and not self.effort.any():
             lines.append(f"energy changes by {self.invariants.energy_change:.2g} of its largest part")
         return self._with_warnings(*lines)
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Run, difference, ratio, share
 from gbeam.analysis.response.stepping import MAX_STEPS, ONE_CORNER, _finer, scheme_of
+from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import histories
 from gbeam.analysis.system.point import Point, started
 from gbeam.errors import InputError
@@ -41,7 +42,7 @@ class _Read:
         parts = []
         for some in _pieces(trajectory, self.system):
             state = self.system.tree.motion(some.q, some.qd, some.qdd, self.system.inputs(some.time, self.motion))
-            parts.append(np.concatenate([frame.p for body in state.points for frame in body], axis=-1))
+            parts.append(np.concatenate([frame.p for frame in state.every_point], axis=-1))
         places = np.concatenate(parts)
         return places - places[0]
 
@@ -72,9 +73,21 @@ def simulate_system(
         raise InputError("initial", "displaces a tip", 'give "equilibrium" or "undeformed"; joints have initial values')
     point = started(system, motion, settings.start, begin.state)
     equations = NonlinearEquations(system.tree, lambda t: system.inputs(t, motion))
+    if system.controllers:
+        if settings.integrator != "gauss":
+            fix = "leave it out: controllers are sampled by Gauss's method"
+            raise InputError("integrator", f"is {settings.integrator!r}", fix)
+        equations = replace(equations, controllers=SystemControllers(system), samplings=[])
     coarse = _first_step(system, motion, point, settings)
     end = settings.start + settings.duration
-    felt = Corners.of(_corners(system, motion, coarse), equations.drive, settings.start, end)
+    times = _corners(system, motion, coarse)
+    felt = Corners.of(times, equations.drive, settings.start, end)
+    if system.controllers:
+        commands = np.unique(np.round(equations.controllers.corners(settings.start, end), 12))
+        commands = commands[np.abs(commands[:, None] - felt.time).min(axis=1, initial=np.inf) > 1e-9]
+        order = np.argsort(np.concatenate([felt.time, commands]))
+        jumps = np.concatenate([felt.jump, np.ones(len(commands), dtype=bool)])
+        felt = Corners(np.concatenate([felt.time, commands])[order], jumps[order])
     read, scheme = _Read(system, motion), scheme_of(settings)
 
     def run(step: float, what: str) -> tuple[Run, Floats]:
@@ -109,7 +122,7 @@ def simulate_system(
         error = _error(runs, scheme.order)
     chosen = runs[-1][0]
     stride = 1 if settings.step is not None else round(coarse / chosen.step)
-    return _described(system, motion, settings, chosen, stride, error, name)
+    return _described(system, motion, settings, chosen, stride, error, name, equations)
 
 
 def _error(runs: list[tuple[Run, Floats]], order: int) -> float:
@@ -146,14 +159,22 @@ def _described(
     stride: int,
     error: float,
     name: str,
+    equations: NonlinearEquations,
 ) -> SystemResponse:
     """Describe a run at every `stride`-th of its steps."""
     every = run.trajectory
     names = ("time", "q", "qd", "qdd")
     kept = replace(every, **{each: getattr(every, each)[::stride] for each in names})
     columns: dict[str, list[Floats]] = {}
+    loop, acting = None, None
+    if equations.controllers is not None:
+        loop, acting = loop_of(equations.controllers, equations.samplings[-1], kept.time)
+    done = 0
     for some in _pieces(kept, system):
         inputs = system.inputs(some.time, motion)
+        if acting is not None:
+            inputs = equations.controllers.driven(inputs, acting[done : done + len(some.time)])
+        done += len(some.time)
         for key, value in histories(system, some.q, some.qd, some.qdd, inputs, inertial=motion is None).items():
             columns.setdefault(key, []).append(value)
     over_time: dict[str, Any] = {key: np.concatenate(values) for key, values in columns.items()}
@@ -178,6 +199,7 @@ def _described(
         points=system.points,
         coordinates=system.coordinates,
         invariants=invariants,
+        loop=loop,
         integrator=scheme_of(settings).name,
         step=run.step,
         steps=len(every.time) - 1,

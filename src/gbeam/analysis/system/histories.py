@@ -20,7 +20,7 @@ def histories(system: System, y: Array, yd: Array, ydd: Array, inputs: Inputs, *
     """Motions of points, coordinates, drives and load on the ground at unknown coordinates (t, n) and their rates."""
     tree = system.tree
     state = tree.motion(y, yd, ydd, inputs)
-    frames = [frame for body in state.points for frame in body]
+    frames = state.every_point
     rows, ground = tree.rows(y, yd, ydd, inputs)
     whole = [y, yd]
     if inputs.prescribed is not None:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gbeam.analysis.system.point import Point, rested, started
 from gbeam.guards.checks import choice
-from gbeam.mechanics.tree.frames import turned
+from gbeam.mechanics.tree.signals import drives_of, measurements, signals_of
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import ZERO, eigenvalues, growth_limit
@@ -37,7 +37,7 @@ def system_modes(system: System, motion: Motion | None, time: float, *, gyroscop
     flat = shape.reshape(len(shape), -1)
     largest = flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)] if flat.size else np.ones(len(shape))
     growing = value[~zero & ((real & (value.real > 0)) | (value.real > growth_limit(value, size)))]
-    places = np.stack([frame.p for body in _frames(point, point.y, 0 * point.y) for frame in body])
+    places = np.stack([frame.p for frame in _frames(point, point.y, 0 * point.y)])
     return SystemModes(
         name=name,
         time=time,
@@ -56,14 +56,14 @@ RIGID = 1e-7  # of the largest eigenvalue: what is smaller is the root of roundi
 
 
 def _frames(point: Point, y: Array, yd: Array) -> Any:
-    return point.tree.motion(y, yd, 0 * y, point.inputs).points
+    return point.tree.motion(y, yd, 0 * y, point.inputs).every_point
 
 
 def _slopes_of_points(point: Point) -> Floats:
     """Derivatives of the places of all points with respect to the coordinates, (p, 3, n), by a complex step."""
     moved = point.y + 1j * STEP * np.eye(len(point.y))
     frames = _frames(point, moved, 0 * moved)
-    return np.stack([frame.p.imag.T / STEP for body in frames for frame in body])
+    return np.stack([frame.p.imag.T / STEP for frame in frames])
 
 
 def _shares(point: Point, modes: NDArray[np.complex128]) -> Floats:
@@ -131,27 +131,23 @@ def _names(system: System, local: Point) -> list[str]:
 
 def _inputs(system: System, local: Point, wanted: Sequence[str] | None) -> tuple[Floats, tuple[Signal, ...]]:
     """Forces (n, m) of unit inputs on the coordinates, and their signals."""
-    names = _names(system, local)
-    efforts = {each: np.eye(len(names))[k] for k, each in enumerate(names) if each.partition(".")[0] in system.joints}
-    if local.inputs.wrenches is not None:
-        wrenches = np.asarray(local.inputs.wrenches, dtype=complex)
-        for k, force in enumerate(system.forces):
-            for i, component in enumerate(("force", "moment")):
-                for j, axis in enumerate("xyz"):
-                    moved = wrenches.copy()
-                    moved[k, 3 * i + j] += 1j * STEP
-                    driven = replace(local.inputs, wrenches=moved)
-                    left = local.tree(local.y + 0j, local.yd + 0j, local.ydd + 0j, driven)
-                    efforts[f"{force}.{component}_{axis}"] = -left.imag / STEP
+    drives = drives_of(system)
     if wanted is None:
-        driven_joints = {f"{name}.{each}" for name, joint in system.joints.items() for each in joint.efforts}
-        wanted = [each for each in efforts if each in driven_joints or each.partition(".")[0] in system.forces]
+        driven = {f"{name}.{each}" for name, joint in system.joints.items() for each in joint.efforts}
+        wanted = [each for each in drives if each in driven or each.partition(".")[0] in system.forces]
     for each in wanted:
-        choice("inputs", each, efforts)
-    units = {"f": "N", "m": "N m", "x": "N", "y": "N", "z": "N", "d": "N"}
-    signals = tuple(Signal(each, units.get(each.rpartition(".")[2][0], "N m")) for each in wanted)
-    columns = [efforts[each] for each in wanted]
-    return np.stack(columns, axis=1) if columns else np.zeros((len(names), 0)), signals
+        choice("inputs", each, drives)
+    names = _names(system, local)
+    columns = np.zeros((len(names), len(wanted)))
+    for k, each in enumerate(wanted):
+        if drives[each].force is None:
+            columns[names.index(each), k] = 1.0
+        else:
+            moved = np.array(local.inputs.wrenches, dtype=complex)
+            moved[drives[each].force, drives[each].at] += 1j * STEP
+            left = local.tree(local.y + 0j, local.yd + 0j, local.ydd + 0j, replace(local.inputs, wrenches=moved))
+            columns[:, k] = -left.imag / STEP
+    return columns, tuple(Signal(each, drives[each].unit) for each in wanted)
 
 
 def _outputs(
@@ -171,44 +167,3 @@ def _outputs(
     measured = measurements(system, local.tree, moved[:, 0], moved[:, 1], moved[:, 2], local.inputs, wanted)
     slopes = (measured[1:].imag / STEP).reshape(3, n, -1).transpose(0, 2, 1)
     return tuple(Signal(each, every[each]) for each in wanted), measured[0].real, (slopes[0], slopes[1], slopes[2])
-
-
-def signals_of(system: System) -> dict[str, str]:
-    """Names of what may be measured of a system, with their units.
-
-    Of joints: ``joint.angle`` and ``joint.angle_rate`` and likewise; of points their ``place``, ``velocity`` (axes of
-    the ground), ``acceleration`` and ``spin``, as sensors there read them (axes of the point).
-    """
-    signals: dict[str, str] = {}
-    for name, joint in system.joints.items():
-        for each in joint.coordinates:
-            if each[0] != "e":
-                unit = "m" if each in ("x", "y", "z", "displacement") else "rad"
-                signals |= {f"{name}.{each}": unit, f"{name}.{each}_rate": f"{unit}/s"}
-    units = {"place": "m", "velocity": "m/s", "acceleration": "m/s^2", "spin": "rad/s"}
-    for point in system.points:
-        signals |= {f"{point}.{kind}_{axis}": unit for kind, unit in units.items() for axis in "xyz"}
-    return signals
-
-
-def measurements(system: System, tree: Any, y: Array, yd: Array, ydd: Array, inputs: Any, wanted: Sequence[str]) -> Any:
-    """Values (..., k) of what is measured, at unknown coordinates of the tree or of one local to it."""
-    state = tree.motion(y, yd, ydd, inputs)
-    columns = []
-    for each in wanted:
-        owner, _, kind = each.rpartition(".")
-        if owner in system.joints:
-            body = system.order.index(system.joints[owner].body)
-            rate = kind.endswith("_rate")
-            parts = (state.qd if rate else state.q)[body][:-1]
-            names = system.joints[owner].coordinates
-            k = names.index(kind.removesuffix("_rate"))
-            columns.append(np.concatenate(parts, axis=-1)[..., k])
-        else:
-            of, point = system.point("outputs", owner)
-            frame = state.points[system.order.index(of)][point]
-            name, _, axis = kind.partition("_")
-            vectors = {"place": frame.p, "acceleration": frame.a, "spin": frame.w}
-            vector = turned(frame.R, frame.v) if name == "velocity" else vectors[name]
-            columns.append(vector[..., "xyz".index(axis)])
-    return np.stack(columns, axis=-1) if columns else np.zeros((*y.shape[:-1], 0))

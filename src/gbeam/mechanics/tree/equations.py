@@ -132,9 +132,9 @@ class State:
         return self._points[body]
 
     @property
-    def points(self) -> list[list[Frame]]:
-        """Motions of the points of every body, its root the last."""
-        return [self.points_of(body) for body in range(len(self.links))]
+    def every_point(self) -> list[Frame]:
+        """Motions of the points of all bodies, one after the other, each with its root the last."""
+        return [frame for body in range(len(self.links)) for frame in self.points_of(body)]
 
 
 @record

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,7 +13,7 @@ from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import array, positive
+from gbeam.guards.checks import array, choice, positive
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import (
@@ -26,9 +26,11 @@ from gbeam.mechanics.tree.bodies import (
     Rigid,
     polynomial_points,
 )
+from gbeam.mechanics.tree.control import Feedback
 from gbeam.mechanics.tree.equations import Force, Inputs, Link, Tree
 from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.joints import GROUND, Joint
+from gbeam.mechanics.tree.signals import drives_of, signals_of
 from gbeam.mechanics.tree.steps import about
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.combine import as_profile
@@ -193,6 +195,8 @@ class System(Value):
         Forces at points, beside the loads of the beams.
     gravity : (3,), optional
         Acceleration of free fall, axes of the ground, m/s².
+    controllers : mapping of str to Feedback
+        Controllers in the loop, whose efforts add to those of the joints and forces.
 
     Raises
     ------
@@ -218,13 +222,14 @@ class System(Value):
     joints: Mapping[str, Joint]
     forces: Mapping[str, PointForce] = field(default_factory=dict)
     gravity: Sequence[float] | None = None
+    controllers: Mapping[str, Feedback] = field(default_factory=dict)
     order: tuple[str, ...] = field(init=False, repr=False, compare=False)
     tree: Tree = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         if not self.bodies:
             raise InputError("bodies", "is empty", "give one body or more")
-        for where, mapping in (("bodies", self.bodies), ("joints", self.joints), ("forces", self.forces)):
+        for where, mapping in _named(self):
             for name in mapping:
                 if not name.isidentifier() or name == GROUND:
                     raise InputError(f"{where}.{name}", "is no name", "give letters, digits and underscores")
@@ -232,6 +237,15 @@ class System(Value):
             _vector("gravity", self.gravity)
         object.__setattr__(self, "order", self._ordered())
         object.__setattr__(self, "tree", self._assembled())
+        drives, signals = drives_of(self), signals_of(self)
+        for name, controller in self.controllers.items():
+            for each in controller.measure:
+                choice(f"controllers.{name}.measure", each, signals)
+            for each in controller.drive:
+                choice(f"controllers.{name}.drive", each, drives)
+                if each in self._prescribed:
+                    fix = "leave out the rate: what is prescribed is not controlled"
+                    raise InputError(f"controllers.{name}.drive", f"is {each!r}, whose rate is prescribed", fix)
 
     def __repr__(self) -> str:
         names = ", ".join(self.order)
@@ -423,6 +437,12 @@ class System(Value):
             loads,
             xp.stack(wrenches, axis=-2) if wrenches else None,
         )
+
+
+def _named(system: System) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    """Mappings by name of a system."""
+    for each in ("bodies", "joints", "forces", "controllers"):
+        yield each, getattr(system, each)
 
 
 def _stations(structure: Structure) -> dict[str, int]:

@@ -1,0 +1,179 @@
+"""Sampled controllers of systems: laws that turn measurements into efforts, held between samples."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from inspect import signature
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.arrays.tree import Value
+from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
+from gbeam.guards.checks import array, positive
+from gbeam.motion.profiles.combine import as_profile
+
+Floats = NDArray[np.float64]
+Step = Callable[[float, Floats, Any], tuple[Any, Any]]
+
+
+@typed
+@dataclass(frozen=True, eq=False)
+class Feedback(Value):
+    """A controller in the loop of a system: it samples measurements, and holds its efforts until the next sample.
+
+    Parameters
+    ----------
+    law : callable, matrices or a python-control system
+        A function ``law(t, y)`` of time, s, and measurements (k,), which gives the efforts (m,), or ``law(t, y,
+        state)``, which gives efforts and the state at the next sample; a sample is taken more than once, so that a
+        function must keep nothing itself. Else a linear law with states of its own: (A, B, C, D), a
+        :class:`StateSpace`, or a StateSpace or TransferFunction of python-control. One in continuous time (matrices
+        are) is sampled by Tustin's rule, one in discrete time has the step `sample`.
+    measure : sequence of str
+        Measurements by name, as the outputs of :func:`gbeam.linearize`: ``joint.angle``, ``joint.angle_rate``,
+        ``body.point.place_x``, ``velocity_x``, ``acceleration_x``, ``spin_x``. Accelerations are those just before
+        the sample.
+    drive : sequence of str
+        Efforts by name, as its inputs: ``joint.angle``, ``force.force_x``, ``force.moment_z``. They are added to what
+        acts there otherwise.
+    sample : float
+        Time between samples, the first at the start, s.
+    delay : float
+        Time from a sample until its efforts act, s.
+    limit : float or sequence of float, optional
+        Largest size of the efforts, of all or of each.
+    reference : float, Profile or sequence of these, optional
+        The law is given what the measurements lack of it, reference − y, one for each measurement.
+    state : optional
+        State at the start of a function that has one; of a linear law zero.
+
+    Raises
+    ------
+    InputError
+        If a value is impossible, or the law does not fit the numbers of measurements and efforts.
+
+    Examples
+    --------
+    >>> damper = gb.Feedback(lambda t, y: -20.0 * y, ["axis.angle_rate"], ["axis.angle"], sample=0.01, limit=5.0)
+    >>> print(damper.effort(0.0, 0.1, None)[0])
+    [-2.]
+    """
+
+    law: Any
+    measure: Sequence[str]
+    drive: Sequence[str]
+    sample: float
+    delay: float = 0.0
+    limit: Any = None
+    reference: Any = None
+    state: Any = None
+    stateful: bool = field(init=False, repr=False, compare=False, default=True)
+
+    def __post_init__(self) -> None:
+        for name in ("measure", "drive"):
+            if not getattr(self, name):
+                raise InputError(name, "is empty", "name one quantity or more")
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        positive("sample", self.sample, "s")
+        positive("delay", self.delay, "s", zero=True)
+        if self.limit is not None:
+            limit = np.asarray(array("limit", self.limit), dtype=float)
+            if limit.shape not in ((), (len(self.drive),)) or not (limit > 0).all():
+                raise InputError("limit", f"is {self.limit!r}", f"give one positive size, or {len(self.drive)}")
+        references = (
+            self.reference if isinstance(self.reference, (list, tuple)) else [self.reference] * len(self.measure)
+        )
+        if len(references) != len(self.measure):
+            raise InputError("reference", f"has {len(references)} values", f"give one, or {len(self.measure)}")
+        profiles = tuple(as_profile("reference", each) for each in references if each is not None)
+        object.__setattr__(self, "reference", profiles or None)
+        if not callable(self.law) or hasattr(self.law, "dt"):
+            if self.state is not None:
+                raise InputError("state", "is given of a linear law, which starts at zero", "leave it out")
+            object.__setattr__(self, "law", self._sampled())
+        else:
+            object.__setattr__(self, "stateful", len(signature(self.law).parameters) > 2)
+
+    def _sampled(self) -> tuple[Floats, Floats, Floats, Floats]:
+        """Matrices of the linear law, in steps of `sample`."""
+        law: Any = self.law
+        step = getattr(law, "dt", 0)
+        if hasattr(law, "num"):
+            import control
+
+            law = control.ss(law)
+        parts = law
+        if not isinstance(law, (tuple, list)):
+            names = ("A", "B", "C", "D") if hasattr(law, "A") else ("a", "b", "c", "d")
+            if not all(hasattr(law, name) for name in names):
+                fix = "give a function, (A, B, C, D), or a StateSpace or TransferFunction"
+                raise InputError("law", f"is a {type(law).__name__}", fix)
+            parts = [getattr(law, name) for name in names]
+        if len(parts) != 4:
+            raise InputError("law", f"has {len(parts)} parts", "give (A, B, C, D)")
+        a, b, c, d = (np.atleast_2d(np.asarray(array("law", each), dtype=float)) for each in parts)
+        n, m, p = len(a) if a.size else 0, len(self.measure), len(self.drive)
+        shapes = {"A": (a, (n, n)), "B": (b, (n, m)), "C": (c, (p, n)), "D": (d, (p, m))}
+        for name, (matrix, shape) in shapes.items():
+            if matrix.size != math.prod(shape):
+                fix = f"give {shape}: {m} measurements, {p} efforts"
+                raise InputError("law", f"has a matrix {name} of shape {matrix.shape}", fix)
+        a, b, c, d = (matrix.reshape(shape) for matrix, shape in shapes.values())
+        if step is None or step is True or (step and not math.isclose(step, self.sample, rel_tol=1e-9)):
+            raise InputError("law", f"has the step {step}", f"give one of {self.sample:g} s, or in continuous time")
+        if not step and n:
+            from scipy.signal import cont2discrete
+
+            a, b, c, d, _ = cont2discrete((a, b, c, d), self.sample, method="bilinear")
+        return a, b, c, d
+
+    @property
+    def start(self) -> Any:
+        """State at the start."""
+        return np.zeros(len(self.law[0])) if isinstance(self.law, tuple) else self.state
+
+    def effort(self, t: float, measured: Floats, state: Any) -> tuple[Floats, Any]:
+        """Return the efforts (m,), before they are limited, and the state at the next sample.
+
+        Parameters
+        ----------
+        t : float
+            Time of the sample, s.
+        measured : (k,)
+            Measurements.
+        state : object
+            State at this sample.
+
+        Raises
+        ------
+        InputError
+            If a function gives other than `drive` names.
+        """
+        if self.reference is not None:
+            measured = np.array([float(each(t)) for each in self.reference]) - measured
+        if isinstance(self.law, tuple):
+            a, b, c, d = self.law
+            return c @ state + d @ measured, a @ state + b @ measured
+        if self.stateful:
+            efforts, state = self.law(t, measured, state)
+        else:
+            efforts = self.law(t, measured)
+        efforts = np.asarray(efforts, dtype=float).reshape(-1)
+        if efforts.shape != (len(self.drive),) or not np.isfinite(efforts).all():
+            raise InputError("law", f"gives {efforts} at {t:.6g} s", f"give {len(self.drive)} finite efforts")
+        return efforts, state
+
+    def limited(self, efforts: Floats) -> Floats:
+        """Return efforts within the limit.
+
+        Parameters
+        ----------
+        efforts : (..., m)
+            What the law asks for.
+        """
+        return efforts if self.limit is None else np.clip(efforts, -np.asarray(self.limit), np.asarray(self.limit))

@@ -1,0 +1,77 @@
+"""Names of what may be measured of a system and of what may drive it, and the values of measurements."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from gbeam.arrays.namespace import namespace
+from gbeam.mechanics.tree.frames import turned
+
+if TYPE_CHECKING:
+    from gbeam.mechanics.tree.system import System
+
+Array = Any
+_LENGTHS = ("x", "y", "z", "displacement")
+
+
+class Driven(NamedTuple):
+    """One number that drives a tree: the effort on coordinate `at`, or component `at` of force `force`."""
+
+    force: int | None
+    at: int
+    unit: str
+
+
+def drives_of(system: System) -> dict[str, Driven]:
+    """Efforts on the coordinates of joints, ``joint.angle``, and components of forces, ``thrust.force_x``, by name."""
+    drives = {}
+    for k, each in enumerate(system.coordinates):
+        owner, _, name = each.rpartition(".")
+        if owner in system.joints and name[0] != "e":
+            drives[each] = Driven(None, k, "N" if name in _LENGTHS else "N m")
+    for k, owner in enumerate(system.forces):
+        for i, (kind, unit) in enumerate((("force", "N"), ("moment", "N m"))):
+            drives |= {f"{owner}.{kind}_{axis}": Driven(k, 3 * i + j, unit) for j, axis in enumerate("xyz")}
+    return drives
+
+
+def signals_of(system: System) -> dict[str, str]:
+    """Names of what may be measured of a system, with their units.
+
+    Of joints: ``joint.angle`` and ``joint.angle_rate`` and likewise; of points their ``place``, ``velocity`` (axes of
+    the ground), ``acceleration`` and ``spin``, as sensors there read them (axes of the point).
+    """
+    signals: dict[str, str] = {}
+    for name, joint in system.joints.items():
+        for each in joint.coordinates:
+            if each[0] != "e":
+                unit = "m" if each in ("x", "y", "z", "displacement") else "rad"
+                signals |= {f"{name}.{each}": unit, f"{name}.{each}_rate": f"{unit}/s"}
+    units = {"place": "m", "velocity": "m/s", "acceleration": "m/s^2", "spin": "rad/s"}
+    for point in system.points:
+        signals |= {f"{point}.{kind}_{axis}": unit for kind, unit in units.items() for axis in "xyz"}
+    return signals
+
+
+def measurements(system: System, tree: Any, y: Array, yd: Array, ydd: Array, inputs: Any, wanted: Sequence[str]) -> Any:
+    """Values (..., k) of what is measured, at unknown coordinates of the tree or of one local to it."""
+    xp, state = namespace(y, inputs.ground.a), tree.motion(y, yd, ydd, inputs)
+    columns = []
+    for each in wanted:
+        owner, _, kind = each.rpartition(".")
+        if owner in system.joints:
+            body = system.order.index(system.joints[owner].body)
+            rate = kind.endswith("_rate")
+            parts = (state.qd if rate else state.q)[body][:-1]
+            names = system.joints[owner].coordinates
+            k = names.index(kind.removesuffix("_rate"))
+            columns.append(xp.concatenate(parts, axis=-1)[..., k])
+        else:
+            of, point = system.point("outputs", owner)
+            frame = state.points_of(system.order.index(of))[point]
+            name, _, axis = kind.partition("_")
+            vectors = {"place": frame.p, "acceleration": frame.a, "spin": frame.w}
+            vector = turned(frame.R, frame.v) if name == "velocity" else vectors[name]
+            columns.append(vector[..., "xyz".index(axis)])
+    return xp.stack(columns, axis=-1) if columns else xp.zeros((*y.shape[:-1], 0))

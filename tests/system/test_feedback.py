@@ -1,0 +1,164 @@
+"""Controllers in the loop: against sampled linear systems, with delay, limits, accelerometers; what is refused."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+import gbeam as gb
+
+PANEL = gb.assemble(
+    gb.Beam(3.0, gb.Section.rectangle(0.5, 0.02), gb.Material(2700.0, 70e9), damping_ratio=0.005), "FOAM", y=0, z=3
+)
+NAMES = ["axis.angle", "axis.angle_rate"]
+SAMPLE = 0.02
+
+
+def satellite(*controllers: gb.Feedback, angle: float = 0.0) -> gb.System:
+    """A hub with a panel that bends in its plane."""
+    rim = gb.Place((0.5, 0.0, 0.0), (np.pi / 2, 0.0, 0.0))
+    hub = gb.RigidBody(100.0, (50.0, 50.0, 50.0), points={"rim": rim})
+    axis = gb.Joint("revolute", "hub", axes=[(0, 0, 1)], initial=angle)
+    joints = {"axis": axis, "clamp": gb.Joint("fixed", "panel", "hub.rim")}
+    forces = {"jet": gb.PointForce("panel.tip")}
+    named = {f"c{k}": each for k, each in enumerate(controllers)}
+    return gb.System({"hub": hub, "panel": PANEL}, joints, forces, controllers=named)
+
+
+def lead() -> tuple[np.ndarray, ...]:
+    """A law with two states of two measurements."""
+    a = np.array([[-8.0, 3.0], [0.0, -15.0]])
+    return a, np.array([[1.0, 0.2], [0.5, 1.0]]), np.array([[20.0, -30.0]]), np.array([[-80.0, -150.0]])
+
+
+def sampled(law: gb.Feedback, measure: list[str], delay: float, angle: float, count: int) -> tuple[Any, Any]:
+    """Angles and commands at samples, by the matrix exponential of the linear plant."""
+    system = satellite(angle=angle)
+    plant = gb.linearize(system, inputs=["axis.angle"], outputs=measure)
+    n, part = len(plant.a), delay % SAMPLE
+    x = plant.state - gb.linearize(satellite(), inputs=["axis.angle"], outputs=measure).state
+    late, held, state, angles, asked = int(delay // SAMPLE), [0.0] * 50, law.start, [], []
+
+    def over(x: np.ndarray, u: float, h: float) -> np.ndarray:
+        block = np.zeros((n + 1, n + 1))
+        block[:n, :n], block[:n, n:] = plant.a, plant.b
+        return expm(block * h)[:n, :n] @ x + expm(block * h)[:n, n] * u
+
+    for k in range(count):
+        before = held[-1 - late - (part > 0)] if late else held[-1]
+        y = plant.c @ x + plant.d @ [before]
+        u, state = law.effort(k * SAMPLE, y, state)
+        asked.append(u[0])
+        held.append(float(law.limited(u)[0]))
+        angles.append(x[0])
+        if part:
+            x = over(x, held[-2 - late], part)
+        x = over(x, held[-1 - late], SAMPLE - part)
+    return np.array(angles), np.array(asked)
+
+
+@pytest.mark.parametrize(
+    ("delay", "limit", "measure"),
+    [
+        (0.0, None, NAMES),
+        (0.5 * SAMPLE, 4e-4, NAMES),
+        (1.25 * SAMPLE, None, NAMES),
+        (0.0, None, ["axis.angle", "panel.tip.acceleration_z"]),
+    ],
+)
+def test_small_motions_are_those_of_the_sampled_linear_plant(delay: float, limit: Any, measure: list[str]) -> None:
+    a, b, c, d = lead()
+    gentle = 0.05 if "panel.tip.acceleration_z" in measure else 1.0  # where an accelerometer would make it unstable
+    law = gb.Feedback((a, b, gentle * c, gentle * d), measure, ["axis.angle"], SAMPLE, delay, limit)
+    options: dict[str, Any] = {"duration": 4.0, "step": SAMPLE / 8, "estimate": False}
+    response = gb.simulate(satellite(law, angle=1e-5), initial="undeformed", **options)
+    angles, asked = sampled(law, measure, delay, 1e-5, 201)
+    size = np.abs(angles).max()
+    np.testing.assert_allclose(
+        response.coordinate("axis.angle")[::8], angles, atol=(2e-5 if gentle == 1.0 else 5e-4) * size
+    )
+    assert response.loop is not None
+    np.testing.assert_allclose(
+        response.loop.asked[:-1:8, 0], asked[:-1], atol=(1e-4 if gentle == 1.0 else 2e-3) * np.abs(asked).max()
+    )
+    saturated = 0.0 if limit is None else np.mean(np.abs(asked[:-1]) > limit)
+    assert response.loop.saturated[0] == pytest.approx(saturated, abs=0.011)
+
+
+def test_a_function_is_the_matrices_and_two_controllers_are_one() -> None:
+    a, b, c, d = gb.Feedback(lead(), NAMES, ["axis.angle"], SAMPLE).law
+
+    def law(t: float, y: np.ndarray, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return c @ state + d @ y, a @ state + b @ y
+
+    options: dict[str, Any] = {"duration": 2.0, "step": 0.01, "estimate": False}
+    matrices = gb.Feedback(lead(), NAMES, ["axis.angle"], SAMPLE)
+    function = gb.Feedback(law, NAMES, ["axis.angle"], SAMPLE, state=np.zeros(2))
+    half = [gb.Feedback(lambda t, y: 0.5 * (d @ y), NAMES, ["axis.angle"], SAMPLE) for _ in range(2)]
+    whole = gb.Feedback(lambda t, y: d @ y, NAMES, ["axis.angle"], SAMPLE)
+    pairs = ([matrices], [function]), ([whole], half)
+    for one, other in pairs:
+        left, right = (gb.simulate(satellite(*each, angle=0.3), **options) for each in (one, other))
+        np.testing.assert_allclose(left.q, right.q, atol=1e-9)
+
+
+def test_a_force_at_a_point_is_driven_and_reported() -> None:
+    """A jet at the tip damps the panel; what is sampled and applied is in the response, and acts with the delay."""
+    rates = ["panel.tip.velocity_x", "panel.tip.velocity_y"]
+    jet = gb.Feedback(lambda t, y: -2.0 * y, rates, ["jet.force_x", "jet.force_y"], SAMPLE, delay=SAMPLE, limit=0.015)
+    turned = gb.Feedback(lambda t, y: 5.0 * (t < 0.5), ["axis.angle"], ["axis.angle"], SAMPLE)
+    response = gb.simulate(satellite(jet, turned), duration=4.0, step=0.01, estimate=False)
+    loop = response.loop
+    assert loop is not None and loop.drives == ("c0: jet.force_x", "c0: jet.force_y", "c1: axis.angle")
+    velocity = response.velocity[:, response.points.index("panel.tip"), 1]
+    np.testing.assert_allclose(loop.measured[:-1:2, 1], velocity[:-1:2], atol=1e-8)
+    np.testing.assert_allclose(loop.applied[2::2, 1], np.clip(-2.0 * velocity[:-2:2], -0.015, 0.015), atol=1e-8)
+    alone = gb.simulate(satellite(turned), duration=4.0, step=0.01, estimate=False)
+    assert response.invariants is not None and alone.invariants is not None
+    assert response.invariants.energy[-1].sum() < 0.995 * alone.invariants.energy[-1].sum()
+    assert 0 < loop.saturated[1] < 1 and np.abs(loop.applied[:, :2]).max() <= 0.015
+
+
+def test_a_relay_limits_cycle() -> None:
+    """A law that jumps is satisfied too: at every sample the command is that of the state there."""
+    relay = gb.Feedback(lambda t, y: -30.0 * np.sign(y[:1] + 0.5 * y[1:]), NAMES, ["axis.angle"], SAMPLE)
+    response = gb.simulate(satellite(relay, angle=0.1), duration=6.0, step=0.01, estimate=False)
+    assert response.outcome == "done" and response.loop is not None
+    switched = -30.0 * np.sign(response.q[:-1:2, 0] + 0.5 * response.qd[:-1:2, 0])
+    np.testing.assert_allclose(response.loop.applied[:-1:2, 0], switched)
+    assert np.count_nonzero(np.diff(switched)) > 3
+
+
+@pytest.mark.parametrize(
+    ("more", "where"),
+    [
+        ({"sample": 0.0}, "sample"),
+        ({"measure": []}, "measure"),
+        ({"limit": -1.0}, "limit"),
+        ({"delay": -0.1}, "delay"),
+        ({"law": "pid"}, "law"),
+        ({"law": (np.eye(2), np.eye(2), np.eye(2), np.eye(2))}, "law"),
+        ({"reference": [1.0]}, "reference"),
+    ],
+)
+def test_controllers_that_are_none_are_refused(more: dict[str, Any], where: str) -> None:
+    with pytest.raises(gb.InputError) as caught:
+        gb.Feedback(**({"law": lambda t, y: y, "measure": NAMES, "drive": ["axis.angle"], "sample": SAMPLE} | more))
+    assert caught.value.where == where
+
+
+def test_names_and_laws_that_do_not_fit_are_refused() -> None:
+    for measure, drive, where in ((["axis.angel"], ["axis.angle"], "measure"), (NAMES, ["axis.rate"], "drive")):
+        with pytest.raises(gb.InputError) as caught:
+            satellite(gb.Feedback(lambda t, y: y, measure, drive, SAMPLE))
+        assert caught.value.where == f"controllers.c0.{where}"
+    with pytest.raises(gb.InputError, match="gives"):
+        gb.simulate(satellite(gb.Feedback(lambda t, y: y, NAMES, ["axis.angle"], SAMPLE)), duration=0.1)
+    control = pytest.importorskip("control")
+    with pytest.raises(gb.InputError, match="has the step"):
+        gb.Feedback(control.ss(*lead(), 0.1), NAMES, ["axis.angle"], SAMPLE)
+    transfer = gb.Feedback(control.tf([1.0], [0.1, 1.0]), NAMES[:1], ["axis.angle"], SAMPLE)
+    assert transfer.law[0].shape == (1, 1)
