@@ -180,7 +180,7 @@ def _indented(section: str) -> str:
 
 
 def _type_words(annotation: str, each: Declaration) -> str:
-    kinds = {"Floats": "", "Complex": "complex", "Flags": "bool"}
+    kinds = {"Floats": "", "Complex": "complex", "Flags": "bool", "NDArray[np.int_]": "int"}
     base, _, none = annotation.partition(" | None")
     words = kinds.get(base, re.sub(r"tuple\[(\w+), \.\.\.\]", r"tuple of \1", base)) + (" or None" if none or _ else "")
     unit = each.unit if isinstance(each.unit, str) else ""
