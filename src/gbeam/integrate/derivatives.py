@@ -29,7 +29,7 @@ def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple
         rates, changes = np.concatenate([_moved(at[1]), at[1] + still]), np.concatenate([at[2] + still, _moved(at[2])])
         values[n:] = residual(at[0], rates, changes, given)
         pieces.append(values.imag / STEP)
-    k, c, m = np.concatenate(pieces, axis=1).reshape(3, n, -1, n).transpose(0, 2, 3, 1)
+    k, c, m = np.concatenate(pieces, axis=1).reshape(3, n, len(q), n).transpose(0, 2, 3, 1)
     return k, c, m
 
 
@@ -46,7 +46,7 @@ def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
 
 def _pieces(q: Array) -> list[slice]:
     count, n = q.shape
-    size = max(1, AT_ONCE // n**2)
+    size = max(1, AT_ONCE // max(n, 1) ** 2)
     return [slice(first, first + size) for first in range(0, count, size)]
 
 

@@ -24,9 +24,10 @@ from gbeam.analysis.steady.operating_point import (
 from gbeam.analysis.steady.stability import hub_of
 from gbeam.analysis.system.linear import linearize_system
 from gbeam.arrays.namespace import namespace
-from gbeam.arrays.tree import record
+from gbeam.arrays.tree import each_leaf, record
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
+from gbeam.integrate.derivatives import accelerations
 from gbeam.mechanics.assembly import at_stations
 from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.fields.basis import FAMILIES
@@ -126,12 +127,17 @@ class Outputs:
 
     def matrices(self, z: Array) -> tuple[Array, Array]:
         """Values (p,) at one vector (y, ẏ, ÿ, u), and the derivatives with respect to it."""
-        if self.structure.linear:
-            return self.stacked(z), complex_step(self.stacked, z)
-        from gbeam.mechanics.equations.compiled import output_matrices
+        return self.stacked(z), complex_step(self.stacked, z)
 
-        values, derivatives = output_matrices(self, z)
-        return np.asarray(values), np.asarray(derivatives)
+    def rates(self, x: Array, u: Array) -> tuple[Array, Array]:
+        """Rate of the state (y, ẏ, and on a base that is not a free hub its angular velocity), and the outputs."""
+        i = self.residual.first
+        n = self.structure.size + i
+        y, yd, rate = x[:n], x[n : 2 * n], x[2 * n :]
+        full = u if i else np.concatenate([u[:3], rate, u[3:]])
+        given = each_leaf(lambda leaf: leaf[None], self.residual.unpack(full))
+        ydd = accelerations(self.residual, y[None], yd[None], given)[0]
+        return np.concatenate([yd, ydd, u[3:6] if not i else []]), self(y, yd, ydd, full)
 
 
 def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
@@ -390,7 +396,6 @@ def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[G
     (12, ['torque'])
     """
     control = import_control()
-    from gbeam.mechanics.equations.compiled import rates
 
     straight = np.zeros(structure.size)
     if motion.free:
@@ -400,10 +405,10 @@ def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[G
     outputs = outputs_of(structure, point, gauges)
 
     def update(t: float, x: Any, u: Any, params: Any) -> Any:
-        return np.asarray(rates(outputs, np.asarray(x, dtype=float), np.asarray(u, dtype=float))[0])
+        return outputs.rates(np.asarray(x, dtype=float), np.asarray(u, dtype=float))[0]
 
     def measure(t: float, x: Any, u: Any, params: Any) -> Any:
-        return np.asarray(rates(outputs, np.asarray(x, dtype=float), np.asarray(u, dtype=float))[1])
+        return outputs.rates(np.asarray(x, dtype=float), np.asarray(u, dtype=float))[1]
 
     return control.nlsys(
         update,

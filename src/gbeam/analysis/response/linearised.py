@@ -2,7 +2,8 @@
 
 A parameter enters by pairs of problems, a little less and a little more of it. The residual of a linear model is one
 product, of terms that know the motion and of coefficients that know the beam, either of which is differentiated with
-the other held; that of a nonlinear model is evaluated for either of a pair at the run's states, with JAX's Jacobians.
+the other held; that of a nonlinear model is evaluated for either of a pair at the run's states, with derivatives by
+complex steps.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.response.problem import Problem
+from gbeam.integrate.derivatives import accelerations, slopes
 from gbeam.integrate.equations import LinearEquations
 from gbeam.integrate.schemes import Scheme, added
 from gbeam.integrate.tangent import System
@@ -125,18 +127,15 @@ def _equations(posed: Posed) -> Any:
 
 
 def _nonlinear(nominal: Posed, pairs: Sequence[Pair], width: Floats) -> System:
-    from gbeam.mechanics.equations import compiled
-
     equations: Any = nominal.problem.equations
 
     def system(time: Floats, q: Floats, qd: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        mass, c, k, qdd = compiled.about(equations.residual, q, qd, equations.drive(time))
+        residual, inputs = equations.residual, equations.drive(time)
+        qdd = accelerations(residual, q, qd, inputs)
+        k, c, mass = slopes(residual, q, qd, qdd, inputs)
         forces = np.empty((*q.shape, len(pairs)))
         for j, pair in enumerate(pairs):
-            less, more = (
-                compiled.residuals(each.residual, q, qd, qdd, each.drive(time))
-                for each in (_equations(posed) for posed in pair)
-            )
+            less, more = (each.residual(q, qd, qdd, each.drive(time)) for each in (_equations(posed) for posed in pair))
             forces[..., j] = -(more - less) / width[j]
         return mass, c, k, forces
 

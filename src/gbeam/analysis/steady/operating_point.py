@@ -77,16 +77,11 @@ def evaluated_at(
     structure: Structure, residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array
 ) -> tuple[Array, Array]:
     """The residual (n,) and its derivatives with respect to (y, ẏ, ÿ, u), (n, 3n + inputs)."""
-    if structure.linear:
-        return residual(y, yd, ydd, residual.unpack(u)), stepped(residual, y, yd, ydd, u)
-    from gbeam.mechanics.equations.compiled import evaluated
-
-    value, slope = evaluated(residual, np.concatenate([y, yd, ydd]), u)
-    return np.asarray(value), np.asarray(slope)
+    return residual(y, yd, ydd, residual.unpack(u)), stepped(residual, y, yd, ydd, u)
 
 
 def stepped(residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
-    """Derivatives of a linear model's residual, by a complex step."""
+    """Derivatives of the residual, by complex steps."""
     n = len(y)
 
     def stacked(x: Array) -> Array:

@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.analysis.system.histories import histories
+from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError, InputError
+from gbeam.integrate.derivatives import slopes
 from gbeam.mechanics.tree.equations import Inputs, Tree
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.series import STEP
 from gbeam.results.system import SystemRest
 
 Array = Any
@@ -46,12 +47,9 @@ class Point:
 
     def slopes(self) -> tuple[Floats, Floats, Floats, Floats]:
         """The residual (n,) and its derivatives K, C and M (n, n) with respect to y, ẏ and ÿ, by complex steps."""
-        n = len(self.y)
-        state = np.concatenate([self.y, self.yd, self.ydd])
-        moved = (state + 1j * STEP * np.eye(3 * n)).reshape(3 * n, 3, n)
-        values = self.tree(moved[:, 0], moved[:, 1], moved[:, 2], self.inputs)
-        k, c, m = (values.imag / STEP).reshape(3, n, -1).transpose(0, 2, 1)
-        return values[0].real, k, c, m
+        inputs = each_leaf(lambda leaf: leaf[None], self.inputs)
+        k, c, m = slopes(self.tree, self.y[None], self.yd[None], self.ydd[None], inputs)
+        return self.tree(self.y, self.yd, self.ydd, self.inputs), k[0], c[0], m[0]
 
 
 def refuse_massless(system: System, mass: Floats, free: NDArray[np.int64]) -> None:

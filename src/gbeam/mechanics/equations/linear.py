@@ -154,9 +154,10 @@ class Coefficients:
         alpha_WB_B: Array,
         load_values: Array | None = None,
     ) -> Array:
-        """Residual on a base whose motion is given, (n,); zero where the equations hold."""
+        """Residual on a base whose motion is given, (..., n); zero where the equations hold."""
         velocity, stiffness, force = self.at(a_WO_B, w_WB_B, alpha_WB_B, load_values)
-        return self.mass @ qdd + velocity @ qd + stiffness @ q - force
+        inside = velocity @ qd[..., None] + stiffness @ q[..., None]
+        return qdd @ self.mass + inside[..., 0] - force
 
     def input_matrix(self, q: Array, qd: Array, w_WB_B: Array, *, loaded: bool = False) -> Array:
         """Forces of a unit of each input, a_O, ω, α and the loads' components, (n, 9 + 6 loads)."""

@@ -9,6 +9,8 @@ from __future__ import annotations
 from functools import reduce
 from typing import Any
 
+import numpy as np
+
 Scalar = Any
 Vector = tuple[Scalar, Scalar, Scalar]
 Rotation = tuple[Vector, Vector, Vector]  # rows
@@ -108,5 +110,6 @@ def split(vectors: Any) -> Vector:
 
 
 def joined(xp: Any, parts: tuple[Scalar, ...], shape: tuple[int, ...]) -> Any:
-    """Array (*shape, k) of k components."""
+    """Array (*shape, k) of k components, of a shape that they broadcast further."""
+    shape = np.broadcast_shapes(shape, *(part.shape for part in parts if not isinstance(part, int | float)))
     return xp.stack([xp.broadcast_to(float(p) if isinstance(p, int) else p, shape) for p in parts], axis=-1)

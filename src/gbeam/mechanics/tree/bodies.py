@@ -127,7 +127,7 @@ class ExactPoints:
     def along(self, q: Array, wrenches: list[Acting]) -> Array:
         xp = namespace(q, *(acting.wrench.force for acting in wrenches))
         pairs = zip(*((turned(by.R, each.force), turned(by.R, each.moment)) for _, by, each in wrenches), strict=True)
-        forces, moments = (split(xp.stack(each, axis=-2)) for each in pairs)
+        forces, moments = (split(xp.stack(xp.broadcast_arrays(*each), axis=-2)) for each in pairs)
         return self.field[np.array([acting.point for acting in wrenches])].along(q, forces, moments)
 
 
@@ -150,8 +150,10 @@ class PolynomialPoints:
     def along(self, q: Array, wrenches: list[Acting]) -> Array:
         xp = namespace(q, *(acting.wrench.force for acting in wrenches))
         at = np.array([acting.point for acting in wrenches])
-        force = xp.stack([turned(by.R, each.force) for _, by, each in wrenches], axis=-2)
-        moment = xp.stack([each.moment for _, _, each in wrenches], axis=-2)
+        force, moment = (
+            xp.stack(xp.broadcast_arrays(*each), axis=-2)
+            for each in zip(*((turned(by.R, each.force), each.moment) for _, by, each in wrenches), strict=True)
+        )
         slope = self.first[at] + xp.einsum("paij,...j->...pai", self.second[at], q)
         turning = self.turn[at] + xp.einsum("paij,...j->...pai", self.bend[at], q)
         phi = ((self.turn[at] + turning) / 2 * q[..., None, None, :]).sum(axis=-1)
