@@ -156,7 +156,7 @@ class PolynomialPoints:
         )
         slope = self.first[at] + xp.einsum("paij,...j->...pai", self.second[at], q)
         turning = self.turn[at] + xp.einsum("paij,...j->...pai", self.bend[at], q)
-        phi = ((self.turn[at] + turning) / 2 * q[..., None, None, :]).sum(axis=-1)
+        phi = xp.einsum("...pai,...i->...pa", (self.turn[at] + turning) / 2, q)
         on_vector = tangent_back(phi, moment)
         return (slope * force[..., None] + turning * on_vector[..., None]).sum(axis=(-3, -2))
 
@@ -235,15 +235,15 @@ class LinearBody:
     def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
         c, xp = self.coefficients, namespace(self.coefficients.mass, q, root.a)
         S, Si, Sd, J, Ji, h, hi = self._moments(q, qd)
-        Sdd = (Si * qdd[..., None, :]).sum(axis=-1) + xp.einsum("aij,...i,...j->...a", c.k_a, qd, qd)
-        hd = (hi * qdd[..., None, :]).sum(axis=-1) + xp.einsum("aij,...i,...j->...a", c.k_al, qd, qd)
+        Sdd = turned(Si, qdd) + xp.einsum("aij,...i,...j->...a", c.k_a, qd, qd)
+        hd = turned(hi, qdd) + xp.einsum("aij,...i,...j->...a", c.k_al, qd, qd)
         force = c.rigid[0] * root.a + cross(root.alpha, S) + cross(root.w, cross(root.w, S))
         force = force + 2 * cross(root.w, Sd) + Sdd
-        swelling = (Ji * qd[..., None, None, :]).sum(axis=-1)
+        swelling = xp.einsum("...abi,...i->...ab", Ji, qd)
         moment = cross(S, root.a) + turned(J, root.alpha) + turned(swelling, root.w) + hd
         moment = moment + cross(root.w, turned(J, root.w) + h)
         along = qdd @ c.mass + qd @ c.damping + q @ c.stiffness
-        along = along + (Si * root.a[..., :, None] + hi * root.alpha[..., :, None]).sum(axis=-2)
+        along = along + turned_back(Si, root.a) + turned_back(hi, root.alpha)
         along = along + xp.einsum("aij,...a,...j->...i", c.gyroscopic, root.w, qd)
         along = along - 0.5 * xp.einsum("...abi,...a,...b->...i", Ji, root.w, root.w)
         if loads is not None and c.loads is not None:
@@ -255,11 +255,11 @@ class LinearBody:
         """S, ∂S/∂q, Ṡ, J, ∂J/∂q, h and the h_i."""
         c, xp = self.coefficients, namespace(self.coefficients.mass, q, qd)
         Si = -c.f_a + xp.einsum("aij,...j->...ai", c.k_a, q)
-        S = c.rigid[1:4] + ((Si - c.f_a) / 2 * q[..., None, :]).sum(axis=-1)
+        S = c.rigid[1:4] + turned((Si - c.f_a) / 2, q)
         Ji = 2 * c.f_ww - 2 * xp.einsum("abij,...j->...abi", c.k_ww, q)
-        J = c.second_moment + ((2 * c.f_ww + Ji) / 2 * q[..., None, None, :]).sum(axis=-1)
+        J = c.second_moment + xp.einsum("...abi,...i->...ab", c.f_ww + Ji / 2, q)
         hi = -c.f_al + xp.einsum("aij,...j->...ai", c.k_al, q)
-        Sd, h = ((each * qd[..., None, :]).sum(axis=-1) for each in (Si, hi))
+        Sd, h = (turned(each, qd) for each in (Si, hi))
         return S, Si, Sd, J, Ji, h, hi
 
     def along(self, q: Array, wrenches: list[Acting]) -> Array:
@@ -284,9 +284,9 @@ def _polynomial(first: Array, second: Array, q: Array, qd: Array, qdd: Array) ->
     """J q + ½ q H q, and its first and second derivatives with respect to time, (..., p, 3)."""
     xp = namespace(first, q)
     slope = first + xp.einsum("paij,...j->...pai", second, q)
-    value = ((first + slope) / 2 * q[..., None, None, :]).sum(axis=-1)
-    rate = (slope * qd[..., None, None, :]).sum(axis=-1)
-    change = (slope * qdd[..., None, None, :]).sum(axis=-1) + xp.einsum("paij,...i,...j->...pa", second, qd, qd)
+    value = xp.einsum("...pai,...i->...pa", (first + slope) / 2, q)
+    rate = xp.einsum("...pai,...i->...pa", slope, qd)
+    change = xp.einsum("...pai,...i->...pa", slope, qdd) + xp.einsum("paij,...i,...j->...pa", second, qd, qd)
     return value, rate, change
 
 

@@ -28,17 +28,17 @@ def cross(left: Array, right: Array) -> Array:
 
 def turned(R: Array, v: Array) -> Array:
     """R v of matrices (..., 3, 3) and vectors (..., 3)."""
-    return (R * v[..., None, :]).sum(axis=-1)
+    return (R @ v[..., None])[..., 0]
 
 
 def turned_back(R: Array, v: Array) -> Array:
     """Rᵀ v."""
-    return (R * v[..., :, None]).sum(axis=-2)
+    return (v[..., None, :] @ R)[..., 0, :]
 
 
 def product(left: Array, right: Array) -> Array:
     """Product of rotation matrices (..., 3, 3)."""
-    return (left[..., :, :, None] * right[..., None, :, :]).sum(axis=-2)
+    return left @ right
 
 
 @record
