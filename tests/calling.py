@@ -11,6 +11,7 @@ import pytest
 
 from gbeam.cli import main
 from gbeam.cli.process import FIGURES
+from gbeam.progress import INTERVAL
 
 
 @dataclass(frozen=True)
@@ -28,8 +29,9 @@ class Answer:
 
 
 @pytest.fixture
-def gbeam(capsys: pytest.CaptureFixture[str]) -> Callable[..., Answer]:
-    """Call the command line with its arguments."""
+def gbeam(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Answer]:
+    """Call the command line with its arguments; of progress, which there is on slow machines only, it says nothing."""
+    monkeypatch.setenv(INTERVAL, "100000")
 
     def call(*arguments: object) -> Answer:
         status = main([str(argument) for argument in arguments])

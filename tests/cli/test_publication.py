@@ -15,7 +15,6 @@ import pytest
 
 from gbeam.cli.publication import publish
 from gbeam.errors import ComputationError
-from gbeam.progress import INTERVAL
 
 Call = Callable[..., Any]
 
@@ -92,13 +91,10 @@ def test_what_killed_runs_left_is_removed(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits the size of a file")
 @pytest.mark.parametrize("most", [0, 1000, 20_000])
-def test_a_full_disk_under_a_run(
-    most: int, fast: Path, gbeam: Call, without_figures: None, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_full_disk_under_a_run(most: int, fast: Path, gbeam: Call, without_figures: None) -> None:
     """The numbers are printed, and the exit status says that there are no files; HDF5 ended the process."""
     import resource
 
-    monkeypatch.setenv(INTERVAL, "100000")  # progress is there on slow machines only
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (most, before[1]))
     try:
