@@ -135,7 +135,11 @@ def _product(p: Array, q: Array) -> Array:
     """Products of quaternions (4, ...)."""
     total = p[0] * q
     for part, (order, signs) in zip(p[1:], _UNITS, strict=True):
-        total = total + part * (np.reshape(signs, (4, *[1] * part.ndim)) * q[np.array(order)])
+        if is_jax(total):
+            total = total + part * (np.reshape(signs, (4, *[1] * part.ndim)) * q[np.array(order)])
+            continue
+        for row, of, sign in zip(total, order, signs, strict=True):  # in place, which takes NumPy a third of the time
+            (np.add if sign > 0 else np.subtract)(row, part * q[of], out=row)
     return total
 
 
