@@ -85,7 +85,10 @@ def test_a_shaft_yields_by_torsion() -> None:
     np.testing.assert_allclose(loads.von_mises[0], expected)
     np.testing.assert_allclose(loads.margin[0], 400e6 / expected - 1)
     assert np.abs(loads.stress).max() < 1e-6 * expected
-    response = gb.simulate(structure, gb.Flight(z=0.0), duration=0.02, step=1e-4, estimate=False)
+    response = gb.simulate(structure, gb.Flight(z=0.0), duration=0.02)
+    # The tip does not move, nor is there a force: no error is a share of that, and no step is refined by it.
+    assert response.steps <= 1000 and not response.warnings
+    assert response.errors.displacement.total == 0.0 and response.errors.loads.total < 1e-9
     peak = response.peaks.loads
     assert peak is not None and peak.largest_von_mises is not None and peak.least_margin is not None
     assert peak.largest_von_mises.value == pytest.approx(expected, rel=1e-6)

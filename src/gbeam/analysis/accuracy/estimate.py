@@ -63,6 +63,8 @@ def of_bodies(structure: Structure, lacking: Lacking, tip: float, limit: float) 
             )
 
 
+NOTHING = 1e-7  # of what another load makes
+UNMOVED = 1e-14  # of the length
 FEWEST, PER_PERIOD = 500, 6  # samples looked at, in all and in a period of the lowest mode
 MOST = 20_000  # samples where fast modes may ring
 LARGEST = 2.0  # times (v/L)²: error of a second-order model, up to what a beam that points inward on a hub has
@@ -90,6 +92,11 @@ def response_errors(
         return Errors(alone[0], alone[1], alone[2], UNKNOWN), ()
     every = tip, loads.force[:, 0], loads.moment[:, 0], loads.stress.max(axis=1)
     sizes = dict(zip(Quantities._fields, map(largest, every), strict=True))
+    sheared = 0.0 if loads.von_mises is None else float(np.nan_to_num(loads.von_mises).max())
+    # A torque alone moves no tip and brings no normal stress: what is there is rounding.
+    force, moment, length = sizes["force"], sizes["moment"], structure.length
+    rounding = UNMOVED / NOTHING * length, moment / length, force * length, sheared
+    nothing = {name for (name, size), least in zip(sizes.items(), rounding, strict=True) if size <= NOTHING * least}
     period = 2 * math.pi / float(structure.rest[0][0])
     step, least = float(solution.time[1] - solution.time[0]), math.ceil(len(solution.time) / MOST)
     few = max(1, min(int(period / PER_PERIOD / (stride * step)), len(tip) // FEWEST))
@@ -107,9 +114,10 @@ def response_errors(
             return _bounded(structure, sizes["tip"], steps[0]), 0.0
 
         def fractions(name: str, step: float) -> ErrorEstimate:
-            size = sizes[name] or largest(getattr(parts.total, name))
+            size = 0.0 if name in nothing else sizes[name] or largest(getattr(parts.total, name))
             shares = (largest(getattr(part, name)) / size if size else 0.0 for part in parts)
             shapes, model, total = shares
+            step = 0.0 if name in nothing else step
             away = ErrorEstimate(step, shapes, 0.0 if structure.kind == "exact" else model, total=step + total)
             return away.with_theory(beyond.sizes[name] / size if size else 0.0)
 

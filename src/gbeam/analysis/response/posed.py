@@ -23,6 +23,9 @@ from gbeam.motion.protocol import Motion
 from gbeam.results.result import Floats
 from gbeam.structure.beam import refuse_curved
 
+UNMOVED = 1e-14  # of the length
+NOTHING = 1e-7  # of the other load, over a length of the beam: a force or moment that is less is rounding
+
 
 @dataclass(frozen=True, eq=False)
 class Posed:
@@ -79,7 +82,9 @@ class Posed:
         return Readings(self._tip, self._moment, self._loads)
 
     def _tip(self, y: Floats) -> Floats:
-        return np.asarray(self.structure.tip(y[..., self.problem.first :]))
+        """Displacement of the tip, zero where it is the rounding of places: a torque alone does not move it."""
+        tip = np.asarray(self.structure.tip(y[..., self.problem.first :]))
+        return np.where(np.abs(tip) > UNMOVED * self.structure.length, tip, 0.0)
 
     def _moment(self, y: Floats) -> Floats:
         """Root moment by the elastic forces K q, which the coordinates' inertia balances, of the straight beam."""
@@ -97,8 +102,17 @@ class Posed:
         forces = section_forces(self.structure, base, q, qd, qdd, time, motion=self.motion)
         if forces is None:
             return []
-        stress = np.concatenate([forces.stress_tension, forces.stress_compression], axis=1)[..., None]
-        return [forces.section_force[:, 0], forces.section_moment[:, 0], stress]
+        sides = [forces.stress_tension, forces.stress_compression]
+        if forces.von_mises is not None and np.isfinite(forces.von_mises).all():
+            sides.append(forces.von_mises)  # of what is only twisted the others are rounding
+        stress = np.concatenate(sides, axis=1)[..., None]
+        force, moment = forces.section_force[:, 0], forces.section_moment[:, 0]
+        largest = np.abs(force).max() * self.structure.length, np.abs(moment).max()
+        return [
+            force * (largest[0] > NOTHING * largest[1]),
+            moment * (largest[1] > NOTHING * largest[0]),
+            stress,
+        ]
 
 
 def pose(structure: Structure, motion: Motion, settings: ResponseSettings) -> tuple[Posed, int, int]:
