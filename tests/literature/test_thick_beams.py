@@ -170,6 +170,20 @@ def test_what_a_strain_needs_is_asked_for(changes: dict[str, Any], counts: dict[
     assert caught.value.where == where and caught.value.fix
 
 
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_inertia_of_sections_has_a_derivative(kind: str) -> None:
+    import jax
+
+    import gbeam.arrays.jax_setup  # noqa: F401
+
+    def mass(density: Any) -> Any:
+        heavier = beam(material=replace(ALUMINIUM, density=density))
+        return gb.assemble(heavier, kind, axial=1, z=2, twist=1).coefficients.mass
+
+    slope = jax.jacfwd(mass)(ALUMINIUM.density)
+    np.testing.assert_allclose(slope * ALUMINIUM.density, mass(ALUMINIUM.density), rtol=1e-9, atol=1e-12)
+
+
 @pytest.mark.parametrize("kind", ["TLAM", "FOAM", "CFOAM"])
 def test_other_models_twist_and_shear_to_their_order(kind: str) -> None:
     """By the Taylor polynomials of the exact places: at rest all are one."""

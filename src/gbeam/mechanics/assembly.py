@@ -245,7 +245,7 @@ def particles_of(beam: Beam, rule: Quadrature, *, rotary: bool) -> tuple[Array, 
         station, mass = station * len(arms), [line / len(arms)] * len(arms)
         offset = [body_of(slices)[1] + radii(slices) @ arm for arm in arms]
     elif rotary:
-        xp = namespace(section.area, section.inertia_y, section.inertia_z)
+        xp = namespace(line, section.area, section.inertia_y, section.inertia_z)
         gyration = [xp.sqrt(moment / section.area) for moment in (section.inertia_z, section.inertia_y)]
         station, mass = station * 3, [line / 3] * 3
         offset = [xp.stack([0 * line, *(r * g for r, g in zip(at, gyration, strict=True))], axis=1) for at in TRIANGLE]
