@@ -12,7 +12,12 @@ from gbeam.io.groups import Group, Variable, coordinate, flags, known, known_att
 from gbeam.results.declared import BESIDE, INSIDE, Declaration, declarations
 from gbeam.results.facts import unknown
 
-_LABELLED = {"axis": ["x", "y", "z"], "side": ["low", "high"]}
+_LABELLED = {
+    "axis": ["x", "y", "z"],
+    "side": ["low", "high"],
+    "form": ["kinetic", "elastic", "gravity"],
+    "parameter": ["e0", "e1", "e2", "e3"],
+}
 _NUMBERED = {
     "machine_axis": (1, "axis of the centrifuge"),
     "mode": (1, "number of the mode"),

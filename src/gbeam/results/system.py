@@ -329,7 +329,10 @@ class SystemModes(Figured):
         more = f" and {len(self.frequency) - 6} more" if len(self.frequency) > 6 else ""
         lines = [f"SystemModes: {listed}{more}"]
         if self.rigid:
-            lines.append(f"{self.rigid} motions of zero frequency are left out")
+            count = (
+                "one motion of zero frequency is" if self.rigid == 1 else f"{self.rigid} motions of zero frequency are"
+            )
+            lines.append(f"{count} left out")
         if not self.stable:
             lines.append(
                 f"not stable: {len(self.growing)} motions grow, the fastest with {self.growing.real.max():.4g} 1/s"
