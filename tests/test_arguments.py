@@ -27,7 +27,7 @@ from .scenarios import FAST, FREE_HUB
 
 RESULTS = {
     "Comparison", "Fit", "Optimum", "Response", "Sensitivity", "ShapedCommand", "StateSpace", "Study", "Sweep",
-    "SystemModes", "SystemResponse", "SystemRest",
+    "SystemModes", "SystemResponse", "SystemRest", "SystemStudy",
 }  # fmt: skip
 NO_FUNCTIONS = {
     "GbeamError",
@@ -105,6 +105,10 @@ class Given:
             "Case": (
                 ("case", self.beam, gb.Model("FOAM", z=1), {"flight": self.still}, self.settings),
                 {"tracks": {}, "stations": (0.1,), "accept": {}},
+            ),
+            "SystemCase": (
+                ("case", gb.System({"bar": self.bar}, {"hinge": self.hinge}), {}, self.settings),
+                {"tracks": {}},
             ),
             "Centrifuge": (
                 (self.still,),

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.analysis.case import Case as Case
+    from gbeam.analysis.case import SystemCase as SystemCase
     from gbeam.analysis.case import describe as describe
     from gbeam.analysis.control.linearization import linearize as linearize
     from gbeam.analysis.control.linearization import nonlinear_system as nonlinear_system
@@ -81,6 +82,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.results.state_space import Gauge as Gauge
     from gbeam.results.state_space import StateSpace as StateSpace
     from gbeam.results.study import Study as Study
+    from gbeam.results.study import SystemStudy as SystemStudy
     from gbeam.results.system import SystemModes as SystemModes
     from gbeam.results.system import SystemResponse as SystemResponse
     from gbeam.results.system import SystemRest as SystemRest
@@ -114,6 +116,8 @@ _HOME = {
     "PointForce": "mechanics.tree.system",
     "RigidBody": "mechanics.tree.system",
     "System": "mechanics.tree.system",
+    "SystemCase": "analysis.case",
+    "SystemStudy": "results.study",
     "SystemModes": "results.system",
     "SystemResponse": "results.system",
     "SystemRest": "results.system",

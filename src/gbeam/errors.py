@@ -44,7 +44,7 @@ class InputError(GbeamError, ValueError):
 
     def within(self, prefix: str) -> InputError:
         """Return the same error seen from one level further out, `prefix`."""
-        joint = "" if not self.where or self.where.startswith("[") else "."
+        joint = "" if not prefix or not self.where or self.where.startswith("[") else "."
         return InputError(f"{prefix}{joint}{self.where}", self.problem, self.fix)
 
 

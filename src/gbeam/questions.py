@@ -13,14 +13,13 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from gbeam.errors import InputError
 
 if TYPE_CHECKING:
-    from gbeam.analysis.case import Case
-    from gbeam.mechanics.structure import Structure
-    from gbeam.motion.protocol import Motion
+    from gbeam.analysis.case import AnyCase, Case
     from gbeam.results.equilibrium import Critical, Deflection
     from gbeam.results.imitation.placement import Placement
     from gbeam.results.imitation.plan import MachinePlan
     from gbeam.results.modal import Campbell, Modes
-    from gbeam.results.study import Study
+    from gbeam.results.study import Study, SystemStudy
+    from gbeam.results.system import SystemModes, SystemRest
 
 HUB, CENTRIFUGE = "hub", "centrifuge"
 STATIONS = 81  # along the beam, at which shapes are given
@@ -71,16 +70,25 @@ class Question:
     differentiable: bool = True
 
     @property
-    def record(self) -> type:
-        """Kind of record that answers; that of each motion's where several do."""
+    def records(self) -> tuple[type, ...]:
+        """Kind of record that answers of a beam, and that of a system where one is; each motion's where several do."""
         from gbeam.results.kinds import KINDS
 
         written = self.answer.__annotations__["return"]
         if isinstance(written, type):
-            return written
-        name = written.removeprefix("tuple[").partition(",")[0]
-        kind: type = self.answer.__globals__.get(name) or KINDS[name]
-        return kind
+            return (written,)
+        names = (each.strip().removeprefix("tuple[").partition(",")[0] for each in written.split("|"))
+        return tuple(self.answer.__globals__.get(name) or KINDS[name] for name in names)
+
+    @property
+    def of_systems(self) -> bool:
+        """Whether systems of bodies have an answer too."""
+        return len(self.records) > 1
+
+    def refuse(self, case: AnyCase) -> None:
+        """Raise InputError if the case is a system, and only beams have an answer."""
+        if not self.of_systems:
+            case.one_beam("bodies", self.name)
 
 
 QUESTIONS: dict[str, Question] = {}
@@ -102,7 +110,7 @@ def differentiable() -> tuple[str, ...]:
     return tuple(name for name, each in QUESTIONS.items() if each.differentiable)
 
 
-def motion_of(motions: Mapping[str, Motion], name: str | None, kind: str = "") -> str:
+def motion_of(motions: Mapping[str, Any], name: str | None, kind: str = "") -> str:
     """The name of the motion that answers: the one named, or else the only one, or the only one of a kind.
 
     Raises
@@ -114,25 +122,25 @@ def motion_of(motions: Mapping[str, Motion], name: str | None, kind: str = "") -
         if name not in motions:
             raise InputError("--motion", f"is {name!r}", f"the scenario has {', '.join(motions)}")
         return name
-    alike = [each for each, motion in motions.items() if motion.kind == kind]
+    alike = [each for each, motion in motions.items() if motion is not None and motion.kind == kind]
     choice = alike or list(motions)
     if len(choice) > 1 and (alike or not kind):
         raise InputError("--motion", "is missing", f"name one of {', '.join(choice)}")
     return choice[0]  # without any of the kind it is refused with its reason, as any other would be
 
 
-def prepared(case: Case, name: str) -> Motion:
-    """A motion prepared for the response's times."""
-    first = case.response.start
-    return case.motions[name].over(first, first + case.response.duration)
+def prepared(case: AnyCase, name: str) -> Any:
+    """A motion prepared for the response's times; None of a ground at rest."""
+    first, motion = case.response.start, case.environments[name]
+    return None if motion is None else motion.over(first, first + case.response.duration)
 
 
-def reduced(case: Case, needs: Needs) -> Case:
+def reduced(case: AnyCase, needs: Needs) -> AnyCase:
     """The case whose responses have what is needed, to the last digit as before.
 
     Automatic numbers of shapes follow from the errors, and an automatic step from the loads.
     """
-    if needs.errors or case.model.automatic:
+    if needs.errors or case.automatic:
         return case
     response = replace(case.response, estimate=False)
     if response.step is not None and not needs.loads:
@@ -140,19 +148,25 @@ def reduced(case: Case, needs: Needs) -> Case:
     return replace(case, response=response)
 
 
-def _structure(case: Case, needs: Needs) -> Structure:
+def _structure(case: AnyCase, needs: Needs) -> Any:
     """The case's structure; where no errors are needed it does not know what it was made of, and states none."""
+    from gbeam.analysis.case import SystemCase
+
+    if isinstance(case, SystemCase):
+        return case.system
     length = case.beam.length
     structure = case.assemble([length * i / (STATIONS - 1) for i in range(STATIONS)] if needs.shapes else None)
     return structure if needs.errors else replace(structure, source=None)
 
 
-def _time(case: Case, at: float | None) -> float:
+def _time(case: AnyCase, at: float | None) -> float:
     return case.response.start if at is None else at
 
 
 @question("run", "Compute the response in every environment of a scenario, and compare them.", motion=None)
-def run(case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()) -> Study:
+def run(
+    case: AnyCase, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
+) -> Study | SystemStudy:
     """Responses in all motions."""
     from gbeam.analysis.environments import study
 
@@ -161,17 +175,17 @@ def run(case: Case, motion: str | None = None, at: float | None = None, needs: N
 
 @question(
     "static",
-    "Where the beam rests relative to its base at one time of the motions.",
+    "Where the beam rests relative to its base at one time of the motions, or the system in its joints.",
     motion=None,
 )
 def static(
-    case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
-) -> tuple[Deflection, ...]:
+    case: AnyCase, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
+) -> tuple[Deflection, ...] | tuple[SystemRest, ...]:
     """Deflections at rest in all motions, or one."""
     from gbeam.analysis.steady.static import static
 
     structure, time = _structure(case, needs), _time(case, at)
-    names = list(case.motions) if motion is None else [motion_of(case.motions, motion)]
+    names = list(case.environments) if motion is None else [motion_of(case.environments, motion)]
     return tuple(static(structure, prepared(case, name), time, name=name) for name in names)
 
 
@@ -180,17 +194,17 @@ def static(
     "Frequencies, damping and shapes about the equilibrium at one time of a motion.",
 )
 def modes(
-    case: Case,
+    case: AnyCase,
     motion: str | None = None,
     at: float | None = None,
     needs: Needs = Needs(),
     *,
     gyroscopic: Annotated[bool, "Keep Coriolis coupling."] = True,
-) -> Modes:
+) -> Modes | SystemModes:
     """Small vibrations about the equilibrium."""
     from gbeam.analysis.steady import modal
 
-    name, time = motion_of(case.motions, motion), _time(case, at)
+    name, time = motion_of(case.environments, motion), _time(case, at)
     return modal.modes(_structure(case, needs), prepared(case, name), time, gyroscopic=gyroscopic, name=name)
 
 
@@ -235,7 +249,7 @@ def plan(
     if not machines:
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
     return tuple(
-        plan(name, prepared(case, name), case.tracks[name], beam=case.beam, **judging(case.accept.get(name, {})))  # type: ignore[arg-type]
+        plan(name, prepared(case, name), case.tracks[name], beam=case.beam, **judging(case.accept.get(name, {})))
         for name in machines
     )
 

@@ -133,3 +133,9 @@ def test_a_shell_completes_verbs_options_and_choices(
         lines.append(f"$called gbeam '{words[-1]}' '{words[-2]}'; echo ${{COMPREPLY[@]}}")
     answer = subprocess.run(["bash", "-c", "\n".join(lines)], capture_output=True, text=True, check=True)
     assert answer.stdout.splitlines() == ["critical-speed", "--motion", "run static modes critical-speed plan"]
+
+
+@pytest.mark.parametrize("verb", ["campbell", "critical-speed", "plan", "place", "models"])
+def test_what_is_of_one_beam_refuses_a_system(verb: str, gbeam: Call) -> None:
+    answer = gbeam(verb, EXAMPLES / "robot_arm.toml")
+    assert answer.status == 2 and f"bodies: make a system, and gbeam {verb} is of one beam" in answer.err

@@ -1,10 +1,12 @@
-"""A case: one beam in one model, the environments it is put into, and how its response is computed."""
+"""Cases: one beam in one model, or a system of bodies, the environments it is put into, and how its response is
+computed.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,14 +20,17 @@ from gbeam.mechanics.fields.basis import FAMILIES, quadrature
 from gbeam.mechanics.models import Model
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.joints import GROUND, Joint
+from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.motion import Flight
 from gbeam.motion.protocol import Motion
-from gbeam.results.description import Description
+from gbeam.results.description import BodyOfSystem, Description, ForceOfSystem, JointOfSystem, SystemDescription
 from gbeam.results.provenance import Provenance
 from gbeam.structure.beam import Beam
 
 if TYPE_CHECKING:
     from gbeam.scenario.schema.scenario import Scenario
+    from gbeam.scenario.schema.system import SystemScenario
 
 
 @typed
@@ -99,22 +104,139 @@ class Case(Value):
         except InputError as error:
             raise error.within("response" if error.where.startswith("stations") else "beam") from None
 
+    @property
+    def automatic(self) -> bool:
+        """Whether the numbers of shapes are chosen by the errors."""
+        return self.model.automatic
 
-MODES = 6  # natural frequencies at most
+    @property
+    def environments(self) -> Mapping[str, Motion]:
+        """Motions of the base, by name."""
+        return self.motions
+
+    def one_beam(self, where: str, what: str) -> Case:
+        """Return the case.
+
+        Parameters
+        ----------
+        where, what : str
+            The place, and the answer, of an error about a system.
+        """
+        return self
 
 
 @typed
-def describe(case: Case) -> Description:
-    """Describe a case: the beam's mass, its frequencies at rest, motions, records, and the response's settings.
+@dataclass(frozen=True, eq=False)
+class SystemCase(Value):
+    """Objects that a scenario of a system of bodies describes.
 
     Parameters
     ----------
-    case : Case
+    title : str
+    system : System
+    motions : mapping of str to motion
+        Of the ground, by name; without any it rests.
+    response : ResponseSettings
+    tracks : mapping of str to str
+        Name of the flight that each centrifuge tracks.
+    provenance : Provenance, optional
+        Of the scenario; results of the whole case have it.
+
+    Attributes
+    ----------
+    scenario : SystemScenario or None
+        The scenario that the case was read from; None of one that is made, or changed, in Python.
+
+    Raises
+    ------
+    InputError
+        If gravity is given beside a motion, which carries its own, or a motion is a hub that turns freely.
+
+    Examples
+    --------
+    >>> case = gb.read_scenario("examples/satellite_two_panels.toml")
+    >>> case.system.order
+    ('bus', 'right', 'left')
+    """
+
+    title: str
+    system: System
+    motions: Mapping[str, Motion]
+    response: ResponseSettings
+    tracks: Mapping[str, str] = field(default_factory=dict)
+    provenance: Provenance | None = None
+    scenario: SystemScenario | None = field(default=None, init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        for name, motion in self.motions.items():
+            if motion.free:
+                fix = "give it as a body on a revolute joint"
+                raise InputError(f"motion.{name}", "is a hub that turns freely, and carries a system", fix)
+            if self.system.gravity is not None:
+                fix = f"leave one out: {name} carries its own, as specific force"
+                raise InputError("system.gravity", "is given beside a motion of the ground", fix)
+
+    def __repr__(self) -> str:
+        motions = ", ".join(f"{name}: {motion.kind}" for name, motion in self.motions.items()) or GROUND
+        return f"SystemCase({self.title!r}, {self.system!r}, {{{motions}}}, {self.response.duration:g} s)"
+
+    def assemble(self, stations: ArrayLike | None = None) -> System:
+        """Return the system; it has no stations.
+
+        Parameters
+        ----------
+        stations : ignored
+            Of beams.
+        """
+        return self.system
+
+    @property
+    def automatic(self) -> bool:
+        """Whether the numbers of shapes are chosen by the errors: never of bodies."""
+        return False
+
+    @property
+    def environments(self) -> Mapping[str, Motion | None]:
+        """Motions of the ground, by name; the ground at rest where there is none."""
+        return self.motions or {GROUND: None}
+
+    def one_beam(self, where: str, what: str) -> Case:
+        """Refuse what is of one beam.
+
+        Parameters
+        ----------
+        where, what : str
+            The place of the error, and the answer that is refused.
+
+        Raises
+        ------
+        InputError
+            Always.
+        """
+        fix = "ask for run, static, modes or linearize, or sweep these; or give one [beam]"
+        raise InputError(where, f"make a system, and {what} is of one beam", fix)
+
+
+AnyCase = Case | SystemCase
+MODES = 6  # natural frequencies at most
+
+
+@overload
+def describe(case: Case) -> Description: ...
+@overload
+def describe(case: SystemCase) -> SystemDescription: ...
+@typed
+def describe(case: Case | SystemCase) -> Description | SystemDescription:
+    """Describe a case: the beam's mass, its frequencies at rest, or bodies and joints; motions, records, and settings.
+
+    Parameters
+    ----------
+    case : Case or SystemCase
         From :func:`gbeam.read_scenario`, or made by hand.
 
     Returns
     -------
-    Description
+    Description or SystemDescription
 
     Raises
     ------
@@ -128,6 +250,15 @@ def describe(case: Case) -> Description:
     >>> print(f"{description.mass:.4f} kg, {description.duration} s, {description.counts}")
     0.0648 kg, 15.99 s, {'axial': 1, 'y': 3, 'z': 3}
     """
+    if isinstance(case, SystemCase):
+        system, doubts = case.system, [getattr(body, "warnings", ()) for body in case.system.bodies.values()]
+        return SystemDescription(
+            bodies={name: _body(system, name) for name in system.order},
+            joints={name: _joint(each) for name, each in system.joints.items()},
+            forces={name: ForceOfSystem(each.on, each.follower) for name, each in system.forces.items()},
+            gravity=None if system.gravity is None else tuple(map(float, system.gravity)),  # type: ignore[arg-type]
+            **_described(case, doubts),
+        )
     structure, beam, settings = case.assemble(), case.beam, case.response
     span = settings.start, settings.start + settings.duration
     doubts = [input_warnings(structure, motion, name=name, span=span) for name, motion in case.motions.items()]
@@ -136,7 +267,6 @@ def describe(case: Case) -> Description:
     groups = np.repeat(FAMILIES, structure.counts)
     rule = quadrature(beam.length, 4, beam.section.stations)
     return Description(
-        title=case.title,
         length=beam.length,
         mass=beam.density * float(np.sum(beam.section.at(rule.node).area * rule.weight)),
         bodies=tuple((body.at, body.mass) for body in beam.masses),
@@ -144,6 +274,15 @@ def describe(case: Case) -> Description:
         counts={name: n for name, n in zip(FAMILIES, case.model.counts, strict=True) if n or name in FAMILIES[:3]},
         frequency=np.asarray(frequencies)[:MODES] / (2 * np.pi),
         direction=tuple(str(groups[i]) for i in np.abs(modes[: len(groups)]).argmax(axis=0)[:MODES]),
+        **_described(case, doubts),
+    )
+
+
+def _described(case: AnyCase, doubts: Sequence[Sequence[str]]) -> dict[str, Any]:
+    """What is said of every case."""
+    settings = case.response
+    return dict(
+        title=case.title,
         motions={name: motion.kind for name, motion in case.motions.items()},
         tracks=dict(case.tracks),
         records={
@@ -155,5 +294,18 @@ def describe(case: Case) -> Description:
         duration=settings.duration,
         step=settings.step,
         integrator=settings.integrator,
-        warnings=tuple(dict.fromkeys(warning for each in doubts for warning in (*each, *settings.warnings))),
+        warnings=tuple(dict.fromkeys(warning for each in (*doubts, settings.warnings) for warning in each)),
     )
+
+
+def _body(system: System, name: str) -> BodyOfSystem:
+    body, points = system.bodies[name], system.points_of(name)
+    if isinstance(body, RigidBody):
+        return BodyOfSystem("rigid", body.mass, 0, points)
+    return BodyOfSystem(body.kind, float(body.mass.sum()), body.size, points)
+
+
+def _joint(joint: Joint) -> JointOfSystem:
+    driven, prescribed = tuple(joint.efforts), tuple(joint.rates)
+    moving = (each for each in joint.rate_names if each not in (*driven, *prescribed))
+    return JointOfSystem(joint.kind, joint.body, joint.on, tuple(moving), driven, prescribed)

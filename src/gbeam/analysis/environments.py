@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
+from typing import Any, overload
 
-from gbeam.analysis.case import Case
+from gbeam.analysis.case import AnyCase, Case, SystemCase
 from gbeam.analysis.imitation.comparison import compare
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
@@ -15,25 +16,31 @@ from gbeam.guards.arguments import typed
 from gbeam.progress import Progress, tell
 from gbeam.results.imitation.criteria import judging
 from gbeam.results.response import Response
-from gbeam.results.study import Failure, Study
+from gbeam.results.study import Failure, Study, SystemStudy
+from gbeam.results.system import SystemResponse
 
 ENOUGH = 1e-3  # error from too few shapes, at most, where their numbers are automatic
 
 
+@overload
+def study(case: Case, progress: Progress = None) -> Study: ...
+@overload
+def study(case: SystemCase, progress: Progress = None) -> SystemStudy: ...
 @typed
-def study(case: Case, progress: Progress = None) -> Study:
+def study(case: Case | SystemCase, progress: Progress = None) -> Study | SystemStudy:
     """Compute the response in every environment of a case and compare each centrifuge with its flight.
 
     Parameters
     ----------
-    case : Case
+    case : Case or SystemCase
         From :func:`gbeam.read_scenario`, or made by hand.
     progress : callable or bool, optional
         Called with what is being done and the fraction of it done; True shows a bar.
 
     Returns
     -------
-    Study
+    Study or SystemStudy
+        Of a beam, or of a system, whose responses are not compared.
 
     Raises
     ------
@@ -50,11 +57,13 @@ def study(case: Case, progress: Progress = None) -> Study:
     >>> print(f"{answer.comparisons[0].relative[2]:.1%}")
     0.0%
     """
-    if case.model.automatic and not case.response.estimate:
+    if isinstance(case, SystemCase):
+        return _of_responses(case, *_answers(case, progress))
+    if case.automatic and not case.response.estimate:
         fix = "give it, or leave response.estimate out"
         raise InputError("model.modes", "is left out, and estimate = false leaves nothing to choose it by", fix)
     responses, failures = _answers(case, progress)
-    while case.model.automatic and _lacks_shapes(responses, case.response):
+    while case.automatic and _lacks_shapes(responses, case.response):
         richer = case.model.richer()
         if richer is None:
             break
@@ -67,11 +76,7 @@ def study_of(
     case: Case, responses: Mapping[str, Response], failures: Mapping[str, Failure] = MappingProxyType({})
 ) -> Study:
     """The study of responses that are computed: those of a centrifuge and its flight are compared."""
-    if not responses:
-        first = next(iter(failures.values()))
-        raise ComputationError(
-            first.outcome, "; ".join(f"motion.{n}: {failure.message}" for n, failure in failures.items())
-        )
+    _refuse_none(responses, failures)
     comparisons = tuple(
         replace(
             compare(responses[flight], responses[name], **judging(case.accept.get(name, {}))),
@@ -83,12 +88,26 @@ def study_of(
     return Study(case.title, dict(responses), comparisons, dict(failures), provenance=case.provenance)
 
 
-def _answers(case: Case, progress: Progress) -> tuple[dict[str, Response], dict[str, Failure]]:
-    """The responses in all environments, and why some have none."""
-    structure = case.assemble()
+def _refuse_none(responses: Mapping[str, Any], failures: Mapping[str, Failure]) -> None:
+    """Raise ComputationError where no environment has a response."""
+    if not responses:
+        first = next(iter(failures.values()))
+        raise ComputationError(
+            first.outcome, "; ".join(f"motion.{n}: {failure.message}" for n, failure in failures.items())
+        )
 
-    def answer(name: str) -> Response:
-        motion = case.motions[name]
+
+def _of_responses(case: SystemCase, responses: dict[str, SystemResponse], failures: dict[str, Failure]) -> SystemStudy:
+    _refuse_none(responses, failures)
+    return SystemStudy(case.title, responses, failures, provenance=case.provenance)
+
+
+def _answers(case: AnyCase, progress: Progress) -> tuple[dict[str, Any], dict[str, Failure]]:
+    """The responses in all environments, and why some have none."""
+    structure: Any = case.assemble()
+
+    def answer(name: str) -> Response | SystemResponse:
+        motion = case.environments[name]
 
         def report(what: str, share: float) -> None:
             tell(progress, f"{name}: {what}", share)
@@ -96,9 +115,9 @@ def _answers(case: Case, progress: Progress) -> tuple[dict[str, Response], dict[
         response = simulate(structure, motion, case.response, name=name, progress=report)
         return replace(response, provenance=case.provenance)
 
-    responses: dict[str, Response] = {}
+    responses: dict[str, Any] = {}
     failures: dict[str, Failure] = {}
-    for name in case.motions:
+    for name in case.environments:
         try:
             responses[name] = answer(name)
         except ComputationError as error:

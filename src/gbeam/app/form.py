@@ -8,6 +8,7 @@ from functools import cache
 from typing import Any
 
 from gbeam.scenario import json_schema
+from gbeam.scenario.schema import kind_of_scenario
 from gbeam.scenario.text.overrides import value_of
 from gbeam.scenario.text.revise import toml
 from gbeam.scenario.values.paths import Path, path_text, written_at
@@ -26,7 +27,8 @@ def form(data: Any) -> list[Node]:
     - ``table``: the entries `inside`, and the `choice` among the `options` where it is one of several tables;
     - ``list`` and ``named`` (tables by names that the user gives): tables `inside`, and the `options` of a new one.
     """
-    return _inside(_schema(), data if isinstance(data, dict) else {}, ())
+    written = data if isinstance(data, dict) else {}
+    return _inside(_top(written), written, ())
 
 
 def known_at(path: Path, data: Any) -> bool:
@@ -57,6 +59,17 @@ def new_table(path: Path, data: Any, choice: str) -> dict[str, Any]:
 def _schema() -> Node:
     schema: Node = json.loads(json_schema(distributions=False))
     return schema
+
+
+def _top(data: dict[str, Any]) -> Node:
+    """The table of the whole scenario, of a beam or of a system, as it is written."""
+    schema = _schema()
+    keys = kind_of_scenario(data).model_fields.keys()
+    required = (each["required"] for each in schema["anyOf"])
+    return schema | {
+        "properties": {key: each for key, each in schema["properties"].items() if key in keys},
+        "required": next(each for each in required if keys >= set(each)),
+    }
 
 
 def _inside(table: Node, data: dict[str, Any], path: Path) -> list[Node]:
@@ -169,7 +182,9 @@ def _names_tables(schema: Node) -> bool:
 
 def _alternatives(schema: Node) -> Iterator[Node]:
     """Schemas of the values that may stand at a place, null apart."""
-    if "$ref" in schema:
+    if "properties" in schema:
+        yield schema
+    elif "$ref" in schema:
         yield from _alternatives(_schema()["$defs"][schema["$ref"].rpartition("/")[2]])
     elif "anyOf" in schema or "oneOf" in schema:
         for each in (*schema.get("anyOf", ()), *schema.get("oneOf", ())):

@@ -10,21 +10,20 @@ from typing import TYPE_CHECKING, Any
 
 from gbeam.cli.process import Watch, command
 from gbeam.errors import InputError
-from gbeam.questions import motion_of, prepared
+from gbeam.questions import QUESTIONS, motion_of, prepared
 
 if TYPE_CHECKING:
-    from gbeam.analysis.case import Case
-    from gbeam.motion.protocol import Motion
+    from gbeam.analysis.case import AnyCase, Case
     from gbeam.results.provenance import Provenance
-    from gbeam.scenario import Scenario
+    from gbeam.scenario.load import AnyScenario
 
 
 @dataclass(frozen=True)
 class Input:
     """A scenario as read, and the case that it describes."""
 
-    scenario: Scenario
-    case: Case
+    scenario: AnyScenario
+    case: AnyCase
 
     @contextmanager
     def placing(self, **options: str) -> Iterator[None]:
@@ -38,9 +37,14 @@ class Input:
 
             raise placed(self.scenario, [error]) from None
 
-    def motion(self, name: str | None, *, kind: str = "") -> tuple[str, Motion]:
+    @property
+    def beam(self) -> Case:
+        """The case of one beam: of a system none is read by its verb."""
+        return self.case.one_beam("bodies", "this")
+
+    def motion(self, name: str | None, *, kind: str = "") -> tuple[str, Any]:
         """Name and prepared motion of ``--motion``; without one the only one, or the only one of a kind."""
-        chosen = motion_of(self.case.motions, name, kind)
+        chosen = motion_of(self.case.environments, name, kind)
         try:
             return chosen, prepared(self.case, chosen)
         except InputError as error:
@@ -66,6 +70,7 @@ def signed(facts: dict[str, Any], provenance: Provenance | None) -> dict[str, An
 
 
 _MOVING = ("run", "place")  # verbs that need all motions
+_ANY = ("check", "linearize")  # verbs of beams and systems, beside the questions of both
 
 
 def read(verb: str, file: Path, overrides: Sequence[str]) -> Input:
@@ -75,7 +80,11 @@ def read(verb: str, file: Path, overrides: Sequence[str]) -> Input:
     with Watch(f"reading {file}" + (" and planning its machines" if verb in _MOVING else "")):
         scenario = load(file, overrides, distributions=verb == "check")
         case = build(scenario, ahead=verb in _MOVING)
-    return Input(scenario, replace(case, provenance=provenance(scenario, command())))
+    given = Input(scenario, replace(case, provenance=provenance(scenario, command())))
+    if verb not in _ANY and not (verb in QUESTIONS and QUESTIONS[verb].of_systems):
+        with given.placing():
+            case.one_beam("bodies", f"gbeam {verb}")
+    return given
 
 
 @contextmanager

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -21,7 +21,7 @@ from gbeam.results.modal import Campbell, Modes
 from gbeam.results.response import Response
 from gbeam.results.searches import Fit, Optimum, ShapedCommand
 from gbeam.results.solids import SolidStress, SpecimenLoads
-from gbeam.results.study import ModelStudy, Study
+from gbeam.results.study import ModelStudy, Study, SystemStudy
 from gbeam.results.system import SystemModes, SystemResponse, SystemRest, named
 
 Describe = Callable[[], Figure]
@@ -41,8 +41,7 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
         case (Deflection(), *_):
             return _of_deflections(result, title)
         case (MachinePlan(), *_):
-            plans = {each.name: figures_of(each, title) for each in result}
-            return {f"{what} {name}": each for name, every in plans.items() for what, each in every.items()}
+            return _by_motion({each.name: figures_of(each, title) for each in result})
         case Study():
             return _of_study(result, title or result.title)
         case Response():
@@ -74,6 +73,11 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
                 "shaping": partial(studies.shaping, result, title),
                 "robustness": partial(studies.robustness, result, title),
             }
+        case SystemStudy():
+            named = {name: _of_system(each, title or result.title) for name, each in result.responses.items()}
+            return next(iter(named.values())) if len(named) == 1 else _by_motion(named)
+        case (SystemRest(), *_):
+            return _by_motion({each.name: figures_of(each, title) for each in result})
         case SystemResponse():
             return _of_system(result, title)
         case SystemRest():
@@ -87,6 +91,11 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
         case Sensitivity():
             return {name: partial(studies.sensitivity, result, name, title) for name in result.measures}
     return {}
+
+
+def _by_motion(named: Mapping[str, dict[str, Describe]]) -> dict[str, Describe]:
+    """Figures of several results of one kind, each with the name of its motion."""
+    return {f"{what} {name}": each for name, every in named.items() for what, each in every.items()}
 
 
 def _of_system(result: SystemResponse, title: str) -> dict[str, Describe]:

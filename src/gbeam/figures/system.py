@@ -4,39 +4,59 @@ from __future__ import annotations
 
 import numpy as np
 
-from gbeam.figures.description import REFERENCE, Bars, Figure, Line, Panel, estimated, raised, scale_of
+from gbeam.figures.description import REFERENCE, Bars, Dash, Figure, Line, Panel, estimated, raised, scale_of
 from gbeam.results.system import ENERGIES, SystemModes, SystemResponse, SystemRest, named
+
+COLOURS = 6
+DASHES: tuple[Dash, ...] = ("solid", "dashed", "dotted")
+SAME = 1e-9  # of the largest displacement: what is smaller is rounding
 
 
 def points(response: SystemResponse, title: str = "") -> Figure:
     """Describe the displacement of every point from its place at the start, a panel for each axis of the ground."""
     moved = response.place - response.place[0]
     scale, unit = scale_of("m", moved)
+    axes = [i for i in range(3) if np.abs(moved[..., i]).max(initial=0.0) > SAME * np.abs(moved).max(initial=0.0)]
     panels = tuple(
         Panel(
-            f"{axis}, {unit}",
-            tuple(Line(response.time, scale * moved[:, k, i], name, colour=k) for k, name in _moving(response, moved)),
+            f"{'xyz'[i]}, {unit}",
+            tuple(
+                Line(
+                    response.time,
+                    scale * moved[:, k, i],
+                    response.points[k],
+                    colour=n % COLOURS,
+                    dash=DASHES[n // COLOURS % len(DASHES)],
+                )
+                for n, k in enumerate(_moving(moved))
+            ),
             zero=True,
-            named=i == 0,
+            named=i == axes[0],
         )
-        for i, axis in enumerate("xyz")
-        if np.abs(moved[..., i]).max(initial=0.0) > 1e-9 * np.abs(moved).max(initial=0.0)
+        for i in axes
     )
     about = "displacement of the points from the start, axes of the ground"
     error = estimated({"steps": response.error_estimate})
     return Figure(title, about, panels or (Panel(f"x, {unit}"),), error, (response.outcome,))
 
 
-def _moving(response: SystemResponse, moved: np.ndarray) -> list[tuple[int, str]]:
-    """Points that move, with their numbers."""
-    size = np.abs(moved).max(axis=(0, 2))
-    return [(k, name) for k, name in enumerate(response.points) if size[k] > 1e-9 * size.max(initial=0.0)]
+def _moving(moved: np.ndarray) -> list[int]:
+    """Numbers of the points that move, and not as an earlier one does."""
+    size, chosen = np.abs(moved).max(initial=0.0), list[int]()
+    for k in range(moved.shape[1]):
+        apart = [np.abs(moved[:, k] - moved[:, other]).max(initial=0.0) for other in chosen]
+        if np.abs(moved[:, k]).max(initial=0.0) > SAME * size and min(apart, default=np.inf) > SAME * size:
+            chosen.append(k)
+    return chosen
 
 
 def coordinates(response: SystemResponse, title: str = "") -> Figure:
     """Describe the joints' coordinates and the efforts of their drives."""
-    panels = []
-    for name, history in named(response).items():
+    panels, every = [], named(response)
+    size = max((np.abs(each).max(initial=0.0) for each in every.values()), default=0.0)
+    for name, history in every.items():
+        if 0 < np.abs(history).max(initial=0.0) <= SAME * size:  # rounding
+            continue
         k = response.coordinates.index(name)
         panels.append(Panel(f"{name}, {'m' if _slides(name) else 'rad'}", (Line(response.time, history),)))
         effort = response.effort[:, k]

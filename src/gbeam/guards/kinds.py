@@ -40,6 +40,7 @@ KINDS: dict[str, Kind] = {
     "force per length rate": Kind("a rate of force per length", "N/m/s", "20 N/m/s"),
     "stiffness": Kind("a stiffness", "N/m", "1e6 N/m"),
     "rotational stiffness": Kind("a rotational stiffness", "N m/rad", "5000 N m/rad"),
+    "damping": Kind("a damping", "N s/m", "50 N s/m"),
     "rotational damping": Kind("a rotational damping", "N m s/rad", "2 N m s/rad"),
     "torque": Kind("a torque", "N m", "200 N m"),
     "torque rate": Kind("a rate of torque", "N m/s", "10 N m/s"),

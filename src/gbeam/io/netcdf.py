@@ -29,7 +29,8 @@ from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
-from gbeam.results.study import Study
+from gbeam.results.study import Answers
+from gbeam.results.system import SystemResponse
 
 FACTS = "facts"  # the variable of the root with the figures as JSON
 # Of kinds whose file has more than their declared fields.
@@ -53,7 +54,7 @@ def save(result: Any, path: str | os.PathLike[str], facts: str = "") -> None:
 
 def groups_of(result: Result, *, every: bool = True) -> dict[str, Group]:
     """Groups of a file by path: the root says what it is and where it comes from."""
-    groups = _study(result, every=every) if isinstance(result, Study) else {"": _group(result, every=every)}
+    groups = _study(result, every=every) if isinstance(result, Answers) else {"": _group(result, every=every)}
     origin = result.provenance or Provenance()
     root = groups[""]
     about = provenance_attrs(origin) | {"warnings": "\n".join(result.warnings)}
@@ -75,10 +76,14 @@ def to_xarray(result: Any) -> Any:
 
 def _group(result: Result, *, every: bool) -> Group:
     group = _GROUPS.get(type(result), whole_group)(result)
-    return thinned(group, result.kept_every) if isinstance(result, (Response, Comparison)) and not every else group
+    return (
+        thinned(group, result.kept_every)
+        if isinstance(result, (Response, SystemResponse, Comparison)) and not every
+        else group
+    )
 
 
-def _study(study: Study, *, every: bool) -> dict[str, Group]:
+def _study(study: Answers, *, every: bool) -> dict[str, Group]:
     attrs = {
         "title": study.title,
         "outcome": study.outcome,

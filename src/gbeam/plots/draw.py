@@ -179,7 +179,7 @@ def _bars(axes: Axes, bars: Bars) -> None:
     at, wide = -np.arange(len(bars.names), dtype=float), 0.8 / len(bars.values)
     for k, (label, values) in enumerate(bars.values.items()):
         place = at + wide * ((len(bars.values) - 1) / 2 - k)
-        axes.barh(place, values, height=0.9 * wide, color=PALETTE[k], label=label)
+        axes.barh(place, values, height=0.9 * wide, color=PALETTE[k % len(PALETTE)], label=label)
         if bars.low:
             ends = [values - bars.low[label], bars.high[label] - values]
             axes.errorbar(values, place, xerr=ends, fmt="none", ecolor="black", elinewidth=0.9, capsize=2.5)

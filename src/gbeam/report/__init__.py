@@ -18,6 +18,7 @@ _MODULES = {
     "placement": ("Placement",),
     "searches": ("Fit", "Optimum", "ShapedCommand"),
     "steady": ("Deflection", "Modes", "Campbell", "Critical", "CriticalMap", "StateSpace"),
+    "systems": ("SystemStudy", "SystemResponse", "SystemRest", "SystemModes"),
     "tables": ("Study", "ModelStudy", "MachinePlan"),
 }
 

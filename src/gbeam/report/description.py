@@ -3,38 +3,68 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.results.description import Description, RecordSummary, Vector
+from gbeam.results.description import Described, Description, RecordSummary, SystemDescription, Vector
 from gbeam.results.result import part_words
 
 
-def text(case: Description) -> str:
+def text(case: Described) -> str:
     """Description on a few lines."""
+    lines = [case.title or "(no title)", *_structure(case)]
+    motions = []
+    for name, kind in case.motions.items():
+        what = kind + (f" that tracks {case.tracks[name]}" if name in case.tracks else "")
+        motions.append(name + (f": {what}" if what != name else ""))
+    lines += _listed("motions", motions)
+    for name, record in case.records.items():
+        first, *others = _lines(record)
+        lines += [f"  {'record':<9} {name}: {first}", *(f"  {'':<9} {line}" for line in others)]
+    end, step = case.start + case.duration, "auto" if case.step is None else f"{1e3 * case.step:.4g} ms"
+    lines.append(f"  response  {case.start:.4g} to {end:.4g} s, {case.integrator}, step {step}")
+    lines += _listed("drawn", [f"{path}: {drawn}; here its centre" for path, drawn in case.distributions.items()])
+    lines += [f"  warning: {each}" for each in case.warnings]
+    return "\n".join([*lines, "Scenario valid."])
+
+
+def _structure(case: Described) -> list[str]:
+    if isinstance(case, SystemDescription):
+        return _system(case)
+    assert isinstance(case, Description)
+    return _beam(case)
+
+
+def _listed(head: str, lines: Sequence[str]) -> list[str]:
+    return [f"  {'' if i else head:<9} {line}" for i, line in enumerate(lines)]
+
+
+def _beam(case: Description) -> list[str]:
     added = f", {case.total_mass:.4g} kg with {len(case.bodies)} added" if case.bodies else ""
     counts = ", ".join(f"{count} {name}" for name, count in case.counts.items())
     modes = ", ".join(f"{f:.4g} ({d})" for f, d in zip(case.frequency, case.direction, strict=True))
-    step = "auto" if case.step is None else f"{1e3 * case.step:.4g} ms"
-    lines = [
-        case.title or "(no title)",
+    return [
         f"  beam      {1e3 * case.length:.4g} mm, {case.mass:.4g} kg{added}",
         f"  model     {case.model}, coordinates: {counts}",
         f"  modes     at rest, Hz: {modes}",
     ]
-    for i, (name, kind) in enumerate(case.motions.items()):
-        what = kind + (f" that tracks {case.tracks[name]}" if name in case.tracks else "")
-        lines.append(f"  {'motions' if i == 0 else '':<9} {name}" + (f": {what}" if what != name else ""))
-    for name, record in case.records.items():
-        first, *others = _lines(record)
-        lines += [f"  {'record':<9} {name}: {first}", *(f"  {'':<9} {line}" for line in others)]
-    end = case.start + case.duration
-    lines.append(f"  response  {case.start:.4g} to {end:.4g} s, {case.integrator}, step {step}")
-    for i, (path, drawn) in enumerate(case.distributions.items()):
-        lines.append(f"  {'drawn' if i == 0 else '':<9} {path}: {drawn}; here its centre")
-    lines += [f"  warning: {each}" for each in case.warnings]
-    return "\n".join([*lines, "Scenario valid."])
+
+
+def _system(case: SystemDescription) -> list[str]:
+    bodies = []
+    for name, body in case.bodies.items():
+        counted = f", {body.coordinates} coordinates" if body.coordinates else ""
+        bodies.append(f"{name}: {body.kind}, {body.mass:.4g} kg{counted}; points {', '.join(body.points)}")
+    joints = []
+    for name, joint in case.joints.items():
+        ways = {"free": joint.free, "driven": joint.driven, "prescribed": joint.prescribed}
+        moving = "; ".join(f"{way} {', '.join(names)}" for way, names in ways.items() if names) or "nothing moves"
+        joints.append(f"{name}: {joint.kind}, {joint.body} on {joint.on}; {moving}")
+    forces = [f"{name}: on {each.on}{', following it' if each.follower else ''}" for name, each in case.forces.items()]
+    gravity = () if case.gravity is None else (", ".join(f"{each:.4g}" for each in case.gravity) + " m/s²",)
+    parts = {"bodies": bodies, "joints": joints, "forces": forces, "gravity": gravity}
+    return [line for head, lines in parts.items() for line in _listed(head, lines)]
 
 
 def _lines(record: RecordSummary) -> Iterator[str]:

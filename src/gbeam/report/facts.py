@@ -17,6 +17,7 @@ from gbeam.results.kinds import by_motion, tree_of_answers
 from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.study import Study
+from gbeam.results.system import SystemRest
 
 VERSION = 1  # of the keys: raised where one changes or goes
 
@@ -29,6 +30,8 @@ def whole(result: Result) -> Result:
             return Study("", {name: result}, (), warnings=(), provenance=result.provenance)
         case Deflection(motion=""):
             return replace(result, motion="beam")
+        case SystemRest(name=""):
+            return replace(result, name="ground")
         case MachinePlan(name=""):
             return replace(result, name="centrifuge")
         case _:

@@ -1,4 +1,6 @@
-"""Description of a case: frozen records of its beam, model, motions, flights' records and settings before any run."""
+"""Description of a case: frozen records of its beam and model, or its bodies and joints, its motions, flights' records
+and settings before any run.
+"""
 
 from __future__ import annotations
 
@@ -60,23 +62,11 @@ class Kind(Part):
     tracks: str = fact("name of the flight that it tracks", optional=True)
 
 
-@dataclass(frozen=True, repr=False, eq=False)
-class Description(Part):
-    """Meaning of a case; where a value has a distribution, the rest is said of its centre."""
-
-    json_rows: ClassVar[dict[str, str]] = {"mode": "modes"}
+@dataclass(frozen=True, repr=False, eq=False, kw_only=True)
+class Described(Part):
+    """Base of the meaning of a case; where a value has a distribution, the rest is said of its centre."""
 
     title: str = fact("title of the scenario")
-    length: float = fact("length of the beam", "m", key="beam.length")
-    mass: float = fact("mass of the beam without its bodies", "kg", key="beam.mass")
-    bodies: tuple[tuple[float, float], ...] = fact("position, m, and mass, kg, of each body", key=None)
-    model: str = fact("kind of the model", key="model.kind")
-    counts: Mapping[str, int] = fact(
-        "numbers of shapes: axial, along y and along z, and those of twist and shear that the model has",
-        key="model.modes",
-    )
-    frequency: Floats = entry("Hz", "lowest natural frequencies of the beam on a base at rest", "mode")
-    direction: tuple[str, ...] = entry("", "axial, y or z", "mode")
     motions: Mapping[str, str] = fact("kind of each motion, by name", key=None)
     start: float = fact("start of the response", "s", key="response.start")
     duration: float = fact("duration of the response", "s", key="response.duration")
@@ -87,6 +77,32 @@ class Description(Part):
     warnings: tuple[str, ...] = fact("what is implausible", default=())
     distributions: Mapping[str, str] = fact("distribution of each value that has one, by path", default_factory=dict)
 
+    @declared("", "kinds of motions, by name", "motion", role="rows", key="motions")
+    def kinds(self) -> Mapping[str, Kind]:
+        return {name: Kind(kind, self.tracks.get(name, "")) for name, kind in self.motions.items()}
+
+    @declared("s", "time step, or auto", role="fact", key="response.step")
+    def step_or_auto(self) -> float | str:
+        return "auto" if self.step is None else self.step
+
+
+@dataclass(frozen=True, repr=False, eq=False, kw_only=True)
+class Description(Described):
+    """Meaning of a case of one beam; where a value has a distribution, the rest is said of its centre."""
+
+    json_rows: ClassVar[dict[str, str]] = {"mode": "modes"}
+
+    length: float = fact("length of the beam", "m", key="beam.length")
+    mass: float = fact("mass of the beam without its bodies", "kg", key="beam.mass")
+    bodies: tuple[tuple[float, float], ...] = fact("position, m, and mass, kg, of each body", key=None)
+    model: str = fact("kind of the model", key="model.kind")
+    counts: Mapping[str, int] = fact(
+        "numbers of shapes: axial, along y and along z, and those of twist and shear that the model has",
+        key="model.modes",
+    )
+    frequency: Floats = entry("Hz", "lowest natural frequencies of the beam on a base at rest", "mode")
+    direction: tuple[str, ...] = entry("", "axial, y or z", "mode")
+
     @declared("", "bodies on the beam", "body", role="rows", key="beam.masses")
     def masses(self) -> tuple[Body, ...]:
         return tuple(Body(at, mass) for at, mass in self.bodies)
@@ -95,10 +111,42 @@ class Description(Part):
     def total_mass(self) -> float:
         return self.mass + sum(mass for _, mass in self.bodies)
 
-    @declared("", "kinds of motions, by name", "motion", role="rows", key="motions")
-    def kinds(self) -> Mapping[str, Kind]:
-        return {name: Kind(kind, self.tracks.get(name, "")) for name, kind in self.motions.items()}
 
-    @declared("s", "time step, or auto", role="fact", key="response.step")
-    def step_or_auto(self) -> float | str:
-        return "auto" if self.step is None else self.step
+@dataclass(frozen=True, repr=False, eq=False)
+class BodyOfSystem(Part):
+    """A body of a system."""
+
+    kind: str = fact("rigid, or the kind of the beam's model")
+    mass: float = fact("mass", "kg")
+    coordinates: int = fact("number of its own coordinates: none of a rigid body")
+    points: tuple[str, ...] = fact("names of its points")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class JointOfSystem(Part):
+    """A joint of a system."""
+
+    kind: str = fact("kind of the joint")
+    body: str = fact("name of the body that it holds")
+    on: str = fact("what it hangs on: ground, or a point of a body")
+    free: tuple[str, ...] = fact("coordinates that move freely")
+    driven: tuple[str, ...] = fact("coordinates with a drive")
+    prescribed: tuple[str, ...] = fact("coordinates whose rates are prescribed")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class ForceOfSystem(Part):
+    """A force and a moment on a point."""
+
+    on: str = fact("the point")
+    follower: bool = fact("whether the components turn with the point")
+
+
+@dataclass(frozen=True, repr=False, eq=False, kw_only=True)
+class SystemDescription(Described):
+    """Meaning of a case of a system of bodies."""
+
+    bodies: Mapping[str, BodyOfSystem] = rows("bodies, by name", "body")
+    joints: Mapping[str, JointOfSystem] = rows("joints, by name", "joint")
+    forces: Mapping[str, ForceOfSystem] = rows("forces on points, by name", "force")
+    gravity: Vector | None = entry("m/s^2", "acceleration of free fall", "axis", frame="ground")

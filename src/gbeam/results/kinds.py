@@ -18,7 +18,7 @@ from gbeam.results.result import Result
 from gbeam.results.searches import Fit, Optimum, ShapedCommand
 from gbeam.results.solids import SolidStress, SpecimenLoads
 from gbeam.results.state_space import StateSpace
-from gbeam.results.study import ModelStudy, Study
+from gbeam.results.study import ModelStudy, Study, SystemStudy
 from gbeam.results.system import SystemModes, SystemResponse, SystemRest
 
 KINDS: dict[str, type[Result]] = {
@@ -41,6 +41,7 @@ KINDS: dict[str, type[Result]] = {
         Fit,
         Optimum,
         ShapedCommand,
+        SystemStudy,
         SystemResponse,
         SystemRest,
         SystemModes,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -154,7 +155,7 @@ class StateSpace(Result):
         count = self.errors.within(ACCURATE)
         return float(self.frequency[count - 1]) if count else 0.0
 
-    def select(self, *, inputs: tuple[str, ...] | None = None, outputs: tuple[str, ...] | None = None) -> StateSpace:
+    def select(self, *, inputs: Sequence[str] | None = None, outputs: Sequence[str] | None = None) -> StateSpace:
         """Return the system with some of its inputs and outputs only, by name.
 
         Parameters
@@ -168,7 +169,7 @@ class StateSpace(Result):
             If there is no such signal.
         """
 
-        def places(chosen: tuple[str, ...] | None, signals: tuple[Signal, ...], what: str) -> list[int]:
+        def places(chosen: Sequence[str] | None, signals: tuple[Signal, ...], what: str) -> list[int]:
             names = [each.name for each in signals]
             for name in chosen or ():
                 if name not in names:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isnan
 from math import nan as NAN
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.criteria import state_of
 from gbeam.results.response import Response
 from gbeam.results.result import Figured, Floats, Part
+from gbeam.results.system import SystemResponse
 
 
 @dataclass(frozen=True)
@@ -24,8 +26,38 @@ class Failure:
     message: str = fact("what happened")
 
 
+class Answers(Figured):
+    """Base of the responses in all environments of a scenario."""
+
+    title: str
+    responses: Mapping[str, Any]
+    comparisons: tuple[Comparison, ...] = ()
+    failures: Mapping[str, Failure]
+
+    @property
+    def exceeding(self) -> Mapping[str, str]:
+        """Limits of machines that are exceeded, by the motion's name; none where no machine has limits."""
+        return {}
+
+    @property
+    def refusals(self) -> Mapping[str, str]:
+        """Limits that are not kept, by the motion's name."""
+        return self.exceeding
+
+    @property
+    def unfinished(self) -> Mapping[str, Failure]:
+        """Why not every environment is done, by name."""
+        cut = {name: Failure(r.outcome, r.message) for name, r in self.responses.items() if r.outcome != "done"}
+        return {**cut, **self.failures}
+
+    @property
+    def outcome(self) -> str:
+        """``done`` where every response is, else the first other outcome."""
+        return next((failure.outcome for failure in self.unfinished.values()), "done")
+
+
 @dataclass(frozen=True, repr=False, eq=False)
-class Study(Figured):
+class Study(Answers):
     """The responses of one beam in all environments of a scenario, and their comparisons.
 
     Examples
@@ -43,25 +75,16 @@ class Study(Figured):
     )
 
     @property
-    def unfinished(self) -> Mapping[str, Failure]:
-        """Why not every environment is done, by name."""
-        cut = {name: Failure(r.outcome, r.message) for name, r in self.responses.items() if r.outcome != "done"}
-        return {**cut, **self.failures}
+    def exceeding(self) -> Mapping[str, str]:
+        """Limits of machines that are exceeded, by the motion's name."""
+        axes = {name: each.axes for name, each in self.responses.items() if each.axes is not None}
+        return {name: each.exceeding for name, each in axes.items() if each.exceeding}
 
     @property
-    def outcome(self) -> str:
-        """``done`` where every response is, else the first other outcome."""
-        return next((failure.outcome for failure in self.unfinished.values()), "done")
-
-    @property
-    def refusals(self) -> dict[str, str]:
+    def refusals(self) -> Mapping[str, str]:
         """Limits of acceptance that are not kept and limits of machines that are exceeded, by the motion's name."""
         kept = {each.centrifuge: each.refusal for each in self.comparisons if each.refusal}
-        return kept or {
-            name: each.axes.exceeding
-            for name, each in self.responses.items()
-            if each.axes is not None and each.axes.exceeding
-        }
+        return kept or self.exceeding
 
     @declared("", "the outcome, with what limits make of it", role="fact")
     def state(self) -> str:
@@ -73,6 +96,32 @@ class Study(Figured):
         parts += [f"{name}: {failure.outcome}\n  {failure.message}" for name, failure in self.failures.items()]
         parts += [repr(comparison) for comparison in self.comparisons]
         return "\n".join([f"Study{f' {self.title!r}' if self.title else ''}: {self.state}", *parts])
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class SystemStudy(Answers):
+    """The responses of one system of bodies in all environments of a scenario, or on the ground at rest.
+
+    Examples
+    --------
+    >>> shorter = ["response.duration=1 s"]
+    >>> study = gb.study(gb.read_scenario("examples/satellite_two_panels.toml", shorter))
+    >>> study.outcome, list(study.responses)
+    ('done', ['ground'])
+    """
+
+    title: str = fact("title of the scenario")
+    responses: Mapping[str, SystemResponse] = rows(
+        "responses by the name of the ground's motion", "motion", key="motions", note="ground where it rests"
+    )
+    failures: Mapping[str, Failure] = rows(
+        "where a response has no state to start from", "motion", key="motions", default_factory=dict
+    )
+
+    def __repr__(self) -> str:
+        parts = [repr(response) for response in self.responses.values()]
+        parts += [f"{name}: {failure.outcome}\n  {failure.message}" for name, failure in self.failures.items()]
+        return "\n".join([f"SystemStudy{f' {self.title!r}' if self.title else ''}: {self.outcome}", *parts])
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -87,8 +87,8 @@ class SystemResponse(Figured):
     outcome: str = fact("how it ended", note="done, diverged or not converged")
     message: str = fact("what happened and what to try, where the outcome is not done")
     time: Floats = quantity("s", "time", "time", role="coordinate", key=None)
-    points: tuple[str, ...] = labels("name of the point", "point", key="name")
-    coordinates: tuple[str, ...] = labels("name of the coordinate", "coordinate", key="name")
+    points: tuple[str, ...] = labels("name of the point", "point")
+    coordinates: tuple[str, ...] = labels("name of the coordinate", "coordinate")
     place: Floats = quantity("m", "place of the point", "time", "point", "axis", key=None, frame="ground")
     velocity: Floats = quantity("m/s", "velocity of the point", "time", "point", "axis", key=None, frame="ground")
     acceleration: Floats = quantity(
@@ -214,12 +214,13 @@ class SystemRest(Figured):
     0.4431 rad, -9.81 N
     """
 
+    listed_by: ClassVar[str] = "name"
     json_rows: ClassVar[dict[str, str]] = {"point": "points", "coordinate": "coordinates"}
 
-    name: str = fact("name of the motion of the ground", note="empty where it rests")
+    name: str = fact("name of the motion of the ground", key=None, note="empty where it rests")
     time: float = fact("time at which drives and motion are frozen", "s")
-    points: tuple[str, ...] = labels("name of the point", "point", key="name")
-    coordinates: tuple[str, ...] = labels("name of the coordinate", "coordinate", key="name")
+    points: tuple[str, ...] = labels("name of the point", "point")
+    coordinates: tuple[str, ...] = labels("name of the coordinate", "coordinate")
     place: Floats = quantity("m", "place of the point", "point", "axis", frame="ground")
     displacement: Floats = quantity("m", "displacement from the start", "point", "axis", frame="ground")
     attitude: Floats = quantity("", "Euler parameters of the point's axes in those of the ground", "point", "parameter")

@@ -10,22 +10,21 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.results.imitation.criteria import RULES
 from gbeam.scenario import schema
+from gbeam.scenario.build_beam import beam_of, model_of
 from gbeam.scenario.load import change, load
 from gbeam.scenario.origin import Collector, placed, provenance
 
 if TYPE_CHECKING:
-    from gbeam.analysis.case import Case
+    from gbeam.analysis.case import AnyCase
     from gbeam.analysis.response.settings import ResponseSettings
-    from gbeam.mechanics.models import Model
     from gbeam.motion import Centrifuge, Motion
     from gbeam.results.description import RecordSummary
-    from gbeam.structure.attachments import Load
+    from gbeam.scenario.load import AnyScenario
     from gbeam.structure.beam import Beam
-    from gbeam.structure.line import Line
 
 
 @typed
-def read_scenario(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Case:
+def read_scenario(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> AnyCase:
     """Read a scenario file and make its objects.
 
     Parameters
@@ -37,8 +36,8 @@ def read_scenario(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -
 
     Returns
     -------
-    Case
-        Beam, model, motions by name and response settings; SI.
+    Case or SystemCase
+        Beam and model, or a system of bodies; motions by name and response settings; SI.
 
     Raises
     ------
@@ -54,40 +53,53 @@ def read_scenario(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -
     return build(load(path, overrides))
 
 
-def build(scenario: schema.Scenario, *, ahead: bool = False) -> Case:
+def build(scenario: AnyScenario, *, ahead: bool = False) -> AnyCase:
     """Make the objects of a scenario."""
-    from gbeam.analysis.case import Case
+    from gbeam.analysis.case import Case, SystemCase
     from gbeam.scenario.build_motion import centrifuges, flights_and_hubs
 
     parts = Collector()
-    beam = _beam(parts, scenario.beam)
-    model = _model(parts, scenario.model)
+    make: Callable[..., AnyCase] = Case
+    of_beam = isinstance(scenario, schema.Scenario)
+    if isinstance(scenario, schema.Scenario):
+        structure: dict[str, Any] = {
+            "beam": beam_of(parts, "beam", scenario.beam),
+            "model": model_of(parts, "model", scenario.model),
+            "stations": scenario.response.stations or (),
+        }
+    else:
+        from gbeam.scenario.build_system import system_of
+
+        make, structure = SystemCase, {"system": system_of(parts, scenario)}
     motions = flights_and_hubs(parts, scenario)
-    response = _response(parts, scenario.response, motions)
+    response = _response(parts, scenario.response, motions, usual="newmark" if of_beam else "gauss")
     if response is not None:
         span = (response.start, response.start + response.duration)
         motions |= centrifuges(parts, scenario, motions, span, ahead=ahead)
     accept = _acceptance(parts, scenario)
-    if parts.errors or beam is None or model is None or response is None:
+    if of_beam:
+        structure["accept"] = accept
+    if parts.errors or None in structure.values() or response is None:
         raise placed(scenario, parts.errors)
-    case = Case(
+    case = parts.attempt(
+        "",
+        make,
         title=scenario.title,
-        beam=beam,
-        model=model,
         motions={name: motions[name] for name in scenario.motion},
         response=response,
         tracks={name: table.tracks for name, table in scenario.motion.items() if isinstance(table, schema.Centrifuge)},
-        stations=scenario.response.stations or (),
-        accept=accept,
         provenance=provenance(scenario),
+        **structure,
     )
+    if case is None:
+        raise placed(scenario, parts.errors)
     object.__setattr__(case, "scenario", scenario)
     return case
 
 
 def scenario_of(
-    given: str | os.PathLike[str] | Case, overrides: Iterable[str] = (), *, distributions: bool = False
-) -> schema.Scenario:
+    given: str | os.PathLike[str] | AnyCase, overrides: Iterable[str] = (), *, distributions: bool = False
+) -> AnyScenario:
     """The scenario of a file, or that which a case was read from, validated with changes."""
     if isinstance(given, (str, os.PathLike)):
         return load(given, overrides, distributions=distributions)
@@ -119,7 +131,7 @@ def build_specimen(scenario: schema.Environments) -> Beam | None:
     if not isinstance(scenario, schema.Scenario):
         return None
     parts = Collector()
-    beam = _beam(parts, scenario.beam)
+    beam = beam_of(parts, "beam", scenario.beam)
     if parts.errors:
         raise placed(scenario, parts.errors)
     return beam
@@ -136,83 +148,12 @@ def _acceptance(parts: Collector, scenario: schema.Environments) -> dict[str, di
     return limited
 
 
-def _beam(parts: Collector, table: schema.Beam) -> Beam | None:
-    from gbeam.structure.attachments import Point, PointMass, Root
-    from gbeam.structure.beam import Beam
-    from gbeam.structure.material import Material
-    from gbeam.structure.section import Section
-
-    dimensions = table.section.model_dump(exclude={"shape", "stations"}, exclude_none=True)
-    section = parts.attempt("beam.section", Section.of, table.section.shape, table.section.stations, **dimensions)
-    given = None if table.material is None else table.material.model_dump(exclude_none=True)
-    material = None if given is None else parts.attempt("beam.material", Material, **given)
-    masses = []
-    for i, body in enumerate(table.masses):
-        moments = (body.inertia.x, body.inertia.y, body.inertia.z) if body.inertia else (0.0, 0.0, 0.0)
-        offset = body.offset or (0.0, 0.0, 0.0)
-        named = body.name or ""
-        masses.append(parts.attempt(f"beam.masses[{i}]", PointMass, body.at, body.mass, moments, offset, named))
-    root = parts.attempt("beam.root", Root, **table.root.model_dump())
-    loads = [_load(parts, f"beam.loads[{i}]", entry) for i, entry in enumerate(table.loads)]
-    points = [parts.attempt(f"beam.points[{i}]", Point, each.name, each.at) for i, each in enumerate(table.points)]
-    line = None if table.line is None else _line(parts, table.line)
-    if section is None or (material is None) != (given is None) or root is None or None in [*masses, *loads, *points]:
-        return None
-    if line is None and table.line is not None:
-        return None
-    return parts.attempt(
-        "beam",
-        Beam,
-        line.length if table.length is None else table.length,  # type: ignore[union-attr]
-        section,
-        material,
-        masses,
-        table.damping_ratio,
-        root,
-        loads,
-        points,
-        table.rotary_inertia,
-        line,
-    )
-
-
-def _line(parts: Collector, table: schema.Line) -> Line | None:
-    from gbeam.structure.line import Line
-
-    twist = table.twist or 0.0
-    if table.points is not None:
-        return parts.attempt("beam.line", Line.of_points, table.points, twist, smooth=table.smooth)
-    if table.stations is not None:
-        along = [(x, 0.0, 0.0) for x in table.stations]
-        return parts.attempt("beam.line", Line.of_points, along, twist, smooth=False)
-    lengths, *turns = zip(*((p.length, p.twist, p.turn_y, p.turn_z) for p in table.pieces or ()), strict=True)
-    named = dict(zip(("twist", "turn_y", "turn_z"), turns, strict=True))
-    return parts.attempt("beam.line", Line.of_pieces, lengths, **named)
-
-
-def _load(parts: Collector, where: str, table: schema.Load) -> Load | None:
-    from gbeam.scenario.build_motion import components
-    from gbeam.structure.attachments import Load
-
-    vectors = {"force": table.force, "distributed": table.distributed, "moment": table.moment}
-    built = {
-        "moment" if name == "moment" else "force": components(parts, f"{where}.{name}", vector)
-        for name, vector in vectors.items()
-        if vector is not None
-    }
-    return None if None in built.values() else parts.attempt(where, Load, table.at, follower=table.follower, **built)
-
-
-def _model(parts: Collector, table: schema.Model) -> Model | None:
-    from gbeam.mechanics.models import Model
-
-    if table.modes is None:
-        return parts.attempt("model", Model.of, table.kind, table.shapes)
-    return parts.attempt("model", Model, table.kind, shapes=table.shapes or "clamped-free", **table.modes.model_dump())
-
-
-def _response(parts: Collector, table: schema.Response, motions: Mapping[str, Motion]) -> ResponseSettings | None:
-    """Settings; without a duration the time that the records among the motions cover."""
+def _response(
+    parts: Collector, table: schema.Response, motions: Mapping[str, Motion], usual: str = "newmark"
+) -> ResponseSettings | None:
+    """Settings, with the usual integrator where none is written; without a duration the time that the records among the
+    motions cover.
+    """
     from gbeam import integrate
     from gbeam.analysis.response.problem import Initial
     from gbeam.analysis.response.settings import ResponseSettings
@@ -254,7 +195,7 @@ def _response(parts: Collector, table: schema.Response, motions: Mapping[str, Mo
         start=start,
         duration=duration,
         step=None if isinstance(table.step, str) else table.step,
-        integrator=table.integrator,
+        integrator=table.integrator if "integrator" in table.model_fields_set else usual,
         parameters=table.parameters,
         tolerance=table.tolerance,
         estimate=table.estimate,

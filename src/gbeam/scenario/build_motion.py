@@ -97,7 +97,7 @@ def _limits(table: schema.Limits, example: motion.MachineLimits) -> motion.Machi
 
 def _hub(parts: Collector, where: str, table: schema.Hub) -> motion.Motion | None:
     driving = {name: getattr(table, name) for name in ("rate", "torque") if getattr(table, name) is not None}
-    driven = {name: _profile(parts, f"{where}.{name}", profile) for name, profile in driving.items()}
+    driven = {name: profile_of(parts, f"{where}.{name}", profile) for name, profile in driving.items()}
     if None in driven.values():
         return None
     return parts.attempt(
@@ -117,11 +117,11 @@ def _hub(parts: Collector, where: str, table: schema.Hub) -> motion.Motion | Non
 def components(parts: Collector, where: str, table: Any) -> Profile | None:
     """Build the vector profile of a table with x, y and z, each a profile, a constant quantity or left out."""
     components = {axis: getattr(table, axis) for axis in "xyz" if getattr(table, axis) is not None}
-    built = {axis: _profile(parts, f"{where}.{axis}", profile) for axis, profile in components.items()}
+    built = {axis: profile_of(parts, f"{where}.{axis}", profile) for axis, profile in components.items()}
     return None if None in built.values() else motion.vector(**built)
 
 
-def _profile(parts: Collector, where: str, table: Any) -> Profile | None:
+def profile_of(parts: Collector, where: str, table: Any) -> Profile | None:
     """Build one profile from any of the schema's, of any quantity."""
     profile: Profile | None
     if isinstance(table, float):
@@ -140,7 +140,7 @@ def _profile(parts: Collector, where: str, table: Any) -> Profile | None:
         case schema.Listed():
             profile = parts.attempt(where, motion.tabulated, table.times, table.values)
         case _:
-            terms = [_profile(parts, f"{where}.terms[{i}]", term) for i, term in enumerate(table.terms)]
+            terms = [profile_of(parts, f"{where}.terms[{i}]", term) for i, term in enumerate(table.terms)]
             sound = tuple(term for term in terms if term is not None)
             profile = motion.Sum(sound) if len(sound) == len(terms) else None
     return None if profile is None else _rounded(profile, table.smoothing)

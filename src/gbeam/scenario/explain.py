@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.names import advise
 from gbeam.guards.units import spoken
-from gbeam.scenario.schema import Scenario
+from gbeam.scenario.schema import kind_of_scenario
 from gbeam.scenario.schema.fields import Quantity, Table, fields_of
 from gbeam.scenario.text.diagnostics import Diagnostic
 from gbeam.scenario.text.source import Mark, Source
@@ -45,7 +45,13 @@ def _words(source: Source, error: ErrorDetails, path: Path) -> tuple[str, str, M
     if what == "scenario":
         return context["message"], context["hint"], context["mark"], path
     if what == "missing" and isinstance(path[-1], int):  # a tuple of fixed length
-        return f"has {path[-1]} entries", "give three: x, y and z", "value", path[:-1]
+        count = _length(field.annotation if field else None)
+        return (
+            f"has {path[-1]} entries",
+            "give three: x, y and z" if count == 3 else f"give {count}",
+            "value",
+            path[:-1],
+        )
     if what == "missing":
         return f"{path[-1]} is missing", _add(str(path[-1]), field), "key", path[:-1]
     if what == "extra_forbidden":
@@ -98,9 +104,9 @@ def _path(loc: tuple[int | str, ...], source: Source) -> Path:
 
 def _tag(path: Path, node: dict[str, Any]) -> object:
     """Return the tag that pydantic puts into its places below the table `node`, if it is one of a union."""
-    if path[:1] == ("motion",) and len(path) == 2:
+    if path[:1] in (("motion",), ("bodies",), ("joints",)) and len(path) == 2:
         return node.get("kind")
-    if path == ("beam", "section"):
+    if path[-1:] == ("section",):
         return node.get("shape", "general")
     return node.get("profile")
 
@@ -109,16 +115,26 @@ def _field(source: Source, path: Path) -> FieldInfo | None:
     """Return the declaration of the field that holds `path`; that of the list for an entry of a list."""
     while path and isinstance(path[-1], int):
         path = path[:-1]
-    if len(path) == 2 and path[0] == "motion":
-        path = path[:1]
+    if not path:
+        return None
+    if _is_named(source, path):
+        return _field(source, path[:-1])
     table = _table(source, path[:-1])
-    return fields_of(table).get(str(path[-1])) if table and path else None
+    return fields_of(table).get(str(path[-1])) if table else None
+
+
+def _is_named(source: Source, path: Path) -> bool:
+    """Return whether a path is that of one of several tables by their names, such as a motion."""
+    if len(path) < 2 or isinstance(path[-1], int):
+        return False
+    field = _field(source, path[:-1])
+    return field is not None and get_origin(field.annotation) is dict and not _is_named(source, path[:-1])
 
 
 def _table(source: Source, path: Path) -> type[Table] | None:
     """Return the class of the table at `path`, as chosen by the kind, profile or shape written there."""
     if not path:
-        return Scenario
+        return kind_of_scenario(source.data)
     field = _field(source, path)
     raw = source.raw(path)
     written = raw if isinstance(raw, dict) else {}
@@ -150,6 +166,12 @@ def _literals(annotation: Any) -> Iterator[Any]:
             yield from get_args(part)
 
 
+def _length(annotation: Any) -> int:
+    """Number of entries of a tuple of fixed length."""
+    lengths = (len(get_args(each)) for each in _inside(annotation) if get_origin(each) is tuple)
+    return next(lengths, 3)
+
+
 def _choices(field: FieldInfo | None) -> tuple[str, list[str]]:
     """Name of the key that picks among the tables of a union, and what it may be."""
     tables = list(_tables(field.annotation if field else None))
@@ -164,7 +186,7 @@ def _quantity(field: FieldInfo | None) -> Quantity | None:
 
 def _add(key: str, field: FieldInfo | None) -> str:
     about = field.description if field else ""
-    quantity = _quantity(field)
+    quantity = _quantity(field) if field and get_origin(field.annotation) is not tuple else None
     return f'add {key} = "{KINDS[quantity.kind].example}": {about}' if quantity else f"add {key}: {about}"
 
 

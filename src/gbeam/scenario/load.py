@@ -7,23 +7,27 @@ from collections.abc import Iterable
 from copy import deepcopy
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from pydantic import ValidationError
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import PROBLEMS
-from gbeam.scenario.schema import Environments, Scenario
+from gbeam.scenario.schema import Environments, Scenario, kind_of_scenario
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import Source, parse, read_text
 from gbeam.scenario.values.distributions import Distribution, find_distributions, from_table
 from gbeam.scenario.values.paths import path_text
 
+if TYPE_CHECKING:
+    from gbeam.scenario.schema.system import SystemScenario
+
+    AnyScenario = Scenario | SystemScenario
 T = TypeVar("T", bound=Environments)
 
 
-def load(path: str | os.PathLike[str], overrides: Iterable[str] = (), *, distributions: bool = False) -> Scenario:
+def load(path: str | os.PathLike[str], overrides: Iterable[str] = (), *, distributions: bool = False) -> AnyScenario:
     """Read and validate a scenario file."""
     file = Path(path)
     return loads(read_text(file), os.fspath(path), overrides, folder=file.parent, distributions=distributions)
@@ -36,23 +40,24 @@ def loads(
     *,
     folder: str | os.PathLike[str] = ".",
     distributions: bool = False,
-) -> Scenario:
+) -> AnyScenario:
     """Validate the text of a scenario."""
-    return _validated(Scenario, _source(text, name, overrides, folder, distributions=distributions))
+    source = _source(text, name, overrides, folder, distributions=distributions)
+    return _validated(kind_of_scenario(source.data), source)
 
 
-def change(source: Source, overrides: Iterable[str]) -> Scenario:
+def change(source: Source, overrides: Iterable[str]) -> AnyScenario:
     """Validate a scenario that is parsed already, with more changes: what differs between the cases of a sweep."""
     data, done = override(source.data, source.name, overrides)
-    return _validated(Scenario, replace(source, data=data, overrides=source.overrides + done))
+    return _validated(kind_of_scenario(data), replace(source, data=data, overrides=source.overrides + done))
 
 
 def load_environments(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Environments:
     """Read a scenario file that may lack the beam, for questions about the machine alone."""
     file = Path(path)
     source = _source(read_text(file), os.fspath(path), overrides, file.parent)
-    kind = Scenario if {"beam", "model"} & source.data.keys() else Environments
-    return _validated(kind, source)
+    kind = kind_of_scenario(source.data)
+    return _validated(Environments if kind is Scenario and not {"beam", "model"} & source.data.keys() else kind, source)
 
 
 def _source(

@@ -25,6 +25,10 @@ A quantity is text with a unit, or a number in the SI unit. Any unit of the righ
 expected. In a scenario for `gbeam sweep` a distribution may stand in place of any number: `{ normal = ["70 GPa",
 "2 GPa"] }`, lognormal, uniform or triangular; the other verbs need one value.
 
+A scenario has one `[beam]` with its `[model]` and what its base does, `[motion.NAME]`; or `[bodies.NAME]` and the
+`[joints.NAME]` that make a system of them, whose ground rests where there is no motion:
+[systems of bodies](howto/systems.md).
+
 | quantity | SI unit | for example |
 |---|---|---|
 """
@@ -68,6 +72,9 @@ class _Page:
             if "additionalProperties" in schema:  # tables by any name
                 schema, inner = schema["additionalProperties"], f"{inner}.NAME"
             for name, listed in _named(schema):
+                if self.tables[name].get("x-coordinates"):  # said in one line where they stand
+                    self._visit(self.tables[name], inner)
+                    continue
                 if _OF in name:
                     self.profiles[name] = None
                     continue
@@ -93,10 +100,12 @@ class _Page:
         return f"### {self._heading(name)}\n\n{table['description']}\n\n{self._keys(table)}"
 
     def _keys(self, table: dict[str, Any], of: str = "") -> str:
+        every = [table, *table.get("anyOf", ())]
+        required = {key for each in every for key in each.get("required", ())}
         rows = ["| key | value | default | meaning |", "|---|---|---|---|"]
         for key, schema in table["properties"].items():
             value = self._value(schema.get("additionalProperties", schema), of)
-            default = "required" if key in table.get("required", ()) else _default(schema.get("default"))
+            default = "required" if key in required else _default(schema.get("default"))
             rows.append(" | ".join([f"| `{key}`", value, default, f"{_escaped(schema['description'])} |"]))
         return "\n".join(rows) + "\n"
 
@@ -106,6 +115,8 @@ class _Page:
             return self._quantity(schema, of)
         if "$ref" in schema:
             name = _target(schema)
+            if self.tables[name].get("x-coordinates"):
+                return self._by_coordinate(name, of)
             quantity = name.partition(_OF)[2].replace("-", " ")
             if quantity:
                 return f"[profile](#profiles) of {quantity}"
@@ -123,6 +134,13 @@ class _Page:
         least = f", {schema['minimum']} or more" if "minimum" in schema else ""
         plain = {"string": "text", "boolean": "`true` or `false`", "integer": "whole number", "number": "number"}
         return plain[schema["type"]] + least
+
+    def _by_coordinate(self, name: str, of: str) -> str:
+        """Keys of a table of a joint's coordinates, those with the same values together."""
+        alike: dict[str, list[str]] = {}
+        for key, schema in self.tables[name]["properties"].items():
+            alike.setdefault(self._value(schema, of), []).append(f"`{key}`")
+        return "; ".join(f"{', '.join(keys)}: {value}" for value, keys in alike.items())
 
     def _quantity(self, schema: dict[str, Any], of: str) -> str:
         name, (number, _, *others) = schema["x-quantity"], schema["anyOf"]

@@ -7,7 +7,7 @@ from typing import Any
 
 from gbeam.errors import InputError
 from gbeam.guards.names import advise
-from gbeam.scenario.schema import Scenario
+from gbeam.scenario.schema import Environments, Scenario
 from gbeam.scenario.values.distributions import FAMILIES
 
 _HEAD = """\
@@ -155,8 +155,20 @@ def _distribution_schema() -> dict[str, Any]:
 
 
 def json_schema(*, distributions: bool = True) -> str:
-    """Return the JSON schema of a scenario: every field with description, quantity and SI unit."""
-    schema = Scenario.model_json_schema()
+    """Return the JSON schema of a scenario, of one beam or of a system: every field with description, quantity and SI
+    unit.
+    """
+    from pydantic.json_schema import models_json_schema
+
+    from gbeam.scenario.schema.system import SystemScenario
+
+    kinds: tuple[type[Environments], ...] = (Scenario, SystemScenario)
+    _, schema = models_json_schema([(each, "validation") for each in kinds], title="Scenario")
+    every = [schema["$defs"].pop(each.__name__) for each in kinds]
+    schema |= {"type": "object", "additionalProperties": False, "description": "A scenario, in SI or with units."}
+    schema["anyOf"] = [{"required": each["required"]} for each in every]
+    one, several = (each["properties"] for each in every)
+    schema["properties"] = one | {key: each for key, each in several.items() if key not in one}
     if distributions:
         _allow_distributions(schema)
         schema["$defs"]["Distribution"] = _distribution_schema()

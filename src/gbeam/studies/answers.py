@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Any
 from gbeam.questions import QUESTIONS, Needs
 
 if TYPE_CHECKING:
-    from gbeam.analysis.case import Case
+    from gbeam.analysis.case import AnyCase
     from gbeam.results.facts import Entry
 
 Facts = Mapping[str, Any]
 KIND = ""  # key of the kind of answers in facts; no figure's path begins so
 
 
-def answered(verb: str, case: Case, motion: str | None, at: float | None, needs: Needs) -> Facts:
+def answered(verb: str, case: AnyCase, motion: str | None, at: float | None, needs: Needs) -> Facts:
     """The facts of a question's answer."""
+    QUESTIONS[verb].refuse(case)
     return answer_facts(QUESTIONS[verb].answer(case, motion, at, needs), case.title)
 
 
@@ -59,10 +60,12 @@ def tree_of_figures(kind: type) -> dict[str, Any]:
 
 
 def choices(verb: str) -> dict[str, Entry]:
-    """Every figure of a question's answers by its path, in which ``*`` is a name and ``[i]`` a place in a list."""
+    """Every figure of a question's answers, of beams and of systems, by its path: ``*`` is a name, ``[i]`` a place in a
+    list.
+    """
     from gbeam.results.facts import paths_of
 
-    return dict(paths_of(tree_of_figures(QUESTIONS[verb].record)))
+    return {path: each for kind in QUESTIONS[verb].records for path, each in paths_of(tree_of_figures(kind))}
 
 
 def _message(answer: Any) -> str:

@@ -65,16 +65,18 @@ class Neighbourhood:
         *,
         grids: Mapping[str, Grid] | None = None,
         parts: Mapping[str, bool] = MappingProxyType({}),
-        adapt: Callable[[Case], Case] | None = None,
+        adapt: Callable[[Any], Any] | None = None,
         progress: Progress = None,
     ) -> None:
         self.question, self.parameters, self.parts = question, parameters, parts
         self._about: dict[str, Differentiated] = {}
         self.progress, self.adapt = progress, adapt or (lambda case: case)
         self.values = [each.value for each in parameters] if values is None else [float(value) for value in values]
-        self.case = self.adapt(question.case(self._changes(None, 0.0)))
+        self.case: Any = self.adapt(question.case(self._changes(None, 0.0)))
+        # Runs of one beam are differentiated themselves, all other answers by differences.
+        self.runs = question.verb == "run" and isinstance(self.case, Case)
         self.answer: Any
-        if question.verb == "run":
+        if self.runs:
             if grids is None:
                 self.answer = study(self.case, self.progress)
                 self._enrich()
@@ -87,7 +89,7 @@ class Neighbourhood:
 
     def slopes(self, read: Read, motions: Sequence[str] = ()) -> Slopes:
         """Derivatives of what is read from the answer; other motions than those named are not differentiated."""
-        if self.question.verb == "run":
+        if self.runs:
             return self._of_runs(read, motions or list(self.case.motions))
         values = read(self.case, self.answer)
         rows = []
@@ -174,7 +176,7 @@ class Neighbourhood:
             raise InputError(
                 "--with", f"{problem} ({str(error).splitlines()[0]})", "leave it out, or move it off its bound"
             ) from None
-        return replace(case, model=self.case.model)
+        return replace(case, model=self.case.model) if isinstance(case, Case) else case
 
     def _changes(self, k: int | None, step: float) -> tuple[str, ...]:
         values = [value + (step if i == k else 0.0) for i, value in enumerate(self.values)]

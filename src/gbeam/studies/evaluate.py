@@ -11,10 +11,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import groupby, islice
+from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import Case
+from gbeam.analysis.case import AnyCase, Case
 from gbeam.analysis.environments import study_of
 from gbeam.analysis.response.batch import TOGETHER, simulate_batch
 from gbeam.errors import ComputationError, GbeamError, InputError
@@ -29,7 +30,7 @@ from gbeam.studies.answers import Facts, answer_facts, answered
 from gbeam.studies.figures import History, Keys, own_keys, value_at
 from gbeam.studies.template import Template
 
-Function = Callable[[Case], float]
+Function = Callable[[Any], float]
 NO_FACTS: Facts = {"outcome": "done"}  # where functions measure the case, no verb answers
 # Figures of a motion, and of a comparison, which are the same to the last digit where no loads are computed.
 _WITHOUT_LOADS = ("tip", "stations", "hub", "step", "steps", "damping_ratio", "axes", "limits", "tracking_error")
@@ -92,11 +93,11 @@ class Question:
         """Whether the verb has to answer."""
         return bool(self.keys or self.histories)
 
-    def case(self, overrides: Sequence[str]) -> Case:
+    def case(self, overrides: Sequence[str]) -> AnyCase:
         """The objects of one case."""
         return self.template.changed(overrides).built()
 
-    def facts(self, case: Case) -> Facts:
+    def facts(self, case: AnyCase) -> Facts:
         """Answer of the verb, as JSON."""
         return answered(self.verb, case, self.motion, self.at, self.needs)
 
@@ -109,7 +110,7 @@ class Question:
             return without_figures(number, self.width, error)
         return self.measured(number, case, facts)
 
-    def measured(self, number: int, case: Case, facts: Facts) -> Row:
+    def measured(self, number: int, case: AnyCase, facts: Facts) -> Row:
         """The row of a case that is built, from what the verb answers to it."""
         try:
             values = [value_at(facts, keys) for keys in self.keys]
@@ -123,7 +124,7 @@ class Question:
         return Row(number, tuple(values), outcome, message or problem)
 
 
-def _measured(functions: Sequence[Function], case: Case) -> tuple[list[float], str]:
+def _measured(functions: Sequence[Function], case: AnyCase) -> tuple[list[float], str]:
     """Values of measures, NaN of those that fail, and why these do; where all do, the case has failed."""
     values, problems, last = [], [], Exception()
     for k, function in enumerate(functions):
@@ -185,14 +186,14 @@ def may_share(verb: str, paths: Sequence[str]) -> bool:
     return verb == "run" and not any(path.partition(".")[0] in _ALONE for path in paths)
 
 
-def settled(question: Question, case: Case, cases: int) -> Question:
+def settled(question: Question, case: AnyCase, cases: int) -> Question:
     """The question, its figures known, with whether a case, and so every one of so many, is integrated with others.
 
     An automatic step takes several runs, whose programs a few cases do not repay; so do automatic numbers of shapes.
     """
     settings = reduced(case, question.needs).response
     enough = settings.step is not None or cases >= TOGETHER
-    able = not settings.estimate and not case.model.automatic
+    able = isinstance(case, Case) and not settings.estimate and not case.automatic
     return replace(question, together=question.together and enough and able)
 
 
@@ -213,7 +214,7 @@ def _together(question: Question, tasks: Sequence[Task]) -> list[Row]:
     structures: dict[tuple[str, ...], Structure] = {}
     for number, overrides in tasks:
         try:
-            case = question.case(overrides)
+            case = question.case(overrides).one_beam("bodies", "a batch")
             of_beam = tuple(each for each in overrides if not each.startswith("motion."))
             structure = structures[of_beam] = structures.get(of_beam) or case.assemble()
             posed.append((number, case, structure))

@@ -52,9 +52,15 @@ def offered(verb: str, names: Iterable[str], option: str = OPTION) -> None:
     for name in names:
         ends = _segments(name)
         if every and '"' not in name and not any(_fits(ends, path) for path in every):
-            near = closest(name, [".".join(path[-len(ends) :]) for path in every])
+            lasts = (path[-len(ends) :] for path in every)
+            near = closest(name, [".".join(_filled(each, ends[-len(each) :])) for each in lasts])
             fix = f"did you mean {near!r}?" if near else "list names every figure, with its unit"
             raise InputError(option, f"{name!r} is no figure of {verb}", fix)
+
+
+def _filled(keys: Sequence[str], names: Sequence[str]) -> list[str]:
+    """Keys with the names that were written in place of any name."""
+    return [name if key == "*" else key for key, name in zip(keys, names, strict=True)]
 
 
 def _segments(path: str) -> list[str]:
@@ -62,16 +68,15 @@ def _segments(path: str) -> list[str]:
 
 
 def _fits(ends: Sequence[str], path: Sequence[str]) -> bool:
-    """Return whether a path, in which ``*`` is any name, can end in these keys."""
-    if len(ends) > len(path):
-        # A name may have dots of its own.
-        return any(each.startswith("*") for each in path)
-    return all(own in ("*", end) for end, own in zip(reversed(ends), reversed(path), strict=False))
+    """Return whether a path, in which ``*`` is any name, which may have dots of its own, can end in these keys."""
+    name, last = ".".join(ends), len(path) - 1
+    words = [re.escape(key) if key != "*" else ".+" if k < last else "[^.]+" for k, key in enumerate(path)]
+    return any(re.fullmatch(r"\.".join(words[first:]), name) for first in range(len(words)))
 
 
 def usual(template: Template, verb: str) -> tuple[str, ...]:
     """Figures of ``run`` that are meant where none is named: of every motion the largest of tip and root moment."""
-    if verb != "run":
+    if verb != "run" or template.of_system:
         return ()
     ends = ("tip.size.max_abs", "loads.root_moment.size.max_abs")
     return tuple(f"motions.{name}.{end}" for name in template.motions for end in ends)

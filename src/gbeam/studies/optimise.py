@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import Case
+from gbeam.analysis.case import Case, SystemCase
 from gbeam.analysis.response.differentiated import Grid
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.guards.arguments import typed
@@ -38,7 +38,7 @@ _BOUND = re.compile(r"\s*(\S+)\s*(<=|>=)\s*(.+?)\s*")
 
 @typed
 def optimise(
-    scenario: str | os.PathLike[str] | Case,
+    scenario: str | os.PathLike[str] | Case | SystemCase,
     minimise: str,
     over: Sequence[str],
     *,
@@ -114,7 +114,7 @@ def optimise(
     values, ends = search.best(limits, starts)
     last = Neighbourhood(question, parameters, values.tolist(), progress=progress)
     before, after = (values_at(facts_of(each.answer), goal.keys) for each in (first, last))
-    if verb == "run":
+    if last.runs:
         for name in needed(goal.keys, last.case.tracks)[0]:
             last.done(name)
     requirements = tuple(
@@ -230,9 +230,9 @@ class Search:
 
     def __post_init__(self) -> None:
         self.motions, self.parts = needed(self.goal.keys, self.first.case.tracks)
-        self.shapes: Model = self.first.case.model
+        self.shapes: Model | None = self.first.case.model if self.first.runs else None
         self.grids: Mapping[str, Grid] | None = None
-        if self.question.verb == "run":
+        if self.first.runs:
             self.grids = {name: self.first.grid(name) for name in self.motions}
 
     def best(self, limits: Floats, count: int) -> tuple[Floats, list[Floats]]:
@@ -338,5 +338,5 @@ class Search:
 
         return self._last[2].slopes(read, self.motions).slopes
 
-    def _shaped(self, case: Case) -> Case:
-        return replace(case, model=self.shapes)
+    def _shaped(self, case: Any) -> Any:
+        return case if self.shapes is None else replace(case, model=self.shapes)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import Case
+from gbeam.analysis.case import Case, SystemCase
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.progress import Progress
@@ -35,7 +35,7 @@ _NOT_PHYSICAL = re.compile(r"(^|\.)(steps|step|errors|error_estimate|accepted|pa
 
 @typed
 def sensitivity(
-    scenario: str | os.PathLike[str] | Case,
+    scenario: str | os.PathLike[str] | Case | SystemCase,
     of: Sequence[str] = (),
     parameters: Sequence[str] = (),
     *,

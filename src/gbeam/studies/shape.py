@@ -86,7 +86,7 @@ def shape_hub_command(
     >>> gb.shape_hub_command(hub, duration=20.0).outcome
     'done'
     """
-    case = template_of(scenario, overrides).built()
+    case = template_of(scenario, overrides).built().one_beam("bodies", "gbeam shape")
     name, hub = hub_of(case, motion)
     if case.model.automatic:
         raise InputError("model.modes", "is left out, and a command knows the modes of given shapes", "give it")

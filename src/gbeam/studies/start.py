@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gbeam.analysis.case import Case
+from gbeam.analysis.case import AnyCase
 from gbeam.errors import GbeamError, InputError
 from gbeam.studies.cases import Cases
 from gbeam.studies.evaluate import NO_FACTS, Question, Row, ended, settled, width, without_figures
@@ -35,13 +35,13 @@ class OverTime:
     names: tuple[str, ...] = ()
     count: int = 0
 
-    def of(self, question: Question, case: Case) -> Question:
+    def of(self, question: Question, case: AnyCase) -> Question:
         """The question with these histories."""
         if not self.names:
             return question
         first = case.response.start
         times = np.linspace(first, first + case.response.duration, self.count)
-        points = list(case.beam.named_points)
+        points = list(case.one_beam("--history", "a history").beam.named_points)
         histories = tuple(read_history(each, case.motions, points) for each in self.names)
         return replace(question, histories=histories, times=times)
 

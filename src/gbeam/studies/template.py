@@ -11,11 +11,11 @@ import os
 import pickle
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gbeam.analysis.case import Case
+from gbeam.analysis.case import AnyCase, Case
 from gbeam.arrays.tree import altered, arguments_of
 from gbeam.errors import InputError
 from gbeam.guards.kinds import KINDS, kind_of_argument
@@ -31,6 +31,9 @@ from gbeam.scenario.schema.scenario import Sweep as SweepTable
 from gbeam.scenario.values.distributions import Distribution
 from gbeam.scenario.values.paths import Path, parse_path, path_text
 
+if TYPE_CHECKING:
+    from gbeam.scenario.load import AnyScenario
+
 _LONGEST = 100  # numbers of a list that are values of a study; more are a record
 
 
@@ -38,12 +41,17 @@ _LONGEST = 100  # numbers of a list that are values of a study; more are a recor
 class ScenarioTemplate:
     """A validated scenario that was read from a file."""
 
-    scenario: Scenario
+    scenario: AnyScenario
 
     @property
     def title(self) -> str:
         """Title of all cases."""
         return self.scenario.title
+
+    @property
+    def of_system(self) -> bool:
+        """Whether the cases are systems of bodies."""
+        return not isinstance(self.scenario, Scenario)
 
     @property
     def motions(self) -> tuple[str, ...]:
@@ -85,7 +93,7 @@ class ScenarioTemplate:
         assert self.scenario.source is not None
         return ScenarioTemplate(change(self.scenario.source, changes)) if changes else self
 
-    def built(self) -> Case:
+    def built(self) -> AnyCase:
         """Its objects."""
         return build(self.scenario)
 
@@ -110,6 +118,7 @@ class CaseTemplate:
     case: Case
 
     table = None
+    of_system = False  # a system is varied in its file
 
     @property
     def title(self) -> str:
@@ -188,7 +197,7 @@ Template = ScenarioTemplate | CaseTemplate
 
 
 def template_of(
-    given: str | os.PathLike[str] | Case, overrides: Sequence[str] = (), *, distributions: bool = False
+    given: str | os.PathLike[str] | AnyCase, overrides: Sequence[str] = (), *, distributions: bool = False
 ) -> Template:
     """Return the template that a scenario's file or a case is, with changes."""
     if isinstance(given, Case) and given.scenario is None:

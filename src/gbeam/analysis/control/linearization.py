@@ -264,9 +264,10 @@ def linearize(
     gauges : sequence of Gauge
         Where strain is measured.
     inputs, outputs : sequence of str, optional
-        Of a system: efforts on coordinates (``hinge.angle``) and components of its forces (``thrust.force_x``); what is
-        measured, ``joint.angle``, ``joint.angle_rate``, ``body.point.place_x``, ``velocity_x``, ``acceleration_x``,
-        ``spin_x``. By default the driven coordinates and all forces; coordinates, rates and places.
+        Those that are kept, by name. Of a system: efforts on coordinates (``hinge.angle``) and components of its forces
+        (``thrust.force_x``); what is measured, ``joint.angle``, ``joint.angle_rate``, ``body.point.place_x``,
+        ``velocity_x``, ``acceleration_x``, ``spin_x``. By default the driven coordinates and all forces; coordinates,
+        rates and places.
     at : str
         Of a system: ``rest``, where it rests, or ``start``, the motion at its start.
     name : str
@@ -364,7 +365,7 @@ def linearize(
         frequency=frequency,
         errors=errors,
         warnings=warnings,
-    )
+    ).select(inputs=inputs, outputs=outputs)
 
 
 @typed

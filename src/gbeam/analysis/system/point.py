@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -42,8 +42,13 @@ class Point:
         if given is not None:
             states = [tree.whole(each, given[k]) for k, each in enumerate(states)]
         reduced, y, yd, ydd = tree.local(states[0], states[1], states[2])
-        free = reduced.free
-        return Point(reduced, y[free], yd[free], ydd[free], self.inputs)
+        free, inputs = reduced.free, self.inputs
+        if inputs.efforts is not None:
+            pairs = zip(tree.links, reduced.links, strict=True)
+            sizes = (each for a, b in pairs for each in zip(a.sizes, b.sizes, strict=True))
+            kept = np.concatenate([np.arange(size) >= size - less for size, less in sizes])
+            inputs = replace(inputs, efforts=inputs.efforts[..., kept])
+        return Point(reduced, y[free], yd[free], ydd[free], inputs)
 
     def slopes(self) -> tuple[Floats, Floats, Floats, Floats]:
         """The residual (n,) and its derivatives K, C and M (n, n) with respect to y, ẏ and ÿ, by complex steps."""

@@ -40,10 +40,13 @@ def plan(
     """
     folder = output.folder(scenario)
 
-    from gbeam.scenario import build_machines, build_specimen, load_environments, provenance, schema
+    from gbeam.scenario import build_machines, build_specimen, load_environments, placed, provenance, schema
 
     with Watch(f"planning the machines of {scenario}"):
         environments = load_environments(scenario, output.overrides)
+        if type(environments) not in (schema.Environments, schema.Scenario):
+            fix = "give one [beam], or none"
+            raise placed(environments, [InputError("bodies", "make a system, and gbeam plan is of one beam", fix)])
         machines, beam = build_machines(environments), build_specimen(environments)
     if not machines:
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
@@ -115,7 +118,7 @@ def place(
     folder = output.folder(scenario)
     loaded = read("place", scenario, output.overrides)
     loaded.motion(motion, kind="centrifuge")
-    name, current = machine_of(loaded.case, motion)
+    name, current = machine_of(loaded.beam, motion)
 
     from gbeam.analysis.imitation import place as analysis
     from gbeam.analysis.imitation.place_measures import choice_of
@@ -125,13 +128,13 @@ def place(
         choice = choice_of(current, widths, limited=not ignore_limits)
     with loaded.placing():
         placement = analysis.place(
-            loaded.case.assemble(),
+            loaded.beam.assemble(),
             current.flight,
             choice,
             loaded.case.response,
             weights,
             current=current,
-            names=(loaded.case.tracks[name], name),
+            names=(loaded.beam.tracks[name], name),
             check=check,
         )
     written = _apply(loaded, scenario, name, placement.changes) if write_back and placement.changes else None

@@ -57,14 +57,12 @@ def run(
     deliver(answer, "result", folder, output, verb="run", suffix=".nc", page="report")
     for name, failure in answer.unfinished.items():
         complain(f"motion.{name} {failure.outcome}: {failure.message}")
-    broken = {name: each.axes.exceeding for name, each in answer.responses.items() if each.axes}
-    for name, which in broken.items():
-        if which:
-            complain(f"motion.{name} limits exceeded: {which}" + (" (allowed)" if ignore_limits else ""))
+    for name, which in answer.exceeding.items():
+        complain(f"motion.{name} limits exceeded: {which}" + (" (allowed)" if ignore_limits else ""))
     refused = [each for each in answer.comparisons if each.accepted is False]
     for each in refused:
         complain(f"motion.{each.centrifuge} not accepted: {each.refusal}")
-    return 0 if answer.outcome == "done" and not refused and (ignore_limits or not any(broken.values())) else FAILED
+    return 0 if answer.outcome == "done" and not refused and (ignore_limits or not answer.exceeding) else FAILED
 
 
 def _import_leaves() -> None:
@@ -87,7 +85,7 @@ def models(scenario: ScenarioFile, /, *, output: Output = Output()) -> int:
     from gbeam.analysis.model_study import compare_models
 
     with Watch() as watch, loaded.placing():
-        study = compare_models(loaded.case, progress=watch)
+        study = compare_models(loaded.beam, progress=watch)
     deliver(study, "models", folder, output, listed=False)
     for row in study.rows:
         if row.model == study.reference and row.outcome != "done":

@@ -170,7 +170,7 @@ def shape(
 
     from gbeam.scenario.build import read_scenario
 
-    case = read_scenario(scenario, output.overrides)
+    case = read_scenario(scenario, output.overrides).one_beam("bodies", "gbeam shape")
     free = hub_of(case, motion)[1].free
     bound = given("--limit", limit, "torque" if free else "angular acceleration")
     with Watch() as watch:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
@@ -62,7 +62,7 @@ def campbell(
         raise InputError("--to", "is missing: the hub is driven by a torque", fix)
 
     with Watch(), loaded.placing(to="--to", modes="--modes"):
-        diagram = questions.campbell(loaded.case, name, start=low, end=high, modes=modes, orders=orders)
+        diagram = questions.campbell(loaded.beam, name, start=low, end=high, modes=modes, orders=orders)
 
     from gbeam.figures import steady
     from gbeam.guards.units import unit_of
@@ -113,7 +113,7 @@ def critical_speed(
     time = loaded.time(at)
 
     with Watch() as watch, loaded.placing():
-        critical = questions.critical_speed(loaded.case, name, time, vary=vary, upper=upper, progress=watch)
+        critical = questions.critical_speed(loaded.beam, name, time, vary=vary, upper=upper, progress=watch)
     deliver(
         critical, "critical_speed", folder, output, origin=loaded.case.provenance, listed=False,
         motion=name,
@@ -132,7 +132,7 @@ def critical_map(
 ) -> int:
     """Print and write the map; the arguments are those of :func:`~.critical_speed.critical_speed`."""
     name, chosen = given.motion(motion, kind="hub")
-    case = given.case
+    case = given.beam
     kilograms = numbers("--masses", masses, "mass")
     length = case.beam.length
     places = [length * i / 8 for i in range(1, 9)] if positions is None else numbers("--positions", positions, "length")
@@ -179,8 +179,9 @@ def linearize(
     name, chosen = loaded.motion(motion, kind="" if rate is None else "hub")
     time = loaded.time(at)
     steady = None if rate is None else number("--rate", rate, "angular rate")
-    points = loaded.case.beam.named_points
-    stations = [points[text] if text in points else number("--strain-at", text, "length") for text in strain_at]
+    for option, wanted in (("--strain-at", bool(strain_at)), ("--rate", rate is not None)):
+        if wanted:
+            loaded.case.one_beam(option, option)
     for option, beside, both in (
         ("--balanced", "--modes", modes is not None and balanced is not None),
         ("--rate", "--at", rate is not None and at is not None),
@@ -190,12 +191,19 @@ def linearize(
 
     from gbeam.analysis.control.linearization import linearize, surface_gauges
 
-    with naming("--strain-at"):
-        gauges = surface_gauges(loaded.case.beam, stations)
+    gauges: Any = ()
+    if strain_at:
+        beam = loaded.beam.beam
+        points = beam.named_points
+        stations = [points[text] if text in points else number("--strain-at", text, "length") for text in strain_at]
+        with naming("--strain-at"):
+            gauges = surface_gauges(beam, stations)
     options = {"order": "--balanced", "modes": "--modes", "inputs": "--inputs", "outputs": "--outputs"}
     with Watch(), loaded.placing(**options):
-        system = linearize(loaded.case.assemble(), chosen, time, rate=steady, gauges=gauges, name=name)
-        system = system.select(inputs=_names(inputs), outputs=_names(outputs))
+        system = linearize(
+            loaded.case.assemble(), chosen, time,
+            rate=steady, gauges=gauges, inputs=_names(inputs), outputs=_names(outputs), name=name,
+        )  # fmt: skip
         if modes is not None or balanced is not None:
             from gbeam.analysis.control import reduction
 

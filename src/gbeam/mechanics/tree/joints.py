@@ -23,17 +23,30 @@ GROUND = "ground"
 _EYE = np.eye(3)
 _EASY = ("stiffness", "ease", "damping", "friction", "stop_stiffness")
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
+SLIDES = ("displacement", "x", "y", "z")  # coordinates in m; others are angles
 
 
 class Kind(NamedTuple):
-    """A kind of joint: the steps and the names of their coordinates by its axes (k, 3), how many axes it takes, and the
-    names of rates where they are not those of the coordinates.
+    """A kind of joint: what it lets move, the steps and the names of their coordinates by its axes (k, 3), how many
+    axes it takes, the names of rates where they are not those of the coordinates, and the directions that may give way.
     """
 
+    words: str
     steps: Callable[[Floats], tuple[Step, ...]]
     names: tuple[str, ...]
     axes: int = 0
     rates: tuple[str, ...] = ()
+    sprung: tuple[str, ...] = ()
+
+    @property
+    def given(self) -> tuple[str, ...]:
+        """Coordinates whose values are given by name: all but Euler parameters."""
+        return (*self.sprung, *(name for name in self.names if name not in _BALL))
+
+    @property
+    def given_rates(self) -> tuple[str, ...]:
+        """Rates that are given by name."""
+        return self.rates or self.given
 
 
 def _turns(axes: Floats) -> tuple[Step, ...]:
@@ -42,13 +55,15 @@ def _turns(axes: Floats) -> tuple[Step, ...]:
 
 _BALL, _SPIN, _PLACE = ("e0", "e1", "e2", "e3"), ("wx", "wy", "wz"), ("x", "y", "z")
 KINDS: dict[str, Kind] = {
-    "fixed": Kind(lambda axes: (), ()),
-    "revolute": Kind(_turns, ("angle",), 1),
-    "prismatic": Kind(lambda axes: (Slide(axes.T),), ("displacement",), 1),
-    "cylindrical": Kind(lambda axes: (Slide(axes.T), *_turns(axes)), ("displacement", "angle"), 1),
-    "universal": Kind(_turns, ("angle_1", "angle_2"), 2),
-    "spherical": Kind(lambda axes: (Ball(),), _BALL, 0, _SPIN),
-    "free": Kind(lambda axes: (Slide(_EYE), Ball()), (*_PLACE, *_BALL), 0, (*_PLACE, *_SPIN)),
+    "fixed": Kind("a clamp, or springs and dampers", lambda axes: (), (), sprung=DIRECTIONS),
+    "revolute": Kind("a hinge: one angle", _turns, ("angle",), 1),
+    "prismatic": Kind("a slide: one displacement", lambda axes: (Slide(axes.T),), ("displacement",), 1),
+    "cylindrical": Kind(
+        "a slide that turns about its axis", lambda axes: (Slide(axes.T), *_turns(axes)), ("displacement", "angle"), 1
+    ),
+    "universal": Kind("two angles, one after the other", _turns, ("angle_1", "angle_2"), 2),
+    "spherical": Kind("any rotation", lambda axes: (Ball(),), _BALL, 0, _SPIN),
+    "free": Kind("any motion", lambda axes: (Slide(_EYE), Ball()), (*_PLACE, *_BALL), 0, (*_PLACE, *_SPIN)),
 }
 
 

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gbeam.arrays.namespace import namespace
 from gbeam.mechanics.tree.frames import turned
+from gbeam.mechanics.tree.joints import SLIDES
 
 if TYPE_CHECKING:
     from gbeam.mechanics.tree.system import System
 
 Array = Any
-_LENGTHS = ("x", "y", "z", "displacement")
 
 
 class Driven(NamedTuple):
@@ -29,7 +29,7 @@ def drives_of(system: System) -> dict[str, Driven]:
     for k, each in enumerate(system.coordinates):
         owner, _, name = each.rpartition(".")
         if owner in system.joints and name[0] != "e":
-            drives[each] = Driven(None, k, "N" if name in _LENGTHS else "N m")
+            drives[each] = Driven(None, k, "N" if name in SLIDES else "N m")
     for k, owner in enumerate(system.forces):
         for i, (kind, unit) in enumerate((("force", "N"), ("moment", "N m"))):
             drives |= {f"{owner}.{kind}_{axis}": Driven(k, 3 * i + j, unit) for j, axis in enumerate("xyz")}
@@ -46,7 +46,7 @@ def signals_of(system: System) -> dict[str, str]:
     for name, joint in system.joints.items():
         for each in joint.coordinates:
             if each[0] != "e":
-                unit = "m" if each in ("x", "y", "z", "displacement") else "rad"
+                unit = "m" if each in SLIDES else "rad"
                 signals |= {f"{name}.{each}": unit, f"{name}.{each}_rate": f"{unit}/s"}
     units = {"place": "m", "velocity": "m/s", "acceleration": "m/s^2", "spin": "rad/s"}
     for point in system.points:

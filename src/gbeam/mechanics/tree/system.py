@@ -468,7 +468,9 @@ def body_of(where: str, body: RigidBody | Structure) -> Body:
     if not body.hub_force:
         fix = "choose FOAM with no axial shapes, which are the same equations with it"
         raise InputError(f"{where}.model", f"is {body.kind}, whose base does not feel the beam", fix)
-    body.require_damping("the response")
+    if body.damping_ratio is None:
+        fix = "give a ratio of critical damping, such as 0.01, or 0 for none"
+        raise InputError(f"{where}.damping_ratio", "is missing, and the response depends on it", fix)
     c, stations = body.coefficients, np.array(list(_stations(body).values()))
     points: Points
     if isinstance(body.field, StrainField):

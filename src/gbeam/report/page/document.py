@@ -6,7 +6,7 @@ import base64
 import hashlib
 import json
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from importlib.resources import files
 from typing import Any, NamedTuple
 
@@ -42,20 +42,29 @@ _APART = ("form", "units", "provenance", "warnings", "files", "title", "outcome"
 
 def _quantities(facts: Mapping[str, Any], _: str, plots: str) -> str:
     """The inside of the page of a kind that has none of its own: its quantities, and a table for each list of them."""
-    units = facts.get("units", {})
     known = {key: value for key, value in facts.items() if key not in _APART}
+    return "".join([*_inside(known, facts.get("units", {}), ""), section("Figures", plots)])
+
+
+def _inside(known: Mapping[str, Any], units: Mapping[str, str], place: str) -> Iterator[str]:
+    """Single values in a table, lists and named rows of them in one each; what such rows hold stands below its name."""
     single = {key: value for key, value in known.items() if not isinstance(value, (dict, list))}
     told = {key: value for key, value in single.items() if value not in (None, "")}
-    rows = [(key.replace("_", " "), _shown(value), raised(units.get(key, ""))) for key, value in told.items()]
-    parts = [table(("", "", ""), rows, words=(0, 2))]
+    rows = [(key.replace("_", " "), _shown(value), raised(units.get(place + key, ""))) for key, value in told.items()]
+    yield table(("", "", ""), rows, words=(0, 2))
     for key, value in known.items():
-        place = f"{key}[i]."
+        below = f"{place}{key}[i]."
         if isinstance(value, dict):
-            place = f"{key}.*."
+            below = f"{place}{key}.*."
+            if key == "motions":
+                for name, each in value.items():
+                    yield heading(name, 3)
+                    yield from _inside({k: v for k, v in each.items() if k not in _APART}, units, below)
+                continue
             value = [{"": name, **each} for name, each in value.items() if isinstance(each, dict)]
         if isinstance(value, list) and value and all(isinstance(each, dict) for each in value):
-            parts += [heading(key.replace("_", " "), 3), _rows_table(value, units, place)]
-    return "".join([*parts, section("Figures", plots)])
+            yield heading(key.replace("_", " "), 3)
+            yield _rows_table(value, units, below)
 
 
 def _rows_table(rows: list[Mapping[str, Any]], units: Mapping[str, str], place: str) -> str:
@@ -85,6 +94,9 @@ PAGES = {
     "Critical": Page("critical-speed", steady.critical_body, ("quantity", "searched_to", "reason")),
     "CriticalMap": Page("critical-speed --masses", steady.critical_map_body, ("mass", "position", "critical_speed")),
     "Placement": Page("place", cases.placement_body, ("fraction_of_length", "options")),
+    "SystemStudy": Page("run", _quantities, ("motions",), ("points", "coordinates", "steps")),
+    "SystemRest": Page("static", _quantities, ("motions",), ("points", "coordinates", "ground_force")),
+    "SystemModes": Page("modes", _quantities, ("modes", "body_names")),
     "Sweep": Page("sweep", cases.sweep_body, ("parameters", "measures")),
     "Fit": Page("fit", searches.fit_body, ("covariance", "columns")),
     "Optimum": Page("optimize", searches.optimum_body, ("minimise", "subject_to")),

@@ -22,7 +22,8 @@ from gbeam.results.response import BaseMotion, HubResult, Response
 from gbeam.results.result import Floats
 from gbeam.results.searches import CommandRun, Fit, FittedColumn, Optimum, ShapedCommand
 from gbeam.results.solids import SolidStress, SpecimenLoads
-from gbeam.results.study import Study
+from gbeam.results.study import Study, SystemStudy
+from gbeam.results.system import Invariants, SystemModes, SystemResponse, SystemRest
 
 Facts = Mapping[str, Any]
 _NONE = np.empty(0)
@@ -35,6 +36,11 @@ def figures_in(kind: str, facts: Facts, variables: Facts) -> dict[str, Describe]
         case "Study":
             study = _study(facts, variables)
             return figures_of(study) if study.responses else {}
+        case "SystemStudy":
+            return figures_of(_system_study(facts, variables))
+        case "SystemRest":
+            rests = (_read(SystemRest, each, name=name) for name, each in facts["motions"].items())
+            return figures_of(tuple(rests))
         case "MachinePlan":
             return figures_of(_plans(facts, variables))
         case "Deflection":
@@ -139,6 +145,20 @@ def _study(facts: Facts, variables: Facts) -> Study:
     return Study("", responses, tuple(comparisons))
 
 
+def _system_study(facts: Facts, variables: Facts) -> SystemStudy:
+    responses = {}
+    for name, each in facts["motions"].items():
+        v = _under(f"motions/{name}/", variables)
+        if "time" in v:
+            responses[name] = _system_response(each, v, name=name)
+    return SystemStudy("", responses)
+
+
+def _system_response(facts: Facts, v: Facts, **more: Any) -> SystemResponse:
+    invariants = _read(Invariants, {}, v) if "energy" in v else None
+    return _read(SystemResponse, facts, v, invariants=invariants, **more)
+
+
 def _response(name: str, facts: Facts, v: Facts) -> Response:
     return _read(
         Response, facts, v, name=name, base=_read(BaseMotion, {}, v),
@@ -194,19 +214,23 @@ def _deflection(name: str, facts: Facts) -> Deflection:
     return _read(Deflection, facts, motion=name, loads=loads)
 
 
+def _eigenvalues(rows: Any) -> Any:
+    """Eigenvalues of modes, by their frequencies and damping ratios."""
+    ratio, size = _column(rows, "damping_ratio"), 2 * np.pi * _column(rows, "frequency")
+    return size * (-ratio + 1j * np.sqrt(1 - ratio**2))
+
+
 def modes_in(facts: Facts, _: Facts | None = None) -> Modes:
     """Modes from their JSON."""
     rows = facts["modes"]
-    ratio, size = _column(rows, "damping_ratio"), 2 * np.pi * _column(rows, "frequency")
     real, imaginary = (
         np.array([_vectors(each[key]) for each in rows]).reshape(len(rows), -1, 3)
         for key in ("shape", "shape_imaginary")
     )
-    eigenvalue = size * (-ratio + 1j * np.sqrt(1 - ratio**2))
     twist = None
     if rows and "twist" in rows[0]:
         twist = _column(rows, "twist") + 1j * _column(rows, "twist_imaginary")
-    return _read(Modes, facts, eigenvalue=eigenvalue, shape=real + 1j * imaginary, twist=twist)
+    return _read(Modes, facts, eigenvalue=_eigenvalues(rows), shape=real + 1j * imaginary, twist=twist)
 
 
 def _campbell(facts: Facts, _: Facts) -> Campbell:
@@ -286,6 +310,8 @@ def _shaped(facts: Facts, v: Facts) -> ShapedCommand:
 # By verb: a variable without which there are no histories, and what reads the record.
 _ALONE: dict[str, tuple[str, Callable[[Facts, Facts], Any]]] = {
     "Modes": ("", modes_in),
+    "SystemModes": ("", lambda facts, _: _read(SystemModes, facts, eigenvalue=_eigenvalues(facts["modes"]))),
+    "SystemResponse": ("time", _system_response),
     "Campbell": ("", _campbell),
     "CriticalMap": ("", lambda facts, _: _read(CriticalMap, facts)),
     "Comparison": ("time", lambda facts, v: _comparison(facts, v, v.get("station", np.array([np.nan])))),

@@ -36,15 +36,17 @@ from gbeam.scenario.schema.profile import ForceOverTime, MomentOverTime, SpreadF
 PointName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z_]\w*$", max_length=64)]
 
 
-class _Vector(Table):
+class Vector(Table):
+    """Components x, y and z, of which some are given."""
+
     @model_validator(mode="after")
-    def _any(self) -> _Vector:
+    def _any(self) -> Vector:
         if all(getattr(self, axis) is None for axis in "xyz"):
             refuse([((), wrong("has no component", "give one or more of x, y and z"))])
         return self
 
 
-class Forces(_Vector):
+class Forces(Vector):
     """A force by components, each a quantity or a profile; those left out are zero."""
 
     x: ForceOverTime | None = Field(default=None, description="component along the beam")
@@ -52,7 +54,7 @@ class Forces(_Vector):
     z: ForceOverTime | None = Field(default=None, description="component through the thickness")
 
 
-class LoadMoments(_Vector):
+class LoadMoments(Vector):
     """A moment by components, each a quantity or a profile; those left out are zero."""
 
     x: MomentOverTime | None = Field(default=None, description="moment about x, along the beam")
@@ -60,7 +62,7 @@ class LoadMoments(_Vector):
     z: MomentOverTime | None = Field(default=None, description="moment about z: positive bends the tip to +y")
 
 
-class SpreadForces(_Vector):
+class SpreadForces(Vector):
     """A force per length by components, each a quantity or a profile; those left out are zero."""
 
     x: SpreadForceOverTime | None = Field(default=None, description="component along the beam")

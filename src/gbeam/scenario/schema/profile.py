@@ -15,7 +15,9 @@ from gbeam.scenario.schema.fields import (
     ForcePerLength,
     ForcePerLengthRate,
     ForceRate,
+    Growth,
     Jerk,
+    Speed,
     Table,
     Time,
     Torque,
@@ -167,5 +169,25 @@ SpreadForceOverTime = Annotated[
     | Annotated[Sine[ForcePerLength, ForcePerLengthRate], Tag("sine")]
     | Annotated[Listed[ForcePerLength, ForcePerLengthRate], Tag("table")]
     | Annotated[Sum[ForcePerLength, ForcePerLengthRate], Tag("sum")],
+    Discriminator(_constant_or_profile),
+]
+SpeedOverTime = Annotated[
+    Annotated[Speed, Tag("one")]
+    | Annotated[Constant[Speed, Growth], Tag("constant")]
+    | Annotated[Trapezoid[Speed, Growth], Tag("trapezoid")]
+    | Annotated[SmoothStep[Speed, Growth], Tag("smooth-step")]
+    | Annotated[Sine[Speed, Growth], Tag("sine")]
+    | Annotated[Listed[Speed, Growth], Tag("table")]
+    | Annotated[Sum[Speed, Growth], Tag("sum")],
+    Discriminator(_constant_or_profile),
+]
+TurnOverTime = Annotated[
+    Annotated[AngularRate, Tag("one")]
+    | Annotated[Constant[AngularRate, AngularAcceleration], Tag("constant")]
+    | Annotated[Trapezoid[AngularRate, AngularAcceleration], Tag("trapezoid")]
+    | Annotated[SmoothStep[AngularRate, AngularAcceleration], Tag("smooth-step")]
+    | Annotated[Sine[AngularRate, AngularAcceleration], Tag("sine")]
+    | Annotated[Listed[AngularRate, AngularAcceleration], Tag("table")]
+    | Annotated[Sum[AngularRate, AngularAcceleration], Tag("sum")],
     Discriminator(_constant_or_profile),
 ]

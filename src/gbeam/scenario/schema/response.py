@@ -17,6 +17,7 @@ from gbeam.scenario.schema.fields import (
     Position,
     Quantity,
     Ratio,
+    Speed,
     Step,
     Table,
     Time,
@@ -43,8 +44,8 @@ class TipDisplacement(Table):
 class TipVelocity(Table):
     """A velocity of the tip across the beam, by components; those left out are free."""
 
-    y: Annotated[float, Quantity("speed")] | None = Field(default=None, description="component along the width")
-    z: Annotated[float, Quantity("speed")] | None = Field(default=None, description="component through the thickness")
+    y: Speed | None = Field(default=None, description="component along the width")
+    z: Speed | None = Field(default=None, description="component through the thickness")
 
 
 class Initial(Table):
@@ -84,7 +85,7 @@ class Response(Table):
     )
     step: Step = Field(default="auto", description="time step, or auto")
     integrator: Literal["newmark", "hht", "generalized-alpha", "gauss"] = Field(
-        default="newmark", description="time integrator"
+        default="newmark", description="time integrator; of a system gauss where it is left out"
     )
     beta: Ratio | None = Field(default=None, description="parameter of newmark")
     gamma: Ratio | None = Field(default=None, description="parameter of newmark")

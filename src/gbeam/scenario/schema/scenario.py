@@ -86,7 +86,8 @@ class Sweep(Table):
     seed: int = Field(default=0, ge=0, strict=True, description="the same seed draws the same samples")
 
 
-def _word(name: str) -> str:
+def motion_name(name: str) -> str:
+    """A name of letters, digits, underscores and hyphens."""
     if not name.replace("-", "_").isidentifier() or not name.isascii():
         raise wrong(
             f"{shortened(repr(name))} is not a word",
@@ -106,21 +107,21 @@ def _printable(title: str) -> str:
     return title
 
 
-class _Titled(Table):
+class Titled(Table):
     """Common keys of scenarios; a class of its own only to keep the tables in the order they are written in."""
 
     title: Annotated[str, AfterValidator(_printable)] = Field("", description="what the scenario is about, for reports")
 
 
-class _Structure(_Titled):
+class _Structure(Titled):
     beam: Beam = Field(description="the structure")
     model: Model = Field(description="the model of its deformation")
 
 
-class Environments(_Titled):
+class Environments(Titled):
     """A scenario without a beam: the motions and how long they last. Enough to plan a machine's."""
 
-    motion: dict[Annotated[str, AfterValidator(_word)], Motion] = Field(
+    motion: dict[Annotated[str, AfterValidator(motion_name)], Motion] = Field(
         min_length=1, description="what the base does: one environment or more, each [motion.NAME]"
     )
     response: Response = Field(default_factory=Response, description="response over time")
@@ -139,10 +140,13 @@ class Environments(_Titled):
 
     @model_validator(mode="after")
     def _agree(self, info: ValidationInfo) -> Self:
-        # For both kinds of scenario in one validator, so that everything that is wrong is said at once.
-        with_beam = self.about_motions_and_beam() if isinstance(self, Scenario) else ()
-        refuse([*self._about_motions(), *with_beam])
+        # Of every kind of scenario in one validator, so that everything that is wrong is said at once.
+        refuse([*self._about_motions(), *self.about_structure()])
         return self
+
+    def about_structure(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
+        """What does not agree with the structure, or its parts with one another."""
+        yield from ()
 
     def _about_motions(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
         for name, motion in self.motion.items():
@@ -170,7 +174,7 @@ class Scenario(Environments, _Structure):
     Built by :func:`gbeam.scenario.load` and :func:`gbeam.scenario.loads`.
     """
 
-    def about_motions_and_beam(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
+    def about_structure(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
         """Motions that do not agree with the beam or its model."""
         for name, motion in self.motion.items():
             length = math.inf if self.beam.length is None else self.beam.length

@@ -1,0 +1,76 @@
+"""Results of systems of bodies in words: responses, places at rest, small vibrations."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from gbeam.report.words import columns, number, percent, sentence, tidy, warning_lines
+from gbeam.results.study import SystemStudy
+from gbeam.results.system import SystemModes, SystemResponse, SystemRest, named
+
+
+def system_study(study: SystemStudy) -> str:
+    """Responses in all environments, each with how far its points move."""
+    parts = [study.title] if study.title else []
+    parts += [system_response(each) for each in study.responses.values()]
+    parts += [f"{name}: {each.outcome}\n  {sentence(each.message)}" for name, each in study.failures.items()]
+    return "\n\n".join(parts)
+
+
+def system_response(response: SystemResponse) -> str:
+    """The largest motions of the points, the joints at the end, what is kept, and the error."""
+    lines = [f"{response.name or response.environment}: {response.outcome}"]
+    lines += [f"  {sentence(response.message)}"] if response.message else []
+    far, hard = (tidy(each, float(each.max())) for each in (response.largest, response.largest_acceleration))
+    rows = [[name, number(a), number(b)] for name, a, b in zip(response.points, far, hard, strict=True)]
+    lines += [f"  {line}" for line in columns(["point", "moves by, m", "acceleration, m/s²"], rows)]
+    every = named(response)
+    size = max((float(np.abs(each).max()) for each in every.values()), default=0.0)
+    ends = tidy([float(each[-1]) for each in every.values()], max(size, max(far)))
+    joints = ", ".join(f"{name} {number(end)}" for name, end in zip(every, ends, strict=True))
+    lines += [f"  at the end {joints}"] if joints else []
+    kept = response.invariants
+    if kept is not None:
+        first, last = (number(float(each.sum())) for each in kept.energy[[0, -1]])
+        lines.append(f"  energy {first} J at the start, {last} J at the end")
+    error = percent(response.error_estimate)
+    known = f"estimated error of the steps {error}" if math.isfinite(response.error_estimate) else "no error estimate"
+    lines.append(f"  {response.integrator}, {response.steps} steps of {1e3 * response.step:.4g} ms, {known}")
+    return "\n".join([*lines, *warning_lines(response)])
+
+
+def system_rest(rests: Iterable[SystemRest]) -> str:
+    """Displacements of the points at rest, and what the ground carries."""
+    return "\n".join(line for each in rests for line in _rest(each))
+
+
+def _rest(rest: SystemRest) -> Iterator[str]:
+    yield f"{rest.name} at {rest.time:.4g} s:"
+    size = float(np.abs(rest.displacement).max(initial=0.0))
+    rows = [
+        [name, *(f"{each:.6g}" for each in tidy(1e3 * moved, 1e3 * size))]
+        for name, moved in zip(rest.points, rest.displacement, strict=True)
+    ]
+    yield from (f"  {line}" for line in columns(["point", "x, mm", "y, mm", "z, mm"], rows))
+    force, moment = rest.ground_force, rest.ground_moment
+    largest = float(np.abs(np.concatenate([force, moment])).max())
+    pair = (", ".join(f"{each:.5g}" for each in tidy(vector, largest)) for vector in (force, moment))
+    yield "  on the ground: force ({}) N, moment ({}) N m".format(*pair)
+    yield from warning_lines(rest)
+
+
+def system_modes(modes: SystemModes) -> str:
+    """Modes on a line each, with the bodies' shares of the kinetic energy."""
+    lines = [f"{modes.name} at {modes.time:.4g} s:"]
+    for k, (frequency, ratio) in enumerate(zip(modes.frequency, modes.damping_ratio, strict=True)):
+        shares = ((share, body) for share, body in zip(modes.share[k], modes.bodies, strict=True) if share > 0.005)
+        listed = ", ".join(f"{body} {share:.0%}" for share, body in sorted(shares, reverse=True))
+        damping = ratio if abs(ratio) > 1e-10 else 0.0
+        lines.append(f"  {k + 1:>3}  {frequency:12.6g} Hz  damping {damping:8.4g}  {listed}")
+    if modes.rigid:
+        lines.append(f"  and {modes.rigid} motions of zero frequency")
+    lines += [f"  UNSTABLE: grows by {each.real:.4g} per second" for each in modes.growing]
+    return "\n".join([*lines, *warning_lines(modes)])

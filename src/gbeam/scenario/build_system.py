@@ -1,0 +1,57 @@
+"""Systems of bodies of a scenario as objects of the core."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from gbeam.mechanics.assembly import assemble
+from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.joints import Joint
+from gbeam.mechanics.tree.system import Place, PointForce, RigidBody, System
+from gbeam.scenario.build_beam import beam_of, model_of
+from gbeam.scenario.build_motion import components, profile_of
+from gbeam.scenario.origin import Collector
+from gbeam.scenario.schema import system as schema
+from gbeam.scenario.schema.profile import Smoothed
+
+
+def system_of(parts: Collector, scenario: schema.SystemScenario) -> System | None:
+    """The system of a scenario; None, with what is wrong collected, where it cannot be made."""
+    before = len(parts.errors)
+    bodies = {name: _BODIES[type(each)](parts, f"bodies.{name}", each) for name, each in scenario.bodies.items()}
+    joints = {name: _joint(parts, f"joints.{name}", each) for name, each in scenario.joints.items()}
+    forces = {name: _force(parts, f"forces.{name}", each) for name, each in scenario.forces.items()}
+    if len(parts.errors) > before:
+        return None
+    return parts.attempt("", System, bodies, joints, forces, scenario.system.gravity)
+
+
+def _rigid(parts: Collector, where: str, table: schema.RigidBody) -> RigidBody | None:
+    points = {name: Place(each.at, each.turn) for name, each in table.points.items()}
+    return parts.attempt(where, RigidBody, table.mass, table.inertia, table.centre, points)
+
+
+def _beam(parts: Collector, where: str, table: schema.BeamBody) -> Structure | None:
+    beam, model = beam_of(parts, where, table), model_of(parts, f"{where}.model", table.model)
+    return None if beam is None or model is None else parts.attempt(where, assemble, beam, model)
+
+
+_BODIES: dict[type, Any] = {schema.RigidBody: _rigid, schema.BeamBody: _beam}
+
+
+def _joint(parts: Collector, where: str, table: Any) -> Joint | None:
+    given = {key: _value(parts, f"{where}.{key}", value) for key, value in table if value is not None}
+    return parts.attempt(where, Joint, **given)
+
+
+def _value(parts: Collector, where: str, value: Any) -> Any:
+    """A value of a joint as it takes it: by coordinate, a profile, or as it is."""
+    if isinstance(value, schema.Coordinates):
+        return {name: _value(parts, f"{where}.{name}", each) for name, each in value if each is not None}
+    return profile_of(parts, where, value) if isinstance(value, Smoothed) else value
+
+
+def _force(parts: Collector, where: str, table: schema.PointForce) -> PointForce | None:
+    vectors = {key: getattr(table, key) for key in ("force", "moment")}
+    built = {key: components(parts, f"{where}.{key}", vector) for key, vector in vectors.items() if vector is not None}
+    return parts.attempt(where, PointForce, table.on, follower=table.follower, **built)

@@ -1,0 +1,279 @@
+"""[bodies], [joints], [forces] and [system]: a tree of bodies in place of one beam.
+
+Tables of joints follow from the kinds of joint that there are: by the names of their coordinates they know which are
+displacements and which are angles, and so the units of everything about them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import reduce
+from operator import or_
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import AfterValidator, ConfigDict, Discriminator, Field, StrictBool, Tag, create_model, model_validator
+from pydantic_core import PydanticCustomError
+
+from gbeam.guards.limits import ENTRIES, NAME
+from gbeam.mechanics.tree.joints import GROUND, KINDS, SLIDES, Kind
+from gbeam.printable import shortened
+from gbeam.scenario.schema.beam import Beam, Vector
+from gbeam.scenario.schema.fields import (
+    Acceleration,
+    Angle,
+    AngularRate,
+    Loc,
+    Mass,
+    MomentOfInertia,
+    Offset,
+    Quantity,
+    Ratio,
+    Speed,
+    Table,
+    refuse,
+    wrong,
+)
+from gbeam.scenario.schema.motion import Centrifuge, Motion
+from gbeam.scenario.schema.profile import ForceOverTime, MomentOverTime, SpeedOverTime, TurnOverTime
+from gbeam.scenario.schema.scenario import Environments, Model, Titled, motion_name
+
+Place3 = tuple[Offset, Offset, Offset]
+Turn3 = tuple[Angle, Angle, Angle]
+Direction = tuple[Ratio, Ratio, Ratio]
+_Row = tuple[
+    Annotated[float, Quantity("moment of inertia")],
+    Annotated[float, Quantity("moment of inertia")],
+    Annotated[float, Quantity("moment of inertia")],
+]
+
+
+def _named(name: str) -> str:
+    if not name.isidentifier() or not name.isascii() or len(name) > NAME or name == GROUND:
+        raise wrong(f"{shortened(repr(name))} is not a name", "give letters, digits and underscores", mark="key")
+    return name
+
+
+Name = Annotated[str, AfterValidator(_named)]
+
+
+def _rows(value: Any) -> str:
+    return "list" if isinstance(value, (list, tuple)) and value and isinstance(value[0], (list, tuple)) else "one"
+
+
+Inertia = Annotated[
+    Annotated[tuple[MomentOfInertia, MomentOfInertia, MomentOfInertia], Tag("one")]
+    | Annotated[tuple[_Row, _Row, _Row], Tag("list")],
+    Discriminator(_rows),
+]
+
+
+class PlaceOfBody(Table):
+    """A named point of a rigid body, with axes."""
+
+    at: Place3 = Field(default=(0.0, 0.0, 0.0), description="place from the body's root, in its axes: [x, y, z]")
+    turn: Turn3 = Field(
+        default=(0.0, 0.0, 0.0), description="rotation vector of the point's axes in those of the root: [x, y, z]"
+    )
+
+
+class RigidBody(Table):
+    """A rigid body."""
+
+    kind: Literal["rigid"] = Field(description="kind of the body")
+    mass: Mass = Field(description="mass")
+    inertia: Inertia = Field(
+        default=(0.0, 0.0, 0.0),
+        description="about the centre of mass, axes of the root: principal moments [x, y, z], or three rows",
+    )
+    centre: Place3 = Field(default=(0.0, 0.0, 0.0), description="centre of mass from the root: [x, y, z]")
+    points: dict[Name, PlaceOfBody] = Field(
+        default_factory=dict,
+        max_length=ENTRIES,
+        description="points by name, on which other bodies hang, forces act and output is given: { at, turn }",
+    )
+
+
+class BeamBody(Beam):
+    """A beam as a body: the keys of [beam], and its model. Its points are its named ones, tip and root."""
+
+    kind: Literal["beam"] = Field(description="kind of the body")
+    model: Model = Field(description="the model of its deformation; modes are to be given: { kind, modes, shapes }")
+
+
+Body = Annotated[RigidBody | BeamBody, Discriminator("kind")]
+
+
+class _Of:
+    """Types of what is said of a coordinate: of a displacement, and of an angle."""
+
+    def __init__(self, slide: Any, turn: Any) -> None:
+        self.types = slide, turn
+
+    def __call__(self, coordinate: str) -> Any:
+        return self.types[coordinate not in SLIDES]
+
+
+def _quantities(slide: str, turn: str) -> _Of:
+    return _Of(*(Annotated[float, Quantity(kind, "zero or more")] for kind in (slide, turn)))
+
+
+_LENGTHS = _Of(Offset, Angle)
+_STIFFNESSES = _quantities("stiffness", "rotational stiffness")
+# Of every key about coordinates: its types, what it is, and whether it is of rates.
+_ABOUT: dict[str, tuple[_Of, str, bool]] = {
+    "initial": (_LENGTHS, "coordinate at the start", False),
+    "initial_rate": (_Of(Speed, AngularRate), "rate at the start", True),
+    "stiffness": (_STIFFNESSES, "spring", False),
+    "ease": (_LENGTHS, "coordinate at which the spring has no force", False),
+    "damping": (_quantities("damping", "rotational damping"), "damper", False),
+    "friction": (_quantities("force", "torque"), "Coulomb friction", False),
+    "stops": (_Of(tuple[Offset, Offset], tuple[Angle, Angle]),
+              "lowest and highest coordinate, at which stops begin to give way", False),
+    "stop_stiffness": (_STIFFNESSES, "stiffness of the stops", False),
+    "rate": (_Of(SpeedOverTime, TurnOverTime), "prescribed rate, instead of effort: a quantity or a profile", False),
+    "effort": (_Of(ForceOverTime, MomentOverTime), "force or torque of a drive: a quantity or a profile", False),
+}  # fmt: skip
+
+
+class Coordinates(Table):
+    """Values by the names of a joint's coordinates."""
+
+    model_config = ConfigDict(json_schema_extra={"x-coordinates": True})
+
+
+def _table(base: type[Table], name: str, about: str, fields: Mapping[str, Any]) -> Any:
+    """A table made of fields, known in this module by its name: by that it is pickled."""
+    table = create_model(name, __base__=base, __module__=__name__, __doc__=about, **dict(fields))
+    globals()[name] = table
+    return table
+
+
+def _optional(of: Any, description: str) -> tuple[Any, Any]:
+    return (of | None, Field(default=None, description=description))
+
+
+def _joint(name: str, kind: Kind) -> Any:
+    """The table of a kind of joint: of one coordinate it has values, of several tables by their names."""
+    hung = 'what it hangs on: "ground", or a point of a body, such as "bus.left"; "bus.root" is its root'
+    turn = "rotation vector of the body's root axes in those of the point, where all coordinates are zero: [x, y, z]"
+    fields: dict[str, Any] = {
+        "kind": (Literal[name], Field(description="kind of the joint")),
+        "body": (str, Field(description="NAME of the body that it holds, by its root")),
+        "on": (str, Field(default=GROUND, description=hung)),
+    }
+    if kind.axes:
+        vectors = ", ".join(["[x, y, z]"] * kind.axes)
+        second = ", the second as it stands at a first angle of zero" if kind.axes > 1 else ""
+        listed = Annotated[tuple[Direction, ...], Field(min_length=kind.axes, max_length=kind.axes)]
+        fields["axes"] = (listed, Field(description=f"directions in axes of the point{second}: [{vectors}]"))
+    fields["at"] = (Place3, Field(default=(0.0, 0.0, 0.0), description="place of the joint from the point: [x, y, z]"))
+    fields["turn"] = (Turn3, Field(default=(0.0, 0.0, 0.0), description=turn))
+    for key, (types, words, of_rates) in _ABOUT.items():
+        names = kind.given_rates if of_rates else kind.given
+        if len(names) == 1:
+            fields[key] = _optional(types(names[0]), words)
+        elif names:
+            title = f"{name}_{key}".title().replace("_", "")
+            within = {each: _optional(types(each), words) for each in names}
+            table = _table(Coordinates, title, f"{words[0].upper()}{words[1:]}, by coordinate.", within)
+            fields[key] = _optional(table, f"{words}: {{ {', '.join(names)} }}")
+    return _table(Table, name.title(), f"{kind.words[0].upper()}{kind.words[1:]}.", fields)
+
+
+_JOINTS = [_joint(name, kind) for name, kind in KINDS.items()]
+if TYPE_CHECKING:  # type checkers make no tables
+    Joint = Any
+else:
+    Joint = Annotated[reduce(or_, _JOINTS), Discriminator("kind")]
+
+
+class PointForces(Vector):
+    """A force by components, each a quantity or a profile; those left out are zero."""
+
+    x: ForceOverTime | None = Field(default=None, description="component along x")
+    y: ForceOverTime | None = Field(default=None, description="component along y")
+    z: ForceOverTime | None = Field(default=None, description="component along z")
+
+
+class PointMoments(Vector):
+    """A moment by components, each a quantity or a profile; those left out are zero."""
+
+    x: MomentOverTime | None = Field(default=None, description="component about x")
+    y: MomentOverTime | None = Field(default=None, description="component about y")
+    z: MomentOverTime | None = Field(default=None, description="component about z")
+
+
+class PointForce(Table):
+    """A force and a moment on a point, such as thrust."""
+
+    on: str = Field(description='the point: "bus.nozzle"')
+    force: PointForces | None = Field(default=None, description="force on the point: { x, y, z }")
+    moment: PointMoments | None = Field(default=None, description="moment on the point: { x, y, z }")
+    follower: StrictBool = Field(
+        default=False, description="true if the components turn with the point; false if they keep to the ground's axes"
+    )
+
+    @model_validator(mode="after")
+    def _any(self) -> PointForce:
+        if self.force is None and self.moment is None:
+            refuse([((), wrong("the force is missing", 'give force or moment, such as force = { z = "5 N" }'))])
+        return self
+
+
+class Surroundings(Table):
+    """What acts on all bodies."""
+
+    gravity: tuple[Acceleration, Acceleration, Acceleration] | None = Field(
+        default=None, description='acceleration of free fall, axes of the ground: [0, 0, "-1 g"]; none on a motion'
+    )
+
+
+class Tree(Titled):
+    """Bodies and what joins them."""
+
+    bodies: dict[Name, Body] = Field(
+        min_length=1, description="rigid bodies and beams, each [bodies.NAME]: instead of [beam] and [model]"
+    )
+    joints: dict[Name, Joint] = Field(description="one for every body, which holds it by its root: [joints.NAME]")
+    forces: dict[Name, PointForce] = Field(
+        default_factory=dict, description="forces and moments on points, each [forces.NAME]"
+    )
+    system: Surroundings = Field(default_factory=Surroundings, description="what acts on all bodies")
+
+
+_BESIDE = {
+    "beam": 'give the beam as a body: [bodies.NAME] with kind = "beam"',
+    "model": "give each beam its own: [bodies.NAME.model]",
+}
+
+
+class SystemScenario(Environments, Tree):
+    """A validated scenario of a system of bodies: SI floats throughout, frozen."""
+
+    motion: dict[Annotated[str, AfterValidator(motion_name)], Motion] = Field(
+        default_factory=dict, description="what the ground does, which rests without: each [motion.NAME]"
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _alone(cls, data: Any) -> Any:
+        both = [name for name in _BESIDE if isinstance(data, dict) and name in data and "bodies" in data]
+        refuse([((name,), wrong("is given beside bodies", _BESIDE[name], mark="key")) for name in both])
+        return data
+
+    def about_structure(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
+        """What is of one beam only."""
+        for name, body in self.bodies.items():
+            if isinstance(body, BeamBody) and body.model.modes is None:
+                hint = "add modes = { axial = 1, y = 2, z = 2 }: numbers of shapes of a body are not chosen"
+                yield ("bodies", name, "model"), wrong("modes is missing", hint, mark="key")
+        for name, motion in self.motion.items():
+            if isinstance(motion, Centrifuge) and motion.limits_of_acceptance:
+                yield ("motion", name, "accept"), wrong("is of the response of one beam", "leave it out", mark="key")
+        of_tip: list[Loc] = [
+            ("response", key) for key in ("stations", "residual_from") if getattr(self.response, key) is not None
+        ]
+        initial = self.response.initial
+        of_tip += [("response", "initial", key) for key in initial.given if key != "state"]
+        for place in of_tip:
+            yield place, wrong("is of one beam", "leave it out: output is at the points of the bodies", mark="key")
