@@ -6,8 +6,6 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 _PLAIN = frozenset({"numpy", "builtins"})  # modules whose types JAX has no part in: most values, known at once
 
 
@@ -28,6 +26,8 @@ def namespace(*values: Any) -> Any:
             import gbeam.arrays.jax_setup  # noqa: F401
 
             return jnp
+    import numpy as np
+
     return np
 
 
@@ -36,7 +36,7 @@ def concatenated(parts: Sequence[Any]) -> Any:
     xp = namespace(*parts)
     shapes = {part.shape[:-1] for part in parts}
     if len(shapes) > 1:
-        shape = np.broadcast_shapes(*shapes)
+        shape = xp.broadcast_shapes(*shapes)
         parts = [xp.broadcast_to(part, (*shape, part.shape[-1])) for part in parts]
     return xp.concatenate(parts, axis=-1)
 
