@@ -14,7 +14,7 @@ from gbeam.report.facts import facts as to_json
 from gbeam.scenario import build, loads, template
 
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.toml"))
-SYSTEMS = ("satellite_two_panels", "robot_arm")
+SYSTEMS = ("satellite_two_panels", "robot_arm", "pointing_satellite")
 TIP_MASSES = ("0 kg", "0.1 kg", "0.5 kg")
 
 

@@ -24,7 +24,14 @@ from gbeam.mechanics.tree.joints import GROUND, Joint
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.motion import Flight
 from gbeam.motion.protocol import Motion
-from gbeam.results.description import BodyOfSystem, Description, ForceOfSystem, JointOfSystem, SystemDescription
+from gbeam.results.description import (
+    BodyOfSystem,
+    ControllerOfSystem,
+    Description,
+    ForceOfSystem,
+    JointOfSystem,
+    SystemDescription,
+)
 from gbeam.results.provenance import Provenance
 from gbeam.structure.beam import Beam
 
@@ -256,6 +263,10 @@ def describe(case: Case | SystemCase) -> Description | SystemDescription:
             bodies={name: _body(system, name) for name in system.order},
             joints={name: _joint(each) for name, each in system.joints.items()},
             forces={name: ForceOfSystem(each.on, each.follower) for name, each in system.forces.items()},
+            controllers={
+                name: ControllerOfSystem(tuple(each.measure), tuple(each.drive), each.sample, each.delay)
+                for name, each in system.controllers.items()
+            },
             gravity=None if system.gravity is None else tuple(map(float, system.gravity)),  # type: ignore[arg-type]
             **_described(case, doubts),
         )

@@ -62,8 +62,13 @@ def _system(case: SystemDescription) -> list[str]:
         moving = "; ".join(f"{way} {', '.join(names)}" for way, names in ways.items() if names) or "nothing moves"
         joints.append(f"{name}: {joint.kind}, {joint.body} on {joint.on}; {moving}")
     forces = [f"{name}: on {each.on}{', following it' if each.follower else ''}" for name, each in case.forces.items()]
+    controllers = [
+        f"{name}: {', '.join(each.drive)} from {', '.join(each.measure)}, every {1e3 * each.sample:.4g} ms"
+        + (f", {1e3 * each.delay:.4g} ms late" if each.delay else "")
+        for name, each in case.controllers.items()
+    ]
     gravity = () if case.gravity is None else (", ".join(f"{each:.4g}" for each in case.gravity) + " m/s²",)
-    parts = {"bodies": bodies, "joints": joints, "forces": forces, "gravity": gravity}
+    parts = {"bodies": bodies, "joints": joints, "forces": forces, "control": controllers, "gravity": gravity}
     return [line for head, lines in parts.items() for line in _listed(head, lines)]
 
 

@@ -142,6 +142,16 @@ class ForceOfSystem(Part):
     follower: bool = fact("whether the components turn with the point")
 
 
+@dataclass(frozen=True, repr=False, eq=False)
+class ControllerOfSystem(Part):
+    """A controller in the loop."""
+
+    measure: tuple[str, ...] = fact("what it samples")
+    drive: tuple[str, ...] = fact("what it drives")
+    sample: float = fact("time between samples", "s")
+    delay: float = fact("time from a sample until its efforts act", "s")
+
+
 @dataclass(frozen=True, repr=False, eq=False, kw_only=True)
 class SystemDescription(Described):
     """Meaning of a case of a system of bodies."""
@@ -149,4 +159,5 @@ class SystemDescription(Described):
     bodies: Mapping[str, BodyOfSystem] = rows("bodies, by name", "body")
     joints: Mapping[str, JointOfSystem] = rows("joints, by name", "joint")
     forces: Mapping[str, ForceOfSystem] = rows("forces on points, by name", "force")
+    controllers: Mapping[str, ControllerOfSystem] = rows("controllers in the loop, by name", "controller")
     gravity: Vector | None = entry("m/s^2", "acceleration of free fall", "axis", frame="ground")

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
+from gbeam.errors import InputError
 from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.control import Feedback
 from gbeam.mechanics.tree.joints import Joint
+from gbeam.mechanics.tree.laws import Law, gains, in_series, lead_lag, notch, pid
 from gbeam.mechanics.tree.system import Place, PointForce, RigidBody, System
 from gbeam.scenario.build_beam import beam_of, model_of
 from gbeam.scenario.build_motion import components, profile_of
 from gbeam.scenario.origin import Collector
+from gbeam.scenario.schema import control
 from gbeam.scenario.schema import system as schema
 from gbeam.scenario.schema.profile import Smoothed
 
@@ -21,9 +27,10 @@ def system_of(parts: Collector, scenario: schema.SystemScenario) -> System | Non
     bodies = {name: _BODIES[type(each)](parts, f"bodies.{name}", each) for name, each in scenario.bodies.items()}
     joints = {name: _joint(parts, f"joints.{name}", each) for name, each in scenario.joints.items()}
     forces = {name: _force(parts, f"forces.{name}", each) for name, each in scenario.forces.items()}
+    controllers = {name: _controller(parts, f"controllers.{name}", each) for name, each in scenario.controllers.items()}
     if len(parts.errors) > before:
         return None
-    return parts.attempt("", System, bodies, joints, forces, scenario.system.gravity)
+    return parts.attempt("", System, bodies, joints, forces, scenario.system.gravity, controllers)
 
 
 def _rigid(parts: Collector, where: str, table: schema.RigidBody) -> RigidBody | None:
@@ -55,3 +62,36 @@ def _force(parts: Collector, where: str, table: schema.PointForce) -> PointForce
     vectors = {key: getattr(table, key) for key in ("force", "moment")}
     built = {key: components(parts, f"{where}.{key}", vector) for key, vector in vectors.items() if vector is not None}
     return parts.attempt(where, PointForce, table.on, follower=table.follower, **built)
+
+
+def _controller(parts: Collector, where: str, table: control.Controller) -> Feedback | None:
+    reference = [0.0] * len(table.measure) if table.reference is None else list(table.reference)
+    limit = None if table.limit is None else list(table.limit)
+
+    def controller() -> Feedback:
+        return Feedback(_law(table), table.measure, table.drive, table.sample, table.delay, limit, reference)
+
+    return parts.attempt(where, controller)
+
+
+def _law(table: control.Controller) -> Law:
+    """The laws of a controller in series."""
+    single = control.PID, control.LeadLag, control.Notch
+    for k, law in enumerate(table.law):
+        if isinstance(law, single) and (len(table.measure) > 1 or len(table.drive) > 1):
+            fix = "name one measurement and one effort, or give gains or a state-space"
+            raise InputError(f"law[{k}]", f"is a {law.kind}, of one error and one effort", fix)
+    try:
+        return in_series([_LAWS[type(each)](each) for each in table.law])
+    except ValueError:
+        fix = "give as many columns as the law before gives values, and as many rows as the next one takes"
+        raise InputError("law", "has matrices that do not fit one another", fix) from None
+
+
+_LAWS: dict[type, Any] = {
+    control.Gains: lambda law: gains(law.gains),
+    control.PID: lambda law: pid(law.kp, law.ki, law.kd, law.smoothing),
+    control.LeadLag: lambda law: lead_lag(law.gain, law.zero, law.pole),
+    control.Notch: lambda law: notch(law.frequency, law.depth, law.damping),
+    control.Matrices: lambda law: tuple(np.array(getattr(law, name), dtype=float, ndmin=2) for name in "abcd"),
+}

@@ -18,6 +18,7 @@ from gbeam.guards.limits import ENTRIES, NAME
 from gbeam.mechanics.tree.joints import GROUND, KINDS, SLIDES, Kind
 from gbeam.printable import shortened
 from gbeam.scenario.schema.beam import Beam, Vector
+from gbeam.scenario.schema.control import Controller
 from gbeam.scenario.schema.fields import (
     Acceleration,
     Angle,
@@ -237,6 +238,9 @@ class Tree(Titled):
     joints: dict[Name, Joint] = Field(description="one for every body, which holds it by its root: [joints.NAME]")
     forces: dict[Name, PointForce] = Field(
         default_factory=dict, description="forces and moments on points, each [forces.NAME]"
+    )
+    controllers: dict[Name, Controller] = Field(
+        default_factory=dict, description="controllers in the loop, each [controllers.NAME]"
     )
     system: Surroundings = Field(default_factory=Surroundings, description="what acts on all bodies")
 
