@@ -16,7 +16,7 @@ _LABELLED = {
     "axis": ["x", "y", "z"],
     "side": ["low", "high"],
     "form": ["kinetic", "elastic", "gravity"],
-    "parameter": ["e0", "e1", "e2", "e3"],
+    "euler": ["e0", "e1", "e2", "e3"],
 }
 _NUMBERED = {
     "machine_axis": (1, "axis of the centrifuge"),

@@ -101,7 +101,7 @@ class SystemResponse(Figured):
         frame="axes of the point",
     )
     attitude: Floats = quantity(
-        "", "Euler parameters of the point's axes in those of the ground", "time", "point", "parameter", key=None
+        "", "Euler parameters of the point's axes in those of the ground", "time", "point", "euler", key=None
     )
     angular_velocity: Floats = quantity(
         "rad/s", "angular velocity of the point", "time", "point", "axis", key=None, frame="axes of the point"
@@ -223,7 +223,7 @@ class SystemRest(Figured):
     coordinates: tuple[str, ...] = labels("name of the coordinate", "coordinate")
     place: Floats = quantity("m", "place of the point", "point", "axis", frame="ground")
     displacement: Floats = quantity("m", "displacement from the start", "point", "axis", frame="ground")
-    attitude: Floats = quantity("", "Euler parameters of the point's axes in those of the ground", "point", "parameter")
+    attitude: Floats = quantity("", "Euler parameters of the point's axes in those of the ground", "point", "euler")
     q: Floats = quantity("", "coordinates: m and rad of joints, their own of flexible bodies", "coordinate")
     effort: Floats = quantity("", "force N or torque N m of the drive on each coordinate", "coordinate")
     ground_force: Floats = quantity("N", "force on the ground", "axis", frame="ground")

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import EMBEDDED
-from gbeam.results.provenance import Provenance, RecordFile
 from gbeam.scenario.schema import Environments, Flight
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.overrides import override
@@ -20,11 +19,14 @@ from gbeam.scenario.text.source import parse
 from gbeam.scenario.values.paths import parse_path
 
 if TYPE_CHECKING:
+    from gbeam.results.provenance import Provenance, RecordFile
     from gbeam.scenario.text.source import Mark, Source
 
 
 def provenance(scenario: Environments, command: str = "") -> Provenance:
     """Provenance of the results of a scenario."""
+    from gbeam.results.provenance import Provenance  # and with it NumPy, which checking a text needs not
+
     source = scenario.source
     if source is None:
         return Provenance(command=command)
@@ -51,6 +53,8 @@ def fingerprint(data: dict[str, Any]) -> str:
 
 
 def _record(motion: str, file: str) -> RecordFile:
+    from gbeam.results.provenance import RecordFile
+
     content = Path(file).read_bytes()
     small = len(content) <= EMBEDDED
     return RecordFile(motion, os.fspath(file), hashlib.sha256(content).hexdigest(), content if small else None)

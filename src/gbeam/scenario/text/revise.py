@@ -154,17 +154,30 @@ def _items(container: Any) -> Iterator[tuple[list[Any], int, Any]]:
 
 def _put(data: Any, path: Path, value: Any, style: Callable[[Any, Any], Any] = lambda _, value: value) -> None:
     """Write a value at a path of data, or of a document in some style, with the tables and lists around it."""
+    around: Any = None
     for i, step in enumerate(path[:-1]):
         if step == len(data) if isinstance(step, int) else step not in data:
             for inner in reversed(path[i + 1 :]):
                 value = {inner: value} if isinstance(inner, str) else [value]
             path = path[: i + 1]
             break
-        data = data[step]
-    if path[-1] == len(data):
+        around, data = data, data[step]
+    if _braced(data) and path[-1] not in data:
+        # Written anew: the blanks between the entries that are there do not say where those beside a new one go.
+        around[path[-2]] = style(around, {**data.unwrap(), path[-1]: value})
+    elif path[-1] == len(data):
         data.append(style(data, value))
     else:
         data[path[-1]] = style(data, value)
+
+
+def _braced(data: Any) -> bool:
+    """Whether a table of a document stands in braces."""
+    if type(data) in (dict, list):
+        return False
+    from tomlkit.items import InlineTable
+
+    return isinstance(data, InlineTable)
 
 
 def _line(parent: Any, value: Any) -> Any:
