@@ -4,7 +4,8 @@
 - ``console``: lines after ``$ `` are commands, the other lines what they print; ``$ echo $?`` prints the exit status,
   which is 0 where it is not shown.
 - ``sh``: commands whose output is not shown.
-- ``toml``: a whole scenario, saved under the name in its first comment; or a part, checked beside the F-16 example.
+- ``toml``: a whole scenario, saved under the name in its first comment; or a part, checked beside the F-16 example,
+  that of a system beside the pointing satellite.
 
 An ellipsis in an expected output stands for anything.
 """
@@ -34,6 +35,7 @@ from gbeam.scenario import loads
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 RUN = ("python", "console", "sh", "toml")
+OF_SYSTEMS = {"bodies", "joints", "forces", "controllers", "system"}
 NOT_CODE = ("text", "{")  # expected output, and directives of the site
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
@@ -117,8 +119,10 @@ class Reader:
             (self.folder / name[1]).write_text(text, encoding="utf-8")
             loads(text, where, folder=self.folder, distributions=True)
         else:
-            base = tomllib.loads((ROOT / "examples" / "f16_8g_turn.toml").read_text(encoding="utf-8"))
-            loads(json.dumps(_merged(base, tomllib.loads(text))), where, folder=ROOT / "examples")
+            part = tomllib.loads(text)
+            example = "pointing_satellite" if part.keys() & OF_SYSTEMS else "f16_8g_turn"
+            base = tomllib.loads((ROOT / "examples" / f"{example}.toml").read_text(encoding="utf-8"))
+            loads(json.dumps(_merged(base, part)), where, folder=ROOT / "examples")
 
 
 def commands(block: Block) -> Iterator[tuple[str, str | None]]:
