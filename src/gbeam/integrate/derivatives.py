@@ -19,17 +19,19 @@ AT_ONCE = 50_000  # numbers of the states that are evaluated at once: more of th
 
 
 def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple[Array, Array, Array]:
-    """Derivatives K, C and M (t, n, n) of a residual with respect to q, q̇ and q̈ (t, n) at inputs (t, ...)."""
+    """Derivatives K, C and M (t, r, n) of a residual (t, r), or another function of the state, with respect to q, q̇ and
+    q̈ (t, n) at inputs (t, ...).
+    """
     n, pieces = q.shape[1], []
     for some in _pieces(q):
         at, given = [each[some] for each in (q, qd, qdd)], each_leaf(lambda leaf: leaf[some], inputs)  # noqa: B023
-        values = np.empty((3 * n, *at[0].shape), dtype=complex)
-        values[:n] = residual(_moved(at[0]), at[1], at[2], given)
+        by_place = residual(_moved(at[0]), at[1], at[2], given)
         still = np.zeros((n, 1, 1))
         rates, changes = np.concatenate([_moved(at[1]), at[1] + still]), np.concatenate([at[2] + still, _moved(at[2])])
-        values[n:] = residual(at[0], rates, changes, given)
+        values = np.empty((3 * n, len(at[0]), by_place.shape[-1]), dtype=complex)
+        values[:n], values[n:] = by_place, residual(at[0], rates, changes, given)
         pieces.append(values.imag / STEP)
-    k, c, m = np.concatenate(pieces, axis=1).reshape(3, n, len(q), n).transpose(0, 2, 3, 1)
+    k, c, m = np.concatenate(pieces, axis=1).reshape(3, n, len(q), -1).transpose(0, 2, 3, 1)
     return k, c, m
 
 

@@ -7,15 +7,14 @@ the equations are. Measurements are linear about the last iterate.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
 
-from gbeam.arrays.tree import each_leaf
-from gbeam.integrate.derivatives import accelerations
+from gbeam.integrate.derivatives import accelerations, slopes, solved
 from gbeam.integrate.equations import NonlinearEquations
 from gbeam.integrate.steps import Steps
-from gbeam.numerics.series import STEP
 
 Array = Any
 NEAR = 1e-6  # of a step: nearer to its beginning a sample is taken there
@@ -39,7 +38,7 @@ class Controllers(Protocol):
         ...
 
     def accelerates(self, controller: int) -> bool:
-        """Whether one measures accelerations."""
+        """Return whether one measures accelerations."""
         ...
 
     def started(self, controller: int) -> Any:
@@ -111,38 +110,18 @@ class Sampling:
 
     def slopes(self, c: int, at: Array, q: Array, qd: Array, held: Array) -> tuple[Array, Array]:
         """Derivatives of measurements with respect to (q, q̇), (t, k, 2 n), and to the commands before (t, k, m)."""
-        count, n = q.shape
         inputs = self.controllers.driven(self.drive(self.steps.begin[at]), held)
-        m = self.count
-        steps = 1j * STEP * np.tile(np.eye(2 * n), (count, 1))
-        place = np.repeat(q, 2 * n, axis=0) + steps[:, :n]
-        rate = np.repeat(qd, 2 * n, axis=0) + steps[:, n:]
-        many = each_leaf(lambda leaf: np.repeat(leaf, 2 * n, axis=0), inputs)
-        if not self.controllers.accelerates(c):
-            values = self.controllers.measured(c, place, rate, 0 * place, many)
-            slope = values.imag.reshape(count, 2 * n, -1).transpose(0, 2, 1) / STEP
-            return slope, np.zeros((count, slope.shape[1], m))
-        qdd = accelerations(self.residual, q, qd, inputs)
-        mass, rest = self._mass(q, qd, qdd, inputs)
-        left = self.residual(place, rate, np.repeat(qdd, 2 * n, axis=0), many).imag / STEP
-        change = -np.linalg.solve(mass, left.reshape(count, 2 * n, n).transpose(0, 2, 1))
-        by_command = -np.linalg.solve(mass, rest)
-        moved_qdd = np.repeat(qdd, 2 * n, axis=0) + 1j * STEP * change.transpose(0, 2, 1).reshape(-1, n)
-        values = self.controllers.measured(c, place, rate, moved_qdd, many)
-        slope = values.imag.reshape(count, 2 * n, -1).transpose(0, 2, 1) / STEP
-        shifts = np.repeat(qdd, m, axis=0) + 1j * STEP * by_command.transpose(0, 2, 1).reshape(-1, n)
-        still = each_leaf(lambda leaf: np.repeat(leaf, m, axis=0), inputs)
-        values = self.controllers.measured(c, np.repeat(q, m, axis=0), np.repeat(qd, m, axis=0), shifts, still)
-        return slope, values.imag.reshape(count, m, -1).transpose(0, 2, 1) / STEP
-
-    def _mass(self, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple[Array, Array]:
-        """M (t, n, n), and the derivatives of the residual with respect to what is commanded."""
-        count, n = q.shape
-        many = each_leaf(lambda leaf: np.repeat(leaf, n, axis=0), inputs)
-        states = [np.repeat(each, n, axis=0) for each in (q, qd)]
-        moved = np.repeat(qdd, n, axis=0) + 1j * STEP * np.tile(np.eye(n), (count, 1))
-        mass = self.residual(*states, moved, many).imag.reshape(count, n, n).transpose(0, 2, 1) / STEP
-        return mass, self.onto(q, qd, qdd, inputs)
+        accelerates = self.controllers.accelerates(c)
+        qdd = accelerations(self.residual, q, qd, inputs) if accelerates else 0 * q
+        by_place, by_rate, by_change = slopes(partial(self.controllers.measured, c), q, qd, qdd, inputs)
+        slope = np.concatenate([by_place, by_rate], axis=-1)
+        if not accelerates:
+            return slope, np.zeros((*slope.shape[:2], self.count))
+        # M δq̈ = −(K δq + C δq̇ + the derivatives by what is commanded).
+        k, damping, mass = slopes(self.residual, q, qd, qdd, inputs)
+        rest = np.concatenate([k, damping, self.onto(q, qd, qdd, inputs)], axis=-1)
+        change = by_change @ solved(mass, -rest)
+        return slope + change[..., : slope.shape[-1]], change[..., slope.shape[-1] :]
 
 
 def sampling_of(equations: NonlinearEquations, steps: Steps) -> Sampling | None:

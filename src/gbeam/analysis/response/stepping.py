@@ -119,7 +119,7 @@ def refine(coarse: float, order: int, settings: ResponseSettings) -> Plan:
             far, most = 3 * errors.loads / settings.tolerance, LOADS_STEPS
             if not far > 1:  # as NaN is not
                 return runs[-1], errors
-        finer = _finer(far, order)
+        finer = finer_by(far, order)
         stuck = not (runs[-2].whole or runs[-1].whole)
         if stuck or settings.duration / runs[-1].step * finer > most:
             break
@@ -127,7 +127,7 @@ def refine(coarse: float, order: int, settings: ResponseSettings) -> Plan:
     return runs[-1], of_everything(runs, order)
 
 
-def _finer(far: float, order: int) -> int:
+def finer_by(far: float, order: int) -> int:
     """Into how many steps to divide one whose error the order promises to be so many times too large."""
     times = SPARE * max(far, 1.0) ** (1 / order) if math.isfinite(far) else 2.0
     return next((jump for jump in JUMPS if jump >= times), JUMPS[-1])

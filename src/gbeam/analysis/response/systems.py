@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Run, difference, ratio, share
-from gbeam.analysis.response.stepping import MAX_STEPS, ONE_CORNER, _finer, scheme_of
+from gbeam.analysis.response.stepping import MAX_STEPS, ONE_CORNER, finer_by, scheme_of
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import histories
 from gbeam.analysis.system.point import Point, started
@@ -31,20 +31,14 @@ LEAST = 500  # steps of the results at least
 AT_ONCE = 20_000  # numbers of a state's frames computed together, times coordinates
 
 
-@dataclass(frozen=True, eq=False)
-class _Read:
-    """Reads the places of all points, and the joints' angles in metres of the system's size, (t, k), from a run."""
-
-    system: System
-    motion: Motion | None
-
-    def of(self, trajectory: Trajectory) -> Floats:
-        parts = []
-        for some in _pieces(trajectory, self.system):
-            state = self.system.tree.motion(some.q, some.qd, some.qdd, self.system.inputs(some.time, self.motion))
-            parts.append(np.concatenate([frame.p for frame in state.every_point], axis=-1))
-        places = np.concatenate(parts)
-        return places - places[0]
+def _moved(system: System, motion: Motion | None, trajectory: Trajectory) -> Floats:
+    """Displacements of all points from the start, side by side, (t, 3 p) m."""
+    parts = []
+    for some in _pieces(trajectory, system):
+        state = system.tree.motion(some.q, some.qd, some.qdd, system.inputs(some.time, motion))
+        parts.append(np.concatenate([frame.p for frame in state.every_point], axis=-1))
+    places = np.concatenate(parts)
+    return places - places[0]
 
 
 def _pieces(trajectory: Trajectory, system: System) -> list[Trajectory]:
@@ -88,7 +82,7 @@ def simulate_system(
         order = np.argsort(np.concatenate([felt.time, commands]))
         jumps = np.concatenate([felt.jump, np.ones(len(commands), dtype=bool)])
         felt = Corners(np.concatenate([felt.time, commands])[order], jumps[order])
-    read, scheme = _Read(system, motion), scheme_of(settings)
+    scheme = scheme_of(settings)
 
     def run(step: float, what: str) -> tuple[Run, Floats]:
         trajectory = integrate(
@@ -102,7 +96,7 @@ def simulate_system(
             corners=felt,
             progress=lambda done: tell(progress, what, done),
         )
-        return Run(trajectory, step, None), read.of(trajectory)  # type: ignore[arg-type]
+        return Run(trajectory, step, None), _moved(system, motion, trajectory)  # type: ignore[arg-type]
 
     runs, error = [run(settings.step or 2 * coarse, "integrating")], math.nan
     if settings.step is None:
@@ -112,7 +106,7 @@ def simulate_system(
             whole = runs[-1][0].whole
             if (error <= settings.aim and whole) or settings.duration / runs[-1][0].step > MAX_STEPS / 8:
                 break
-            finer = _finer(error / settings.aim if whole else math.nan, scheme.order)
+            finer = finer_by(error / settings.aim if whole else math.nan, scheme.order)
             if not (whole or runs[-2][0].whole) and len(runs) > 3:
                 break
             step = runs[-1][0].step / finer

@@ -56,7 +56,7 @@ class SystemControllers:
         return measurements(self.system, self.system.tree, q, qd, qdd, inputs, self.every[controller].measure)
 
     def accelerates(self, controller: int) -> bool:
-        """Whether one measures accelerations."""
+        """Return whether one measures accelerations."""
         return any(".acceleration_" in each for each in self.every[controller].measure)
 
     def started(self, controller: int) -> Any:
@@ -79,7 +79,7 @@ class SystemControllers:
 
 
 def loop_of(controllers: SystemControllers, sampling: Sampling, time: Floats) -> tuple[Loop, Floats]:
-    """What the controllers sampled and commanded, held at times (t,) s, and the commands (t, m) that act at these."""
+    """Samples and commands of the controllers, held at times (t,) s, and the commands (t, m) that act at these."""
     start, slack = sampling.steps.begin[0], NEAR * float(sampling.steps.length.min())
     measured, asked, acting = [], [], []
     for c, (period, delay) in enumerate(controllers.timing):

@@ -57,6 +57,7 @@ def signals_of(system: System) -> dict[str, str]:
 def measurements(system: System, tree: Any, y: Array, yd: Array, ydd: Array, inputs: Any, wanted: Sequence[str]) -> Any:
     """Values (..., k) of what is measured, at unknown coordinates of the tree or of one local to it."""
     xp, state = namespace(y, inputs.ground.a), tree.motion(y, yd, ydd, inputs)
+    shape = state.roots[0].p.shape[:-1]  # joints' coordinates may have fewer leading axes than the rates
     columns = []
     for each in wanted:
         owner, _, kind = each.rpartition(".")
@@ -66,7 +67,7 @@ def measurements(system: System, tree: Any, y: Array, yd: Array, ydd: Array, inp
             parts = (state.qd if rate else state.q)[body][:-1]
             names = system.joints[owner].coordinates
             k = names.index(kind.removesuffix("_rate"))
-            columns.append(xp.concatenate(parts, axis=-1)[..., k])
+            columns.append(xp.broadcast_to(xp.concatenate(parts, axis=-1)[..., k], shape))
         else:
             of, point = system.point("outputs", owner)
             frame = state.points_of(system.order.index(of))[point]
