@@ -81,7 +81,8 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
         case SystemResponse():
             return _of_system(result, title)
         case SystemRest():
-            return {"rest": partial(system.rest, result, title)}
+            beams = {f"loads {body}": partial(system.loads_at_rest, result, body, title) for body in result.loads}
+            return {"rest": partial(system.rest, result, title), **beams}
         case SystemModes():
             return {"modes": partial(system.modes, result, title)} if len(result.frequency) else {}
         case SolidStress():
@@ -104,6 +105,7 @@ def _of_system(result: SystemResponse, title: str) -> dict[str, Describe]:
         every["coordinates"] = partial(system.coordinates, result, title)
     if result.loop is not None:
         every["loop"] = partial(system.loop, result, title)
+    every |= {f"loads {body}": partial(system.loads, result, body, title) for body in result.beams}
     if result.invariants is not None:
         every["energy"] = partial(system.energy, result, title)
     return every

@@ -141,19 +141,21 @@ def sizes(study: Study) -> Figure:
 
 def loads_along(deflection: Deflection, loads: Loads, title: str = "") -> Figure:
     """Describe, along the beam at rest, the sections' force and moment and the largest and smallest stress."""
+    about = of_motion(deflection.motion, f"internal loads at rest, {deflection.model}, t = {deflection.time:.4g} s")
+    return Figure(title, about, carried_along(loads), _judged(deflection.errors, loads))
+
+
+def carried_along(loads: Loads) -> tuple[Panel, ...]:
+    """What the sections carry at one time, along the beam."""
     scale, unit = scale_of("m", loads.stations)
     stress = (loads.stress_tension[0], loads.stress_compression[0])
     panels = _carried(scale * loads.stations, loads.section_force[0], loads.section_moment[0], stress, loads)
-    about = of_motion(deflection.motion, f"internal loads at rest, {deflection.model}, t = {deflection.time:.4g} s")
-    over = f"position from the root, {unit}"
-    return Figure(title, about, tuple(replace(each, x=over) for each in panels), _judged(deflection.errors, loads))
+    return tuple(replace(each, x=f"position from the root, {unit}") for each in panels)
 
 
 def loads(response: Response, carried: Loads, title: str = "") -> Figure:
     """Describe over time what the root's section carries, the extreme stresses along the beam, a hub's torque."""
-    stress = (carried.stress_tension.max(axis=1), carried.stress_compression.min(axis=1))
-    force, moment = carried.section_force[:, 0], carried.section_moment[:, 0]
-    panels = [*_carried(response.time, force, moment, stress, carried)]
+    panels = [*carried_at_root(response.time, carried)]
     if carried.beam_torque is not None:
         scale, unit = scale_of("N m", carried.beam_torque)
         panels.append(Panel(f"torque for the beam, {unit}", (Line(response.time, scale * carried.beam_torque),)))
@@ -161,6 +163,12 @@ def loads(response: Response, carried: Loads, title: str = "") -> Figure:
     about = of_motion(response.name, "loads in the root's section, and stress anywhere along the beam")
     shaded = tuple(replace(each, spans=spans) for each in panels)
     return Figure(title, about, shaded, _judged(response.errors, carried), (response.outcome,))
+
+
+def carried_at_root(time: Floats, carried: Loads) -> Iterator[Panel]:
+    """What the root's section carries over time, and the extreme stresses along the beam."""
+    stress = (carried.stress_tension.max(axis=1), carried.stress_compression.min(axis=1))
+    return _carried(time, carried.section_force[:, 0], carried.section_moment[:, 0], stress, carried)
 
 
 def _judged(errors: Any, carried: Loads) -> tuple[str, ...]:

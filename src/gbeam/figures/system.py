@@ -4,7 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from gbeam.figures.description import REFERENCE, Bars, Dash, Figure, Line, Panel, estimated, raised, scale_of
+from gbeam.figures.description import (
+    REFERENCE,
+    Bars,
+    Dash,
+    Figure,
+    Line,
+    Panel,
+    estimated,
+    of_motion,
+    raised,
+    scale_of,
+)
+from gbeam.figures.response import carried_along, carried_at_root
 from gbeam.results.system import ENERGIES, SystemModes, SystemResponse, SystemRest, named
 
 COLOURS = 6
@@ -87,6 +99,19 @@ def loop(response: SystemResponse, title: str = "") -> Figure:
         )
         panels.append(Panel(f"{name}, {unit}", lines, zero=True))
     return Figure(title, "controllers", tuple(panels), outcomes=(response.outcome,))
+
+
+def loads(response: SystemResponse, body: str, title: str = "") -> Figure:
+    """Describe over time what the root's section of a beam carries, and the extreme stresses along it."""
+    about = f"loads in the root's section of {body}, and stress anywhere along it"
+    panels = carried_at_root(response.time, response.beams[body].loads)
+    return Figure(title, about, tuple(panels), outcomes=(response.outcome,))
+
+
+def loads_at_rest(result: SystemRest, body: str, title: str = "") -> Figure:
+    """Describe the sections' force and moment and the stress along a beam at rest."""
+    about = f"internal loads of {body} at rest, t = {result.time:.4g} s"
+    return Figure(title, of_motion(result.name, about), carried_along(result.loads[body]))
 
 
 def energy(response: SystemResponse, title: str = "") -> Figure:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from operator import itemgetter
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -32,6 +32,18 @@ Array = Any
 _BLOCK = 256  # times handled together: what stays in a cache
 
 
+class Hung(NamedTuple):
+    """What hangs on stations (p,) of a beam: forces and moments about the root (t, p, 3) that its motion demands."""
+
+    station: Array
+    force: Array
+    moment: Array
+
+    def during(self, part: slice) -> Hung:
+        """The same at some of the times."""
+        return self._replace(force=self.force[part], moment=self.moment[part])
+
+
 def section_forces(
     structure: Structure,
     base: BaseMotion,
@@ -41,9 +53,10 @@ def section_forces(
     time: Array,
     *,
     motion: Motion | None = None,
+    hung: Hung | None = None,
 ) -> Loads | None:
-    """Loads at the root and the stations for motions of base (t, 3) and beam (t, n); None where the structure has no
-    sections.
+    """Loads at the root and the stations for motions of base (t, 3) and beam (t, n), with other bodies `hung` on it;
+    None where the structure has no sections.
     """
     if structure.sections is None:
         return None
@@ -53,9 +66,10 @@ def section_forces(
     for i in range(0, len(q), _BLOCK):
         part = slice(i, i + _BLOCK)
         values = None if applied is None else applied[part]
+        on = None if hung is None else hung.during(part)
         pieces.append(
             sections(
-                structure, structure.sections, mapped(base, itemgetter(part)), q[part], qd[part], qdd[part], values
+                structure, structure.sections, mapped(base, itemgetter(part)), q[part], qd[part], qdd[part], values, on
             )
         )
     force, moment, section_force, section_moment, a = (
@@ -94,6 +108,7 @@ def sections(
     qd: Array,
     qdd: Array,
     values: Array | None,
+    hung: Hung | None = None,
 ) -> tuple[Array, ...]:
     """Force and moment (t, s, 3) in base and in section axes, and acceleration (or specific force), at `outboard` over
     times.
@@ -112,6 +127,10 @@ def sections(
         pull, turn = structure.work.forces(loaded.rotation(q), values)
         share = xp.asarray(outboard.loaded)
         force, about_root = force + share @ pull, about_root + share @ (_cross(xp, loaded.positions(q), pull) + turn)
+    if hung is not None:
+        at = np.append(0.0, structure.stations)
+        beyond = (structure.stations[hung.station] >= at[:, None] - 1e-9 * structure.length).astype(float)
+        force, about_root = force - beyond @ hung.force, about_root - beyond @ hung.moment
     moment = about_root - _cross(xp, stations[0], force)
     straight = xp.broadcast_to(xp.asarray(outboard.root_axes), (len(q), 1, 3, 3))
     turned = xp.broadcast_to(xp.eye(3), (len(q), count, 3, 3))

@@ -8,12 +8,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from gbeam.report.machine import ends_line, judged_lines, not_followed_stretches, peak_lines, tracked
-from gbeam.report.words import error_words, number, percent, stress_words
+from gbeam.report.words import error_words, largest_loads, number, percent
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.criteria import RULES
 from gbeam.results.imitation.verdict import metres
 from gbeam.results.imitation.verdict import percent as share_of
-from gbeam.results.parts import LoadPeaks, Loads
 from gbeam.results.response import HubResult, Response
 
 ROUNDING = 1e-9  # of what it belongs to: a smaller number is none
@@ -27,7 +26,7 @@ def of_beam(response: Response) -> Iterator[str]:
     if response.initial:
         yield response.initial
     if response.loads is not None and response.peaks.loads is not None:
-        yield _loads(response.loads, response.peaks.loads)
+        yield largest_loads(response.peaks.loads)
     if response.hub is not None:
         yield _hub(response.hub)
         if response.hub.free and np.any(response.damping_ratio):
@@ -60,18 +59,6 @@ def _damping(response: Response) -> str:
 
 def _time(seconds: float) -> str:
     return f"{number(1e3 * seconds)} ms" if seconds < 1 else f"{number(seconds)} s"
-
-
-def _loads(loads: Loads, peaks: LoadPeaks) -> str:
-    """Largest sizes over time: at the root, of the stress, and of the torque about a hub's axis."""
-    force, moment = (float(each[0].size.value) for each in (peaks.force, peaks.moment))
-    words = f"root: largest force {number(force)} N, moment {number(moment)} N m"
-    if np.isfinite(peaks.tension.value).all():
-        extremes = peaks.tension.value, peaks.compression.value
-        words += f"; {stress_words(loads.stations, *extremes, loads.yield_strength)}"
-    if peaks.beam_torque is not None:
-        words += f"; torque for the beam {number(float(peaks.beam_torque.value))} N m"
-    return words
 
 
 def _hub(hub: HubResult) -> str:

@@ -7,7 +7,16 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from gbeam.report.words import columns, number, percent, sentence, tidy, warning_lines
+from gbeam.report.words import (
+    columns,
+    largest_loads,
+    number,
+    percent,
+    resting_loads,
+    sentence,
+    tidy,
+    warning_lines,
+)
 from gbeam.results.study import SystemStudy
 from gbeam.results.system import SystemModes, SystemResponse, SystemRest, named
 
@@ -32,6 +41,7 @@ def system_response(response: SystemResponse) -> str:
     ends = tidy([float(each[-1]) for each in every.values()], max(size, max(far)))
     joints = ", ".join(f"{name} {number(end)}" for name, end in zip(every, ends, strict=True))
     lines += [f"  at the end {joints}"] if joints else []
+    lines += [f"  {body}: {largest_loads(each.peaks)}" for body, each in response.beams.items()]
     kept = response.invariants
     if kept is not None:
         first, last = (number(float(each.sum())) for each in kept.energy[[0, -1]])
@@ -59,6 +69,8 @@ def _rest(rest: SystemRest) -> Iterator[str]:
     largest = float(np.abs(np.concatenate([force, moment])).max())
     pair = (", ".join(f"{each:.5g}" for each in tidy(vector, largest)) for vector in (force, moment))
     yield "  on the ground: force ({}) N, moment ({}) N m".format(*pair)
+    for body, loads in rest.loads.items():
+        yield f"  {body}: {resting_loads(loads)}"
     yield from warning_lines(rest)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from gbeam.printable import json_printable
 from gbeam.results.errors import ErrorEstimate
-from gbeam.results.parts import yield_margin
+from gbeam.results.parts import LoadPeaks, Loads, yield_margin
 from gbeam.results.result import Result
 
 
@@ -99,6 +99,35 @@ def stress_words(stations: Any, tension: Any, compression: Any, yield_strength: 
         return words
     margin = float(yield_margin(yield_strength, np.array(stress)))
     return f"{words}, {'margin on yield' if margin >= 0 else 'ABOVE YIELD: margin'} {margin:.3g}"
+
+
+def resting_loads(loads: Loads) -> str:
+    """Force and moment of the base on the root, and the stress, at rest."""
+    largest = float(np.abs(loads.force).max())
+    lever = max(float(np.abs(loads.moment).max()), largest * float(loads.stations[-1]))
+    force, moment = (
+        ", ".join(f"{value:.5g}" for value in tidy(vector[0], size))
+        for vector, size in ((loads.root_force, largest), (loads.root_moment, lever))
+    )
+    words = f"base on root: force ({force}) N, moment ({moment}) N m"
+    if np.isfinite(loads.stress).all():
+        extremes = loads.stress_tension[0], loads.stress_compression[0]
+        words += f"; {stress_words(loads.stations, *extremes, loads.yield_strength)}"
+    if loads.beam_torque is not None:
+        words += f"; torque for the beam {tidy(loads.beam_torque, lever)[0]:.5g} N m"
+    return words
+
+
+def largest_loads(peaks: LoadPeaks) -> str:
+    """Largest sizes over time: at the root, of the stress, and of the torque about a hub's axis."""
+    force, moment = (float(each[0].size.value) for each in (peaks.force, peaks.moment))
+    words = f"root: largest force {number(force)} N, moment {number(moment)} N m"
+    if np.isfinite(peaks.tension.value).all():
+        extremes = peaks.tension.value, peaks.compression.value
+        words += f"; {stress_words(peaks.stations, *extremes, peaks.yield_strength)}"
+    if peaks.beam_torque is not None:
+        words += f"; torque for the beam {number(float(peaks.beam_torque.value))} N m"
+    return words
 
 
 def warning_lines(result: Result) -> list[str]:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity
+from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity, rows
+from gbeam.results.facts import at_place
+from gbeam.results.parts import LoadPeaks, Loads
 from gbeam.results.result import Complex, Figured, Floats, Part
 
 ENERGIES = ("kinetic", "elastic", "gravity")
@@ -62,6 +64,14 @@ class Loop(Part):
     asked: Floats = quantity("", "effort that the law asks for, held from its sample", "time", "drive", key=None)
     applied: Floats = quantity("", "effort that acts, limited and delayed", "time", "drive", key=None)
     saturated: Floats = quantity("", "share of the samples that were limited", "drive")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class BeamResponse(Part):
+    """One beam of a system over time: what its sections carry, in axes of its root, and the largest of it."""
+
+    loads: Loads = part("internal loads at the root and the stations", key=None, name=INSIDE)
+    peaks: LoadPeaks = part("largest values between all steps", key=INSIDE, name=INSIDE)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -126,6 +136,9 @@ class SystemResponse(Figured):
         "momentum and energy", key="invariants", name=INSIDE, note="None on a base that moves", default=None
     )
     loop: Loop | None = part("controllers", key="loop", name=INSIDE, note="None without any", default=None)
+    beams: Mapping[str, BeamResponse] = rows(
+        "beams, by the name of the body", "body", optional=True, name="", default_factory=dict
+    )
     integrator: str = fact("integrator", default="gauss")
     step: float = fact("time step", "s", default=math.nan)
     steps: int = fact("number of steps", default=0)
@@ -228,6 +241,15 @@ class SystemRest(Figured):
     effort: Floats = quantity("", "force N or torque N m of the drive on each coordinate", "coordinate")
     ground_force: Floats = quantity("N", "force on the ground", "axis", frame="ground")
     ground_moment: Floats = quantity("N m", "moment on the ground about its origin", "axis", frame="ground")
+    loads: Mapping[str, Loads] = rows(
+        "forces, moments and stresses of the beams' sections, of one time", "body", name=None, key=None,
+        note="by the name of the body", default_factory=dict,
+    )  # fmt: skip
+
+    @declared("", "forces, moments and stresses of the beams' sections", role="rows", name=None, key="beams",
+              optional=True)  # fmt: skip
+    def carried(self) -> Mapping[str, Loads]:
+        return {name: replace(at_place(each, 0), stations=each.stations) for name, each in self.loads.items()}
 
     def at(self, point: str) -> Floats:
         """Return the place of a named point in axes of the ground, (3,) m.

@@ -40,7 +40,7 @@ def _rigid(parts: Collector, where: str, table: schema.RigidBody) -> RigidBody |
 
 def _beam(parts: Collector, where: str, table: schema.BeamBody) -> Structure | None:
     beam, model = beam_of(parts, where, table), model_of(parts, f"{where}.model", table.model)
-    return None if beam is None or model is None else parts.attempt(where, assemble, beam, model)
+    return None if beam is None or model is None else parts.attempt(where, assemble, beam, model, table.stations)
 
 
 _BODIES: dict[type, Any] = {schema.RigidBody: _rigid, schema.BeamBody: _beam}

@@ -14,7 +14,7 @@ from gbeam.guards.limits import BOUNDLESS
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.results.errors import Errors
-from gbeam.results.parts import Peaks
+from gbeam.results.parts import LoadPeaks, Peaks
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Floats
 
@@ -81,7 +81,7 @@ def describe(
             "the run starts from an equilibrium that is not stable, which no beam would keep; `gbeam critical-speed` "
             "finds where that begins"
         )
-    warnings += _yielding(structure, peaks)
+    warnings += yielding(peaks.loads)
     if particles and peaks.max_size > structure.length:
         warnings.append(
             f"the displacement reaches {peaks.max_size:.4g} m, and no particle rests farther than "
@@ -146,17 +146,17 @@ def effort(settings: ResponseSettings, steps: int, finer: int) -> tuple[str, ...
     )
 
 
-def _yielding(structure: Structure, peaks: Peaks) -> list[str]:
-    """Warn where the stress exceeds the yield strength."""
-    strength = None if structure.sections is None else structure.sections.yield_strength
-    if strength is None or peaks.loads is None:
+def yielding(peaks: LoadPeaks | None, of: str = "") -> list[str]:
+    """Warn where the stress of a beam exceeds the yield strength."""
+    strength = None if peaks is None else peaks.yield_strength
+    if peaks is None or strength is None:
         return []
-    stress, stations = peaks.loads.stress, np.append(0.0, structure.stations)
+    stress = peaks.stress
     worst = int(np.argmax(stress.value))
     if not stress.value[worst] > strength:
         return []
     return [
-        f"the stress reaches {1e-6 * stress.value[worst]:.4g} MPa at {stations[worst]:.4g} m, t = "
+        f"the stress reaches {1e-6 * stress.value[worst]:.4g} MPa at {peaks.stations[worst]:.4g} m{of}, t = "
         f"{stress.time[worst]:.4g} s, above the yield strength, {1e-6 * strength:.4g} MPa: the material yields, and "
         "the response, which is elastic, means nothing from there on"
     ]

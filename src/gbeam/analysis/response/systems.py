@@ -10,11 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.analysis.response.outcome import yielding
+from gbeam.analysis.response.peaks import load_peaks
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Run, difference, ratio, share
 from gbeam.analysis.response.stepping import MAX_STEPS, ONE_CORNER, finer_by, scheme_of
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
-from gbeam.analysis.system.histories import histories
+from gbeam.analysis.system.histories import Carried, beams_of, histories, loads_of
 from gbeam.analysis.system.point import Point, started
 from gbeam.errors import InputError
 from gbeam.integrate.driver import integrate
@@ -23,7 +25,8 @@ from gbeam.integrate.steps import Corners
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
-from gbeam.results.system import Invariants, SystemResponse
+from gbeam.results.parts import Loads
+from gbeam.results.system import BeamResponse, Invariants, Loop, SystemResponse
 
 Array = Any
 Floats = NDArray[np.float64]
@@ -41,14 +44,15 @@ def _moved(system: System, motion: Motion | None, trajectory: Trajectory) -> Flo
     return places - places[0]
 
 
+def _at(of: Trajectory, steps: Any) -> Trajectory:
+    """A trajectory at some of its steps."""
+    return replace(of, **{name: getattr(of, name)[steps] for name in ("time", "q", "qd", "qdd")})
+
+
 def _pieces(trajectory: Trajectory, system: System) -> list[Trajectory]:
     """A trajectory in pieces of which all frames are held in memory at once."""
     size = max(1, AT_ONCE // system.tree.size)
-    names = ("time", "q", "qd", "qdd")
-    return [
-        replace(trajectory, **{name: getattr(trajectory, name)[first : first + size] for name in names})
-        for first in range(0, len(trajectory.time), size)
-    ]
+    return [_at(trajectory, slice(first, first + size)) for first in range(0, len(trajectory.time), size)]
 
 
 def simulate_system(
@@ -145,6 +149,28 @@ def _first_step(system: System, motion: Motion | None, point: Point, settings: R
     return settings.duration / (2 * math.ceil(settings.duration / largest / 2))
 
 
+def _over_time(
+    system: System, motion: Motion | None, equations: NonlinearEquations, of: Trajectory, *, loads: bool
+) -> tuple[dict[str, Any], dict[str, Loads], Loop | None]:
+    """Histories of a trajectory, loads along the beams by name, and what controllers did."""
+    loop, acting, done = None, None, 0
+    if equations.controllers is not None:
+        loop, acting = loop_of(equations.controllers, equations.samplings[-1], of.time)
+    columns, beams = dict[str, list[Floats]](), dict[str, list[Carried]]()
+    for some in _pieces(of, system):
+        inputs = system.inputs(some.time, motion)
+        if acting is not None:
+            inputs = equations.controllers.driven(inputs, acting[done : done + len(some.time)])
+        done += len(some.time)
+        values, carried = histories(system, some.q, some.qd, some.qdd, inputs, inertial=motion is None)
+        for key, value in values.items():
+            columns.setdefault(key, []).append(value)
+        for name, each in carried.items():
+            beams.setdefault(name, []).append(each)
+    along = {name: loads_of(beams_of(system)[name], each, of.time) for name, each in beams.items() if loads}
+    return {key: np.concatenate(values) for key, values in columns.items()}, along, loop
+
+
 def _described(
     system: System,
     motion: Motion | None,
@@ -157,21 +183,16 @@ def _described(
 ) -> SystemResponse:
     """Describe a run at every `stride`-th of its steps."""
     every = run.trajectory
-    names = ("time", "q", "qd", "qdd")
-    kept = replace(every, **{each: getattr(every, each)[::stride] for each in names})
-    columns: dict[str, list[Floats]] = {}
-    loop, acting = None, None
-    if equations.controllers is not None:
-        loop, acting = loop_of(equations.controllers, equations.samplings[-1], kept.time)
-    done = 0
-    for some in _pieces(kept, system):
-        inputs = system.inputs(some.time, motion)
-        if acting is not None:
-            inputs = equations.controllers.driven(inputs, acting[done : done + len(some.time)])
-        done += len(some.time)
-        for key, value in histories(system, some.q, some.qd, some.qdd, inputs, inertial=motion is None).items():
-            columns.setdefault(key, []).append(value)
-    over_time: dict[str, Any] = {key: np.concatenate(values) for key, values in columns.items()}
+    kept = _at(every, slice(None, None, stride))
+    over_time, along, loop = _over_time(system, motion, equations, kept, loads=settings.loads)
+    beams, yielded = dict[str, BeamResponse](), []
+    for body, loads in along.items():
+
+        def between(steps: Any, body: str = body) -> Loads:
+            return _over_time(system, motion, equations, _at(every, steps), loads=True)[1][body]
+
+        beams[body] = BeamResponse(loads, load_peaks(loads, between, every.time, stride))
+        yielded += yielding(beams[body].peaks, f" of {body}")
     invariants = None
     if motion is None:
         invariants = Invariants(*(over_time.pop(key) for key in ("momentum", "angular_momentum", "energy")))
@@ -181,7 +202,7 @@ def _described(
         message = (
             f"Newton's method failed at {every.time[-1]:.4g} s: give a smaller step, or look for what breaks there"
         )
-    warnings = (*settings.warnings,)
+    warnings = (*settings.warnings, *yielded)
     if outcome == "done" and error > settings.tolerance:
         warnings += (f"the error of the steps is {100 * error:.2g} %: give a smaller step or tolerance",)
     return SystemResponse(
@@ -194,6 +215,7 @@ def _described(
         coordinates=system.coordinates,
         invariants=invariants,
         loop=loop,
+        beams=beams,
         integrator=scheme_of(settings).name,
         step=run.step,
         steps=len(every.time) - 1,

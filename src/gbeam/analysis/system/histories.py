@@ -1,27 +1,48 @@
-"""Quantities of a system read from its coordinates: motions of points, efforts of drives, momentum and energy."""
+"""Quantities of a system read from its coordinates: motions of points, efforts, loads along beams, invariants."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.mechanics.tree.equations import Inputs
+from gbeam.mechanics.section_forces import Hung, section_forces
+from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.bodies import Acting
+from gbeam.mechanics.tree.equations import Inputs, State
 from gbeam.mechanics.tree.frames import turned
 from gbeam.mechanics.tree.steps import parameters_of_all
-from gbeam.mechanics.tree.system import System
+from gbeam.mechanics.tree.system import System, stations_of
+from gbeam.results.parts import Loads
+from gbeam.results.response import BaseMotion
 
 Array = Any
 Floats = NDArray[np.float64]
 
 
-def histories(system: System, y: Array, yd: Array, ydd: Array, inputs: Inputs, *, inertial: bool) -> dict[str, Floats]:
-    """Motions of points, coordinates, drives and load on the ground at unknown coordinates (t, n) and their rates."""
+class Carried(NamedTuple):
+    """A beam over time: its coordinates and their rates (t, n), the motion (t, 3) of its root, and what hangs on it."""
+
+    q: Floats
+    qd: Floats
+    qdd: Floats
+    a: Floats
+    w: Floats
+    alpha: Floats
+    hung: Hung
+
+
+def histories(
+    system: System, y: Array, yd: Array, ydd: Array, inputs: Inputs, *, inertial: bool
+) -> tuple[dict[str, Floats], dict[str, Carried]]:
+    """Motions of points, coordinates, drives and load on the ground at unknown coordinates (t, n) and their rates, and
+    what moves and loads every beam, by name.
+    """
     tree = system.tree
     state = tree.motion(y, yd, ydd, inputs)
     frames = state.every_point
-    rows, ground = tree.rows(y, yd, ydd, inputs)
+    rows, ground, acting = tree.demanded(state, inputs)
     whole = [y, yd]
     if inputs.prescribed is not None:
         whole = [tree.whole(each, inputs.prescribed[:, k]) for k, each in enumerate(whole)]
@@ -44,4 +65,37 @@ def histories(system: System, y: Array, yd: Array, ydd: Array, inputs: Inputs, *
         gravity = np.zeros(3) if system.gravity is None else np.asarray(system.gravity, dtype=float)
         momentum, spin, energy = tree.invariants(y, yd, inputs, gravity)
         out |= {"momentum": momentum, "angular_momentum": spin, "energy": energy}
-    return out
+    beams = beams_of(system)
+    return out, {
+        name: _carried(state, k, beams[name], acting[k]) for k, name in enumerate(system.order) if name in beams
+    }
+
+
+def beams_of(system: System) -> dict[str, Structure]:
+    """Bodies that have sections, by name."""
+    every = ((name, system.bodies[name]) for name in system.order)
+    return {name: body for name, body in every if isinstance(body, Structure) and body.sections is not None}
+
+
+def _carried(state: State, k: int, beam: Structure, acting: list[Acting]) -> Carried:
+    places, root = list(stations_of(beam).values()), state.roots[k]
+    q, qd, qdd = (each[k][-1] for each in (state.q, state.qd, state.qdd))
+    wrenches = [each.wrench.brought(each.by) for each in acting]
+    none = np.zeros((len(q), 0, 3))
+    force, moment = (
+        np.stack([getattr(each, name) for each in wrenches], axis=1) if wrenches else none
+        for name in ("force", "moment")
+    )
+    hung = Hung(np.array([places[each.point] for each in acting], dtype=int), force, moment)
+    return Carried(q, qd, qdd, root.a, root.w, root.alpha, hung)
+
+
+def loads_of(beam: Structure, pieces: list[Carried], time: Floats) -> Loads:
+    """Loads along a beam at times (t,) s, whose pieces follow one another."""
+    *moving, hung = zip(*pieces, strict=True)
+    q, qd, qdd, a, w, alpha = (np.concatenate(each) for each in moving)
+    station, force, moment = zip(*hung, strict=True)
+    every = Hung(station[0], np.concatenate(force), np.concatenate(moment))
+    loads = section_forces(beam, BaseMotion(a, w, alpha), q, qd, qdd, time, hung=every)
+    assert loads is not None
+    return loads

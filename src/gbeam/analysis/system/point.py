@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.analysis.system.histories import histories
+from gbeam.analysis.system.histories import beams_of, histories, loads_of
 from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError, InputError
 from gbeam.integrate.derivatives import slopes
@@ -119,7 +119,7 @@ def system_rest(system: System, motion: Motion | None, time: float, name: str) -
     """Describe where a system rests, and what holds it there."""
     point, inputs = rested(system, motion, time), system.inputs(np.array([time]), motion)
     first, _ = system.start
-    begun, resting = (
+    (begun, _), (resting, beams) = (
         histories(system, y[None], point.yd[None], point.ydd[None], inputs, inertial=False)
         for y in (first[system.tree.free], point.y)
     )
@@ -130,5 +130,6 @@ def system_rest(system: System, motion: Motion | None, time: float, name: str) -
         points=system.points,
         coordinates=system.coordinates,
         displacement=at["place"] - begun["place"][0],
+        loads={body: loads_of(beams_of(system)[body], [each], np.array([time])) for body, each in beams.items()},
         **{key: at[key] for key in ("place", "attitude", "q", "effort", "ground_force", "ground_moment")},
     )

@@ -182,8 +182,11 @@ class Tree:
 
     def rows(self, y: Array, yd: Array, ydd: Array, inputs: Inputs) -> tuple[Array, Wrench]:
         """Forces (..., n) that all coordinates demand of their drives, and the wrench on the ground."""
-        xp = namespace(y, yd, ydd, inputs.ground.a)
-        state = self.motion(y, yd, ydd, inputs)
+        return self.demanded(self.motion(y, yd, ydd, inputs), inputs)[:2]
+
+    def demanded(self, state: State, inputs: Inputs) -> tuple[Array, Wrench, list[list[Acting]]]:
+        """Forces (..., n) and the wrench on the ground that a motion demands, and of each body those on its points."""
+        xp = namespace(*state.q[0], *state.qd[0], *state.qdd[0], inputs.ground.a)
         on_points: list[list[Acting]] = [[] for _ in self.links]
         on_roots: list[list[Wrench]] = [[] for _ in self.links]
 
@@ -224,7 +227,7 @@ class Tree:
             else:
                 act(link.parent, link.on, wrench)
         demanded = concatenated(rows)
-        return demanded if inputs.efforts is None else demanded - inputs.efforts, ground
+        return demanded if inputs.efforts is None else demanded - inputs.efforts, ground, on_points
 
     def invariants(self, y: Array, yd: Array, inputs: Inputs, gravity: Array) -> tuple[Array, Array, Array]:
         """Momentum N s and angular momentum N m s about the origin (..., 3), ground's axes, and energy (..., 3) J:

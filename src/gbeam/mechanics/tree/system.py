@@ -298,7 +298,7 @@ class System(Value):
         each = self.bodies[body]
         if isinstance(each, RigidBody):
             return (*each.points, ROOT)
-        return (*_stations(each), ROOT)
+        return (*stations_of(each), ROOT)
 
     def point(self, where: str, name: str) -> tuple[str, int]:
         """Return the body and the index of a point.
@@ -445,7 +445,7 @@ def _named(system: System) -> Iterator[tuple[str, Mapping[str, Any]]]:
         yield each, getattr(system, each)
 
 
-def _stations(structure: Structure) -> dict[str, int]:
+def stations_of(structure: Structure) -> dict[str, int]:
     """Indices of a structure's stations that have a name."""
     last = len(structure.stations) - 1
     if structure.source is None:
@@ -456,7 +456,7 @@ def _stations(structure: Structure) -> dict[str, int]:
 
 def refuse_turnless(where: str, body: RigidBody | Structure, on: int) -> None:
     """Refuse to hang a body on a point whose turning is not known."""
-    if isinstance(body, Structure) and body.field is None and on < len(_stations(body)):
+    if isinstance(body, Structure) and body.field is None and on < len(stations_of(body)):
         fix = "hang it on the root, or give it as a rigid part of the particles"
         raise InputError(where, "is a point of particles, which do not say how it turns", fix)
 
@@ -471,7 +471,7 @@ def body_of(where: str, body: RigidBody | Structure) -> Body:
     if body.damping_ratio is None:
         fix = "give a ratio of critical damping, such as 0.01, or 0 for none"
         raise InputError(f"{where}.damping_ratio", "is missing, and the response depends on it", fix)
-    c, stations = body.coefficients, np.array(list(_stations(body).values()))
+    c, stations = body.coefficients, np.array(list(stations_of(body).values()))
     points: Points
     if isinstance(body.field, StrainField):
         points = ExactPoints(body.field[body.first_station + stations])

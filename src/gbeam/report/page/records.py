@@ -23,7 +23,7 @@ from gbeam.results.result import Floats
 from gbeam.results.searches import CommandRun, Fit, FittedColumn, Optimum, ShapedCommand
 from gbeam.results.solids import SolidStress, SpecimenLoads
 from gbeam.results.study import Study, SystemStudy
-from gbeam.results.system import Invariants, SystemModes, SystemResponse, SystemRest
+from gbeam.results.system import BeamResponse, Invariants, SystemModes, SystemResponse, SystemRest
 
 Facts = Mapping[str, Any]
 _NONE = np.empty(0)
@@ -39,8 +39,7 @@ def figures_in(kind: str, facts: Facts, variables: Facts) -> dict[str, Describe]
         case "SystemStudy":
             return figures_of(_system_study(facts, variables))
         case "SystemRest":
-            rests = (_read(SystemRest, each, name=name) for name, each in facts["motions"].items())
-            return figures_of(tuple(rests))
+            return figures_of(tuple(_rest(name, each) for name, each in facts["motions"].items()))
         case "MachinePlan":
             return figures_of(_plans(facts, variables))
         case "Deflection":
@@ -156,7 +155,12 @@ def _system_study(facts: Facts, variables: Facts) -> SystemStudy:
 
 def _system_response(facts: Facts, v: Facts, **more: Any) -> SystemResponse:
     invariants = _read(Invariants, {}, v) if "energy" in v else None
-    return _read(SystemResponse, facts, v, invariants=invariants, **more)
+    beams = {
+        body: _read(BeamResponse, {}, loads=_loads(each, _under(f"{body}_", v)))
+        for body, each in facts.get("beams", {}).items()
+        if f"{body}_section_force" in v
+    }
+    return _read(SystemResponse, facts, v, invariants=invariants, beams=beams, **more)
 
 
 def _response(name: str, facts: Facts, v: Facts) -> Response:
@@ -207,11 +211,19 @@ def _plans(facts: Facts, variables: Facts) -> tuple[MachinePlan, ...]:
 
 def _deflection(name: str, facts: Facts) -> Deflection:
     loads = facts.get("loads")
-    if loads is not None:
-        v: dict[str, Any] = {key: _vectors(loads[key])[None] for key in ("section_force", "section_moment")}
-        v |= {key: _array(loads[key])[None] for key in ("stress_tension", "stress_compression")}
-        loads = _loads(loads, v)
-    return _read(Deflection, facts, motion=name, loads=loads)
+    return _read(Deflection, facts, motion=name, loads=loads and _at_rest(loads))
+
+
+def _rest(name: str, facts: Facts) -> SystemRest:
+    loads = {body: _at_rest(each) for body, each in facts.get("beams", {}).items()}
+    return _read(SystemRest, facts, name=name, loads=loads)
+
+
+def _at_rest(loads: Facts) -> Loads:
+    """Loads of one time, from their JSON."""
+    v: dict[str, Any] = {key: _vectors(loads[key])[None] for key in ("section_force", "section_moment")}
+    v |= {key: _array(loads[key])[None] for key in ("stress_tension", "stress_compression")}
+    return _loads(loads, v)
 
 
 def _eigenvalues(rows: Any) -> Any:

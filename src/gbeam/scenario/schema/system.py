@@ -27,6 +27,7 @@ from gbeam.scenario.schema.fields import (
     Mass,
     MomentOfInertia,
     Offset,
+    Position,
     Quantity,
     Ratio,
     Speed,
@@ -99,6 +100,11 @@ class BeamBody(Beam):
 
     kind: Literal["beam"] = Field(description="kind of the body")
     model: Model = Field(description="the model of its deformation; modes are to be given: { kind, modes, shapes }")
+    stations: tuple[Position, ...] = Field(
+        default=(),
+        max_length=ENTRIES,
+        description="positions from the root of sections with loads and stress, beside those of its points",
+    )
 
 
 Body = Annotated[RigidBody | BeamBody, Discriminator("kind")]

@@ -1,0 +1,116 @@
+"""Loads along the beams of a tree: those of one beam, of the joints that hold them, and in balance at every cut."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+from gbeam.report.words import as_json
+from gbeam.results.facts import json_of
+from tests.system.trees import BEAM, flexible
+
+SLOW: dict[str, Any] = {"duration": 0.2, "step": 1e-3, "integrator": "gauss"}
+
+
+def test_one_body_on_a_turning_joint_carries_what_the_beam_on_a_hub_does() -> None:
+    structure, rate = gb.assemble(BEAM, "exact", [0.2, 0.8], axial=1, y=1, z=2), gb.SmoothStep(1.0, 0.2)
+    bodies = {"hub": gb.RigidBody(1.0, (4.0, 4.0, 5.0), points={"rim": (0.4, 0, 0)}), "beam": structure}
+    turning = gb.Joint("revolute", "hub", axes=[(0, 0, 1)], rate=rate)
+    system = gb.System(bodies, {"axis": turning, "clamp": gb.Joint("fixed", "beam", "hub.rim")})
+    of_tree = gb.simulate(system, **SLOW).beams["beam"]
+    beam = gb.simulate(structure, gb.Hub(radius=0.4, rate=rate, inertia=5.0), **SLOW)
+    assert beam.loads is not None and beam.peaks.loads is not None
+    for name in ("force", "moment", "section_force", "section_moment", "stress", "von_mises", "acceleration"):
+        alone = getattr(beam.loads, name)
+        np.testing.assert_allclose(getattr(of_tree.loads, name), alone, atol=1e-10 * np.abs(alone).max())
+    worst, of_beam = of_tree.peaks.largest_stress, beam.peaks.loads.largest_stress
+    assert worst is not None and of_beam is not None
+    assert (worst.value, worst.time, worst.station) == pytest.approx((of_beam.value, of_beam.time, of_beam.station))
+
+
+def _branched(kind: str) -> gb.System:
+    """A beam held by the ground, turned, that carries a rigid body at its middle and another beam at its tip."""
+    bodies = {"first": flexible(kind), "lump": gb.RigidBody(0.5, (0.01, 0.02, 0.02)), "last": flexible(kind)}
+    joints = {
+        "clamp": gb.Joint("fixed", "first", turn=(0.3, -0.5, 0.8)),
+        "bolt": gb.Joint("fixed", "lump", "first.middle", at=(0, 0.1, 0)),
+        "hinge": gb.Joint("revolute", "last", "first.tip", axes=[(0, 1, 0)], turn=(0, 0, 0.4), stiffness=3.0),
+    }
+    forces = {
+        "push": gb.PointForce("last.tip", (0.2, 1.0, -0.5), (0.1, 0.0, 0.2)),
+        "thrust": gb.PointForce("first.middle", (0.5, 0.0, 1.0), follower=True),
+    }
+    return gb.System(bodies, joints, forces, (1.0, 2.0, -9.0))
+
+
+@pytest.mark.parametrize(("kind", "moments"), [("exact", 1e-10), ("CFOAM", 1e-10), ("FOAM", 1e-3)])
+def test_sections_carry_what_joints_do(kind: str, moments: float) -> None:
+    """At the root what the ground feels, at the tip what the next body's root does; moments of second order to third,
+    while the tip has moved by a thousandth of the length.
+    """
+    response = gb.simulate(_branched(kind), initial="undeformed", **SLOW)
+    some = slice(None) if moments < 1e-6 else slice(21)
+    first, last = (response.beams[name].loads for name in ("first", "last"))
+    turned = gb.Joint("fixed", "first", turn=(0.3, -0.5, 0.8)).steps[0].R
+    pairs = [
+        (first.force[:, 0] @ turned.T, response.ground_force, 1e-10),
+        (first.moment[:, 0] @ turned.T, response.ground_moment, moments),
+        # Neither force nor inertia lies between the tip and the hinge.
+        (*(np.linalg.norm(each, axis=-1) for each in (first.section_force[:, -1], last.force[:, 0])), 1e-10),
+        (*(np.linalg.norm(each, axis=-1) for each in (first.section_moment[:, -1], last.moment[:, 0])), moments),
+    ]
+    for of_section, of_joint, tolerance in pairs:
+        np.testing.assert_allclose(of_section[some], of_joint[some], atol=tolerance * np.abs(of_joint).max())
+
+
+def test_a_tree_at_rest_balances_at_every_cut() -> None:
+    """A stiff strip with a weight at its middle and another strip on its tip, by hand."""
+    strip = gb.Beam(
+        1.0,
+        gb.Section.rectangle(0.05, 0.02),
+        gb.Material(2700.0, 70e12, yield_strength=1e6),
+        damping_ratio=0.0,
+        points=[gb.Point("middle", 0.5)],
+    )
+    beam = gb.assemble(strip, "exact", [0.25], axial=0, y=0, z=3)
+    joints = {
+        "clamp": gb.Joint("fixed", "near"),
+        "bolt": gb.Joint("fixed", "lump", "near.middle"),
+        "weld": gb.Joint("fixed", "far", "near.tip"),
+    }
+    bodies = {"near": beam, "lump": gb.RigidBody(0.5, (0.01, 0.01, 0.01)), "far": beam}
+    rest = gb.static(gb.System(bodies, joints, gravity=(0, 0, -10.0)))
+    x = np.array([0.0, 0.25, 0.5, 1.0])
+    weight = 2700 * 0.05 * 0.02 * 10
+    shear = -weight * (2 - x) - 5.0 * (x <= 0.5)
+    bending = weight * (2 - x) ** 2 / 2 + 5.0 * np.maximum(0.5 - x, 0)
+    near = rest.loads["near"]
+    assert near.stations == pytest.approx(x)
+    np.testing.assert_allclose(near.section_force[0, :, 2], shear, rtol=1e-6)
+    np.testing.assert_allclose(near.section_moment[0, :, 1], bending, rtol=1e-6)
+    stress = bending[0] * 0.01 / (0.05 * 0.02**3 / 12)
+    assert near.stress[0, 0] == pytest.approx(stress, rel=1e-6)
+    known = json.loads(as_json(json_of(rest)))["beams"]["near"]
+    assert known["stress"][0] == pytest.approx(stress, rel=1e-6)
+    assert known["margin"][0] == pytest.approx(1e6 / stress - 1, rel=1e-6)
+
+
+def test_what_yields_is_said_and_written() -> None:
+    weak = gb.Beam(1.0, BEAM.section, gb.Material(2700.0, 70e6, yield_strength=1e3), damping_ratio=0.01)
+    system = gb.System(
+        {"strip": gb.assemble(weak, "FOAM", axial=0, y=0, z=2)},
+        {"clamp": gb.Joint("fixed", "strip")},
+        gravity=(0, 0, -9),
+    )
+    response = gb.simulate(system, duration=0.1)
+    assert any("m of strip" in each and "above the yield strength" in each for each in response.warnings)
+    saved = response.to_xarray()
+    assert saved["strip_section_force"].dims == ("time", "strip_section", "axis")
+    assert saved["strip_section"].values == pytest.approx([0.0, 1.0]) and saved["strip_stress"].units == "Pa"
+    assert json_of(response)["beams"]["strip"]["margin"]["min"] < 0
+    bare = gb.simulate(system, duration=0.1, loads=False, estimate=False)
+    assert not bare.beams and "strip_section" not in bare.to_xarray()
