@@ -210,6 +210,58 @@ class Neighbourhood:
             self.case = replace(self.case, model=richer)
 
 
+class Quantities:
+    """What is read from the answer at any values of the parameters, and its derivatives, by one run's steps and shapes.
+
+    Those are the steps in `motions`, and the shapes, of the `start`; without one each answer has its own.
+    """
+
+    def __init__(
+        self,
+        question: Question,
+        parameters: Sequence[PhysicalValue],
+        read: Read,
+        start: Neighbourhood | None,
+        motions: Sequence[str],
+        parts: Mapping[str, bool],
+        adapt: Callable[[Any], Any] = lambda case: case,
+        progress: Progress = None,
+    ) -> None:
+        self._question, self._parameters, self._read = question, parameters, read
+        self._motions, self._parts, self._adapt, self._progress = motions, parts, adapt, progress
+        self._start = start if start is not None and start.runs else None
+        self._grids = None if self._start is None else {name: self._start.grid(name) for name in motions}
+        self._last: tuple[Floats, Floats, Neighbourhood] | None = None
+        self.evaluations = 0
+
+    def __call__(self, values: Floats) -> Floats:
+        """Read at some values, (m,); the last ones are kept."""
+        return self._at(values)[1]
+
+    def slopes(self, values: Floats) -> Floats:
+        """Derivatives with respect to the values, (m, p)."""
+        return self._at(values)[2].slopes(self._read, self._motions).slopes
+
+    def _at(self, values: Floats) -> tuple[Floats, Floats, Neighbourhood]:
+        if self._last is None or not np.array_equal(self._last[0], values):
+            self.evaluations += 1
+            about = Neighbourhood(
+                self._question, self._parameters, values.tolist(), grids=self._grids, parts=self._parts,
+                adapt=self._shaped, progress=self._progress,
+            )  # fmt: skip
+            for name in self._motions if self._grids is not None else ():
+                about.done(name)
+            read = self._read(about.case, about.answer)
+            if not np.isfinite(read).all():
+                raise ComputationError("not converged", "a figure of the search has no value")
+            self._last = values.copy(), read, about
+        return self._last
+
+    def _shaped(self, case: Any) -> Any:
+        case = self._adapt(case)
+        return case if self._start is None else replace(case, model=self._start.case.model)
+
+
 def _possible(structure: Structure, response: Response) -> Response:
     """The response; one that means nothing has diverged."""
     moved = np.abs(response.displacement).max()

@@ -10,17 +10,15 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.case import Case
-from gbeam.analysis.response.differentiated import Grid
-from gbeam.errors import ComputationError, GbeamError, InputError
+from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
-from gbeam.mechanics.models import Model
 from gbeam.progress import Progress
 from gbeam.results.result import Floats
 from gbeam.results.searches import Fit, FittedColumn
-from gbeam.studies.derivatives import Neighbourhood
+from gbeam.studies.derivatives import Neighbourhood, Quantities
 from gbeam.studies.evaluate import Question
 from gbeam.studies.measurement import Measurement, read_measurement
-from gbeam.studies.parameters import Bounds, PhysicalValue, agreeing, bounds_of, named, starting_points
+from gbeam.studies.parameters import Bounds, PhysicalValue, agreeing, bounds_of, named, on_bound, searched
 from gbeam.studies.template import template_of
 
 OPTION = "--free"
@@ -107,30 +105,39 @@ def fit(
         problem = f"names {len(parameters)} values for {len(measurement.values)} data"
         raise InputError(OPTION, problem, "measure more, or free fewer")
     limits = np.array([bounds_of(each, bounds or {}, OPTION) for each in parameters])
-    model = Fitted(
-        replace(question, verb="modes") if measurement.modal else question, parameters, measurement, progress
-    )
-    points = starting_points(np.array([each.value for each in parameters]), limits, starts)
-    solution, ends = search_from(model, points, limits)
-    described = _described(model, parameters, limits, solution)
-    agreed = agreeing(ends, solution.values, limits)
+    question = replace(question, verb="modes") if measurement.modal else question
+    start = None if measurement.modal else Neighbourhood(question, parameters, progress=progress)
+    model = Quantities(
+        question, parameters, measurement.read, start, measurement.motions, measurement.parts,
+        measurement.instrumented, progress,
+    )  # fmt: skip
+    solutions = searched(parameters, limits, starts, lambda x: _search(model, measurement, parameters, x, limits))
+    # Of noise that is not known, the likelihood is a product of the weights.
+    best = max(solutions, key=lambda each: float(np.log(each.weights).sum()))
+    solution = replace(best, before=solutions[0].before)
+    described = _described(model, measurement, parameters, limits, solution)
+    agreed = agreeing([each.values for each in solutions], solution.values, limits)
     return replace(described, title=template.title, starts=starts, agreed=agreed, provenance=template.provenance)
 
 
-def _described(model: Fitted, parameters: Sequence[PhysicalValue], limits: Floats, found: Solution) -> Fit:
+def _described(
+    model: Quantities,
+    measurement: Measurement,
+    parameters: Sequence[PhysicalValue],
+    limits: Floats,
+    solution: Solution,
+) -> Fit:
     from scipy.special import stdtrit
 
-    measurement = model.measurement
-    fitted, measured = model(found.values), measurement.values
+    fitted, measured = model(solution.values), measurement.values
     count, size = len(measured), len(parameters)
-    reach = 1e-6 * (limits[:, 1] - limits[:, 0])
-    at_bound = (found.values - limits[:, 0] < reach) | (limits[:, 1] - found.values < reach)
+    at_bound = on_bound(solution.values, limits)
     inside = np.flatnonzero(~at_bound)
-    variance = float(np.sum(((fitted - measured) * found.weights) ** 2)) / (count - size)
+    variance = float(np.sum(((fitted - measured) * solution.weights) ** 2)) / (count - size)
     spread, condition = np.full((size, size), np.nan), np.nan  # covariance over variance, which may be zero
     if inside.size:
-        jacobian = found.jacobian[:, inside]
-        condition = tell_apart(jacobian * found.values[inside], [parameters[int(k)] for k in inside])
+        jacobian = solution.jacobian[:, inside]
+        condition = tell_apart(jacobian * solution.values[inside], [parameters[int(k)] for k in inside])
         lengths = np.linalg.norm(jacobian, axis=0)
         unit = jacobian / lengths
         spread[np.ix_(inside, inside)] = np.linalg.inv(unit.T @ unit) / np.outer(lengths, lengths)
@@ -138,16 +145,16 @@ def _described(model: Fitted, parameters: Sequence[PhysicalValue], limits: Float
     errors = np.sqrt(variance) * sizes
     half = float(stdtrit(count - size, 0.975)) * errors
     correlation = spread / np.outer(sizes, sizes)
-    columns = _columns(measurement, fitted, found.before, size)
+    columns = _columns(measurement, fitted, solution.before, size)
     return Fit(
         title="",
         data=measurement.file,
         parameters=tuple(each.path for each in parameters),
         units=tuple(each.unit for each in parameters),
         before=np.array([each.value for each in parameters]),
-        values=found.values,
+        values=solution.values,
         errors=errors,
-        intervals=np.stack([found.values - half, found.values + half], axis=1),
+        intervals=np.stack([solution.values - half, solution.values + half], axis=1),
         covariance=variance * spread,
         correlation=correlation,
         bounds=limits,
@@ -200,55 +207,6 @@ _PRECISE = 1e-8  # of the search
 _IMPOSSIBLE = 1e3  # times the first residual: of values that the scenario does not allow
 
 
-@dataclass
-class Fitted:
-    """Measured quantities of the scenario at any values of the parameters."""
-
-    question: Question
-    parameters: Sequence[PhysicalValue]
-    measurement: Measurement
-    progress: Progress
-    grids: dict[str, Grid] | None = None
-    shapes: Model | None = None
-    evaluations: int = 0
-    _last: tuple[Floats, Neighbourhood] | None = None
-
-    def __post_init__(self) -> None:
-        if self.measurement.modal:
-            return
-        # Steps and shapes of all runs are those that the scenario's own run needs.
-        start = Neighbourhood(self.question, self.parameters, progress=self.progress)
-        self.shapes = start.case.model
-        self.grids = {name: start.grid(name) for name in self.measurement.motions}
-
-    def about(self, values: Floats) -> Neighbourhood:
-        """The neighbourhood of some values; the last one is kept."""
-        if self._last is None or not np.array_equal(self._last[0], values):
-            self.evaluations += 1
-            about = Neighbourhood(
-                self.question, self.parameters, values.tolist(), grids=self.grids, parts=self.measurement.parts,
-                adapt=self._adapted, progress=self.progress,
-            )  # fmt: skip
-            self._last = values.copy(), about
-        return self._last[1]
-
-    def __call__(self, values: Floats) -> Floats:
-        """The measured quantities."""
-        about = self.about(values)
-        for name in self.measurement.motions if self.grids is not None else ():
-            about.done(name)
-        return self.measurement.read(about.case, about.answer)
-
-    def slopes(self, values: Floats) -> Floats:
-        """Their derivatives, (m, p)."""
-        measurement = self.measurement
-        return self.about(values).slopes(measurement.read, measurement.motions).slopes
-
-    def _adapted(self, case: Case) -> Case:
-        case = self.measurement.instrumented(case)
-        return case if self.shapes is None else replace(case, model=self.shapes)
-
-
 @dataclass(frozen=True)
 class Solution:
     """The values of least squares, and what they were found from."""
@@ -259,28 +217,17 @@ class Solution:
     jacobian: Floats
 
 
-def search_from(model: Fitted, starts: Sequence[Floats], limits: Floats) -> tuple[Solution, list[Floats]]:
-    """The best of searches from several values, the scenario's own first, and the values at which each ended."""
-    solutions = [search(model, starts[0], limits)]
-    for start in starts[1:]:
-        try:
-            solutions.append(search(model, start, limits))
-        except GbeamError:  # values that the scenario does not allow, or at which the data say nothing
-            continue
-    # Of noise that is not known, the likelihood is a product of the weights.
-    best = max(solutions, key=lambda each: float(np.log(each.weights).sum()))
-    return replace(best, before=solutions[0].before), [each.values for each in solutions]
-
-
-def search(model: Fitted, start: Floats, limits: Floats) -> Solution:
+def _search(
+    model: Quantities, measurement: Measurement, parameters: Sequence[PhysicalValue], start: Floats, limits: Floats
+) -> Solution:
     """Least squares, the weight of every column found anew from its residuals."""
     from scipy.optimize import least_squares
 
-    measured = model.measurement.values
+    measured = measurement.values
     before = model(start)
     scale = np.where(start == 0, limits[:, 1] - limits[:, 0], np.abs(start))
-    weights = model.measurement.weights(None, len(start))
-    tell_apart(model.slopes(start) * scale * weights[:, None], model.parameters)
+    weights = measurement.weights(None, len(start))
+    tell_apart(model.slopes(start) * scale * weights[:, None], parameters)
     first = max(float(np.linalg.norm((before - measured) * weights)), 1.0)
 
     def residual(x: Floats, weights: Floats) -> Floats:
@@ -299,7 +246,7 @@ def search(model: Fitted, start: Floats, limits: Floats) -> Solution:
             xtol=_PRECISE, ftol=_PRECISE, gtol=None,
         )  # fmt: skip
         x = fitted.x
-        new = model.measurement.weights(model(x * scale) - measured, len(x))
+        new = measurement.weights(model(x * scale) - measured, len(x))
         change = new / weights
         weights = new
         if change.max() <= (1 + _SETTLED) * change.min():

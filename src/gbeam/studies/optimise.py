@@ -5,29 +5,27 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from gbeam.analysis.case import Case, SystemCase
-from gbeam.analysis.response.differentiated import Grid
-from gbeam.errors import ComputationError, GbeamError, InputError
+from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.units import UnitError, argument
-from gbeam.mechanics.models import Model
 from gbeam.progress import Progress
 from gbeam.results.imitation.criteria import BROKEN
 from gbeam.results.result import Floats
 from gbeam.results.searches import Optimum, Requirement
 from gbeam.results.study import Study
 from gbeam.studies.answers import Facts
-from gbeam.studies.derivatives import Neighbourhood
+from gbeam.studies.derivatives import Neighbourhood, Quantities
 from gbeam.studies.evaluate import Question
 from gbeam.studies.figures import Keys, offered, unit_at
-from gbeam.studies.parameters import Bounds, PhysicalValue, agreeing, bounds_of, named, starting_points
+from gbeam.studies.parameters import Bounds, agreeing, bounds_of, named, on_bound, searched
 from gbeam.studies.sensitivity import facts_of, figure, needed, values_at
 from gbeam.studies.template import template_of
 
@@ -110,8 +108,13 @@ def optimise(
     first = Neighbourhood(question, parameters, progress=progress)
     goal = _goal(facts_of(first.answer), first.case, minimise, subject_to)
     # On the way no more is computed than is read; the last answer is whole.
-    search = Search(replace(question, keys=goal.keys), parameters, goal, first, progress)
-    values, ends = search.best(limits, starts)
+    motions, parts = needed(goal.keys, first.case.tracks)
+    model = Quantities(
+        replace(question, keys=goal.keys), parameters, goal.read, first, motions, parts, progress=progress
+    )
+    search = Search(model, goal, limits)
+    ends = searched(parameters, limits, starts, search)
+    values = search.tried[-1][0]
     last = Neighbourhood(question, parameters, values.tolist(), progress=progress)
     before, after = (values_at(facts_of(each.answer), goal.keys) for each in (first, last))
     if last.runs:
@@ -121,7 +124,6 @@ def optimise(
         Requirement(name, unit_at(facts_of(last.answer), keys), low, high, float(before[k]), float(after[k]))
         for k, (name, keys, low, high) in enumerate(goal.required, 1)
     )
-    reach = 1e-6 * (limits[:, 1] - limits[:, 0])
     broken = [each.name for each in requirements if not each.kept]
     return Optimum(
         title=template.title,
@@ -132,14 +134,14 @@ def optimise(
         before=np.array([each.value for each in parameters]),
         values=values,
         bounds=limits,
-        at_bound=(values - limits[:, 0] < reach) | (limits[:, 1] - values < reach),
+        at_bound=on_bound(values, limits),
         figure_before=float(before[0]),
         figure=float(after[0]),
         error=_error(last.answer),
         requirements=requirements,
         path=np.array([x for x, _ in search.tried]),
         history=np.array([f for _, f in search.tried]),
-        evaluations=search.evaluations,
+        evaluations=model.evaluations,
         starts=starts,
         agreed=agreeing(ends, values, limits),
         outcome=BROKEN if broken else "done",
@@ -208,6 +210,10 @@ class Goal:
         """Keys of all figures, the objective first."""
         return (self.objective, *(keys for _, keys, _, _ in self.required))
 
+    def read(self, _: Any, answer: Any) -> Floats:
+        """All figures of an answer."""
+        return values_at(facts_of(answer), self.keys)
+
 
 class _Enough(Exception):
     """A search that has evaluated the scenario so often that it will not end."""
@@ -217,52 +223,30 @@ class _Enough(Exception):
 class Search:
     """The search, which keeps what it has tried."""
 
-    question: Question
-    parameters: Sequence[PhysicalValue]
+    model: Quantities
     goal: Goal
-    first: Neighbourhood
-    progress: Progress
-    evaluations: int = 0
+    limits: Floats
     tried: list[tuple[Floats, float]] = field(default_factory=list)
     ranks: list[tuple[float, float]] = field(default_factory=list)  # of those tried, each better than before
     warnings: tuple[str, ...] = ()
-    _last: tuple[Floats, Floats, Neighbourhood] | None = None
 
-    def __post_init__(self) -> None:
-        self.motions, self.parts = needed(self.goal.keys, self.first.case.tracks)
-        self.shapes: Model | None = self.first.case.model if self.first.runs else None
-        self.grids: Mapping[str, Grid] | None = None
-        if self.first.runs:
-            self.grids = {name: self.first.grid(name) for name in self.motions}
-
-    def best(self, limits: Floats, count: int) -> tuple[Floats, list[Floats]]:
-        """The best values within bounds (p, 2) of so many searches, and where each of them ended."""
-        begin = np.array([each.value for each in self.parameters])
-        ends = []
-        for k, start in enumerate(starting_points(begin, limits, count)):
-            try:
-                ends.append(self._from(start, limits))
-            except GbeamError:  # values that the scenario does not allow, or whose run is not done
-                if k == 0:
-                    raise
-        return self.tried[-1][0], ends
-
-    def _from(self, start: Floats, limits: Floats) -> Floats:
+    def __call__(self, start: Floats) -> Floats:
         """End of a search from some values."""
         from scipy.optimize import minimize
 
-        low, width = limits[:, 0], limits[:, 1] - limits[:, 0]
-        sizes = self._sizes(self.figures(start))
-        begun = self.evaluations
+        low, width = self.limits[:, 0], self.limits[:, 1] - self.limits[:, 0]
+        sizes = self._sizes(self.model(start))
+        begun = self.model.evaluations
         power = 1 if self.goal.unit else 2  # of what has no unit, the size: its square is smooth at zero
         best: tuple[float, float, Floats] | None = None
+        slopes = self.model.slopes
 
         def objective(x: Floats) -> float:
             nonlocal best
-            if self.evaluations - begun >= _EVALUATIONS:
+            if self.model.evaluations - begun >= _EVALUATIONS:
                 raise _Enough
             values = low + x * width
-            figures = self.figures(values)
+            figures = self.model(values)
             excess = float(max(0.0, *(-self._slack(figures) / sizes[1:]))) if self.goal.required else 0.0
             rank = (0.0 if excess <= _FEASIBLE else excess, abs(float(figures[0])) if power == 2 else float(figures[0]))
             if best is None or rank < best[:2]:
@@ -274,15 +258,15 @@ class Search:
 
         def gradient(x: Floats) -> Floats:
             values = low + x * width
-            slope = self.slopes(values)[0] * width / sizes[0]
-            return slope if power == 1 else 2 * self.figures(values)[0] / sizes[0] * slope
+            slope = slopes(values)[0] * width / sizes[0]
+            return slope if power == 1 else 2 * self.model(values)[0] / sizes[0] * slope
 
         constraints: Any = ()
         if self.goal.required:
             constraints = {
                 "type": "ineq",
-                "fun": lambda x: self._slack(self.figures(low + x * width)) / sizes[1:],
-                "jac": lambda x: self._signs[:, None] * self.slopes(low + x * width)[1:] * width / sizes[1:, None],
+                "fun": lambda x: self._slack(self.model(low + x * width)) / sizes[1:],
+                "jac": lambda x: self._signs[:, None] * slopes(low + x * width)[1:] * width / sizes[1:, None],
             }
         try:
             optimum = minimize(
@@ -311,32 +295,3 @@ class Search:
         ends = [abs(low if math.isinf(high) else high) for _, _, low, high in self.goal.required]
         others = [end or abs(value) or 1.0 for end, value in zip(ends, figures[1:], strict=True)]
         return np.array([abs(figures[0]) or 1.0, *others])
-
-    def figures(self, values: Floats) -> Floats:
-        """Objective and required figures at some values."""
-        if self._last is None or not np.array_equal(self._last[0], values):
-            self.evaluations += 1
-            about = Neighbourhood(
-                self.question, self.parameters, values.tolist(), grids=self.grids, parts=self.parts,
-                adapt=self._shaped, progress=self.progress,
-            )  # fmt: skip
-            for name in self.motions if self.grids is not None else ():
-                about.done(name)
-            figures = values_at(facts_of(about.answer), self.goal.keys)
-            if not np.isfinite(figures).all():
-                raise ComputationError("not converged", "a figure of the search has no value")
-            self._last = values.copy(), figures, about
-        return self._last[1]
-
-    def slopes(self, values: Floats) -> Floats:
-        """Their derivatives, (figures, p)."""
-        self.figures(values)
-        assert self._last is not None
-
-        def read(_: Case, answer: Any) -> Floats:
-            return values_at(facts_of(answer), self.goal.keys)
-
-        return self._last[2].slopes(read, self.motions).slopes
-
-    def _shaped(self, case: Any) -> Any:
-        return case if self.shapes is None else replace(case, model=self.shapes)

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
-from gbeam.errors import InputError
+from gbeam.errors import GbeamError, InputError
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.limits import refuse_more
 from gbeam.guards.names import advise
 from gbeam.guards.units import UnitError, argument
-from gbeam.results.result import Floats
+from gbeam.results.result import Flags, Floats
 from gbeam.scenario.load import load
 from gbeam.scenario.text.revise import with_quantities
 from gbeam.studies.template import ScenarioTemplate, Template
@@ -145,11 +146,33 @@ def _quantity(each: PhysicalValue, text: float | str) -> float:
 
 
 MAX_STARTS = 1000
+Answer = TypeVar("Answer")
+_ON = 1e-6  # of the bounds' width
 _SAME = 1e-2  # of the bounds' width: values that are nearer are the same
 _WIDE = 10.0  # times: bounds further apart are searched in equal ratios
 
 
-def starting_points(own: Floats, limits: Floats, count: int) -> list[Floats]:
+def searched(
+    parameters: Sequence[PhysicalValue], limits: Floats, count: int, search: Callable[[Floats], Answer]
+) -> list[Answer]:
+    """Answers of searches from the scenario's values and from others; one that fails is left out, but not the first."""
+    answers: list[Answer] = []
+    for start in _starting_points(np.array([each.value for each in parameters]), limits, count):
+        try:
+            answers.append(search(start))
+        except GbeamError:  # the scenario does not allow the values, or its run is not done
+            if not answers:
+                raise
+    return answers
+
+
+def on_bound(values: Floats, limits: Floats) -> Flags:
+    """Whether values lie on one of their bounds (p, 2)."""
+    low, high = limits.T
+    return np.asarray(np.minimum(values - low, high - values) < _ON * (high - low))
+
+
+def _starting_points(own: Floats, limits: Floats, count: int) -> list[Floats]:
     """The scenario's values (p,), and further ones spread evenly between bounds (p, 2), by a Sobol sequence."""
     if count < 1:
         raise InputError("--starts", f"is {count}", "give one or more")
