@@ -52,9 +52,11 @@ WIDE = (
     *("--over", "beam.length=6.1 m:8 m:20", "--over", "motion.slew.radius=0.1 m:0.5 m:2"),
     *("--verb", "critical-speed", "--measure", "critical_speed"),
 )
+ARM = (Path(__file__).parents[2] / "examples" / "robot_arm.toml").read_text(encoding="utf-8")
 # Every kind of report: its scenario and the arguments of its verb.
 KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "run": (FAST, ()),
+    "run of a system": (ARM, ("--set", "response.duration=0.5 s")),
     "static": (FAST, ("--at", "0.2 s")),
     "modes": (FAST, ("--motion", "flight")),
     "campbell": (SLEWING, ("--to", "20 rpm")),

@@ -193,7 +193,8 @@ def test_scene_has_the_motions_with_an_outline(study: Study) -> None:
     shown = replace(study, responses={**study.responses, "flight": replace(flight, outline=outline)})
     scene = header_of(report_of(shown))["scene"]
     (motion,) = scene["motions"]  # type: ignore[index]
-    assert motion["name"] == "flight" and motion["points"] == [0, 0.3] and motion["time"]["shape"] == [5]
+    (part,) = motion["parts"]
+    assert motion["name"] == "flight" and part["beam"]["points"] == [0, 0.3] and motion["time"]["shape"] == [5]
     assert "scene" not in header_of(report_of(study))
 
 

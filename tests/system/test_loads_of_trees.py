@@ -7,8 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import gbeam as gb
+from gbeam.report.page.result import report_of, shown
 from gbeam.report.words import as_json
 from gbeam.results.facts import json_of
 from tests.system.trees import BEAM, flexible
@@ -114,3 +116,38 @@ def test_what_yields_is_said_and_written() -> None:
     assert json_of(response)["beams"]["strip"]["margin"]["min"] < 0
     bare = gb.simulate(system, duration=0.1, loads=False, estimate=False)
     assert not bare.beams and "strip_section" not in bare.to_xarray()
+
+
+def test_the_scene_has_every_body_where_it_is() -> None:
+    """A bus with a beam that carries a body: the carried one is shifted by the beam's deflection."""
+    bus = gb.RigidBody(50.0, (8.0, 10.0, 12.0), points={"side": (0.5, 0, 0)})
+    bodies = {"bus": bus, "boom": flexible("exact"), "lump": gb.RigidBody(0.5, (0.01, 0.02, 0.02))}
+    joints = {
+        "orbit": gb.Joint("free", "bus", initial_rate={"x": 0.2, "wz": 2.0, "wx": 0.5}),
+        "hinge": gb.Joint("revolute", "boom", "bus.side", axes=[(0, 1, 0)], stiffness=20.0),
+        "bolt": gb.Joint("fixed", "lump", "boom.tip"),
+    }
+    response = gb.simulate(gb.System(bodies, joints), duration=1.5)
+    header, numbers = shown(response)
+    (motion,) = header["scene"]["motions"]
+    hub, boom, lump = motion["parts"]
+
+    def array(ref: Any) -> Any:
+        return numbers.array[ref["at"] :][: np.prod(ref["shape"])].reshape(ref["shape"])
+
+    assert "joint" in boom and "joint" not in hub and motion["length"] == 1.0
+    # Of a body with these moments 6 (I_y + I_z - I_x)/m is the square of its length along x.
+    assert sorted(hub["box"]["size"]) == pytest.approx(np.sqrt(6 / 50 * np.array([6.0, 10.0, 14.0])))
+    assert hub["points"] == [pytest.approx([0.5, 0, 0], abs=1e-9)]
+    for part, point in ((hub, "bus.root"), (boom, "boom.root"), (lump, "lump.root")):
+        np.testing.assert_allclose(array(part["frame"])[:, :3], response.at(point), atol=1e-6)
+    turn = Rotation.from_quat(np.roll(array(boom["frame"])[:, 3:7], -1, axis=1))
+    bent = array(boom["beam"]["displacement"])[:, -1]
+    np.testing.assert_allclose(array(boom["frame"])[:, 7:], 0, atol=1e-9)
+    np.testing.assert_allclose(array(lump["frame"])[:, 7:], turn.apply(bent), atol=1e-6)
+    np.testing.assert_allclose(
+        turn.apply(bent + np.array([1.0, 0, 0])) + response.at("boom.root"), response.at("boom.tip"), atol=1e-6
+    )
+    assert np.abs(bent).max() > 1e-3
+    # The same of the file, and of a study.
+    assert '"joint"' in report_of(response) and '"scene"' in report_of(response)

@@ -12,14 +12,7 @@ import {
   SphereGeometry,
 } from "three";
 import { shade } from "./colours";
-
-export interface Shape {
-  points: number[];
-  width: number[];
-  thickness: number[];
-  round: boolean;
-  bodies?: [number, number][];
-}
+import type { Shape } from "./data";
 
 type Vector = [number, number, number];
 

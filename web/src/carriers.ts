@@ -158,3 +158,10 @@ export function axesOnly(length: number, note = ""): Carrier {
   world.add(clamp);
   return { world, base, size: 0.6 * length, middle: [0.5 * length, 0, 0.11 * length], note, turn: () => undefined };
 }
+
+/** The axes in which several bodies move. */
+export function surroundings(size: number, middle: number[], length: number): Carrier {
+  const [world, base] = [new Group(), new Group()];
+  world.add(base, triad(Math.min(0.22 * length, 0.3 * size)));
+  return { world, base, size, middle: [middle[0]!, middle[1]!, middle[2]!], note: "", turn: () => undefined };
+}

@@ -6,29 +6,55 @@ export interface Ref {
   shape: number[];
 }
 
+export interface Shape {
+  points: number[];
+  width: number[];
+  thickness: number[];
+  round: boolean;
+  bodies?: [number, number][];
+}
+
 export interface Stress {
   at: number[];
   values: Ref;
   largest: number;
 }
 
-/** A beam in motion in one environment, or a mode's shape; SI, base axes B. */
-export interface Motion {
-  name: string;
-  environment: string;
-  points: number[];
-  width: number[];
-  thickness: number[];
-  round: boolean;
-  bodies: [number, number][];
-  time: Ref;
+/** A beam in axes of its root, which points along x at rest. */
+export interface Beam extends Shape {
   displacement: Ref;
   /** Angles of the sections about the beam's axis. */
   twist?: Ref;
+  stress?: Stress;
+}
+
+/** A body: a beam, or the box of a rigid body and the places of its points, in axes of its root. */
+export interface Part {
+  beam?: Beam;
+  /** Size, centre, and rotation row by row. */
+  box?: { size: number[]; centre: number[]; rotation: number[] };
+  points?: number[][];
+  /** Whether the joint that holds it moves, and is drawn. */
+  joint?: boolean;
+  /** Of the root over time: place, quaternion w, x, y, z, and how far it is carried by the deflection of beams that hold
+   * it; base axes. */
+  frame?: Ref;
+}
+
+/** Bodies in motion in one environment, or a mode's shape; SI, base axes B. */
+export interface Motion {
+  name: string;
+  environment: string;
+  parts: Part[];
+  /** Of the longest beam; of bodies without one how far they reach. */
+  length: number;
+  time: Ref;
   largest: number;
+  /** Middle of what is shown, (1, 3) or over time, and its radius, where it is more than one beam on a base. */
+  middle?: Ref;
+  radiusShown?: number;
   /** Whether it is a mode's shape, whose size means nothing. */
   relative?: boolean;
-  stress?: Stress;
   controlPoint?: number;
   load?: Ref;
   reference?: Ref;

@@ -1,6 +1,6 @@
 // Mode shapes as motions: one period each, on a clock that runs round.
 
-import type { Data, Header, Modes, Motion } from "./data";
+import type { Beam, Data, Header, Modes, Motion } from "./data";
 import { view } from "./data";
 
 const FRAMES = 48;
@@ -28,17 +28,20 @@ export function shapes(modes: Modes, which: number, numbers: Float32Array, perio
     const [re, im] = turns;
     for (let i = 0; re && im && i < points; i++) made[twists + k * points + i] = amplitude * (re[i]! * c - im[i]! * s);
   }
-  const motion: Motion = {
-    name: modes.labels[which]!,
-    environment: modes.labels[which]!,
+  const beam: Beam = {
     points: modes.points,
     width: modes.width,
     thickness: modes.thickness,
     round: modes.round,
-    bodies: [],
-    time: { at: 0, shape: [count] },
     displacement: { at: count, shape: [count, points, 3] },
     ...(turns.length ? { twist: { at: twists, shape: [count, points] } } : {}),
+  };
+  const motion: Motion = {
+    name: modes.labels[which]!,
+    environment: modes.labels[which]!,
+    parts: [{ beam }],
+    length: modes.points.at(-1)!,
+    time: { at: 0, shape: [count] },
     largest: amplitude,
     relative: true,
   };

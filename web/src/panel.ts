@@ -1,4 +1,4 @@
-// One view of one motion: the beam in its base axes, or on the machine that carries it.
+// One view of one motion: its bodies in base axes, or on the machine that carries them.
 
 import {
   AmbientLight,
@@ -13,44 +13,20 @@ import {
   Vector3,
   type WebGLRenderer,
 } from "three";
-import { BeamMesh } from "./beam";
-import { axesOnly, type Carrier, centrifuge, flying, hub } from "./carriers";
+import { Body, type Settings } from "./bodies";
+import { axesOnly, type Carrier, centrifuge, flying, hub, surroundings } from "./carriers";
 import { interpolate, locate, type Motion, view } from "./data";
 import { lineColour } from "./colours";
 import type { Orbit } from "./orbit";
 
-export type Colouring = "deflection" | "stress" | "none";
-
-export interface Settings {
-  factor: number;
-  ghost: boolean;
-  loads: boolean;
-  colouring: Colouring;
-  /** What the darkest and the brightest colour stand for: 0 and this. */
-  largestDeflection: number;
-  largestStress: number;
-  largestLoad: number;
-}
-
-/** Values at positions `at`, ascending, taken linearly to `points`. */
-export function along(at: number[], values: ArrayLike<number>, points: number[], out: Float32Array): void {
-  points.forEach((x, k) => {
-    const [i, f] = locate(at, x);
-    const [a, b] = [values[i]!, values[Math.min(i + 1, at.length - 1)]!];
-    out[k] = a + f * (b - a);
-  });
-}
-
 export class Panel {
   private readonly scene = new Scene();
   private readonly camera = new PerspectiveCamera(32, 1, 0.001, 1e4);
-  private readonly beam: BeamMesh;
-  private readonly ghost: BeamMesh;
+  private readonly bodies: Body[];
   private readonly arrows: { made: ArrowHelper; wanted: ArrowHelper | null } | null = null;
   private readonly carrier: Carrier;
   private readonly length: number;
-  private readonly now: Float32Array;
-  private readonly shares: Float32Array;
+  private middle: [number, number, number];
   private deflection = 0; // the largest as it is drawn
 
   constructor(
@@ -58,11 +34,11 @@ export class Panel {
     private readonly numbers: Float32Array,
     readonly whole: boolean,
   ) {
-    this.length = motion.points.at(-1)!;
+    this.length = motion.length;
     this.carrier = this.carrying();
-    this.beam = new BeamMesh(motion, false);
-    this.ghost = new BeamMesh(motion, true);
-    this.carrier.base.add(this.beam.group, this.ghost.group);
+    this.middle = [...this.carrier.middle];
+    this.bodies = motion.parts.map((part) => new Body(part, numbers, this.carrier.size));
+    for (const each of this.bodies) this.carrier.base.add(each.group);
     if (motion.load) {
       const at = new Vector3(motion.controlPoint ?? 0, 0, 0);
       const made = arrow(at, this.length);
@@ -84,12 +60,11 @@ export class Panel {
     key.position.set(2, -3, 5);
     this.scene.add(new AmbientLight(0xffffff, 1.5), key, this.carrier.world);
     this.camera.up.set(0, 0, 1);
-    this.now = new Float32Array(3 * motion.points.length);
-    this.shares = new Float32Array(motion.points.length);
   }
 
   get title(): string {
     const of = this.motion.name === this.motion.environment ? "" : ` (${this.motion.environment})`;
+    if (this.motion.middle) return `${this.motion.name}${of}`;
     if (!this.whole) return `${this.motion.name}${of}, base axes`;
     const whole = { hub: "hub", flight: "turning" }[this.motion.environment] ?? "machine";
     return `${this.motion.name}${of}, ${whole}`;
@@ -116,12 +91,10 @@ export class Panel {
     const { motion, numbers } = this;
     this.deflection = settings.factor * motion.largest;
     const place = locate(view(numbers, motion.time), t);
-    const points = motion.points.length;
-    interpolate(view(numbers, motion.displacement), this.now.length, place, this.now);
-    const coloured = this.colour(settings, place);
-    const twist = motion.twist && interpolate(view(numbers, motion.twist), points, place, new Float32Array(points));
-    this.beam.move(this.now, settings.factor, coloured ? this.shares : null, dark ? 0.75 : 0.55, twist);
-    this.ghost.group.visible = settings.ghost;
+    for (const each of this.bodies) each.update(place, settings, dark);
+    if (motion.middle && motion.middle.shape[0]! > 1) {
+      this.middle = [...interpolate(view(numbers, motion.middle), 3, place, new Float32Array(3))] as typeof this.middle;
+    }
     const angles = motion.axes ?? motion.angle ?? motion.attitude;
     if (this.whole && angles) {
       const width = angles.shape[1] ?? 1;
@@ -140,7 +113,7 @@ export class Panel {
     // Bent farther than the beam is long, it is seen from farther away.
     const size = Math.max(this.carrier.size, this.whole ? 0 : this.deflection);
     const away = (size / (half * Math.min(1, aspect))) * orbit.distance;
-    const [x, y, z] = this.carrier.middle;
+    const [x, y, z] = this.middle;
     const [a, b, c] = orbit.direction;
     this.camera.aspect = aspect;
     this.camera.near = away / 100;
@@ -160,25 +133,11 @@ export class Panel {
       return hub(motion.radius, length, motion.mounting ?? [1, 0, 0, 0, 1, 0, 0, 0, 1]);
     }
     if (this.whole && motion.attitude) return flying(length);
+    if (motion.middle) {
+      return surroundings(motion.radiusShown!, [...view(this.numbers, motion.middle).subarray(0, 3)], length);
+    }
     const still = motion.environment === "flight" && !motion.attitude;
     return axesOnly(length, still ? "no rates are given: its axes are drawn without turning" : "");
-  }
-
-  private colour(settings: Settings, place: [number, number]): boolean {
-    const { stress, points } = this.motion;
-    if (settings.colouring === "stress" && stress) {
-      const width = stress.at.length;
-      const values = interpolate(view(this.numbers, stress.values), width, place, new Float32Array(width));
-      along(stress.at, values, points, this.shares);
-      for (let k = 0; k < points.length; k++) this.shares[k]! /= settings.largestStress || 1;
-      return true;
-    }
-    if (settings.colouring !== "deflection") return false;
-    for (let k = 0; k < points.length; k++) {
-      const size = Math.hypot(this.now[3 * k]!, this.now[3 * k + 1]!, this.now[3 * k + 2]!);
-      this.shares[k] = size / (settings.largestDeflection || 1);
-    }
-    return true;
   }
 
   private point(settings: Settings, place: [number, number], dark: boolean): void {

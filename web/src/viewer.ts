@@ -1,12 +1,13 @@
 // The viewer: every motion side by side on one canvas and one clock, with its controls.
 
 import { WebGLRenderer } from "three";
+import type { Colouring, Settings } from "./bodies";
 import { Clock } from "./clock";
 import { css, GRADIENT, prefersDark, shade } from "./colours";
 import { button, choice, element, tick } from "./controls";
 import { type Data, format, view } from "./data";
 import { Orbit } from "./orbit";
-import { type Colouring, Panel, type Settings } from "./panel";
+import { Panel } from "./panel";
 
 const NO_WEBGL = "This browser shows no WebGL, so there is no view in three dimensions; the plots and tables have it all.";
 const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 4];
@@ -39,13 +40,14 @@ export class Viewer {
     const most = (of: (each: (typeof motions)[number]) => number | undefined): number =>
       Math.max(0, ...motions.map((each) => of(each) ?? 0));
     const largest = most((each) => each.largest);
+    const beams = motions.flatMap((each) => each.parts.flatMap((part) => part.beam ?? []));
     this.settings = {
-      factor: visible(largest, motions[0]!.points.at(-1)!),
+      factor: visible(largest, motions[0]!.length),
       ghost: true,
       loads: true,
-      colouring: motions.some((each) => each.stress) ? "stress" : "deflection",
+      colouring: !beams.length ? "none" : beams.some((each) => each.stress) ? "stress" : "deflection",
       largestDeflection: largest,
-      largestStress: most((each) => each.stress?.largest),
+      largestStress: Math.max(0, ...beams.map((each) => each.stress?.largest ?? 0)),
       largestLoad: most((each) => each.largestLoad),
     };
     const ends = motions.map((each) => view(data.numbers, each.time));
@@ -202,7 +204,8 @@ export class Viewer {
       this.touch();
     });
     const relative = this.panels.every((panel) => panel.motion.relative);
-    const parts: HTMLElement[] = relative ? [speed, colour, ghost] : [speed, scale, colour, ghost];
+    const bends = this.panels.some((panel) => panel.motion.parts.some((part) => part.beam));
+    const parts: HTMLElement[] = !bends ? [speed] : relative ? [speed, colour, ghost] : [speed, scale, colour, ghost];
     if (settings.largestLoad > 0) {
       parts.push(
         tick("load", settings.loads, (on) => {

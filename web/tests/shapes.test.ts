@@ -1,11 +1,11 @@
 import { Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import { BeamMesh, corners, frame } from "../src/beam";
+import { along, Body, type Settings } from "../src/bodies";
 import { centrifuge, hub } from "../src/carriers";
 import { shade } from "../src/colours";
 import { type Ref, view } from "../src/data";
 import { shapes } from "../src/modes";
-import { along } from "../src/panel";
 import { visible } from "../src/viewer";
 
 describe("a centrifuge's pose", () => {
@@ -72,6 +72,18 @@ describe("the beam's mesh", () => {
   });
 });
 
+it("puts a body where its root is, and farther where deflections are drawn larger", () => {
+  const [c, s] = [Math.cos(0.5), Math.sin(0.5)]; // a turn of one radian about z
+  const frame = [1, 2, 3, c, 0, 0, s, 0.1, 0, 0];
+  const part = { box: { size: [1, 1, 1], centre: [0, 0, 0], rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1] }, frame: { at: 0, shape: [1, 10] } };
+  const body = new Body(part, new Float32Array(frame), 1);
+  const settings = { factor: 3, ghost: true, loads: true, colouring: "none", largestDeflection: 0, largestStress: 0, largestLoad: 0 };
+  body.update([0, 0], settings as Settings, false);
+  body.group.updateMatrixWorld(true);
+  const at = body.group.localToWorld(new Vector3(1, 0, 0));
+  expect(at.distanceTo(new Vector3(1.2 + Math.cos(1), 2 + Math.sin(1), 3))).toBeLessThan(1e-6);
+});
+
 it("takes stress linearly from the sections to the points", () => {
   const out = new Float32Array(4);
   along([0, 1], [10, 20], [0, 0.25, 1, 1], out);
@@ -86,7 +98,7 @@ it("moves a mode's shape by Re(shape e^iφ), the same after every period", () =>
   const numbers = new Float32Array([0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0.5, 0]);
   const { header, numbers: made } = shapes(modes, 0, numbers, 2);
   const motion = header.scene!.motions[0]!;
-  const rows = view(made, motion.displacement);
+  const rows = view(made, motion.parts[0]!.beam!.displacement);
   expect([...rows.slice(0, 6)]).toEqual([0, 0, 0, 0, 0, expect.closeTo(0.3, 6)]);
   expect(rows[12 * 6 + 4]).toBeCloseTo(-0.15, 6); // a quarter of a period later
   expect(rows[48 * 6 + 5]).toBeCloseTo(0.3, 6);
@@ -100,7 +112,7 @@ it("turns the sections of a mode with twist, and none by more than 0.6 rad", () 
   };
   const { header, numbers: made } = shapes(modes, 0, new Float32Array([0, 0, 0, 0, 0, 0, 0, 10, 0, 0]), 2);
   const motion = header.scene!.motions[0]!;
-  expect([...view(made, motion.twist!).slice(0, 2)]).toEqual([0, expect.closeTo(0.6, 6)]);
+  expect([...view(made, motion.parts[0]!.beam!.twist!).slice(0, 2)]).toEqual([0, expect.closeTo(0.6, 6)]);
   const beam = new BeamMesh({ points: [0, 2], width: [2, 2], thickness: [1, 1], round: false }, false);
   beam.move([0, 0, 0, 0, 0, 0], 1, null, 1, [0, Math.PI / 2]);
   const mesh = beam.group.children[0] as unknown as { geometry: { getAttribute(name: string): { array: Float32Array } } };

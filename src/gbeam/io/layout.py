@@ -50,7 +50,8 @@ def group_of(record: Any, over: tuple[str, ...] = (), pattern: str = "*", unit: 
             units = each.unit if isinstance(each.unit, dict) else {}
             for row, of in value.items():
                 inner = group_of(of, (), within.replace("*", f"{row}_*"), units.get(row, ""))
-                inner = _renamed(inner, {dim: f"{row}_{dim}" for dim in inner.coordinates if dim})
+                alone = {dim for each in inner.variables.values() for dim in each.dims} - {"time", *_LABELLED}
+                inner = _renamed(inner, {dim: f"{row}_{dim}" for dim in alone})
                 group.coordinates.update({dim: each for dim, each in inner.coordinates.items() if dim})
                 for key, one in known(inner.variables).items():
                     words = f"{row.replace('_', ' ')}, {one.attrs['long_name']}"

@@ -12,7 +12,7 @@ import numpy as np
 from gbeam.errors import InputError
 from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity, rows
 from gbeam.results.facts import at_place
-from gbeam.results.parts import LoadPeaks, Loads
+from gbeam.results.parts import LoadPeaks, Loads, Outline
 from gbeam.results.result import Complex, Figured, Floats, Part
 
 ENERGIES = ("kinetic", "elastic", "gravity")
@@ -72,6 +72,30 @@ class BeamResponse(Part):
 
     loads: Loads = part("internal loads at the root and the stations", key=None, name=INSIDE)
     peaks: LoadPeaks = part("largest values between all steps", key=INSIDE, name=INSIDE)
+    outline: Outline | None = part(
+        "its shape at some of the times, axes of its root",
+        key=None,
+        name=INSIDE,
+        note="None unless straight at rest",
+    )
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Assembly(Part):
+    """What hangs on what, and the size of rigid bodies, for pictures."""
+
+    bodies: tuple[str, ...] = labels("name of the body", "body")
+    hangs_on: tuple[str, ...] = quantity("", "point that the body hangs on", "body", note="ground, or body.point")
+    joint: tuple[str, ...] = quantity("", "kind of the joint that holds it", "body", name="joint_kind")
+    place_at_rest: Floats = quantity(
+        "m", "place of that point, its body undeformed", "body", "axis", frame="axes of its body's root"
+    )
+    box: Floats = quantity(
+        "m", "extents of an even box of the same mass and inertia", "body", "axis", note="NaN of flexible bodies",
+        frame="principal axes",
+    )  # fmt: skip
+    box_centre: Floats = quantity("m", "centre of that box from the root", "body", "axis", frame="axes of the root")
+    box_rotation: Floats = quantity("", "rotation from principal axes to axes of the root", "body", "row", "axis")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -136,6 +160,9 @@ class SystemResponse(Figured):
         "momentum and energy", key="invariants", name=INSIDE, note="None on a base that moves", default=None
     )
     loop: Loop | None = part("controllers", key="loop", name=INSIDE, note="None without any", default=None)
+    assembly: Assembly | None = part(
+        "how the bodies hang together", key=None, name=INSIDE, note="None where nothing is to be drawn", default=None
+    )
     beams: Mapping[str, BeamResponse] = rows(
         "beams, by the name of the body", "body", optional=True, name="", default_factory=dict
     )

@@ -38,8 +38,10 @@ POINTS = 16  # along the beam, at most
 TIMES = 1500
 
 
-def outline_of(structure: Structure, motion: Motion, time: Floats, q: Floats) -> Outline | None:
-    """Return the outline of a response at times `time` (t,) s with coordinates `q` (t, n); None without a beam."""
+def outline_of(structure: Structure, motion: Motion | None, time: Floats, q: Floats) -> Outline | None:
+    """Return the outline of a response at times `time` (t,) s with coordinates `q` (t, n); None without a beam, and
+    without what carries it where there is no `motion`.
+    """
     if structure.field is None or structure.source is None or structure.source.beam.line is not None:
         return None  # the viewer draws straight beams
     beam = structure.source.beam
@@ -80,6 +82,8 @@ def _attitude(motion: Any, time: Floats, some: Any) -> Floats | None:
 
 
 def _carrier(motion: Any) -> dict[str, Any]:
+    if motion is None:
+        return {}
     if motion.kind == "centrifuge":
         return {"arm": float(motion.geometry.arm)}
     if motion.kind == "hub":

@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 
 from gbeam.analysis.response.outcome import yielding
 from gbeam.analysis.response.peaks import load_peaks
+from gbeam.analysis.response.record import outline_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Run, difference, ratio, share
 from gbeam.analysis.response.stepping import MAX_STEPS, ONE_CORNER, finer_by, scheme_of
+from gbeam.analysis.system.assembly import assembly_of
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, histories, loads_of
 from gbeam.analysis.system.point import Point, started
@@ -22,6 +24,7 @@ from gbeam.errors import InputError
 from gbeam.integrate.driver import integrate
 from gbeam.integrate.equations import NonlinearEquations, Trajectory
 from gbeam.integrate.steps import Corners
+from gbeam.mechanics.tree.steps import continuous
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
@@ -168,7 +171,8 @@ def _over_time(
         for name, each in carried.items():
             beams.setdefault(name, []).append(each)
     along = {name: loads_of(beams_of(system)[name], each, of.time) for name, each in beams.items() if loads}
-    return {key: np.concatenate(values) for key, values in columns.items()}, along, loop
+    over_time = {key: np.concatenate(values) for key, values in columns.items()}
+    return over_time | {"attitude": continuous(over_time["attitude"])}, along, loop
 
 
 def _described(
@@ -187,11 +191,15 @@ def _described(
     over_time, along, loop = _over_time(system, motion, equations, kept, loads=settings.loads)
     beams, yielded = dict[str, BeamResponse](), []
     for body, loads in along.items():
+        beam = beams_of(system)[body]
 
         def between(steps: Any, body: str = body) -> Loads:
             return _over_time(system, motion, equations, _at(every, steps), loads=True)[1][body]
 
-        beams[body] = BeamResponse(loads, load_peaks(loads, between, every.time, stride))
+        peaks = load_peaks(loads, between, every.time, stride)
+        first = system.coordinates.index(f"{body}.q1")
+        q = over_time["q"][:, first : first + beam.size]
+        beams[body] = BeamResponse(loads, peaks, outline_of(beam, None, kept.time, q))
         yielded += yielding(beams[body].peaks, f" of {body}")
     invariants = None
     if motion is None:
@@ -216,6 +224,7 @@ def _described(
         invariants=invariants,
         loop=loop,
         beams=beams,
+        assembly=assembly_of(system) if settings.loads else None,
         integrator=scheme_of(settings).name,
         step=run.step,
         steps=len(every.time) - 1,

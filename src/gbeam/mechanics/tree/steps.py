@@ -161,9 +161,13 @@ def parameters_of_all(R: Array) -> Array:
     from scipy.spatial.transform import Rotation as Turned
 
     e = np.roll(Turned.from_matrix(np.asarray(R)).as_quat(), 1, axis=-1)
+    return continuous(e if e[0, 0] >= 0 else -e)
+
+
+def continuous(e: Array) -> Array:
+    """Euler parameters (t, ..., 4) without jumps of sign."""
     turn = np.where((e[1:] * e[:-1]).sum(axis=-1) < 0, -1.0, 1.0)
-    first = 1.0 if e[0, 0] >= 0 else -1.0
-    return e * first * np.cumprod(np.concatenate([[1.0], turn]))[:, None]
+    return e * np.cumprod(np.concatenate([np.ones_like(turn[:1]), turn]), axis=0)[..., None] if len(e) > 1 else e
 
 
 def functions_of_angle(s: Array) -> tuple[Array, ...]:

@@ -40,10 +40,10 @@ class Page(NamedTuple):
 _APART = ("form", "units", "provenance", "warnings", "files", "title", "outcome", "state")
 
 
-def _quantities(facts: Mapping[str, Any], _: str, plots: str) -> str:
+def _quantities(facts: Mapping[str, Any], viewer: str, plots: str) -> str:
     """The inside of the page of a kind that has none of its own: its quantities, and a table for each list of them."""
     known = {key: value for key, value in facts.items() if key not in _APART}
-    return "".join([*_inside(known, facts.get("units", {}), ""), section("Figures", plots)])
+    return "".join([section("Motion", viewer), *_inside(known, facts.get("units", {}), ""), section("Figures", plots)])
 
 
 def _inside(known: Mapping[str, Any], units: Mapping[str, str], place: str) -> Iterator[str]:
@@ -54,11 +54,16 @@ def _inside(known: Mapping[str, Any], units: Mapping[str, str], place: str) -> I
     yield table(("", "", ""), rows, words=(0, 2))
     for key, value in known.items():
         below = f"{place}{key}[i]."
+        if key == "beams":
+            beams = {name: {"loads": each} for name, each in value.items()}
+            over_time = all("sections" in each for each in value.values())
+            yield (study.loads_table if over_time else steady.loads_table)(beams, "beam")
+            continue
         if isinstance(value, dict):
             below = f"{place}{key}.*."
             if key == "motions":
                 for name, each in value.items():
-                    yield heading(name, 3)
+                    yield heading(f"motion {name}", 3)
                     yield from _inside({k: v for k, v in each.items() if k not in _APART}, units, below)
                 continue
             value = [{"": name, **each} for name, each in value.items() if isinstance(each, dict)]
@@ -159,7 +164,10 @@ def _viewer(
     """Viewer of a kind, if it has one."""
     if kind == "Modes" and facts["modes"]:
         return {"modes": shapes(modes_in(facts), numbers)}
-    motions = facts["motions"] if kind == "Study" else {}
+    motions = facts["motions"] if kind in ("Study", "SystemStudy") else {}
+    if kind == "SystemResponse":  # of one motion, alone
+        motions = {facts["name"] or facts["environment"]: facts}
+        variables = {f"motions/{name}/{key}": each for name in motions for key, each in variables.items()}
     environments = {name: each["environment"] for name, each in motions.items() if "environment" in each}
     shown = scene(environments, variables, numbers)
     return {} if shown is None else {"scene": shown}

@@ -25,8 +25,10 @@ from gbeam.results.modal import Modes
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
-from gbeam.results.study import Study
+from gbeam.results.study import Study, SystemStudy
+from gbeam.results.system import SystemResponse
 
+SHOWN = Study, Response, SystemStudy, SystemResponse  # in motion
 _FIX = "give the result.nc of `gbeam run`, its folder, or the JSON of another verb"
 
 
@@ -37,7 +39,7 @@ def report_of(
     if known is None:
         known = facts(result) | {"provenance": origin_json(result.provenance or Provenance())}
         figures = figures_of(whole(result))
-    return html(known, variables_of(result) if isinstance(result, (Study, Response)) else {}, figures=figures)
+    return html(known, variables_of(result) if isinstance(result, SHOWN) else {}, figures=figures)
 
 
 def variables_of(result: Result) -> dict[str, Any]:
@@ -56,8 +58,8 @@ def shown(result: Result) -> tuple[dict[str, Any], Numbers]:
     if isinstance(result, Modes):
         header["modes"] = shapes(result, numbers)
         return header, numbers
-    of = whole(result)
-    if isinstance(of, Study):
+    of = SystemStudy("", {result.name or "ground": result}) if isinstance(result, SystemResponse) else whole(result)
+    if isinstance(of, (Study, SystemStudy)):
         environments = {name: each.environment for name, each in of.responses.items()}
         header["scene"] = scene(environments, variables_of(of), numbers)
     if header.get("scene") is None:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from gbeam.report.page.series import Numbers
 from gbeam.report.words import number
@@ -14,45 +15,42 @@ from gbeam.results.result import Floats
 
 Variables = Mapping[str, Any]
 SHOWN = 33  # points of a mode shape
+TIMES = 1500  # of bodies that have no outline of their own
+SIGNS = np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, -1).T  # of a box's corners
+FAR = 4  # times their own size: bodies that go farther are followed
 WIDE, THICK = 0.03, 0.012  # of the length: of a beam whose section a result does not hold
 
 
 def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) -> dict[str, Any] | None:
     """Return the motions that have an outline, and the first one's time of largest deflection, if any."""
-    shown = [
-        motion(name, environment, variables, numbers)
-        for name, environment in motions.items()
-        if f"motions/{name}/outline" in variables
-    ]
+    shown = []
+    for name, environment in motions.items():
+        place = f"motions/{name}/"
+        of = {key.removeprefix(place): each for key, each in variables.items() if key.startswith(place)}
+        if "outline" in of:
+            shown.append((motion(name, environment, of, numbers), of["outline_time"], of["outline"]))
+        elif "hangs_on" in of:
+            shown.append(_system(name, environment, of, numbers))
     if not shown:
         return None
-    first = f"motions/{shown[0]['name']}"
-    tip = (variables[f"{first}/outline"][:, -1] ** 2).sum(axis=-1)
-    return {"motions": shown, "start": float(variables[f"{first}/outline_time"][tip.argmax()])}
+    _, time, moved = shown[0]
+    return {"motions": [each for each, *_ in shown], "start": float(time[(moved[:, -1] ** 2).sum(axis=-1).argmax()])}
 
 
 def motion(name: str, environment: str, variables: Variables, numbers: Numbers) -> dict[str, Any]:
     """One motion: the beam's outline, stress, load, and the turning of what carries it."""
-
-    def of(key: str) -> Any:
-        return variables.get(f"motions/{name}/{key}")
-
+    of: Any = variables.get
     time, some = of("time"), of("outline_time")
     index = np.searchsorted(time, some - 1e-12).clip(max=len(time) - 1)  # of the response's own times
     outline = of("outline")
     header: dict[str, Any] = {
         "name": name,
         "environment": environment,
-        **shape(of("point"), of("outline_width"), of("outline_thickness"), of("outline_round")),
-        "bodies": [] if of("body_mass") is None else np.stack([of("body_position"), of("body_mass")], axis=1).tolist(),
+        "parts": [{"beam": _beam(variables, index, numbers)}],
+        "length": float(of("point")[-1]),
         "time": numbers.add(some),
-        "displacement": numbers.add(outline),
         "largest": _largest(outline),
     }
-    stress = of("stress")
-    if stress is not None and np.isfinite(stress).all():
-        largest = float(np.max(stress))
-        header["stress"] = {"at": of("section").tolist(), "values": numbers.add(stress[index]), "largest": largest}
     actual = of("load_actual")
     load = of("root_acceleration") if actual is None else actual
     header["load"], header["largestLoad"] = numbers.add(load[index]), _largest(load)
@@ -67,6 +65,87 @@ def motion(name: str, environment: str, variables: Variables, numbers: Numbers) 
         header["radius"], header["mounting"] = float(of("hub_radius")), np.ravel(of("hub_mounting")).tolist()
         header["angle"] = numbers.add(of("hub_angle")[index])
     return header
+
+
+def _beam(variables: Variables, index: Any, numbers: Numbers) -> dict[str, Any]:
+    """A beam in axes of its root, its stress at the response's times of an index."""
+    of: Any = variables.get
+    header: dict[str, Any] = {
+        **shape(of("point"), of("outline_width"), of("outline_thickness"), of("outline_round")),
+        "bodies": [] if of("body_mass") is None else np.stack([of("body_position"), of("body_mass")], axis=1).tolist(),
+        "displacement": numbers.add(of("outline")),
+    }
+    stress = of("stress")
+    if stress is not None and np.isfinite(stress).all():
+        largest = float(np.max(stress))
+        header["stress"] = {"at": of("section").tolist(), "values": numbers.add(stress[index]), "largest": largest}
+    return header
+
+
+def _system(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple[dict[str, Any], Floats, Floats]:
+    """One motion of a system: its beams, boxes of its rigid bodies, and where their roots are; times and the deflection
+    (t, 1, 3) of the beam that is deflected most.
+    """
+    time, beams = v["time"], [body for body in v["body"] if f"{body}_outline" in v]
+    some = v[f"{beams[0]}_outline_time"] if beams else time[:: -(-len(time) // TIMES)]
+    index = np.searchsorted(time, some - 1e-12).clip(max=len(time) - 1)
+    place, points = v["place"][index], list(v["point"])
+    frames: dict[str, tuple[Any, Any, Floats]] = {
+        "ground": (Rotation.identity(), np.zeros(3), np.zeros((len(some), 3)))
+    }
+    parts, corners, deflected = [], list[Floats](), np.zeros((len(some), 1, 3))
+    for k, body in enumerate(v["body"]):
+        root = points.index(f"{body}.root")
+        attitude = v["attitude"][index, root]
+        turn, at = Rotation.from_quat(np.roll(attitude, -1, axis=-1)), place[:, root]
+        on = v["hangs_on"][k]
+        held, origin, shift = frames[on.partition(".")[0]]
+        if on in points:
+            bent = held.inv().apply(place[:, points.index(on)] - origin) - v["place_at_rest"][k]
+            shift = shift + held.apply(np.where(np.abs(bent) > 1e-9 * np.abs(place).max(), bent, 0.0))
+        frames[body] = turn, at, shift
+        part: dict[str, Any] = {"frame": numbers.add(np.concatenate([at, attitude, shift], axis=-1))}
+        if body in beams:
+            of = {key.removeprefix(f"{body}_"): each for key, each in v.items() if key.startswith(f"{body}_")}
+            part["beam"] = _beam(of, index, numbers)
+            tip = of["outline"][:, -1:]
+            deflected = tip if _largest(tip) > _largest(deflected) else deflected
+        else:
+            others = [i for i, each in enumerate(points) if each.startswith(f"{body}.") and i != root]
+            part["points"] = [turn[0].inv().apply(place[0, i] - at[0]).tolist() for i in others]
+            if np.isfinite(v["box"][k]).all():
+                size, centre, rotation = (v[key][k] for key in ("box", "box_centre", "box_rotation"))
+                part["box"] = {
+                    "size": size.tolist(),
+                    "centre": centre.tolist(),
+                    "rotation": np.ravel(rotation).tolist(),
+                }
+                corners += [at[:, None] + turn.apply(centre + rotation @ (sign * size / 2))[:, None] for sign in SIGNS]
+        parts.append(part | ({"joint": True} if v["joint_kind"][k] not in ("fixed", "free") else {}))
+    middle, radius = _view(np.concatenate([place, *corners], axis=1))
+    outlines = [v[f"{body}_outline"] for body in beams]
+    header = {
+        "name": name,
+        "environment": environment,
+        "parts": parts,
+        "length": max((float(v[f"{body}_point"][-1]) for body in beams), default=radius),
+        "time": numbers.add(some),
+        "largest": max(map(_largest, outlines), default=0.0),
+        "middle": numbers.add(middle),
+        "radiusShown": radius,
+    }
+    return header, some, deflected
+
+
+def _view(place: Floats) -> tuple[Floats, float]:
+    """Middle (1, 3) of what moves over points (t, p, 3), and its radius; (t, 3) of what is followed."""
+    low, high = place.min(axis=(0, 1)), place.max(axis=(0, 1))
+    middle = (place.min(axis=1) + place.max(axis=1)) / 2
+    of_bodies = float(np.linalg.norm(place - middle[:, None], axis=-1).max())
+    whole = float(np.linalg.norm(high - low)) / 2
+    if whole > FAR * of_bodies > 0:
+        return middle, 1.05 * of_bodies
+    return (low + high)[None] / 2, 1.05 * whole or 1.0
 
 
 def shape(points: Floats, width: Floats, thickness: Floats, is_round: Any) -> dict[str, Any]:

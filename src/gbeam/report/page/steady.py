@@ -103,7 +103,7 @@ def static_body(facts: Facts, viewer: str, drawn: str) -> str:
         for name, each in motions.items()
         if not each["stable"]
     ]
-    parts += [heading("Deflection"), _tips(motions), _loads(motions)]
+    parts += [heading("Deflection"), _tips(motions), loads_table(motions)]
     return "".join([*parts, section("Along the beam", drawn)])
 
 
@@ -116,13 +116,15 @@ def _tips(motions: Facts) -> str:
     return table(head, (row(*each) for each in motions.items()), "Displacement of the tip", words=(0, 2))
 
 
-def _loads(motions: Facts) -> str:
+def loads_table(motions: Facts, of: str = "motion") -> str:
+    """Loads of the root and stress at rest, in every motion, or `of` every beam."""
+
     def row(name: str, loads: Facts) -> list[Value]:
         stress = [known(each) for each in loads["stress"]]
         vectors = [loads[key][axis] for key in ("root_force", "root_moment") for axis in "xyz"]
         return [name, *vectors, 1e-6 * max(stress, default=np.nan)]
 
-    head = ("motion", *(f"{of} {axis}" for of in ("force, N:", "moment, N m:") for axis in "xyz"), "stress, MPa")
+    head = (of, *(f"{what} {axis}" for what in ("force, N:", "moment, N m:") for axis in "xyz"), "stress, MPa")
     rows = (row(name, each["loads"]) for name, each in motions.items() if "loads" in each)
     return table(head, rows, "Of the base on the root, base axes; largest stress anywhere")
 

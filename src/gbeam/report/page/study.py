@@ -59,8 +59,8 @@ def tips_table(motions: Facts) -> str:
     return table(head, rows, "Displacement of the tip relative to the base axes", words=(0, 1))
 
 
-def loads_table(motions: Facts) -> str:
-    """Largest loads of the root and stress."""
+def loads_table(motions: Facts, of: str = "motion") -> str:
+    """Largest loads of the root and stress, in every motion, or `of` every beam."""
     rows = []
     for name, each in motions.items():
         if "loads" in each:
@@ -70,7 +70,7 @@ def loads_table(motions: Facts) -> str:
             largest, margin = known(stress.get("max")), loads.get("margin", {}).get("min")
             row = [name, force["max_abs"], force["time_of_max"], moment["max_abs"], moment["time_of_max"]]
             rows.append([*row, 1e-6 * largest, stress.get("time_of_max"), margin])
-    head = ["motion", "root force, N", "at, s", "root moment, N m", "at, s", "stress, MPa", "at, s", "margin on yield"]
+    head = [of, "root force, N", "at, s", "root moment, N m", "at, s", "stress, MPa", "at, s", "margin on yield"]
     if all(row[-1] is None for row in rows):
         head, rows = head[:-1], [row[:-1] for row in rows]
     if all(math.isnan(row[5]) for row in rows):  # without extreme fibres
