@@ -245,6 +245,16 @@ class Given:
                 ("machine", self.centrifuge.over(0.0, 0.1), "flight"),
                 {"beam": self.beam, "tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5}, "title": "a"},
             ),
+            "ImportedModel": (
+                (),
+                {
+                    "mass": np.eye(3),
+                    "stiffness": np.eye(3),
+                    "nodes": [(0.1, 0, 0)],
+                    "unknowns": [(0, 1), (0, 2), (0, 3)],
+                    "numbers": [1],
+                },
+            ),
             "read_matrix": ((self.matrix, "k"), {}),
             "read_record": (
                 (self.record, *columns),

@@ -45,7 +45,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.errors import ComputationError as ComputationError
     from gbeam.errors import GbeamError as GbeamError
     from gbeam.errors import InputError as InputError
-    from gbeam.io.matrices import read_matrix as read_matrix
+    from gbeam.io.models.registry import read_matrix as read_matrix
     from gbeam.mechanics.assembly import assemble as assemble
     from gbeam.mechanics.models import Model as Model
     from gbeam.mechanics.structure import Structure as Structure
@@ -88,6 +88,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.results.system import SystemRest as SystemRest
     from gbeam.scenario.build import read_scenario as read_scenario
     from gbeam.scenario.rerun import rerun as rerun
+    from gbeam.solids.imported import ImportedModel as ImportedModel
     from gbeam.solids.mesh import SolidMesh as SolidMesh
     from gbeam.solids.mesh import SolidModel as SolidModel
     from gbeam.solids.rigid import RigidSpecimen as RigidSpecimen
@@ -134,6 +135,7 @@ _HOME = {
     "GbeamError": "errors",
     "Hub": "motion.bases.hub",
     "Initial": "analysis.response.problem",
+    "ImportedModel": "solids.imported",
     "InputError": "errors",
     "Line": "structure.line",
     "Load": "structure.attachments",
@@ -184,7 +186,7 @@ _HOME = {
     "optimise": "studies.optimise",
     "place": "analysis.imitation.place",
     "plan": "analysis.imitation.plan",
-    "read_matrix": "io.matrices",
+    "read_matrix": "io.models.registry",
     "read_record": "motion.records.record",
     "read_scenario": "scenario.build",
     "rerun": "scenario.rerun",

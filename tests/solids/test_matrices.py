@@ -45,7 +45,7 @@ def frame(elements: int, rotary: float = 0.0) -> tuple[np.ndarray, np.ndarray, n
 def test_a_beam_of_nodes_is_the_beam() -> None:
     """Euler and Bernoulli's frequencies and deflection; the base's acceleration reaches all nodes."""
     m, k, nodes = frame(40)
-    model = gb.Structure.of_matrices(m, k, nodes, modes=6, damping_ratio=0.01, clamp=[0], points={"middle": 20})
+    model = gb.ImportedModel(m, k, nodes).reduced(modes=6, damping_ratio=0.01, clamp=[0], points={"middle": 20})
     unit = np.sqrt(EI_Y / MU / L**4)
     flap = [f for f, way in zip(gb.modes(model).frequency, gb.modes(model).direction, strict=True) if way == "z"]
     np.testing.assert_allclose(2 * np.pi * np.array(flap[:2]) / unit, [3.51602, 22.0345], rtol=2e-3)
@@ -65,8 +65,8 @@ def test_matrices_of_a_solid_are_the_solid_without_its_geometric_stiffness() -> 
     m = sparse.kron(mass_matrix(mesh.points, mesh.blocks), sparse.eye_array(3))
     k = stiffness_matrix(mesh.points, mesh.blocks)
     whole = mesh.reduced(modes=5, damping_ratio=0.02).structure
-    ours = gb.Structure.of_matrices(
-        m, k, mesh.points, modes=5, damping_ratio=0.02, clamp=np.flatnonzero(mesh.clamped).tolist(),
+    ours = gb.ImportedModel(m, k, mesh.points).reduced(
+        modes=5, damping_ratio=0.02, clamp=np.flatnonzero(mesh.clamped).tolist(),
         total_mass=7850 * 0.3 * 0.03 * 0.02, centre=(0.15, 0, 0),
     )  # fmt: skip
     assert ours.size == whole.size
@@ -81,16 +81,21 @@ def test_matrices_of_a_solid_are_the_solid_without_its_geometric_stiffness() -> 
     assert spun[0] < spun[1]
 
 
-def test_rotations_with_mass_are_said_to_be_left_out() -> None:
-    """The frequencies are those of the whole matrix; of too much mass in rotations nothing is computed."""
+def test_rotations_with_mass_feel_the_base() -> None:
+    """The frequencies are those of the whole matrix, and so are the forces of the base's angular acceleration."""
     m, k, nodes = frame(20, rotary=1e-5)
-    model = gb.Structure.of_matrices(m, k, nodes, modes=4, damping_ratio=0, clamp=[0])
-    assert any("of a mode's mass does not feel the base's motion" in each for each in model.warnings)
+    model = gb.ImportedModel(m, k, nodes).reduced(modes=4, damping_ratio=0, clamp=[0])
+    assert any("of a mode's mass does not feel Coriolis" in each for each in model.warnings)
     kf, mf = k[6:, 6:], m[6:, 6:]
     square = np.sort(np.linalg.eigvals(np.linalg.solve(mf, kf)).real)
     np.testing.assert_allclose(model.rest[0][:4] ** 2, square[:4], rtol=1e-8)
-    with pytest.raises(gb.InputError, match=r"mass has \d+ % of a mode's mass in rotations, or between directions"):
-        gb.Structure.of_matrices(*frame(20, rotary=1e-2)[:2], nodes, modes=4, damping_ratio=0, clamp=[0])
+    # About its own axis the beam has the nodes' inertia alone.
+    rigid = np.kron(np.ones(21), [0, 0, 0, 1, 0, 0])
+    twist = np.linalg.solve(kf, -(m @ rigid)[6:])
+    c = model.coefficients
+    answer = np.linalg.solve(c.stiffness, c.f_al[0])
+    assert answer @ c.f_al[0] == pytest.approx(twist @ -(m @ rigid)[6:], rel=1e-9)
+    assert c.rigid[5] + c.rigid[6] == pytest.approx(MU * L * 1e-5, rel=1e-9)
 
 
 SPRINGS = np.diag([100.0, 200.0, 300.0])
@@ -116,18 +121,22 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"total_mass": 2e-3}, r"total_mass is 0\.002 kg, and the matrix has 2 kg; are the units those of SI"),
     ({"centre": (0.4, 0, 0), "nodes": [(0.1, 0, 0)]}, r"centre is not that of the matrix, \(0\.1, 0, 0\) m"),
     ({"inertia": np.eye(3)}, r"inertia is not that of the matrix, 0, 0, 0 kg m² on the diagonal"),
-    ({"points": {"camera": 1}}, r"points\.camera is 1; give a node from 0 to 0"),
-    ({"clamp": [-1]}, r"clamp\[0\] is -1; give a node from 0 to 0"),
+    ({"points": {"camera": 1}}, r"points\.camera is 1, which is no node; give the number of one, from 0 to 0"),
+    ({"clamp": [-1]}, r"clamp\[0\] is -1, which is no node; give"),
     ({"modes": 4}, r"modes is 4, of 3 unknowns"),
 ]
 
 
 @pytest.mark.parametrize(("changed", "words"), BAD)
 def test_matrices_that_cannot_be_are_refused(changed: dict[str, Any], words: str) -> None:
-    sound = {"mass": 2 * np.eye(3), "stiffness": SPRINGS, "nodes": [(0.1, 0.0, 0.0)], "modes": 2, "damping_ratio": 0.0}
-    gb.Structure.of_matrices(**sound)
+    model = {"mass": 2 * np.eye(3), "stiffness": SPRINGS, "nodes": [(0.1, 0.0, 0.0)]}
+    how = {"modes": 2, "damping_ratio": 0.0}
+    gb.ImportedModel(**model).reduced(**how)
+    of_model = {name: changed[name] for name in model if name in changed}
     with pytest.raises(gb.InputError, match=words):
-        gb.Structure.of_matrices(**(sound | changed))
+        gb.ImportedModel(**(model | of_model)).reduced(
+            **(how | {name: each for name, each in changed.items() if name not in model})
+        )
 
 
 WRITERS: dict[str, Callable[[Path], Any]] = {

@@ -73,6 +73,8 @@ def _same(one: Any, other: Any) -> bool:
         return type(one) is type(other) and all(_same(getattr(one, name), getattr(other, name)) for name in compared)
     if is_traced(one, other):
         return False
+    if hasattr(one, "tocsr") and hasattr(other, "tocsr"):
+        return one.shape == other.shape and not (one != other).nnz
     if hasattr(one, "shape") or hasattr(other, "shape"):
         return np.shape(one) == np.shape(other) and bool(np.all((one == other) | ((one != one) & (other != other))))
     return bool(one == other or (one != one and other != other))

@@ -39,6 +39,7 @@ def input_warnings(
             base = motion.base(times(motion, span))
         elif base is None and motion.free:
             base = motion.mount.base(*np.zeros((3, 1)))  # type: ignore[attr-defined]
+    warnings += _unstiffened(structure, base, where)
     warnings += _without_shapes(structure, base, where, span)
     return (*warnings, *_twisting(structure, span), *_on_edge(structure, motion, base, where))
 
@@ -49,6 +50,24 @@ def _frequency(structure: Structure) -> Iterator[str]:
         yield (
             f"the beam's lowest natural frequency at rest is {lowest:.3g} Hz, outside the plausible {SLOWEST:g} to "
             f"{FASTEST:g} Hz; are the units of length, section and material right?"
+        )
+
+
+def _unstiffened(structure: Structure, base: Any, where: str) -> Iterator[str]:
+    """How large in a motion the stiffness is that a structure by matrices lacks.
+
+    A load a over its mass bends a cantilever by about a/ω², and bends it by its own angle more or less: the square of
+    its lowest frequency changes by about a/(ω² L), and by about Ω²/ω² in a rotation.
+    """
+    if not structure.unstiffened or base is None or is_traced(base.a_WO_B):
+        return
+    length, square = float(structure.length), float(structure.rest[0][0]) ** 2
+    size = [np.linalg.norm(np.reshape(each, (-1, 3)), axis=-1) for each in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)]
+    share = float((size[0] / length + size[1] ** 2 + size[2]).max()) / square
+    if share > 0:
+        yield (
+            f"{where} loads the body so that the stiffness that is left out changes the square of its lowest "
+            f"frequency by the order of {100 * share:.2g} %"
         )
 
 

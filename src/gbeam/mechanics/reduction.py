@@ -106,9 +106,23 @@ def particles_of(points: Floats, shapes: Floats, mass: Any) -> tuple[Floats, Flo
     """Masses (p,), places (p, 3) and derivatives (p, 3, n) of particles with the products of places (k, 3) and shapes
     (k, 3, n) in a mass matrix (k, k) of one component.
     """
-    n = shapes.shape[-1]
     functions = np.concatenate([linear_fields(points), shapes.reshape(len(points), -1)], axis=1)
-    products = functions.T @ (mass @ functions)
+    return _particles(functions.T @ (mass @ functions), shapes.shape[-1])
+
+
+def standing_in(body: Floats, sums: Floats, moments: Floats) -> tuple[Floats, Floats, Floats]:
+    """Particles like those of :func:`particles_of`, of a body (10,): mass, first and second moments, and of Σ m ∂r_a
+    (3, n) and Σ m r_b ∂r_a (3, 3, n); their derivatives are linear in the places.
+    """
+    total, (x, y, z), (xx, yy, zz, xy, yz, zx) = body[0], body[1:4], body[4:]
+    places = np.array([[total, x, y, z], [x, xx, xy, zx], [y, xy, yy, yz], [z, zx, yz, zz]])
+    across = np.concatenate([sums[None], moments.swapaxes(0, 1)]).reshape(4, -1)
+    shapes = across.T @ np.linalg.pinv(places, rcond=FAINT, hermitian=True) @ across
+    return _particles(np.block([[places, across], [across.T, shapes]]), sums.shape[-1])
+
+
+def _particles(products: Floats, n: int) -> tuple[Floats, Floats, Floats]:
+    """Particles by the products of 1, x, y, z and of shapes along x, y and z."""
     total = products[0, 0]
     size = np.sqrt(np.diagonal(products) / total)
     scale = np.where(size > 0, size, 1.0)

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.arrays.tree import Value, record, static
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import array, positive
+from gbeam.guards.checks import positive
 from gbeam.mechanics.equations.dalembert import Complete, CompleteHub
 from gbeam.mechanics.equations.hub import FreeHub, free_hub, ground_of
 from gbeam.mechanics.equations.inertia import Inertia
@@ -30,8 +27,7 @@ from gbeam.mechanics.fields.basis import FAMILIES, Counts
 from gbeam.mechanics.fields.rooted import Field
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import Places
-from gbeam.mechanics.matrices import EXACT, MOST, compare_mass, left_out, mass_of_nodes, sparse_matrix
-from gbeam.mechanics.reduction import linear_fields, particles_of, reduce
+from gbeam.mechanics.reduction import particles_of
 from gbeam.numerics.eigen import positive_definite
 
 if TYPE_CHECKING:
@@ -109,6 +105,10 @@ class Structure:
         What it was made of; None for a structure of particles, whose errors of shapes and model are unknown.
     points : tuple of str
         Names of the stations of a structure of particles, where they have some.
+    turns : (s, 3, n) or None
+        Rotations of the stations of a structure of particles per coordinate, rad; not a number where unknown.
+    unstiffened : bool
+        Whether the stress of loads is left out of the stiffness of a structure of particles.
 
     Examples
     --------
@@ -140,6 +140,8 @@ class Structure:
     warnings: tuple[str, ...] = static(default=())
     source: Source | None = static(default=None)
     points: tuple[str, ...] = static(default=())
+    turns: Array | None = None
+    unstiffened: bool = static(default=False)
 
     def __repr__(self) -> str:
         shapes = ", ".join(f"{n} {way}" for n, way in zip(self.counts, FAMILIES, strict=True) if n)
@@ -159,6 +161,7 @@ class Structure:
         geometric: Geometric | None = None,
         damping_ratio: Any = 0.0,
         stations: Array | None = None,
+        turns: Array | None = None,
         points: tuple[str, ...] = (),
         kind: str = "particles",
         warnings: tuple[str, ...] = (),
@@ -181,6 +184,8 @@ class Structure:
             Modal.
         stations : (s,) int, optional
             Indices of the particles whose displacement is put out, the "tip" last; by default the last particle.
+        turns : (s, 3, n), optional
+            Rotations of the stations per coordinate, rad: other bodies can hang on them. Not a number where unknown.
         points : tuple of str
             Names of the stations in results.
         kind : str
@@ -221,133 +226,8 @@ class Structure:
         if not (is_jax(c.mass) or positive_definite(c.mass)):
             fix = "give the particles mass, or leave out the coordinates that move none"
             raise InputError("mass", "leaves a motion of the coordinates without mass", fix)
-        c = c.damped(damping_matrix(damping_ratio, c.mass, c.stiffness))
-        return cls(
-            kind=kind,
-            linear=True,
-            hub_force=True,
-            counts=(0,) * 6,
-            length=length,
-            mass=mass,
-            places=places,
-            stations=np.asarray(r0)[chosen, 0],
-            station_places=places[chosen],
-            coefficients=c,
-            damping_ratio=damping_ratio,
-            warnings=warnings,
-            points=points,
-        )
-
-    @classmethod
-    @typed
-    def of_matrices(
-        cls,
-        mass: Array,
-        stiffness: Array,
-        nodes: ArrayLike,
-        *,
-        modes: int,
-        damping_ratio: Any,
-        clamp: Sequence[int] = (),
-        points: Mapping[str, int] | None = None,
-        total_mass: float | None = None,
-        centre: Sequence[float] | None = None,
-        inertia: ArrayLike | None = None,
-        kind: str = "matrices",
-    ) -> Structure:
-        """A structure by the matrices of a finite-element program, without its geometric stiffness.
-
-        Parameters
-        ----------
-        mass, stiffness : (3 k, 3 k) or (6 k, 6 k)
-            Arrays, or sparse ones, such as :func:`gbeam.read_matrix` gives; node by node along x, y, z, then about
-            them; SI.
-        nodes : (k, 3)
-            Places of the nodes from the root, base axes, m.
-        modes : int
-            Number of modes; the static answers to unit inertial loads come on top, as in a solid's model.
-        damping_ratio : float or sequence
-            Of critical damping, of every coordinate, or one for each.
-        clamp : sequence of int
-            Nodes, from 0, that follow the base; none where the matrices are those of the free nodes alone.
-        points : dict of int, optional
-            Nodes, from 0, that are put out, by their names; the ``tip`` is the farthest from the root otherwise.
-        total_mass, centre, inertia : optional
-            Mass, kg, its centre, (3,) m, and the inertia about it, (3, 3) kg m², as the program prints them: what the
-            matrices have must be within 1 %.
-        kind : str
-            For results.
-
-        Raises
-        ------
-        InputError
-            If a matrix is not square, symmetric or positive definite, does not fit the nodes, or has another mass.
-
-        Notes
-        -----
-        Stresses of loads neither stiffen nor soften it: every result says so. Where the mass matrix couples
-        directions, or rotations have mass, the modes are the matrices'; the base's motion acts on the mass of the
-        nodes' displacements, and more than 5 % of a mode's mass left out is refused.
-
-        Examples
-        --------
-        >>> oscillator = gb.Structure.of_matrices(
-        ...     [[2.0, 0, 0], [0, 2, 0], [0, 0, 2]],
-        ...     [[800.0, 0, 0], [0, 5000, 0], [0, 0, 9000]],
-        ...     nodes=[(0.1, 0, 0)],
-        ...     modes=2,
-        ...     damping_ratio=0.01,
-        ... )
-        >>> print(f"{oscillator.rest[0][0]:.1f} rad/s")
-        20.0 rad/s
-        """
-        m = sparse_matrix("mass", mass)
-        k = sparse_matrix("stiffness", stiffness, m.shape[0])
-        at = np.asarray(array("nodes", nodes), dtype=float)
-        if at.ndim != 2 or at.shape[1:] != (3,) or m.shape[0] not in (3 * len(at), 6 * len(at)):
-            fix = "give a row of x, y, z for each three or six rows of the matrices"
-            raise InputError("nodes", f"has the shape {at.shape}, and the matrices {m.shape[0]} rows", fix)
-        per = m.shape[0] // len(at)
-        chosen = {name: int(node) for name, node in (points or {}).items()}
-        tip = chosen.pop("tip", int(np.argmax(np.linalg.norm(at, axis=1))))
-        for where, node in (*((f"points.{name}", node) for name, node in chosen.items()), ("points.tip", tip),
-                            *((f"clamp[{i}]", node) for i, node in enumerate(clamp))):  # fmt: skip
-            if not 0 <= node < len(at):
-                raise InputError(where, f"is {node}", f"give a node from 0 to {len(at) - 1}")
-        of_nodes = mass_of_nodes(m, len(at))
-        compare_mass(at, of_nodes, total_mass, centre, inertia)
-        fields = np.zeros((len(at), per, 12))
-        fields[:, :3] = -np.einsum("kf,ac->kcaf", linear_fields(at), np.eye(3)).reshape(len(at), 3, 12)
-        free = np.repeat(~np.isin(np.arange(len(at)), np.asarray(clamp, dtype=int)), per)
-        reduced = reduce(k, m, m @ fields.reshape(-1, 12), free, modes)
-        missing = left_out(m, of_nodes, reduced.shapes)
-        if missing > MOST:
-            problem = f"has {100 * missing:.0f} % of a mode's mass in rotations, or between directions"
-            raise InputError("mass", problem, "take fewer modes, or lumped masses")
-        shapes, size = reduced.shapes.reshape(len(at), per, -1)[:, :3], len(reduced.squares)
-        slow = 0.1 * math.sqrt(reduced.squares[0])
-        doubts = [
-            f"no geometric stiffness is given: what loads stiffen or soften is left out, of the order of 1 % of the "
-            f"lowest frequency's square in a rotation of {slow:.3g} rad/s, and of a load over that which buckles"
-        ]
-        if missing > EXACT:
-            doubts.append(f"up to {100 * missing:.2g} % of a mode's mass does not feel the base's motion")
-        none = np.zeros((3, size, size))
-        structure = cls.of_particles(
-            of_nodes,
-            at,
-            shapes,
-            np.diag(reduced.squares),
-            geometric=Geometric(none, none, np.zeros((3, 3, size, size))),
-            damping_ratio=0.0,
-            stations=[*chosen.values(), tip],
-            points=(*chosen, "tip"),
-            kind=kind,
-            warnings=tuple(doubts),
-        )
-        c = replace(structure.coefficients, mass=np.eye(size))
-        c = c.damped(damping_matrix(damping_ratio, c.mass, c.stiffness))
-        return replace(structure, coefficients=c, damping_ratio=damping_ratio)
+        about = {"damping_ratio": damping_ratio, "points": points, "kind": kind, "warnings": warnings}
+        return linear_structure(c, mass, places, places[chosen], length=length, turns=turns, **about)
 
     @property
     def size(self) -> int:
@@ -455,3 +335,37 @@ class Structure:
     def tip(self, q: Array) -> Array:
         """Displacement of the tip, the last station, likewise at coordinates `q` (..., n), (..., 3) m."""
         return (self.output[-1:].positions(q) - self.station_places.r0[-1:])[..., 0, :]
+
+
+def linear_structure(
+    terms: Coefficients,
+    mass: Array,
+    places: Places,
+    stations: Places,
+    *,
+    length: float,
+    damping_ratio: Any,
+    points: tuple[str, ...],
+    kind: str,
+    turns: Array | None = None,
+    warnings: tuple[str, ...] = (),
+    unstiffened: bool = False,
+) -> Structure:
+    """Structure whose equations are those of coefficients, with its particles (k,) and its stations."""
+    return Structure(
+        kind=kind,
+        linear=True,
+        hub_force=True,
+        counts=(0,) * 6,
+        length=length,
+        mass=mass,
+        places=places,
+        stations=stations.r0[:, 0],
+        station_places=stations,
+        coefficients=terms.damped(damping_matrix(damping_ratio, terms.mass, terms.stiffness)),
+        damping_ratio=damping_ratio,
+        warnings=warnings,
+        points=points,
+        turns=turns,
+        unstiffened=unstiffened,
+    )

@@ -217,12 +217,16 @@ def coefficients(
         k_ww=_twice(xp, pairs) + extra.ww,
         k_al=_once(xp, pairs) + extra.al,
         k_a=extra.a,
-        f_ww=-_twice(xp, moments),
-        f_al=-_once(xp, moments),
-        f_a=-sums,
+        **inertial_forces(sums, moments),
         rigid=rigid,
         loads=loads,
     )
+
+
+def inertial_forces(sums: Array, moments: Array) -> dict[str, Array]:
+    """Forces on the coordinates by the root's motion, of Σ m ∂r_a (3, n) and Σ m r_b ∂r_a (3, 3, n), a first."""
+    xp = namespace(sums, moments)
+    return {"f_ww": -_twice(xp, moments), "f_al": -_once(xp, moments), "f_a": -sums}
 
 
 def _weighted(xp: Any, mass: Array, weighted: Array, places: Places) -> Geometric:

@@ -447,17 +447,19 @@ def _named(system: System) -> Iterator[tuple[str, Mapping[str, Any]]]:
 
 def stations_of(structure: Structure) -> dict[str, int]:
     """Indices of a structure's stations that have a name."""
-    last = len(structure.stations) - 1
     if structure.source is None:
-        return {"tip": last}
+        names = structure.points or ("tip",)
+        return {name: len(structure.stations) - len(names) + k for k, name in enumerate(names)}
     named = structure.source.beam.named_points
     return {name: int(np.argmin(np.abs(structure.stations - at))) for name, at in named.items()}
 
 
 def refuse_turnless(where: str, body: RigidBody | Structure, on: int) -> None:
     """Refuse to hang a body on a point whose turning is not known."""
-    if isinstance(body, Structure) and body.field is None and on < len(stations_of(body)):
-        fix = "hang it on the root, or give it as a rigid part of the particles"
+    if not isinstance(body, Structure) or body.field is not None or on >= len(stations_of(body)):
+        return
+    if body.turns is None or not np.isfinite(body.turns[list(stations_of(body).values())[on]]).all():
+        fix = "hang it on the root, or on an interface of a solid, or on a node that has rotations"
         raise InputError(where, "is a point of particles, which do not say how it turns", fix)
 
 
@@ -479,7 +481,11 @@ def body_of(where: str, body: RigidBody | Structure) -> Body:
         points = polynomial_points(body.field.sections(body.first_station + stations))
     else:
         places = body.station_places[stations]
-        points = PolynomialPoints(places.r0, places.first, places.second, 0 * places.first, 0 * places.second)
+        none = np.zeros((*places.first.shape, body.size))
+        second, turn = none if places.second is None else places.second, 0 * places.first
+        if body.turns is not None:
+            turn = np.nan_to_num(body.turns[stations])
+        points = PolynomialPoints(places.r0, places.first, second, turn, none)
     if body.linear:
         return LinearBody(c, points)
     assert body.inertia is not None

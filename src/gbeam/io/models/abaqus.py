@@ -1,0 +1,116 @@
+"""Matrices of Abaqus and CalculiX: substructures, generated matrices, matrix storage; and the nodes of their input."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from gbeam.errors import InputError
+from gbeam.io.models.contents import Contents, mirrored
+
+KINDS = {"STIFFNESS": "K", "MASS": "M", "VISCOUSDAMPING": "C", "STRUCTURALDAMPING": "D"}
+AGAIN = "write it again"
+
+
+def read_matrix(path: str) -> Contents:
+    """Read a substructure, or entries `node, direction, node, direction, value` or `row, column, value`."""
+    lines = [line for line in Path(path).read_text(encoding="ascii", errors="replace").splitlines() if line.strip()]
+    if any(line.upper().startswith("*MATRIX") for line in lines):
+        return _substructure(lines)
+    rows = [_numbers(line) for line in lines if not line.startswith("*")]
+    if not rows or len({len(row) for row in rows}) > 1 or len(rows[0]) not in (3, 5):
+        raise InputError("path", f"{path} holds no matrix of Abaqus", "export one with three or five numbers a line")
+    return _entries(np.array(rows), Path(path).stem)
+
+
+def read_storage(path: str) -> Contents:
+    """Read the matrix of CalculiX's matrix storage, whose rows are in the file .dof beside it."""
+    entries = np.loadtxt(path, ndmin=2)
+    beside = Path(path).with_suffix(".dof")
+    if not beside.exists():
+        raise InputError("path", f"{path} has no {beside.name} beside it", "copy it there: it says what the rows are")
+    pairs = [line.split(".") for line in beside.read_text(encoding="ascii").split()]
+    name = {".sti": "K", ".mas": "M"}[Path(path).suffix.lower()]
+    i, j = entries[:, :2].astype(int).T - 1
+    matrix = mirrored(entries[:, 2], i, j, len(pairs))
+    return {"matrices": {name: matrix}, "unknowns": {name: np.array(pairs, dtype=int)}}
+
+
+def read_nodes(path: str) -> Contents:
+    """Read the nodes of an input file."""
+    at: dict[int, list[float]] = {}
+    inside = False
+    for line in Path(path).read_text(encoding="ascii", errors="replace").splitlines():
+        if line.startswith("**") or not line.strip():
+            continue
+        if line.startswith("*"):
+            inside = line.split(",")[0].strip().upper() == "*NODE"
+        elif inside:
+            number, *place = _numbers(line)
+            at[int(number)] = [*place, 0.0, 0.0, 0.0][:3]
+    return {"numbers": np.array(list(at), dtype=int), "places": np.array(list(at.values())).reshape(-1, 3)}
+
+
+def _numbers(line: str) -> list[float]:
+    return [float(each) for each in line.replace("D", "E").replace(",", " ").split()]
+
+
+def _entries(rows: np.ndarray, name: str) -> Contents:
+    if rows.shape[1] == 3:
+        i, j = rows[:, :2].astype(int).T - 1
+        return {"matrices": {name: mirrored(rows[:, 2], i, j, int(max(i.max(), j.max())) + 1)}}
+    pairs = rows[:, :4].astype(int).reshape(-1, 2, 2)
+    unknowns, index = np.unique(pairs.reshape(-1, 2), axis=0, return_inverse=True)
+    i, j = index.reshape(-1, 2).T
+    unknowns[unknowns[:, 0] < 0, 1] = 0  # nodes inside of it, without a place
+    return {"matrices": {name: mirrored(rows[:, 4], i, j, len(unknowns))}, "unknowns": {name: unknowns}}
+
+
+def _substructure(lines: list[str]) -> Contents:
+    """Read user elements: nodes in a comment, directions by node, and lower triangles, row by row."""
+    nodes: list[int] = []
+    unknowns: list[tuple[int, int]] = []
+    contents: Contents = {"matrices": {}, "unknowns": {}}
+    blocks = _blocks(lines)
+    for head, body in blocks:
+        if head.startswith("** ELEMENT NODES"):
+            nodes = [int(n) for line in body if line.startswith("**") for n in _numbers(line.strip("* "))]
+            directions = [[int(n) for n in _numbers(line)] for line in body if not line.startswith("**")]
+            unknowns = list(_unknowns(nodes, directions))
+        elif head.startswith("*MATRIX"):
+            name = KINDS.get(head.split("TYPE=")[-1].strip().replace(" ", ""), head)
+            values = np.array([n for line in body if not line.startswith("**") for n in _numbers(line)])
+            size = len(unknowns)
+            if len(values) != size * (size + 1) // 2:
+                problem = f"has {len(values)} numbers in {name}, of {size} rows"
+                raise InputError("path", problem, AGAIN)
+            contents["matrices"][name] = mirrored(values, *np.tril_indices(size), size)
+            contents["unknowns"][name] = np.array(unknowns)
+    return contents
+
+
+def _blocks(lines: list[str]) -> Iterator[tuple[str, list[str]]]:
+    """Headings and the lines after them."""
+    head: str = ""
+    body: list[str] = []
+    for line in lines:
+        upper = line.upper().strip()
+        if upper.startswith(("** ELEMENT NODES", "*MATRIX")) or (upper.startswith("*") and not upper.startswith("**")):
+            yield head, body
+            head, body = upper, []
+        else:
+            body.append(line)
+    yield head, body
+
+
+def _unknowns(nodes: list[int], directions: list[list[int]]) -> Iterator[tuple[int, int]]:
+    """Nodes and directions of the rows: a list of directions holds until a node, by its place, begins another."""
+    if not directions:
+        return
+    changes = {1: directions[0]} | {first: rest for first, *rest in directions[1:]}
+    active: list[int] = []
+    for place, node in enumerate(nodes, 1):
+        active = changes.get(place, active)
+        yield from ((node, way) for way in active)

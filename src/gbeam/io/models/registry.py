@@ -1,0 +1,216 @@
+"""Models of other programs: a reader for each kind of file, and what several files say together."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
+from gbeam.guards.confined import confined
+from gbeam.guards.limits import BINARY_BYTES, refuse_large_file
+from gbeam.io.models.contents import Contents
+from gbeam.printable import shortened
+
+MARKET = b"%%MatrixMarket"
+# Module and function of each ending; another format is one line here, and a function.
+READERS = {
+    ".npz": "arrays.read",
+    ".npy": "arrays.read",
+    ".mat": "arrays.read",
+    ".mtx": "arrays.read",  # Matrix Market's, else Abaqus's
+    ".sti": "abaqus.read_storage",
+    ".mas": "abaqus.read_storage",
+    ".inp": "abaqus.read_nodes",
+    ".op4": "nastran.read_op4",
+    ".op2": "nastran.read_op2",
+    ".pch": "nastran.read_punch",
+    ".asm": "nastran.read_superelement",
+    **dict.fromkeys((".bdf", ".dat", ".nas", ".blk"), "nastran.read_bulk"),
+}
+NAMES = {  # that programs give their matrices
+    "mass": ("M", "MASS", "MGG", "MAA", "MAAX", "MXX", "M2GG"),
+    "stiffness": ("K", "STIFFNESS", "KGG", "KAA", "KAAX", "KXX", "K2GG"),
+}
+
+
+@typed
+def read_matrix(path: str | os.PathLike[str], name: str = "") -> Any:
+    """Read a matrix of a file.
+
+    Parameters
+    ----------
+    path : path
+        NumPy's .npy or .npz, SciPy's sparse .npz, Matrix Market's .mtx, MATLAB's .mat up to version 7, Abaqus's and
+        CalculiX's .mtx, .sti and .mas, and by the extra ``nastran`` .op4, .op2 and .pch.
+    name : str
+        Of the matrix, where the file holds several.
+
+    Returns
+    -------
+    array or sparse array
+        As it is in the file.
+
+    Raises
+    ------
+    InputError
+        If the file is no such file, or holds no matrix of that name, or several and none is named.
+    OSError
+        If it cannot be read.
+
+    Examples
+    --------
+    >>> import numpy as np, tempfile, os
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     np.savez(os.path.join(folder, "model.npz"), M=np.eye(3), K=np.diag([1.0, 2.0, 3.0]))
+    ...     print(gb.read_matrix(os.path.join(folder, "model.npz"), "K").diagonal())
+    [1. 2. 3.]
+    """
+    matrices = _read(path).get("matrices", {})
+    if name and name not in matrices:
+        raise InputError("name", f"is {name!r}, which is no matrix of {path}", f"choose from {', '.join(matrices)}")
+    if not matrices:
+        raise InputError("path", f"{path} holds no matrix", "export one")
+    if len(matrices) > 1 and not name:
+        raise InputError("name", "is missing", f"choose from {', '.join(matrices)}")
+    return _sparse(matrices[name] if name else next(iter(matrices.values())))
+
+
+@dataclass(frozen=True)
+class Model:
+    """What several files say together."""
+
+    matrices: dict[str, Any] = field(default_factory=dict)
+    unknowns: dict[str, Any] = field(default_factory=dict)
+    numbers: Any = None
+    places: Any = None
+    axes: Any = None
+    modes: dict[str, Any] | None = None
+    body: dict[str, Any] | None = None
+
+    def matrix(self, role: str, name: str) -> tuple[Any, Any]:
+        """Matrix of a role, by its name or by a usual one, and what its rows are, or None."""
+        usual = [each for each in self.matrices if each.upper() in NAMES[role]]
+        if name and name not in self.matrices:
+            fix = f"choose from {', '.join(self.matrices)}" if self.matrices else "give a file with matrices"
+            raise InputError(role, f"is {name!r}, which is no matrix of the files", fix)
+        if not name and len(usual) != 1:
+            there = ", ".join(usual or self.matrices) or "the files have no matrix"
+            raise InputError(role, "is missing" if not usual else "is not clear", f"name the matrix: {there}")
+        chosen = name or usual[0]
+        return _sparse(self.matrices[chosen]), self.unknowns.get(chosen, self.unknowns.get(""))
+
+    def pair(self, mass: str, stiffness: str) -> tuple[Any, Any, Any]:
+        """Mass and stiffness of the same rows, and what these are, (u, 2), or None."""
+        m, of_m = self.matrix("mass", mass)
+        k, of_k = self.matrix("stiffness", stiffness)
+        if of_m is None or of_k is None or np.array_equal(of_m, of_k):
+            unknowns = of_k if of_m is None else of_m
+            if unknowns is not None and len(unknowns) != k.shape[0]:
+                problem = f"are {k.shape[0]}, and the files name {len(unknowns)} unknowns"
+                raise InputError("stiffness", f"has rows that {problem}", "give the files of one export")
+            return m, k, unknowns
+        every = np.unique(np.concatenate([of_m, of_k]), axis=0)
+        return *(_spread(each, rows, every) for each, rows in ((m, of_m), (k, of_k))), every
+
+    def nodes_of(self, given: Any, unknowns: Any) -> tuple[Any, Any, Any, Any]:
+        """Places (k, 3), numbers (k,), unknowns (u, 2) by the places of nodes in these, and axes (k, 3, 3) or None."""
+        if given is not None:
+            if self.places is not None:
+                raise InputError("nodes", "are given, and the files have some", "leave them out")
+            numbers, places, axes = None, np.asarray(given, dtype=float), None
+        elif self.places is None:
+            fix = "give nodes, or a file that has them: .inp, .bdf, .asm"
+            raise InputError("nodes", "are in none of the files", fix)
+        else:
+            numbers, places, axes = self.numbers, np.asarray(self.places, dtype=float), self.axes
+        if unknowns is None:
+            return places, numbers, None, axes
+        modal = unknowns[:, 1] == 0
+        used = np.unique(unknowns[~modal, 0])
+        known = np.arange(len(places)) if numbers is None else np.asarray(numbers)
+        lacking = np.setdiff1d(used, known)
+        if lacking.size:
+            some = ", ".join(map(str, lacking[:3])) + (", ..." if lacking.size > 3 else "")
+            raise InputError(
+                "nodes", f"lack {lacking.size} of those of the matrices: {some}", "give the file that has them"
+            )
+        order = np.argsort(known, kind="stable")
+        chosen = order[np.searchsorted(known[order], used)]
+        rows = np.column_stack([np.where(modal, 0, np.searchsorted(used, unknowns[:, 0])), unknowns[:, 1]])
+        return places[chosen], known[chosen], rows, None if axes is None else axes[chosen]
+
+
+def model_of(paths: Sequence[str | os.PathLike[str]]) -> Model:
+    """Read files that complete one another."""
+    parts: dict[str, Any] = {"matrices": {}, "unknowns": {}}
+    for path in paths:
+        part: Any = _read(path)
+        for key in ("matrices", "unknowns"):
+            parts[key] |= part.get(key, {})
+        if "places" in part and "places" in parts:
+            part = _joined(parts, part)
+        parts |= {key: value for key, value in part.items() if key not in ("matrices", "unknowns")}
+    return Model(**parts)
+
+
+def _joined(first: dict[str, Any], then: Any) -> dict[str, Any]:
+    """Nodes of two files."""
+    new = ~np.isin(then["numbers"], first["numbers"])
+    pairs = {key: (first[key], then[key][new]) for key in ("numbers", "places", "axes") if key in first and key in then}
+    return then | {key: np.concatenate(pair) for key, pair in pairs.items()}
+
+
+def _spread(matrix: Any, rows: Any, every: Any) -> Any:
+    """The matrix among more rows."""
+    from scipy.sparse import coo_array
+
+    place = {tuple(row): i for i, row in enumerate(every.tolist())}
+    at = np.array([place[tuple(row)] for row in rows.tolist()])
+    entries = coo_array(matrix)
+    i, j = entries.coords
+    return coo_array((entries.data, (at[i], at[j])), shape=(len(every), len(every)))
+
+
+def _read(path: str | os.PathLike[str]) -> Contents:
+    """Read a file in a process of its own."""
+    ending = Path(path).suffix.lower()
+    if ending not in READERS:
+        raise InputError("path", f"{path} ends in {ending or 'nothing'}", f"give one of {', '.join(READERS)}")
+    refuse_large_file("path", path, BINARY_BYTES, "reduce the model before it is exported")
+
+    def refuse(problem: str) -> InputError:
+        return InputError("path", f"{os.fspath(path)} {problem}", "export it again")
+
+    contents: Contents = confined(_reading, os.fspath(path), refuse=refuse)
+    return contents
+
+
+def _reading(path: str) -> Contents:
+    reader = READERS[Path(path).suffix.lower()]
+    if Path(path).suffix.lower() == ".mtx":
+        with open(path, "rb") as file:
+            reader = reader if file.read(len(MARKET)) == MARKET else "abaqus.read_matrix"
+    module, name = reader.split(".")
+    try:
+        contents: Contents = getattr(import_module(f"gbeam.io.models.{module}"), name)(path)
+    except (MemoryError, InputError):
+        raise
+    except Exception as error:  # of many kinds
+        problem = f"{path} cannot be read: {shortened(str(error), 100)}"
+        raise InputError("path", problem, "export it again") from None
+    return contents
+
+
+def _sparse(parts: Any) -> Any:
+    if not isinstance(parts, dict):
+        return parts
+    from scipy.sparse import coo_array
+
+    return coo_array((parts["values"], (parts["rows"], parts["columns"])), shape=tuple(parts["shape"]))

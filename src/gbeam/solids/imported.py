@@ -1,0 +1,382 @@
+"""Mass and stiffness matrices of other programs, whole or reduced to interfaces, as a structure on a moving base."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gbeam.arrays.tree import Value
+from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
+from gbeam.guards.checks import array, choice
+from gbeam.guards.units import UnitError, quantity
+from gbeam.io.models.registry import model_of
+from gbeam.mechanics.equations.linear import Coefficients, Geometric, coefficients, inertial_forces
+from gbeam.mechanics.fields.taylor import Places
+from gbeam.mechanics.reduction import particles_of, reduce, standing_in
+from gbeam.mechanics.structure import Structure, linear_structure
+from gbeam.numerics.eigen import Floats
+from gbeam.solids.matrices import (
+    EXACT,
+    MOST,
+    OWN,
+    Indices,
+    compare_mass,
+    displaced,
+    every_unknown,
+    fields_of,
+    left_out,
+    mass_of_nodes,
+    refuse_held,
+    rigid_body,
+    rigid_motions,
+    sparse_matrix,
+    turned,
+)
+from gbeam.structure.attachments import TIP
+
+LOADS = ("a_x", "a_y", "a_z", "alpha_x", "alpha_y", "alpha_z", "w_xx", "w_yy", "w_zz", "w_xy", "w_yz", "w_zx")
+_PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
+
+
+@typed
+@dataclass(frozen=True, eq=False)
+class ImportedModel(Value):
+    """A structure by the matrices of a finite-element program; see :meth:`read` for its files.
+
+    Parameters
+    ----------
+    mass, stiffness : (u, u)
+        Arrays, or sparse ones, such as :func:`gbeam.read_matrix` gives; SI.
+    nodes : (k, 3)
+        Places of the nodes from the root, base axes, m.
+    unknowns : (u, 2) int, optional
+        Of each row its node, from 0, and its direction: 1 to 3 along x, y, z, 4 to 6 about them; 0 of a coordinate that
+        belongs to no node, such as a mode of a Craig-Bampton model. Left out, all nodes have three unknowns, or six.
+    numbers : (k,) int, optional
+        Numbers of the nodes by which they are named, 0 to k - 1 if left out.
+
+    Raises
+    ------
+    InputError
+        If a matrix is not square or symmetric, or does not fit the nodes.
+
+    Examples
+    --------
+    >>> model = gb.ImportedModel(
+    ...     [[2.0, 0, 0], [0, 2, 0], [0, 0, 2]],
+    ...     [[800.0, 0, 0], [0, 5000, 0], [0, 0, 9000]],
+    ...     nodes=[(0.1, 0, 0)],
+    ... )
+    >>> oscillator = model.reduced(modes=2, damping_ratio=0.01)
+    >>> print(f"{oscillator.rest[0][0]:.1f} rad/s")
+    20.0 rad/s
+    """
+
+    mass: Any
+    stiffness: Any
+    nodes: ArrayLike
+    unknowns: ArrayLike | None = None
+    numbers: ArrayLike | None = None
+
+    def __post_init__(self) -> None:
+        m = sparse_matrix("mass", self.mass)
+        k = sparse_matrix("stiffness", self.stiffness, m.shape[0])
+        at = np.asarray(array("nodes", self.nodes), dtype=float)
+        size = m.shape[0]
+        if at.ndim != 2 or at.shape[1:] != (3,) or not len(at) or not np.isfinite(at).all():
+            raise InputError("nodes", f"has the shape {at.shape}", "give a row of x, y, z for each node, finite")
+        if self.unknowns is None:
+            if size not in (3 * len(at), 6 * len(at)):
+                fix = "give a row of x, y, z for each three or six rows of the matrices, or give unknowns"
+                raise InputError("nodes", f"has the shape {at.shape}, and the matrices {size} rows", fix)
+            unknowns = every_unknown(len(at), size)
+        else:
+            unknowns = np.asarray(self.unknowns, dtype=int)
+            if unknowns.shape != (size, 2):
+                raise InputError("unknowns", f"has the shape {unknowns.shape}", f"give ({size}, 2): node and direction")
+            bad = (unknowns[:, 1] < 0) | (unknowns[:, 1] > 6)
+            bad |= (unknowns[:, 1] != OWN) & ((unknowns[:, 0] < 0) | (unknowns[:, 0] >= len(at)))
+            if bad.any():
+                i = int(np.flatnonzero(bad)[0])
+                fix = f"give nodes from 0 to {len(at) - 1} and directions from 0 to 6"
+                raise InputError(f"unknowns[{i}]", f"is {unknowns[i].tolist()}", fix)
+        numbers = np.arange(len(at)) if self.numbers is None else np.asarray(self.numbers, dtype=int)
+        if numbers.shape != (len(at),) or len(np.unique(numbers)) < len(at):
+            raise InputError("numbers", f"are {numbers.shape}, or repeat", f"give {len(at)} different ones")
+        given = {"mass": m, "stiffness": k, "nodes": at, "unknowns": unknowns, "numbers": numbers}
+        for name, value in given.items():
+            object.__setattr__(self, name, value)
+
+    def __repr__(self) -> str:
+        own = int((np.asarray(self.unknowns)[:, 1] == OWN).sum())
+        more = f", {own} of them modes" if own else ""
+        return f"ImportedModel({len(np.asarray(self.nodes))} nodes, {self.mass.shape[0]} unknowns{more})"
+
+    @classmethod
+    @typed
+    def read(
+        cls,
+        *paths: str | os.PathLike[str],
+        mass: str = "",
+        stiffness: str = "",
+        nodes: ArrayLike | None = None,
+        length_unit: str = "m",
+        mass_unit: str = "kg",
+    ) -> ImportedModel:
+        """Read the matrices of a model in the files of other programs.
+
+        Parameters
+        ----------
+        *paths : path
+            One or several that complete one another: NumPy's .npz and .npy, Matrix Market's .mtx and MATLAB's .mat up
+            to version 7, with M and K, and with P, the origins of the interface frames, as Simscape's Reduced Order
+            Flexible Solid takes them; matrices of Abaqus and CalculiX (.mtx, and .sti and .mas beside .dof), with nodes
+            of an .inp; by the extra ``nastran`` .op4, .op2 and direct matrix input (.pch), with nodes of bulk data
+            (.bdf, .dat, .nas, .blk) or of an external superelement (.asm).
+        mass, stiffness : str
+            Names of the matrices in the files, where they are not the usual ones.
+        nodes : (k, 3), optional
+            Places of the nodes, in the unit of length, where no file has them: then three or six rows are of each.
+        length_unit, mass_unit : str
+            Of the program, such as ``mm`` and ``Mg``, tonnes; of time it is the second.
+
+        Raises
+        ------
+        InputError
+            If a file is none of these, cannot be read, or something that the model needs is in none of them.
+
+        Examples
+        --------
+        >>> import numpy as np, os, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = os.path.join(folder, "model.npz")
+        ...     np.savez(path, M=2 * np.eye(3), K=np.diag([800.0, 5000.0, 9000.0]))
+        ...     print(gb.ImportedModel.read(path, nodes=[(100, 0, 0)], length_unit="mm").nodes)
+        [[0.1 0.  0. ]]
+        """
+        if not paths:
+            raise InputError("paths", "are none", "give one file or more")
+        model = model_of(paths)
+        m, k, unknowns = model.pair(mass, stiffness)
+        at, numbers, unknowns, axes = model.nodes_of(nodes, unknowns)
+        size, weight = _unit("length_unit", length_unit, "length"), _unit("mass_unit", mass_unit, "mass")
+        if unknowns is None:
+            unknowns = every_unknown(len(at), m.shape[0])
+        if axes is not None:
+            m, k = (_in_base_axes(each, unknowns, axes) for each in (m, k))
+        # Displacements in m, rotations and modes' coordinates as they are.
+        from scipy.sparse import diags_array
+
+        scale = diags_array(np.where((unknowns[:, 1] > 0) & (unknowns[:, 1] < 4), 1.0, size))
+        m, k = (weight * (scale @ each @ scale) for each in (m, k))
+        return cls(m, k, size * np.asarray(at, dtype=float), unknowns, numbers)
+
+    @typed
+    def reduced(
+        self,
+        *,
+        modes: int,
+        damping_ratio: Any,
+        clamp: Sequence[int] = (),
+        points: Mapping[str, int] | None = None,
+        interfaces: Sequence[str] = (),
+        geometric: Mapping[str, Any] | None = None,
+        total_mass: float | None = None,
+        centre: Sequence[float] | None = None,
+        inertia: ArrayLike | None = None,
+        kind: str = "matrices",
+    ) -> Structure:
+        """Reduce the model to its lowest modes and its static answers to unit inertial loads.
+
+        Parameters
+        ----------
+        modes : int
+            Number of modes; the static answers come on top, as in a solid's model.
+        damping_ratio : float or sequence
+            Of critical damping, of every coordinate, or one for each.
+        clamp : sequence of int
+            Numbers of the nodes that follow the base; none where the matrices are those of the free nodes alone.
+        points : dict of int, optional
+            Numbers of the nodes that are put out, by their names; the ``tip`` is the farthest from the root otherwise.
+        interfaces : sequence of str
+            Points with displacements and rotations on which other bodies hang: the static answers to forces and
+            moments there come on top, so that the reduction is one by Craig and Bampton.
+        geometric : dict of (u, u), optional
+            Stiffness that the stress of a static load adds, by the motion of the root whose inertial load it is:
+            ``a_x``, ``a_y``, ``a_z`` of 1 m/s², ``alpha_x`` and so on of 1 rad/s², ``w_xx``, ``w_yy``, ``w_zz`` of a
+            rotation of 1 rad/s, ``w_xy``, ``w_yz``, ``w_zx`` half of what two of them add beside their own.
+        total_mass, centre, inertia : optional
+            Mass, kg, its centre, (3,) m, and the inertia about it, (3, 3) kg m², as the program prints them: what the
+            matrices have must be within 1 %.
+        kind : str
+            For results.
+
+        Raises
+        ------
+        InputError
+            If the stiffness is not positive definite, or resists rigid motion of what is clamped, a node is not there,
+            an interface has no rotations, or the matrices have another mass.
+
+        Notes
+        -----
+        Without `geometric` the stress of loads neither stiffens nor softens: every result says so, and of how much in
+        its motion. The modes and the inertial forces are those of the whole mass matrix; Coriolis forces, and what
+        centrifugal ones add to the stiffness, are those of the mass of the nodes' displacements, and the share of a
+        mode's mass beside it is said. Of coordinates of no node matrices do not say where their mass is: these forces
+        are left out.
+
+        Examples
+        --------
+        >>> model = gb.ImportedModel([[2.0, 0, 0], [0, 2, 0], [0, 0, 2]], [[800.0, 0, 0], [0, 5000, 0], [0, 0, 9000]],
+        ...                          nodes=[(0.1, 0, 0)])
+        >>> model.reduced(modes=3, damping_ratio=0.01, total_mass=2.0)
+        Structure(matrices, 3 coordinates, 2 kg)
+        """
+        at, unknowns = np.asarray(self.nodes), np.asarray(self.unknowns)
+        held = [self._node(f"clamp[{i}]", number) for i, number in enumerate(clamp)]
+        named = {name: self._node(f"points.{name}", number) for name, number in (points or {}).items()}
+        tip = named.pop(TIP, int(np.argmax(np.linalg.norm(at, axis=1))))
+        named[TIP] = tip
+        fields = fields_of(at, unknowns)
+        rigid = rigid_motions(fields)
+        body = rigid_body(self.mass, rigid)
+        compare_mass(body, float(np.linalg.norm(np.ptp(at, axis=0))), total_mass, centre, inertia)
+        if held:
+            refuse_held(self.stiffness, rigid)
+        free = (unknowns[:, 1] == OWN) | ~np.isin(unknowns[:, 0], held)
+        attached = self._attached(interfaces, named)
+        loads = np.concatenate([-(self.mass @ fields), attached], axis=1)
+        reduction = reduce(self.stiffness, self.mass, loads, free, modes)
+        products = (fields.T @ (self.mass @ reduction.shapes)).reshape(3, 4, -1)
+        stress, doubts = _geometric(geometric, reduction.shapes)
+        terms, particles, more = self._terms(reduction.shapes, reduction.squares, products, body, stress)
+        first, turns = self._outputs(list(named.values()), reduction.shapes)
+        return linear_structure(
+            terms,
+            *particles,
+            Places(at[list(named.values())], first),
+            length=float(np.linalg.norm(at, axis=1).max()),
+            turns=turns,
+            damping_ratio=damping_ratio,
+            points=tuple(named),
+            kind=kind,
+            warnings=(*doubts, *more),
+            unstiffened=bool(doubts or more),
+        )
+
+    def _node(self, where: str, number: int) -> int:
+        numbers = np.asarray(self.numbers)
+        which = np.flatnonzero(numbers == number)
+        if not which.size:
+            some = f"from {numbers.min()} to {numbers.max()}"
+            raise InputError(where, f"is {number}, which is no node", f"give the number of one, {some}")
+        return int(which[0])
+
+    def _attached(self, interfaces: Sequence[str], named: Mapping[str, int]) -> Floats:
+        """Unit forces and moments (u, 6 i) on the interfaces."""
+        columns = []
+        for i, name in enumerate(interfaces):
+            choice(f"interfaces[{i}]", name, tuple(named))
+            rows = turned(np.asarray(self.unknowns), named[name])
+            if rows is None:
+                fix = "name a point whose node has three displacements and three rotations"
+                raise InputError(f"interfaces[{i}]", f"is {name!r}, which does not turn in the matrices", fix)
+            columns.append(np.eye(self.mass.shape[0])[:, rows])
+        return np.concatenate([np.zeros((self.mass.shape[0], 0)), *columns], axis=1)
+
+    def _outputs(self, nodes: list[int], shapes: Floats) -> tuple[Floats, Floats]:
+        """Displacements and rotations (s, 3, n) of nodes per coordinate, not a number where the matrices lack them."""
+        moved = np.full((len(nodes), 6, shapes.shape[1]), np.nan)
+        for i, node in enumerate(nodes):
+            for row in np.flatnonzero(np.asarray(self.unknowns)[:, 0] == node):
+                way = np.asarray(self.unknowns)[row, 1]
+                if way != OWN:
+                    moved[i, way - 1] = shapes[row]
+            if not np.isfinite(moved[i, :3]).all():
+                name = np.asarray(self.numbers)[node]
+                raise InputError(
+                    "points", f"has node {name}, which lacks a displacement", "name one that has all three"
+                )
+        return moved[:, :3], moved[:, 3:]
+
+    def _terms(
+        self, shapes: Floats, squares: Floats, products: Floats, body: Floats, stress: Geometric
+    ) -> tuple[Coefficients, tuple[Floats, Places], list[str]]:
+        """Coefficients, particles and what is left out of them."""
+        nodes, rows = displaced(np.asarray(self.unknowns), len(np.asarray(self.nodes)))
+        of_nodes, moved = mass_of_nodes(self.mass, rows), shapes[rows]
+        sums, moments, missing = products[:, 0], products[:, 1:], left_out(of_nodes, moved)
+        unknown = missing > MOST and (np.asarray(self.unknowns)[:, 1] == OWN).any()
+        if unknown:
+            mass, *paths = standing_in(body, sums, moments)
+        else:
+            mass, *paths = particles_of(np.asarray(self.nodes)[nodes], moved, of_nodes)
+        places = Places(*paths)
+        terms = coefficients(mass, places, np.diag(squares), geometric=stress)
+        terms = replace(terms, mass=np.eye(len(squares)), rigid=body, **inertial_forces(sums, moments))
+        if missing <= EXACT:
+            return terms, (mass, places), []
+        if not unknown:
+            said = f"up to {100 * missing:.2g} % of a mode's mass does not feel Coriolis and centrifugal forces"
+            return terms, (mass, places), [said]
+        terms = replace(terms, gyroscopic=0 * terms.gyroscopic, k_ww=stress.ww, k_al=stress.al)
+        said = (
+            "the matrices do not say where the mass of their modes is: Coriolis forces, and the change of the "
+            "centrifugal force from the root to the rest of the body, are left out"
+        )
+        return terms, (mass, places), [said]
+
+
+def _unit(where: str, unit: str, dimension: str) -> float:
+    try:
+        return quantity(f"1 {unit}", dimension)
+    except UnitError as error:
+        raise InputError(where, f"is {unit!r}: {error.problem}", error.hint or "give a unit") from None
+
+
+def _in_base_axes(matrix: Any, unknowns: Indices, axes: Floats) -> Any:
+    """Turn the rows and columns of nodes that have axes (k, 3, 3) of their own into the base's."""
+    from scipy.sparse import lil_array
+
+    turn = lil_array(matrix.shape)
+    turn.setdiag(1.0)
+    for node in np.flatnonzero(np.abs(axes - np.eye(3)).max(axis=(1, 2)) > 0):
+        for first in (1, 4):
+            rows = [np.flatnonzero((unknowns[:, 0] == node) & (unknowns[:, 1] == first + i)) for i in range(3)]
+            count = sum(map(len, rows))
+            if count == 3:
+                which = np.concatenate(rows)
+                turn[np.ix_(which, which)] = axes[node]
+            elif count:
+                problem = f"has {count} of three directions in axes of its own"
+                raise InputError("unknowns", f"of node {node} {problem}", "export the matrices in the basic axes")
+    turn = turn.tocsr()
+    return turn @ matrix @ turn.T
+
+
+def _geometric(given: Mapping[str, Any] | None, shapes: Floats) -> tuple[Geometric, list[str]]:
+    """Geometric stiffness in coordinates, and which of it is missing."""
+    n, matrices = shapes.shape[1], {}
+    for name, matrix in (given or {}).items():
+        choice("geometric", name, LOADS)
+        if matrix.shape != (len(shapes), len(shapes)):
+            raise InputError(f"geometric.{name}", f"has the shape {matrix.shape}", f"give {(len(shapes),) * 2}")
+        matrices[name] = shapes.T @ ((matrix + matrix.T) / 2 @ shapes)
+    none = np.zeros((n, n))
+    a, al = (np.stack([matrices.get(f"{way}_{axis}", none) for axis in "xyz"]) for way in ("a", "alpha"))
+    ww = np.zeros((3, 3, n, n))
+    for name, (i, j) in zip(LOADS[6:], _PAIRS, strict=True):
+        ww[i, j] = ww[j, i] = matrices.get(name, none)
+    missing = [name for name in LOADS if name not in matrices]
+    if not missing:
+        return Geometric(a, al, ww), []
+    of = "" if len(missing) == len(LOADS) else f" of {', '.join(missing)}"
+    return Geometric(a, al, ww), [
+        f"no geometric stiffness{of} is given: what the stress of loads stiffens or softens is left out"
+    ]

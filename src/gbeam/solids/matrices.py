@@ -1,0 +1,147 @@
+"""Mass and stiffness matrices of another program: what they must be, and the mass of each direction in them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.errors import InputError
+from gbeam.mechanics.fields.taylor import EPSILON
+from gbeam.mechanics.reduction import linear_fields
+from gbeam.numerics.eigen import Floats
+
+Indices = NDArray[np.intp]
+OWN = 0  # direction of a coordinate that belongs to no node
+SYMMETRIC = 1e-6  # of the largest entry
+STRAINED = 1e-5  # of the forces in it: a rigid motion that strains the structure
+EXACT = 1e-6  # of a mode's mass: what is left out below it is rounding
+MOST = 0.05  # of a mode's mass, left out
+NEAR = 0.01  # of a given mass, or of the size of the structure
+
+
+def sparse_matrix(where: str, matrix: Any, size: int | None = None) -> Any:
+    """Return a matrix as a symmetric sparse one; an InputError where it is none, or of another size."""
+    from scipy.sparse import csr_array
+
+    try:
+        found = csr_array(matrix, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(where, "is no matrix of numbers", "give an array, or a sparse one of SciPy") from None
+    if found.ndim != 2 or found.shape[0] != found.shape[1]:
+        raise InputError(where, f"has the shape {found.shape}", "give a square matrix")
+    if size is not None and found.shape[0] != size:
+        raise InputError(where, f"has {found.shape[0]} rows", f"give {size}, as the other matrix has")
+    if not np.isfinite(found.data).all():
+        raise InputError(where, "has values that are not finite", "give finite ones")
+    apart, largest = abs(found - found.T), abs(found).max()
+    if apart.max() > SYMMETRIC * largest:
+        i, j = (int(each[apart.tocoo().data.argmax()]) for each in apart.tocoo().coords)
+        problem = f"is not symmetric: {found[i, j]:.4g} in row {i}, column {j}, and {found[j, i]:.4g} across"
+        raise InputError(where, problem, "write it with both triangles, and without damping or rotation in it")
+    negative = np.flatnonzero(found.diagonal() < 0)
+    if negative.size:
+        problem = f"is not positive: {found.diagonal()[negative[0]]:.4g} on the diagonal in row {negative[0]}"
+        raise InputError(where, problem, "is it the right matrix?")
+    return (found + found.T) / 2
+
+
+def every_unknown(nodes: int, unknowns: int) -> Indices:
+    """Nodes and directions (u, 2) of matrices that have three or six unknowns a node, node by node."""
+    per = unknowns // nodes
+    return np.stack([np.repeat(np.arange(nodes), per), np.tile(np.arange(1, per + 1), nodes)], axis=1)
+
+
+def fields_of(points: Floats, unknowns: Indices) -> Floats:
+    """Motions (u, 12) of unknowns in displacements 1, x, y and z along x, then along y, then along z, which turn nodes
+    by half their curl.
+    """
+    node, way = unknowns.T
+    linear = linear_fields(points)
+    fields = np.zeros((len(unknowns), 3, 4))
+    for axis in range(3):
+        moved, turned = way == axis + 1, way == axis + 4
+        fields[moved, axis] = linear[node[moved]]
+        fields[turned, :, 1:] = EPSILON[axis].T / 2  # θ_c = ½ ε_cfa for u_a = x_f
+    return fields.reshape(-1, 12)
+
+
+def rigid_motions(fields: Floats) -> Floats:
+    """Translations along and rotations about the axes, (u, 6), of the fields of :func:`fields_of`."""
+    by_axis = fields.reshape(-1, 3, 4)
+    return np.concatenate([by_axis[:, :, 0], np.einsum("acf,uaf->uc", EPSILON, by_axis[:, :, 1:])], axis=1)
+
+
+def rigid_body(mass: Any, rigid: Floats) -> Floats:
+    """Mass, first moments and second moments xx, yy, zz, xy, yz, zx about the root, (10,), of a mass matrix."""
+    body = rigid.T @ (mass @ rigid)
+    total = float(np.trace(body[:3, :3])) / 3
+    if not total > 0:
+        raise InputError("mass", f"weighs {total:.4g} kg", "give the matrix with its mass, and the nodes that have it")
+    if np.abs(body[:3, :3] - total * np.eye(3)).max() > NEAR * total:
+        shown = ", ".join(f"{each:.4g}" for each in np.diagonal(body)[:3])
+        problem = f"weighs {shown} kg along x, y and z"
+        raise InputError("mass", problem, "give the mass matrix of every direction, of a structure without joints")
+    first = np.einsum("abc,bc->a", EPSILON, body[:3, 3:]) / 2  # Σ m e_c × r
+    about = body[3:, 3:]
+    second = np.trace(about) / 2 * np.eye(3) - about
+    pairs = (second[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)))
+    return np.array([total, *first, *pairs])
+
+
+def refuse_held(stiffness: Any, rigid: Floats) -> None:
+    """Refuse a stiffness that resists rigid motion: it is held, or its nodes lie elsewhere."""
+    force, sum_of = np.abs(stiffness @ rigid), abs(stiffness) @ np.abs(rigid)
+    worst = force.max(axis=0) / np.maximum(sum_of.max(axis=0), 1e-300)
+    if worst.max() > STRAINED:
+        i = int(worst.argmax())
+        name = f"moving along {'xyz'[i]}" if i < 3 else f"turning about {'xyz'[i - 3]}"
+        problem = f"resists {name} as a rigid body, in row {int(force[:, i].argmax())}"
+        fix = "are nodes, units and the order of rows right? Give the matrices of the free structure, or no clamp"
+        raise InputError("stiffness", problem, fix)
+
+
+def displaced(unknowns: Indices, nodes: int) -> tuple[Indices, Indices]:
+    """Nodes (d,) that have all three displacements, and the rows of these, (d, 3)."""
+    rows = np.full((nodes, 3), -1)
+    for axis in range(3):
+        which = np.flatnonzero(unknowns[:, 1] == axis + 1)
+        rows[unknowns[which, 0], axis] = which
+    every = np.flatnonzero((rows >= 0).all(axis=1))
+    return every, rows[every]
+
+
+def turned(unknowns: Indices, node: int) -> Indices | None:
+    """Rows (6,) of a node's displacements and rotations; None where it lacks some."""
+    which = np.flatnonzero((unknowns[:, 0] == node) & (unknowns[:, 1] != OWN))
+    order = which[np.argsort(unknowns[which, 1])]
+    return order if len(order) == 6 else None
+
+
+def mass_of_nodes(mass: Any, rows: Indices) -> Any:
+    """The mass matrix (d, d) of one component of the displacement: the mean of the three directions'."""
+    return sum(mass[way][:, way] for way in rows.T) / 3
+
+
+def left_out(of_nodes: Any, moved: Floats) -> float:
+    """Largest part of a modal mass that the mass of the nodes leaves out, of displacements (d, 3, n) of modes."""
+    kept = sum(np.einsum("kn,kn->n", moved[:, i], of_nodes @ moved[:, i]) for i in range(3))
+    return float(np.abs(1 - kept).max())
+
+
+def compare_mass(body: Floats, size: float, total: float | None, centre: Any, inertia: Any) -> None:
+    """Refuse a mass, centre of mass or inertia about it that a body (10,) does not have."""
+    known, middle = body[0], body[1:4] / body[0]
+    xx, yy, zz, xy, yz, zx = body[4:]
+    second = np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]]) - known * np.outer(middle, middle)
+    about = np.trace(second) * np.eye(3) - second
+    fix = "are the units those of SI, and the places in the order of the matrices?"
+    if total is not None and abs(known / total - 1) > NEAR:
+        raise InputError("total_mass", f"is {total:.6g} kg, and the matrix has {known:.6g} kg", fix)
+    if centre is not None and np.linalg.norm(np.subtract(centre, middle)) > NEAR * size:
+        shown = ", ".join(f"{each:.4g}" for each in middle)
+        raise InputError("centre", f"is not that of the matrix, ({shown}) m", fix)
+    if inertia is not None and np.abs(np.subtract(inertia, about)).max() > NEAR * np.trace(about):
+        shown = ", ".join(f"{each:.4g}" for each in np.diagonal(about))
+        raise InputError("inertia", f"is not that of the matrix, {shown} kg m² on the diagonal", fix)
