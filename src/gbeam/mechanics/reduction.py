@@ -68,7 +68,11 @@ def reduce(stiffness: Any, mass: Any, loads: Floats, free: Any, modes: int) -> R
         raise InputError("stiffness", "is not positive definite", HOLD)
     rest = _complement(k_free, m_free, vector, static)
     basis = np.concatenate([vector, rest], axis=1)
-    square, within = _dense(basis.T @ (k_free @ basis), basis.T @ (m_free @ basis), basis.shape[1])
+    inside = basis.T @ (m_free @ basis)
+    if not np.linalg.eigvalsh(inside)[0] > 0:
+        fix = "give the nodes of interfaces mass in every direction, and inertia where they turn"
+        raise InputError("mass", "leaves a static answer to forces or moments without mass", fix)
+    square, within = _dense(basis.T @ (k_free @ basis), inside, basis.shape[1])
     shapes, still = np.zeros((loads.shape[0], basis.shape[1])), np.zeros_like(loads)
     shapes[free], still[free] = basis @ within, static
     return Reduced(shapes, square, still)

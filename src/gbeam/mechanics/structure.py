@@ -27,7 +27,6 @@ from gbeam.mechanics.fields.basis import FAMILIES, Counts
 from gbeam.mechanics.fields.rooted import Field
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import Places
-from gbeam.mechanics.reduction import particles_of
 from gbeam.numerics.eigen import positive_definite
 
 if TYPE_CHECKING:
@@ -170,9 +169,7 @@ class Structure:
 
         Parameters
         ----------
-        mass : (k,) kg, or (k, k)
-            Masses, or the sparse mass matrix of one component of the displacement: then `r0` and `first` are those of
-            the nodes, and some particles of equal mass with the same products stand for them.
+        mass : (k,) kg
         r0 : (k, 3) places at rest, base axes, m
         first : (k, 3, n) first derivatives of the places, per coordinate
         stiffness : (n, n)
@@ -203,12 +200,6 @@ class Structure:
             raise InputError("second", "and geometric are one in place of the other", "give exactly one of them")
         length = float(np.linalg.norm(np.asarray(r0), axis=-1).max())
         chosen = np.array([-1]) if stations is None else np.asarray(stations)
-        if getattr(mass, "ndim", 1) == 2 and second is None:
-            nodes = np.asarray(r0)[chosen], np.asarray(first)[chosen]
-            mass, r0, first = particles_of(r0, first, mass)
-            mass = np.append(mass, np.zeros(len(chosen)))  # the stations have none
-            r0, first = np.concatenate([r0, nodes[0]]), np.concatenate([first, nodes[1]])
-            chosen = np.arange(-len(chosen), 0)
         k, n = len(mass), np.shape(first)[-1]
         arrays = (mass, r0, first, stiffness, second)
         names, shapes = ("mass", "r0", "first", "stiffness", "second"), ((k,), (k, 3), (k, 3, n), (n, n), (k, 3, n, n))

@@ -14,9 +14,10 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.guards.units import UnitError, quantity
-from gbeam.mechanics.equations.linear import geometric_of
-from gbeam.mechanics.reduction import inertial_loads, linear_fields, reduce
-from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.equations.linear import coefficients, geometric_of
+from gbeam.mechanics.fields.taylor import Places
+from gbeam.mechanics.reduction import inertial_loads, linear_fields, particles_of, reduce
+from gbeam.mechanics.structure import Structure, linear_structure
 from gbeam.numerics.factor import refuse_cost
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.response import Response
@@ -34,6 +35,7 @@ from gbeam.solids.elements import (
     stiffness_matrix,
 )
 from gbeam.solids.foreign import elements_in, no_group, nodes_in, read_mesh, solid_blocks
+from gbeam.solids.interfaces import attached, refuse_names
 from gbeam.solids.stress import solid_stress
 from gbeam.structure.attachments import TIP, checked_name
 from gbeam.structure.material import Material, Orthotropic
@@ -65,6 +67,8 @@ class SolidMesh(Value):
         Yield strengths of materials by their names, Pa, of those that have one.
     warnings : tuple of str
         What is implausible in it.
+    interfaces : dict of (g,) int
+        Nodes of the groups on which other bodies hang, by their names.
 
     Examples
     --------
@@ -83,6 +87,7 @@ class SolidMesh(Value):
     stations: dict[str, int]
     strengths: dict[str, float] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+    interfaces: dict[str, Indices] = field(default_factory=dict)
 
     @classmethod
     @typed
@@ -95,6 +100,7 @@ class SolidMesh(Value):
         unit: str,
         points: Mapping[str, Any] | None = None,
         point_masses: Mapping[str, float] | None = None,
+        interfaces: Mapping[str, str] | None = None,
         origin: Sequence[float] = (0.0, 0.0, 0.0),
     ) -> SolidMesh:
         """Read a mesh of solid elements.
@@ -117,6 +123,9 @@ class SolidMesh(Value):
             ``tip`` is the node farthest from the root where it is not given.
         point_masses : dict, optional
             Masses by the name of a point, or of a group over whose nodes it is spread evenly, kg.
+        interfaces : dict of str, optional
+            Groups of nodes or elements by the name of a point that moves and turns as their nodes do on average: bodies
+            of a :class:`gbeam.System` hang on it by joints, and it is put out.
         origin : (3,)
             Root in the mesh's coordinates, m: the point whose acceleration the motion gives. The base axes are along
             those of the mesh.
@@ -171,7 +180,9 @@ class SolidMesh(Value):
         blocks = _blocks(mesh, solids, new, materials)
         kinds = materials if isinstance(materials, Mapping) else {"": materials}
         strengths = {name: each.yield_strength for name, each in kinds.items() if each.yield_strength is not None}
-        solid = cls(at, blocks, clamped, used, weights, named | {TIP: tip}, strengths)
+        refuse_names(interfaces or {}, named | {TIP: tip})
+        hung = {name: group(f"interfaces.{name}", of) for name, of in (interfaces or {}).items()}
+        solid = cls(at, blocks, clamped, used, weights, named | {TIP: tip}, strengths, interfaces=hung)
         _refuse_folded(solid)
         _refuse_loose(solid)
         return cls(**{**vars(solid), "warnings": tuple(_doubts(solid, unit))})
@@ -199,7 +210,8 @@ class SolidMesh(Value):
         ----------
         modes : int
             Number of modes; up to twelve static shapes come on top, so that any steady acceleration and rotation of
-            the base deforms the solid as all of its elements would.
+            the base deforms the solid as all of its elements would, and six for each interface, so that forces and
+            moments there do (attachment modes: a reduction by Craig and Bampton about the clamp).
         damping_ratio : float or sequence
             Of critical damping, of every coordinate, or one for each.
         kind : str
@@ -228,31 +240,60 @@ class SolidMesh(Value):
 
         mass = (mass_matrix(self.points, self.blocks) + diags_array(self.point_masses)).tocsr()
         # Body forces −1, −x, −y and −z along x, then along y, then along z.
-        weights = mass @ linear_fields(self.points)
-        loads = inertial_loads(weights)
+        loads = inertial_loads(mass @ linear_fields(self.points))
+        centres, forces = attached(self.points, self.interfaces)
         free = np.repeat(~self.clamped, 3)
+        forces[~free] = 0.0  # what the clamp takes
         stiffness = stiffness_matrix(self.points, self.blocks)
-        reduced = reduce(stiffness, kron(mass, eye_array(3), format="csr"), loads, free, modes)
+        of_all = kron(mass, eye_array(3), format="csr")
+        reduced = reduce(stiffness, of_all, np.concatenate([loads, forces], axis=1), free, modes)
         del stiffness
-        shapes, still = (each.reshape(len(weights), 3, -1) for each in (reduced.shapes, reduced.static))
-        fields = geometric_stiffness(self.points, self.blocks, still, shapes, reduced.squares).reshape(
-            3, 4, *2 * shapes.shape[2:]
-        )
+        shapes, still = (each.reshape(len(self.points), 3, -1) for each in (reduced.shapes, reduced.static))
+        # Of moments on interfaces the stress is left out.
+        pushed = [12 + 6 * i + axis for i in range(len(centres)) for axis in range(3)]
+        stressed = still[..., [*range(12), *pushed]]
+        fields = geometric_stiffness(self.points, self.blocks, stressed, shapes, reduced.squares)
+        inertial = fields[:12].reshape(3, 4, *fields.shape[1:])
         frequency = np.sqrt(reduced.squares[:modes]) / (2 * np.pi)
         error, doubts = _mesh_errors(frequency, coarser)
-        structure = Structure.of_particles(
-            mass,
-            self.points,
-            shapes,
-            np.diag(reduced.squares),
-            geometric=geometric_of(fields[:, 0], fields[:, 1:].swapaxes(0, 1)),
+        masses, *paths = particles_of(self.points, shapes, mass)
+        places = Places(*paths)
+        stress = geometric_of(inertial[:, 0], inertial[:, 1:].swapaxes(0, 1))
+        stations, turns = self._outputs(centres, forces, shapes, fields[12:])
+        structure = linear_structure(
+            coefficients(masses, places, np.diag(reduced.squares), geometric=stress),
+            masses,
+            places,
+            stations,
+            length=float(np.linalg.norm(self.points, axis=1).max()),
+            turns=turns,
             damping_ratio=damping_ratio,
-            stations=list(self.stations.values()),
-            points=tuple(self.stations),
+            points=self.named_points,
             kind=kind,
             warnings=(*self.warnings, *doubts),
         )
         return SolidModel(self, structure, shapes, frequency, error)
+
+    @property
+    def named_points(self) -> tuple[str, ...]:
+        """Names of the points that are put out: nodes, interfaces, and the tip."""
+        *names, tip = self.stations
+        return (*names, *self.interfaces, tip)
+
+    def _outputs(self, centres: Floats, forces: Floats, shapes: Floats, pushed: Floats) -> tuple[Places, Floats | None]:
+        """Places of the named points, and their rotations (s, 3, n), not a number where unknown."""
+        *nodes, tip = self.stations.values()
+        ends, n, count = [*nodes, tip], shapes.shape[-1], len(centres)
+        r0, first = self.points[ends], shapes[ends]
+        if not count:
+            return Places(r0, first), None
+        moved = (forces.T @ shapes.reshape(-1, n)).reshape(count, 2, 3, n)
+        at, none = len(nodes), np.zeros((len(ends), 3, n, n))
+        # Work of a force in displacements of second order: what its stress adds to the stiffness, with the other sign.
+        second = np.insert(none, [at] * count, -pushed.reshape(count, 3, n, n), axis=0)
+        turns = np.insert(np.full((len(ends), 3, n), np.nan), [at] * count, moved[:, 1], axis=0)
+        r0, first = np.insert(r0, [at] * count, centres, axis=0), np.insert(first, [at] * count, moved[:, 0], axis=0)
+        return Places(r0, first, second), turns
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,124 @@
+"""Bodies on solids and on imported matrices: against all unknowns at once, against beams, and what cannot hold one."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import sparse
+from scipy.linalg import eigh
+
+import gbeam as gb
+from gbeam.solids.elements import mass_matrix, stiffness_matrix
+from gbeam.solids.interfaces import attached
+
+from .bodies import STIFF, block, solid
+from .test_matrices import frame
+
+LENGTH, WIDTH, HEIGHT = 0.3, 0.02, 0.01
+BODY = gb.RigidBody(0.1, (2e-5, 4e-5, 3e-5), centre=(0.02, 0, 0.01))
+
+
+@cache
+def strip() -> gb.SolidMesh:
+    """A straight block whose end is an interface."""
+    groups = {"end": lambda x: x[:, 0] == LENGTH}
+    mesh = block("hexahedron20", (8, 1, 1), (LENGTH, WIDTH, HEIGHT), groups=groups)
+    return solid(mesh, STIFF, interfaces={"seat": "end"})
+
+
+@cache
+def reduced(modes: int) -> gb.Structure:
+    return strip().reduced(modes=modes, damping_ratio=0.0).structure
+
+
+@cache
+def beam() -> gb.Structure:
+    """The same as a beam."""
+    section = gb.Section.rectangle(WIDTH, HEIGHT)
+    whole = gb.Beam(
+        LENGTH, section, gb.Material(2700, 70e9, poissons_ratio=0.0), damping_ratio=0.0, rotary_inertia=True
+    )
+    return gb.assemble(whole, "exact", axial=2, y=4, z=4, twist=2, shear_y=2, shear_z=2)
+
+
+def with_body(model: gb.Structure, on: str, body: gb.RigidBody = BODY, gravity: Any = None, **joint: Any) -> gb.System:
+    hung = gb.Joint(joint.pop("kind", "fixed"), "box", on=f"strip.{on}", **joint)
+    return gb.System({"strip": model, "box": body}, {"wall": gb.Joint("fixed", "strip"), "weld": hung}, gravity=gravity)
+
+
+def of_body() -> np.ndarray:
+    """Mass matrix of the body by the motion of its root."""
+    x, y, z = BODY.centre
+    turn = np.array([[0, z, -y], [-z, 0, x], [y, -x, 0]])
+    move = np.block([[np.eye(3), turn], [np.zeros((3, 3)), np.eye(3)]])
+    inside = np.block([[BODY.mass * np.eye(3), np.zeros((3, 3))], [np.zeros((3, 3)), BODY.tensor]])
+    return np.asarray(move.T @ inside @ move)
+
+
+def test_a_body_on_a_solid_converges_to_all_unknowns() -> None:
+    """With six attachment shapes the lowest frequency is there at once; more modes bring the others."""
+    mesh = strip()
+    mass = sparse.kron(mass_matrix(mesh.points, mesh.blocks), sparse.eye_array(3)).toarray()
+    _, forces = attached(mesh.points, mesh.interfaces)
+    mass = mass + forces @ of_body() @ forces.T
+    free = np.repeat(~mesh.clamped, 3)
+    stiffness = stiffness_matrix(mesh.points, mesh.blocks).toarray()
+    squares = eigh(stiffness[free][:, free], mass[free][:, free], eigvals_only=True, subset_by_index=[0, 5])
+    apart = [gb.modes(with_body(reduced(n), "seat")).frequency[:6] / np.sqrt(squares) * 2 * np.pi - 1 for n in (2, 8)]
+    np.testing.assert_allclose(apart[0][:2], 0, atol=2e-8)
+    assert (apart[0][2:] > 0).all() and np.abs(apart[1]).max() < 5e-6
+    assert (np.abs(apart[1][2:]) < apart[0][2:] / 50).all()
+
+
+@pytest.mark.parametrize(
+    "joint", [{}, {"kind": "revolute", "axes": [(0, 1, 0)], "stiffness": 20.0}], ids=["weld", "hinge"]
+)
+def test_a_body_on_a_solid_is_that_on_a_beam(joint: dict[str, Any]) -> None:
+    """Bending of the lowest two within what eight elements leave."""
+    of_solid, of_beam = (gb.modes(with_body(*each, **joint)) for each in ((reduced(8), "seat"), (beam(), "tip")))
+    np.testing.assert_allclose(of_solid.frequency[:2], of_beam.frequency[:2], rtol=1.5e-3)
+
+
+@pytest.mark.parametrize("way", [20.0, -20.0])
+def test_what_hangs_on_a_solid_stiffens_it(way: float) -> None:
+    """The weight of a heavy body pulls or presses: the change of both bending frequencies is that of an exact beam."""
+    heavy = gb.RigidBody(2.0, (2e-3, 2e-3, 2e-3))
+    changes = []
+    for model, on in ((reduced(8), "seat"), (beam(), "tip")):
+        loaded, free = (gb.modes(with_body(model, on, heavy, gravity)) for gravity in ((way, 0, 0), None))
+        changes.append(loaded.frequency[:2] - free.frequency[:2])
+    assert np.sign(changes[0][0]) == np.sign(way)
+    np.testing.assert_allclose(changes[0], changes[1], rtol=3e-3)
+
+
+def test_a_body_on_imported_matrices() -> None:
+    """On a node with rotations, as in the whole matrices."""
+    m, k, nodes = frame(12, rotary=1e-5)
+    model = gb.ImportedModel(m.copy(), k, nodes)
+    how = dict(modes=6, damping_ratio=0.0, clamp=[0], points={"seat": 12}, interfaces=["seat"])
+    system = with_body(model.reduced(**how), "seat")
+    m[-6:, -6:] += of_body()
+    squares = eigh(k[6:, 6:], m[6:, 6:], eigvals_only=True)[:4]
+    np.testing.assert_allclose(gb.modes(system).frequency[:4] * 2 * np.pi, np.sqrt(squares), rtol=1e-5)
+    with pytest.raises(gb.InputError, match=r"mass leaves a static answer to forces or moments without mass; give"):
+        gb.ImportedModel(*frame(12)).reduced(**how)
+    plain = gb.ImportedModel(np.eye(39), np.eye(39), nodes)
+    with pytest.raises(gb.InputError, match=r"interfaces\[0\] is 'seat', which does not turn in the matrices; name"):
+        plain.reduced(**(how | {"clamp": []}))
+
+
+def test_what_holds_no_body_is_refused() -> None:
+    groups = {"edge": lambda x: (x[:, 0] == LENGTH) & (x[:, 2] == 0)}
+    mesh = block("hexahedron20", (2, 1, 1), (LENGTH, WIDTH, HEIGHT), groups=groups)
+    edge = solid(mesh, STIFF, interfaces={"seat": "edge"})
+    with pytest.raises(gb.InputError, match=r"interfaces\.seat has \d nodes on a line, which do not say how it turns"):
+        edge.reduced(modes=1, damping_ratio=0.0)
+    with pytest.raises(gb.InputError, match=r"interfaces\.seat is the name of a point too"):
+        solid(mesh, STIFF, interfaces={"seat": "edge"}, points={"seat": (LENGTH, 0, 0)})
+    with pytest.raises(gb.InputError, match=r"interfaces\.seat is 'lid', which is no group"):
+        solid(mesh, STIFF, interfaces={"seat": "lid"})
+    with pytest.raises(gb.InputError, match=r"joints\.weld\.on is a point of particles, which do not say how it turns"):
+        with_body(reduced(8), "tip")
